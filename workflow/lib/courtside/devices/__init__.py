@@ -1,0 +1,1 @@
+"""Files of recording devices into records."""

@@ -1,0 +1,1 @@
+"""Drawings; the only room that uses matplotlib."""

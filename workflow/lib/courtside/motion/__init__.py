@@ -1,0 +1,1 @@
+"""Skeletons over time: resampling, gaps, filters."""

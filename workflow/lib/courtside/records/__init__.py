@@ -1,0 +1,1 @@
+"""What rules hand to each other: skeletons, keypoints, tables."""

@@ -1,0 +1,145 @@
+"""The two tables of keypoints that rules hand to each other: 2D of one camera, 3D of one take."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.records import npz
+
+FORM_2D = "courtside keypoints2d 1"
+FORM_3D = "courtside keypoints3d 1"
+SPEC_2D = {
+    "camera": ("str", ()),
+    "model": ("str", ()),
+    "joints": ("str", ("J",)),
+    "size": ("int", ("2",)),
+    "time_s": ("float", ("T",)),
+    "xy": ("float", ("P", "T", "J", "2")),
+    "score": ("float", ("P", "T", "J")),
+    "reason": ("int", ("P", "T", "J")),
+    "xyz_in_body": ("float", ("P", "T", "J", "3")),
+}
+SPEC_3D = {
+    "cameras": ("str", ("C",)),
+    "model": ("str", ()),
+    "joints": ("str", ("J",)),
+    "person_id": ("str", ("P",)),
+    "time_s": ("float", ("T",)),
+    "xyz": ("float", ("P", "T", "J", "3")),
+    "covariance_2d": ("float", ("P", "T", "J", "3", "3")),
+    "covariance_camera": ("float", ("P", "T", "J", "3", "3")),
+    "n_views": ("int", ("P", "T", "J")),
+    "reproj_error_px": ("float", ("P", "T", "J", "C")),
+    "accepted": ("bool", ("P", "T", "J", "C")),
+    "reason": ("int", ("P", "T", "J")),
+}
+
+
+@dataclass(frozen=True)
+class Keypoints2D:
+    """What a network saw in one camera during one take.
+
+    Attributes
+    ----------
+    camera, model : str
+        Camera and network names.
+    joints : (J,) str
+        Joint names, in the order of the network's skeleton.
+    size : (2,) int
+        Width and height of the pictures, px.
+    time_s : (T,) float
+        Time of each frame on the camera's own clock.
+    xy : (P, T, J, 2) float
+        Keypoints in px, first pixel centre at (0, 0), distorted as in the picture; NaN where missing.
+        P counts the tracklets of this camera: they are not yet persons.
+    score : (P, T, J) float
+        Confidence, 0 to 1; NaN where missing.
+    reason : (P, T, J) uint8
+        `courtside.records.reasons`.
+    xyz_in_body : (P, T, J, 3) float
+        The network's own metric guess about the hip centre, metres, axes as in cam (x right, y down,
+        z forward); NaN for networks without one.
+    """
+
+    camera: str
+    model: str
+    joints: np.ndarray
+    size: np.ndarray
+    time_s: np.ndarray
+    xy: np.ndarray
+    score: np.ndarray
+    reason: np.ndarray
+    xyz_in_body: np.ndarray
+
+
+@dataclass(frozen=True)
+class Keypoints3D:
+    """Metric skeletons of one take, in the world frame.
+
+    Attributes
+    ----------
+    cameras : (C,) str
+        The views, in the order of the last axis of `reproj_error_px`.
+    model : str
+        Network that saw the keypoints.
+    joints, person_id : (J,) str, (P,) str
+        Joint names; persons as the session names them.
+    time_s : (T,) float
+        Uniform times on the reference clock.
+    xyz : (P, T, J, 3) float
+        Metres; NaN where `reason` says why.
+    covariance_2d, covariance_camera : (P, T, J, 3, 3) float
+        Covariance from the keypoints and from the calibration, square metres; NaN where unknown.
+    n_views : (P, T, J) int
+        Views that the point rests on; 0 where it is missing.
+    reproj_error_px : (P, T, J, C) float
+        Distance of each camera's keypoint to the projected point, accepted or not; NaN without either.
+    accepted : (P, T, J, C) bool
+        Whether the point rests on that camera's keypoint.
+    reason : (P, T, J) uint8
+        `courtside.records.reasons`.
+    """
+
+    cameras: np.ndarray
+    model: str
+    joints: np.ndarray
+    person_id: np.ndarray
+    time_s: np.ndarray
+    xyz: np.ndarray
+    covariance_2d: np.ndarray
+    covariance_camera: np.ndarray
+    n_views: np.ndarray
+    reproj_error_px: np.ndarray
+    accepted: np.ndarray
+    reason: np.ndarray
+
+    @property
+    def rate_hz(self):
+        """Frames per second of the uniform times; NaN for a single frame."""
+        if len(self.time_s) < 2:
+            return float("nan")
+        return float((len(self.time_s) - 1) / (self.time_s[-1] - self.time_s[0]))
+
+
+def write_2d(path, keypoints):
+    """Write a `Keypoints2D` to an npz file."""
+    npz.write(path, FORM_2D, SPEC_2D, vars(keypoints))
+
+
+def read_2d(path):
+    """Read a `Keypoints2D` from an npz file; raise `InputError` if it is not one."""
+    return Keypoints2D(**_plain(npz.read(path, FORM_2D, SPEC_2D)))
+
+
+def write_3d(path, keypoints):
+    """Write a `Keypoints3D` to an npz file."""
+    npz.write(path, FORM_3D, SPEC_3D, vars(keypoints))
+
+
+def read_3d(path):
+    """Read a `Keypoints3D` from an npz file; raise `InputError` if it is not one."""
+    return Keypoints3D(**_plain(npz.read(path, FORM_3D, SPEC_3D)))
+
+
+def _plain(arrays):
+    return {key: str(value) if value.ndim == 0 else value for key, value in arrays.items()}

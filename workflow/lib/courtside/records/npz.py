@@ -1,0 +1,96 @@
+"""Reading and writing npz files whose keys, shapes and types are stated and checked.
+
+Every file holds `format` (what it is, with a version) beside its arrays, and never a pickled object.
+"""
+
+import zipfile
+
+import numpy as np
+
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+KINDS = {"float": np.floating, "int": np.integer, "bool": np.bool_, "str": np.str_}
+
+
+def write(path, form, spec, arrays):
+    """Write arrays under their names, after checking them.
+
+    Parameters
+    ----------
+    path : str or Path
+        The npz file; it appears under its name only when whole.
+    form : str
+        What the file is and its version, such as `"courtside keypoints2d 1"`.
+    spec : dict of str to (str, tuple of str)
+        For each key the kind (`float`, `int`, `bool`, `str`) and the names of its dimensions; one
+        name means one length throughout the file, a digit string a fixed length.
+    arrays : dict of str to array_like
+        One array for each key of `spec`.
+
+    Raises
+    ------
+    ValueError
+        If a key is missing or unknown, or a kind or shape is not as stated.
+    """
+    arrays = {key: np.asarray(value) for key, value in arrays.items()}
+    fault = _fault(spec, arrays)
+    if fault:
+        raise ValueError(f"{path}: {fault}")
+    with atomic(path) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(stream, format=np.array(form), **arrays)
+
+
+def read(path, form, spec):
+    """Read arrays written by `write`.
+
+    Parameters
+    ----------
+    path, form, spec
+        As for `write`.
+
+    Returns
+    -------
+    arrays : dict of str to ndarray
+        One array for each key of `spec`.
+
+    Raises
+    ------
+    InputError
+        If the file is not an npz of this form, or its arrays are not as stated.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            found = {key: stored[key] for key in stored.files}
+    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: expected an npz file ({form}), found: {error}") from None
+    stated = str(found.pop("format", "no format"))
+    if stated != form:
+        raise InputError(f"{path}: expected format {form!r}, found {stated!r}; make it again")
+    fault = _fault(spec, found)
+    if fault:
+        raise InputError(f"{path}: {fault}; make it again")
+    return found
+
+
+def _fault(spec, arrays):
+    if set(arrays) != set(spec):
+        return f"expected keys {sorted(spec)}, found {sorted(arrays)}"
+    lengths = {}
+    for key, (kind, dimensions) in spec.items():
+        array = arrays[key]
+        if not np.issubdtype(array.dtype, KINDS[kind]):
+            return f"{key}: expected {kind}, found {array.dtype}"
+        if not _fits(array.shape, dimensions, lengths):
+            known = {name: lengths[name] for name in dimensions if name in lengths}
+            return f"{key}: expected shape {dimensions} with {known}, found {array.shape}"
+    return None
+
+
+def _fits(shape, dimensions, lengths):
+    if len(shape) != len(dimensions):
+        return False
+    return all(
+        length == (int(name) if name.isdigit() else lengths.setdefault(name, length))
+        for length, name in zip(shape, dimensions, strict=True)
+    )

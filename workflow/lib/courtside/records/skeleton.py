@@ -1,0 +1,94 @@
+"""Ordered joints and the bones between them, read from `config/skeletons/`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+
+from courtside.study.errors import InputError
+
+SIDES = {"left_": "right_", "right_": "left_"}
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """A joint list as one network or device gives it.
+
+    Attributes
+    ----------
+    name : str
+        As in the file name.
+    joints : tuple of str
+        Names in order; sides are prefixes, `left_wrist`.
+    bones : tuple of (str, str)
+        Pairs of joints drawn as lines.
+    segments : dict of str to (str, str)
+        Rigid limb segments, for checks of constant length.
+    groups : dict of str to tuple of str
+        Named sets of joints, such as `limbs` or `face`.
+    """
+
+    name: str
+    joints: tuple
+    bones: tuple
+    segments: dict
+    groups: dict
+
+    def index(self, joint):
+        """Return the position of a joint; raise `ValueError` if the skeleton has none of that name."""
+        return self.joints.index(joint)
+
+    def mirror(self):
+        """Return for each joint the index of the same joint of the other body side, (J,) list of int.
+
+        A joint without sides maps to itself.
+        """
+        return [self.joints.index(_other_side(joint)) for joint in self.joints]
+
+
+def _other_side(joint):
+    for side, other in SIDES.items():
+        if joint.startswith(side):
+            return other + joint.removeprefix(side)
+    return joint
+
+
+def read(path):
+    """Read a skeleton file.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML with `joints`, `bones`, `segments`, `groups`.
+
+    Returns
+    -------
+    skeleton : Skeleton
+
+    Raises
+    ------
+    InputError
+        If a bone, segment or group names a joint that is not in `joints`, or a side has no mirror.
+    """
+    content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    skeleton = Skeleton(
+        name=Path(path).stem,
+        joints=tuple(content["joints"]),
+        bones=tuple(tuple(bone) for bone in content["bones"]),
+        segments={name: tuple(ends) for name, ends in content["segments"].items()},
+        groups={name: tuple(joints) for name, joints in content["groups"].items()},
+    )
+    _check(path, skeleton)
+    return skeleton
+
+
+def _check(path, skeleton):
+    used = [*skeleton.bones, *skeleton.segments.values(), *skeleton.groups.values()]
+    used.append(tuple(_other_side(joint) for joint in skeleton.joints))
+    for joints in used:
+        for joint in joints:
+            if joint not in skeleton.joints:
+                raise InputError(
+                    f"{path}: expected joints from the list `joints`, found {joint!r}; "
+                    "add it there or correct the name"
+                )

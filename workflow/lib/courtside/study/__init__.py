@@ -1,0 +1,1 @@
+"""The study itself: configuration, artefacts, logs, files."""

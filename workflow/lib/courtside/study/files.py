@@ -1,0 +1,42 @@
+"""Writing files so that a half-written one never looks finished."""
+
+import contextlib
+import hashlib
+import secrets
+from pathlib import Path
+
+CHUNK_BYTES = 1 << 20
+
+
+@contextlib.contextmanager
+def atomic(path):
+    """Give a temporary path beside `path`; rename it to `path` when the block ends well.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to write. Missing parent folders are made.
+
+    Yields
+    ------
+    temporary : Path
+        Write here. It keeps the file's suffix, because some writers choose the format by it.
+        It is deleted if the block raises.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
+    try:
+        yield temporary
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def sha256(path):
+    """Return the SHA-256 of a file as 64 hexadecimal digits, reading it in pieces."""
+    digest = hashlib.sha256()
+    with Path(path).open("rb") as stream:
+        while chunk := stream.read(CHUNK_BYTES):
+            digest.update(chunk)
+    return digest.hexdigest()
