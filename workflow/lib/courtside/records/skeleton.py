@@ -45,6 +45,40 @@ class Skeleton:
         """
         return [self.joints.index(_other_side(joint)) for joint in self.joints]
 
+    def side_groups(self):
+        """Return the sets of joints whose sides a network confuses together: upper body and legs."""
+        legs = set(self.groups["legs"]) | {"left_hip", "right_hip"}
+        return [[j for j in self.joints if j not in legs], [j for j in self.joints if j in legs]]
+
+    def by_group(self, values):
+        """Spread values of joint groups over the joints.
+
+        Parameters
+        ----------
+        values : dict of str to float
+            One value for each group; together the groups must hold every joint.
+
+        Returns
+        -------
+        per_joint : list of float, length J
+
+        Raises
+        ------
+        InputError
+            If a group is unknown or a joint is in none of the groups named.
+        """
+        owner = {
+            joint: value for name, value in values.items() for joint in self.groups.get(name, ())
+        }
+        missing = [joint for joint in self.joints if joint not in owner]
+        unknown = [name for name in values if name not in self.groups]
+        if missing or unknown:
+            raise InputError(
+                f"skeleton {self.name}: expected groups of {sorted(self.groups)} that hold every joint, "
+                f"found {sorted(values)}; joints without a value: {missing}"
+            )
+        return [owner[joint] for joint in self.joints]
+
 
 def _other_side(joint):
     for side, other in SIDES.items():

@@ -1,0 +1,23 @@
+"""Courtside: every figure and table of the study, from raw recordings."""
+
+from snakemake.utils import min_version
+
+min_version("9.27.1")
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/artefacts.smk"
+include: "workflow/rules/frames.smk"
+include: "workflow/rules/cameras.smk"
+include: "workflow/rules/pose.smk"
+include: "workflow/rules/motion.smk"
+include: "workflow/rules/figures.smk"
+
+
+report: "workflow/report/study.rst"
+
+
+rule all:
+    input:
+        every_export(),
+        every_figure(),

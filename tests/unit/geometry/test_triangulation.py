@@ -1,0 +1,151 @@
+"""Triangulation against exact truth, statistics, and a board of known size."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import scene
+from real_data import REAL, needs_real
+
+from courtside.geometry import calibration_files, cameras, triangulation
+
+LENS = (-0.25, 0.08, 1e-3, -5e-4, -0.01)
+LIMITS = {"max_error_px": 15, "min_views": 2}
+
+
+@pytest.mark.parametrize("n_cameras", [2, 3, 4, 12])
+@pytest.mark.parametrize("dist", [(0, 0, 0, 0, 0), LENS])
+def test_exact_keypoints_give_exact_points(n_cameras, dist):
+    views = scene.ring(n_cameras, dist=dist)
+    xyz = scene.points(200)
+    xy = scene.views(views, xyz)
+    found = triangulation.triangulate_robust(views, xy, np.ones(xy.shape[:2]), sigma_px=1, **LIMITS)
+    np.testing.assert_allclose(found.xyz, xyz, atol=1e-8)
+    assert found.accepted.all()
+    assert found.error_px.max() < 1e-5
+
+
+def test_dlt_equals_the_null_vector_of_hartley_and_zisserman():
+    views, xyz = scene.ring(4), scene.points(20)
+    rng = np.random.default_rng(1)
+    xy = scene.views(views, xyz) + rng.normal(0, 0.01, (4, 20, 2))
+    plane = np.stack([cameras.undistort(c, p) for c, p in zip(views, xy, strict=True)])
+    matrices = np.stack([c.cam_from_world for c in views])
+    found = triangulation.triangulate(plane, np.ones((4, 20)), matrices)
+    for at in range(20):
+        rows = [plane[c, at, k] * matrices[c, 2] - matrices[c, k] for c in range(4) for k in (0, 1)]
+        null = np.linalg.svd(np.array(rows))[2][-1]
+        np.testing.assert_allclose(found[at], null[:3] / null[3], atol=2e-5)
+
+
+@pytest.mark.parametrize("n_cameras", [3, 4, 6, 12])
+def test_one_wrong_view_is_left_out(n_cameras):
+    views, xyz = scene.ring(n_cameras), scene.points(500)
+    rng = np.random.default_rng(2)
+    xy = scene.views(views, xyz) + rng.normal(0, 1, (n_cameras, 500, 2))
+    wrong = rng.integers(0, n_cameras, 500)
+    xy[wrong, np.arange(500)] += rng.uniform(80, 400, (500, 1)) * rng.choice([-1, 1], (500, 2))
+    found = triangulation.triangulate_robust(views, xy, np.ones(xy.shape[:2]), sigma_px=1, **LIMITS)
+    error_m = np.linalg.norm(found.xyz - xyz, axis=1)
+    kept = found.accepted[wrong, np.arange(500)]
+    limit = 0.2 if n_cameras == 3 else 0.02  # two views cannot always tell which of three is wrong
+    assert kept.mean() <= limit
+    assert np.nanmedian(error_m) < 0.01
+    assert np.mean(error_m > 0.05) <= limit
+
+
+def test_covariance_holds_the_errors_it_promises():
+    views, xyz = scene.ring(4, dist=LENS), scene.points(4000)
+    xy = scene.views(views, xyz) + np.random.default_rng(3).normal(0, 2, (4, 4000, 2))
+    found = triangulation.triangulate_robust(views, xy, np.ones((4, 4000)), sigma_px=2, **LIMITS)
+    error = found.xyz - xyz
+    squared = np.einsum("ni,nij,nj->n", error, np.linalg.inv(found.covariance), error)
+    # 90 % of a chi-squared variable with 3 degrees of freedom lie below 6.251.
+    assert 0.87 <= np.mean(squared < 6.251) <= 0.92
+
+
+def test_missing_and_low_scores_are_not_used():
+    views, xyz = scene.ring(3), scene.points(3)
+    xy = scene.views(views, xyz)
+    score = np.ones((3, 3))
+    xy[1:, 0] = np.nan
+    score[0, 1], xy[0, 1] = 0.1, xy[0, 1] + 300
+    found = triangulation.triangulate_robust(views, xy, score, sigma_px=1, min_score=0.3, **LIMITS)
+    assert np.isnan(found.xyz[0]).all()
+    np.testing.assert_allclose(found.xyz[1:], xyz[1:], atol=1e-8)
+    assert not found.accepted[0, 1]
+    assert found.error_px[0, 1] == pytest.approx(300 * np.sqrt(2))
+
+
+def test_views_that_contradict_give_nothing():
+    views, xyz = scene.ring(2), scene.points(1)
+    xy = scene.views(views, xyz)
+    xy[0] += [0, 400]
+    found = triangulation.triangulate_robust(views, xy, np.ones((2, 1)), sigma_px=1, **LIMITS)
+    assert np.isnan(found.xyz).all()
+    assert not found.accepted.any()
+
+
+def test_points_behind_the_cameras_are_refused():
+    matrix = scene.ring(1)[0].K
+    poses = [scene.look_at((0, -6, 2), (0, 0, 1.9)), scene.look_at((0.5, -6, 2), (0.5, 0, 1.9))]
+    pair = [
+        cameras.Camera(n, scene.SIZE, matrix, np.zeros(5), p)
+        for n, p in zip("ab", poses, strict=True)
+    ]
+    # The rays cross behind the cameras: the left camera sees the point further left than the right one.
+    xy = np.array([[[900.0, 500.0]], [[1300.0, 500.0]]])
+    found = triangulation.triangulate_robust(pair, xy, np.ones((2, 1)), sigma_px=1, **LIMITS)
+    assert np.isnan(found.xyz).all()
+
+
+@pytest.mark.parametrize("batch", [1, 7, 1000])
+def test_batches_do_not_change_the_result(batch, monkeypatch):
+    views, xyz = scene.ring(4), scene.points(50)
+    xy = scene.views(views, xyz) + np.random.default_rng(4).normal(0, 8, (4, 50, 2))
+    whole = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), sigma_px=1, **LIMITS)
+    monkeypatch.setattr(triangulation, "BATCH", batch)
+    parts = triangulation.triangulate_robust(views, xy, np.ones((4, 50)), sigma_px=1, **LIMITS)
+    np.testing.assert_allclose(parts.xyz, whole.xyz, atol=1e-9)
+
+
+def test_shapes_are_checked():
+    with pytest.raises(ValueError, match="C = 2 cameras"):
+        triangulation.triangulate_robust(
+            scene.ring(2), np.zeros((3, 1, 2)), np.ones((3, 1)), sigma_px=1, **LIMITS
+        )
+    with pytest.raises(ValueError, match="min_views"):
+        triangulation.triangulate_robust(
+            scene.ring(2),
+            np.zeros((2, 1, 2)),
+            np.ones((2, 1)),
+            sigma_px=1,
+            max_error_px=9,
+            min_views=1,
+        )
+
+
+@needs_real
+def test_a_board_of_known_size_keeps_its_squares():
+    folder = REAL / "charuco-4cams"
+    views = calibration_files.read(folder / "camera_array.toml")
+    seen = pd.read_csv(folder / "calibration" / "extrinsic" / "CHARUCO" / "xy_CHARUCO.csv")
+    keys = sorted(set(zip(seen.sync_index, seen.keypoint_id, strict=True)))
+    at = {key: n for n, key in enumerate(keys)}
+    xy = np.full((4, len(keys), 2), np.nan)
+    for row in seen.itertuples():
+        xy[row.cam_id, at[row.sync_index, row.keypoint_id]] = row.img_loc_x, row.img_loc_y
+    score = np.where(np.isfinite(xy[..., 0]), 1.0, np.nan)
+    found = triangulation.triangulate_robust(views, xy, score, sigma_px=1, **LIMITS)
+    places = seen.groupby("keypoint_id")[["obj_loc_x", "obj_loc_y"]].first()
+    lengths_mm = []
+    for (frame, corner), n in at.items():
+        for other, place in places.iterrows():
+            step = place - places.loc[corner]
+            m = at.get((frame, other))
+            if m is not None and (step >= -1e-6).all() and abs(np.hypot(*step) - 0.054) < 1e-6:
+                lengths_mm.append(1e3 * np.linalg.norm(found.xyz[n] - found.xyz[m]))
+    error_mm = np.array(lengths_mm) - 54.0
+    error_mm = error_mm[np.isfinite(error_mm)]
+    assert len(error_mm) > 900
+    assert abs(error_mm.mean()) <= 0.3
+    assert error_mm.std() <= 0.9

@@ -1,0 +1,112 @@
+"""BlazePose as run here against MediaPipe's own Python solution, and its geometry against mathematics."""
+
+from pathlib import Path
+
+import cv2
+import networks
+import numpy as np
+import pandas as pd
+import pytest
+from real_data import REAL, needs_real
+
+from courtside.pose import blazepose, detector
+
+RECORDED = Path(__file__).with_name("mediapipe_landmarks.csv")
+
+
+@pytest.fixture(scope="module")
+def blazepose_pair():
+    return (
+        blazepose.BlazePoseDetector(networks.detector_onnx()),
+        blazepose.BlazePoseLandmarks(networks.landmarks_onnx()),
+    )
+
+
+def picture(name, frame_idx):
+    if name.endswith(".jpg"):
+        return cv2.imread(str(REAL / "people" / name))
+    stream = cv2.VideoCapture(str(REAL / "walk-4cams" / "videos" / name))
+    for _ in range(frame_idx + 1):
+        found, image = stream.read()
+    return image if found else pytest.fail(f"{name}: no frame {frame_idx}")
+
+
+@needs_real
+def test_joints_agree_with_mediapipe(blazepose_pair):
+    find, place = blazepose_pair
+    recorded = pd.read_csv(RECORDED, comment="#")
+    distances_px, metric_m, pictures = [], [], 0
+    for (video, frame_idx), rows in recorded.groupby(["video", "frame_idx"]):
+        if rows.x_px.isna().any():
+            continue
+        image = picture(video, int(frame_idx))
+        pose = place.estimate(image, find.detect(image)[0])
+        distances_px.append(np.linalg.norm(pose.xy - rows[["x_px", "y_px"]].to_numpy(), axis=1))
+        metric_m.append(pose.xyz_in_body - rows[["world_x_m", "world_y_m", "world_z_m"]].to_numpy())
+        pictures += 1
+    assert pictures >= 25
+    assert np.mean(distances_px) <= 2.0
+    assert np.abs(metric_m).mean() <= 0.01
+
+
+def test_the_region_of_an_upright_person_is_upright():
+    region = blazepose.region_from_points(np.array([100.0, 300.0]), np.array([100.0, 100.0]))
+    assert (region.x, region.y, region.angle_rad) == (100, 300, pytest.approx(0))
+    assert region.side == pytest.approx(2 * 200 * 1.25)
+
+
+@pytest.mark.parametrize("angle_deg", [-150, -90, -30, 10, 90, 170])
+def test_the_region_turns_with_the_person(angle_deg):
+    angle = np.deg2rad(angle_deg)
+    rim = [100 + 50 * np.sin(angle), 300 - 50 * np.cos(angle)]
+    region = blazepose.region_from_points(np.array([100.0, 300.0]), np.array(rim))
+    assert region.angle_rad == pytest.approx(angle)
+
+
+def test_overlapping_boxes_merge_by_their_scores():
+    box = np.array([[0.5, 0.5, 0.2, 0.2], [0.52, 0.5, 0.2, 0.2], [0.9, 0.9, 0.1, 0.1]])
+    merged = blazepose.merge_overlapping(box, np.array([0.75, 0.25, 0.9]))
+    np.testing.assert_allclose(merged[0], box[2])
+    np.testing.assert_allclose(merged[1], [0.505, 0.5, 0.2, 0.2])
+
+
+def test_intersection_over_union_of_half_overlapping_squares():
+    one = np.array([0.0, 0.0, 2.0, 2.0])
+    many = np.array([[1.0, 0.0, 2.0, 2.0], [5.0, 0.0, 1.0, 1.0], [0.0, 0.0, 2.0, 2.0]])
+    np.testing.assert_allclose(blazepose.overlap(one, many), [1 / 3, 0, 1])
+
+
+def test_a_landmark_moves_to_the_centre_of_its_heat():
+    maps = np.full((64, 64, 2), -20.0, np.float32)
+    maps[20:23, 30:33, 0] = 8.0
+    start = np.array([[30.4 / 64, 22.1 / 64], [0.5, 0.5]])
+    refined = blazepose.refine(start, maps)
+    np.testing.assert_allclose(refined[0] * 64, [31, 21], atol=1e-3)
+    np.testing.assert_array_equal(refined[1], start[1])
+
+
+def test_the_detector_has_an_anchor_for_every_output():
+    assert blazepose.anchors().shape == (2254, 2)
+
+
+def test_the_logistic_function_does_not_overflow():
+    with np.errstate(over="raise"):
+        values = blazepose.sigmoid(np.array([-1e6, 0.0, 1e6], np.float32))
+    np.testing.assert_allclose(values, [0, 0.5, 1], atol=1e-12)
+
+
+@needs_real
+def test_a_turned_picture_gives_turned_joints(blazepose_pair):
+    find, place = blazepose_pair
+    image = picture("cam03.mp4", 0)
+    upright = place.estimate(image, find.detect(image)[0])
+    turned_region = detector.Region(
+        image.shape[0] - upright.region.y,
+        upright.region.x,
+        upright.region.side,
+        upright.region.angle_rad + np.pi / 2,
+    )
+    same = place.estimate(image, upright.region)
+    turned = place.estimate(cv2.rotate(image, cv2.ROTATE_90_CLOCKWISE), turned_region)
+    expected = np.stack([image.shape[0] - same.xy[:, 1], same.xy[:, 0]], axis=1)
+    assert np.median(np.linalg.norm(turned.xy - expected, axis=1)) < 3

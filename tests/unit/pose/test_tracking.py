@@ -1,0 +1,94 @@
+"""Following one person: a stand-in network that answers from the picture itself."""
+
+import numpy as np
+import pytest
+
+from courtside.pose import foreground, tracking
+from courtside.pose.detector import Pose, Region
+from courtside.records import reasons
+
+EMPTY = np.zeros((240, 320, 3), np.uint8)
+
+
+class Finder:
+    """Finds the white square; counts how often it is asked."""
+
+    def __init__(self):
+        self.asked = 0
+
+    def detect(self, image):
+        self.asked += 1
+        rows, columns = np.nonzero(image[..., 0])
+        return [Region(columns.mean(), rows.mean(), 80.0)] if len(rows) else []
+
+
+class Placer:
+    """Sees the square when the region holds it."""
+
+    n_joints = 2
+
+    def estimate(self, image, region):
+        rows, columns = np.nonzero(image[..., 0])
+        near = len(rows) and np.hypot(columns.mean() - region.x, rows.mean() - region.y) < 40
+        centre = np.array([columns.mean(), rows.mean()]) if near else np.zeros(2)
+        xy = np.stack([centre, centre + [400, 0]])
+        nothing = np.full((2, 3), np.nan)
+        return Pose(xy, np.array([0.9, 0.8]), nothing, float(bool(near)), Region(*centre, 80.0))
+
+
+def picture(x):
+    image = EMPTY.copy()
+    if x is not None:
+        image[100:140, x : x + 40] = 255
+    return image
+
+
+def follow(places, redetect=False):
+    finder = Finder()
+    frames = [(at / 30, picture(x)) for at, x in enumerate(places)]
+    track = tracking.track_person(
+        frames,
+        finder,
+        Placer(),
+        foreground.Foreground(EMPTY, 30),
+        min_presence=0.5,
+        redetect=redetect,
+    )
+    return track, finder.asked
+
+
+def test_the_detector_is_asked_once_while_the_track_holds():
+    track, asked = follow([20, 30, 40, 50, 60])
+    np.testing.assert_allclose(track.xy[:, 0, 0], [39.5, 49.5, 59.5, 69.5, 79.5])
+    np.testing.assert_allclose(track.time_s, np.arange(5) / 30)
+    assert asked == 1
+
+
+def test_a_lost_person_is_searched_again():
+    track, asked = follow([20, 30, 200, 210, None, None, 100])
+    assert asked == 3
+    assert (track.reason[4:6] == reasons.UNSEEN).all()
+    assert np.isnan(track.xy[4:6]).all()
+    np.testing.assert_allclose(track.xy[[2, 3, 6], 0, 0], [219.5, 229.5, 119.5])
+
+
+def test_redetection_asks_in_every_frame():
+    _, asked = follow([20, 30, 40], redetect=True)
+    assert asked == 3
+
+
+def test_joints_outside_the_picture_say_so():
+    track, _ = follow([20])
+    assert track.reason[0].tolist() == [reasons.OK, reasons.OUT_OF_IMAGE]
+    assert np.isnan(track.xy[0, 1]).all()
+    assert np.isnan(track.score[0, 1])
+
+
+@pytest.mark.parametrize("finds", [True, False])
+def test_the_search_looks_near_the_foreground(finds):
+    image = picture(200)
+    finder = Finder()
+    if not finds:
+        finder.detect = lambda _: []
+    region = tracking.detect_near(image, (200, 100, 40, 40), finder)
+    assert (region.x, region.y) == pytest.approx((219.5, 119.5), abs=1)

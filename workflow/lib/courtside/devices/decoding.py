@@ -1,0 +1,216 @@
+"""Decode video so that no loss passes in silence, and stand its pictures upright.
+
+Every decoded frame is held against the list of packets. What no decoder can see is altered bytes that still
+decode: they are rare in H.264 and MPEG-4 and common in MJPEG, VP8 and VP9, which carry no redundancy.
+"""
+
+import operator
+
+import av
+import numpy as np
+from av.error import FFmpegError
+from av.video.reformatter import Interpolation, VideoReformatter
+
+from courtside.devices.packets import damage, opened, raise_logged
+from courtside.study.errors import InputError
+
+STRICT = {"err_detect": "crccheck+bitstream+buffer+explode"}
+ONE = 65536  # display matrices are in 16.16 fixed point
+
+
+class _DamageError(Exception):
+    """The frame with this index cannot be trusted."""
+
+    def __init__(self, index, why):
+        super().__init__(why)
+        self.index = index
+
+
+def decode_checked(listing, first, stop):
+    """Decode the frames `first` to `stop - 1` on one thread, each held against the list of packets.
+
+    Parameters
+    ----------
+    listing : Listing
+        From `list_packets`.
+    first, stop : int
+        Indices into `listing.pts`, `first < stop`.
+
+    Yields
+    ------
+    index : int
+        Every index of the range, in order.
+    frame : av.VideoFrame
+        As stored: not turned upright, in its own pixel format.
+
+    Raises
+    ------
+    InputError
+        If a frame is missing or damaged. Those before it have then been yielded.
+    """
+    keys = listing.key_pts[listing.key_pts <= listing.pts[first]].tolist()
+    key = int(np.searchsorted(listing.pts, keys[-1])) if keys else 0
+    # A seek may land too late, and a decoder may need a start before the nearest key frame: then two
+    # key frames earlier, at last from the start of the file.
+    seeks = [None] if listing.by_order else [*keys[:0:-2][:2], None]
+    for seek in seeks:
+        done = first
+        try:
+            for index, frame in _in_order(listing, key, stop, seek):
+                if index >= first:
+                    yield index, frame
+                    done = index + 1
+            return
+        except _DamageError as error:
+            if seek is None or done > first:
+                raise InputError(damage(listing, error.index, str(error))) from error
+
+
+def _in_order(listing, key, stop, seek):
+    """Yield index and frame from the key frame on; raise at the first that is not the one expected."""
+    expected = 0 if listing.by_order else key
+    try:
+        for frame in _decode(listing, int(listing.pts[expected]), seek):
+            if not listing.by_order:
+                if frame.pts is not None and frame.pts < listing.pts[key]:
+                    continue
+                if frame.pts != listing.pts[expected]:
+                    break
+            if frame.is_corrupt:
+                raise _DamageError(expected, f"frame {expected} is damaged")
+            yield expected, frame
+            expected += 1
+            if expected == stop:
+                return
+    except FFmpegError as error:
+        raise _DamageError(
+            expected, f"frame {expected} or one soon after it does not decode ({error.strerror})"
+        ) from error
+    raise _DamageError(expected, f"frame {expected} is missing")
+
+
+def _decode(listing, key_pts, seek):
+    """Yield what the decoder makes of the packets; faults before the key frame do not matter."""
+    with opened(listing.path) as (container, stream):
+        context = stream.codec_context
+        context.options = STRICT
+        context.thread_count = 1
+        if seek is not None:
+            container.seek(seek, stream=stream)
+        n_logged = av.logging.get_last_error()[0]
+        for packet in container.demux(stream):
+            cut = listing.problem and packet.dts is not None and packet.dts > listing.last_dts
+            if cut or packet.is_corrupt:
+                yield from context.decode(None)
+                return
+            try:
+                decoded = packet.decode()
+                raise_logged(n_logged)
+            except FFmpegError:
+                if packet.pts is not None and packet.pts < key_pts:
+                    n_logged = av.logging.get_last_error()[0]
+                    continue
+                raise
+            yield from decoded
+
+
+def pictures(listing, wanted, crop_px):
+    """Decode wanted frames into upright pictures; those between are decoded but not converted.
+
+    Parameters
+    ----------
+    listing : Listing
+        From `list_packets`.
+    wanted : sequence of int
+        Indices into `listing.pts`, increasing, at least one.
+    crop_px : (4,) int or None
+        Left, top, width and height in pixels of the upright picture.
+
+    Yields
+    ------
+    index : int
+        Each of `wanted`.
+    image : (H, W, 3) uint8
+        BGR.
+
+    Raises
+    ------
+    InputError
+        As `decode_checked`; also if the size changes or the crop lies outside.
+    """
+    reformatter = VideoReformatter()
+    shape, rest = None, iter(wanted)
+    target = next(rest)
+    for index, frame in decode_checked(listing, wanted[0], wanted[-1] + 1):
+        if index != target:
+            continue
+        target = next(rest, None)
+        image = _picture(listing.path, frame, reformatter)
+        if image.shape != (shape or image.shape):
+            raise InputError(
+                f"{listing.path}: expected pictures of one size, {shape[1]}x{shape[0]}, found "
+                f"{image.shape[1]}x{image.shape[0]} at frame {index}: export the video again at one size"
+            )
+        shape = image.shape
+        yield index, image if crop_px is None else _cropped(listing.path, image, crop_px)
+
+
+def _picture(path, frame, reformatter):
+    """Convert a stored frame into an upright BGR picture."""
+    # Bicubic, as OpenCV converts: the pictures are the same to the last bit.
+    stored = reformatter.reformat(
+        frame, format="bgr24", interpolation=Interpolation.BICUBIC, threads=1
+    ).to_ndarray()
+    x_sign, y_sign = (matrix := display_matrix(path, frame)).sum(axis=0)
+    turned = stored if matrix[0, 0] else stored.transpose(1, 0, 2)
+    return np.ascontiguousarray(turned[::y_sign, ::x_sign])
+
+
+def display_matrix(path, frame):
+    """Read how a stored frame is turned and mirrored for display.
+
+    Parameters
+    ----------
+    path : Path
+        The file, for the message.
+    frame : av.VideoFrame
+        As stored.
+
+    Returns
+    -------
+    matrix : (2, 2) int
+        Of -1, 0 and 1: `xy_shown = xy_stored @ matrix`, up to a shift.
+
+    Raises
+    ------
+    InputError
+        If it is not a turn by quarters.
+
+    Notes
+    -----
+    ISO/IEC 14496-12, section 6.2.2.
+    """
+    data = frame.side_data.get("DISPLAYMATRIX")
+    if data is None:
+        return np.eye(2, dtype=int)
+    matrix = np.frombuffer(data, np.int32).reshape(3, 3)[:2, :2] / ONE
+    rounded = np.rint(matrix).astype(int)
+    quarter = np.array_equal(np.abs(rounded).sum(0), [1, 1]) and abs(np.linalg.det(rounded)) == 1
+    if not quarter or np.abs(matrix - rounded).max() > 0.01:
+        raise InputError(
+            f"{path}: expected a picture turned by quarters, found the display matrix "
+            f"{matrix.round(3).tolist()}: export the video again, upright"
+        )
+    return rounded
+
+
+def _cropped(path, image, crop_px):
+    """Copy the part (left, top, width, height) of a picture."""
+    left, top, width, height = crop = tuple(operator.index(value) for value in crop_px)
+    right, bottom = left + width, top + height
+    if not (0 <= left < right <= image.shape[1] and 0 <= top < bottom <= image.shape[0]):
+        raise InputError(
+            f"{path}: expected a crop (left, top, width, height) within {image.shape[1]}x{image.shape[0]}, "
+            f"found {crop}: correct it"
+        )
+    return image[top:bottom, left:right].copy()

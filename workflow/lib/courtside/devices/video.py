@@ -1,0 +1,285 @@
+"""Read video files: exact frame times and upright pictures.
+
+PyAV decodes rather than OpenCV: the pictures are equal bit for bit and the speed is alike
+(benchmarks/decode_video.py), and it alone tells the time stamp of every packet, mirrored display
+matrices, and that a file is damaged or cut short.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from courtside.devices.decoding import decode_checked, display_matrix, pictures
+from courtside.devices.packets import list_packets
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+
+@dataclass(frozen=True)
+class VideoInfo:
+    """What a video file is.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    size : (int, int)
+        Width and height of the upright picture, in pixels.
+    n_frames : int or None
+        Frames as the container declares them; None where it does not.
+    rate_hz : float
+        Frames per second, averaged over the file; NaN for a single frame. Off by up to the container's
+        tick over its length: Matroska keeps milliseconds.
+    rotation_deg : int
+        How far the stored picture is turned clockwise to stand upright: 0, 90, 180 or 270.
+    duration_s : float
+        From the start of the first frame to the end of the last.
+    variable_rate : bool
+        Whether some interval between two frames differs from the average one by more than 1 % and one
+        tick of the container's clock.
+    """
+
+    path: Path
+    size: tuple[int, int]
+    n_frames: int | None
+    rate_hz: float
+    rotation_deg: int
+    duration_s: float
+    variable_rate: bool
+
+
+def probe(path, *, stop_s=None):
+    """Describe a video file, after checking that no packet of it is missing.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    stop_s : float or None
+        Where a take is trimmed to end; a file cut short after that is accepted.
+
+    Returns
+    -------
+    info : VideoInfo
+        Size, rate, rotation, duration.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, no video, or ends early.
+    """
+    listing = list_packets(path, stop_s=stop_s)
+    _, frame = next(decode_checked(listing, 0, 1))
+    (a, b), _ = display_matrix(listing.path, frame)
+    intervals = np.diff(listing.pts)
+    mean = float(intervals.mean()) if len(intervals) else np.nan
+    return VideoInfo(
+        path=listing.path,
+        size=(frame.width, frame.height) if a else (frame.height, frame.width),
+        n_frames=listing.n_declared,
+        rate_hz=1 / (mean * float(listing.tick_s)),
+        rotation_deg=round(np.degrees(np.arctan2(b, a))) % 360,
+        duration_s=listing.duration_s,
+        variable_rate=bool(np.any(np.abs(intervals - mean) > 1 + 0.01 * mean)),
+    )
+
+
+def frame_times(path, *, stop_s=None):
+    """Return the time of every frame, without decoding one.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    stop_s : float or None
+        Only frames before this; a file cut short after it is accepted.
+
+    Returns
+    -------
+    time_s : (T,) float
+        Seconds since the first frame, strictly increasing, from the container's time stamps.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, no video, ends early, or has no usable time stamps.
+    """
+    times_s = list_packets(path, stop_s=stop_s).times_s
+    return times_s if stop_s is None else times_s[times_s < stop_s]
+
+
+def frames(path, *, start_s=None, stop_s=None, crop_px=None):
+    """Decode a video one frame at a time.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    start_s, stop_s : float or None
+        Only frames with `start_s <= time_s < stop_s`; None for the start or end of the file.
+    crop_px : (4,) int or None
+        Left, top, width and height of the part wanted, in pixels of the upright picture.
+
+    Yields
+    ------
+    time_s : float
+        Seconds since the first frame of the file.
+    image : (H, W, 3) uint8
+        BGR, upright.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, no video, damaged or cut short within the range, holds no frame in
+        it, or is smaller than the crop.
+    """
+    listing, first, stop = _range(path, start_s, stop_s)
+    times_s = listing.times_s
+    for index, image in pictures(listing, range(first, stop), crop_px):
+        yield float(times_s[index]), image
+
+
+def extract_frames(path, every_s, *, start_s=None, stop_s=None, crop_px=None):
+    """Decode the frames nearest to a regular grid of times.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    every_s : float
+        Spacing of the grid, which begins at `start_s` (or 0) and ends with the last frame.
+    start_s, stop_s, crop_px
+        As for `frames`.
+
+    Yields
+    ------
+    frame_idx : int
+        Index of the frame in the file. A frame nearest to several grid times comes once; of two
+        equally near, the earlier is taken.
+    time_s : float
+        Seconds since the first frame of the file.
+    image : (H, W, 3) uint8
+        BGR, upright.
+
+    Raises
+    ------
+    ValueError
+        If `every_s` is not positive.
+    InputError
+        As for `frames`.
+    """
+    if not every_s > 0:
+        raise ValueError(f"every_s must be positive, not {every_s}")
+    listing, first, stop = _range(path, start_s, stop_s)
+    times_s = listing.times_s
+    origin_s = start_s or 0.0
+    n_grid = int(np.floor((times_s[stop - 1] - origin_s) / every_s + 1e-9)) + 1
+    grid_s = origin_s + every_s * np.arange(n_grid)
+    wanted = first + np.unique(_nearest(times_s[first:stop], grid_s))
+    for index, image in pictures(listing, wanted.tolist(), crop_px):
+        yield index, float(times_s[index]), image
+
+
+def read_frame(path, time_s):
+    """Decode the frame nearest to a time.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    time_s : float
+        Seconds since the first frame of the file.
+
+    Returns
+    -------
+    time_s : float
+        The frame's own time.
+    image : (H, W, 3) uint8
+        BGR, upright.
+
+    Raises
+    ------
+    InputError
+        If the time lies outside the video, or as for `frames`.
+    """
+    listing = list_packets(path, stop_s=time_s)
+    if not 0 <= time_s <= listing.duration_s:
+        raise InputError(
+            f"{path}: expected a time from 0 to {listing.duration_s:.3f} s, found {time_s}: correct it"
+        )
+    index = int(_nearest(listing.times_s, time_s))
+    _, image = next(pictures(listing, [index], None))
+    return float(listing.times_s[index]), image
+
+
+def write_png(path, image):
+    """Write a picture so that it appears under its name only when whole.
+
+    Parameters
+    ----------
+    path : str or Path
+        The PNG file.
+    image : (H, W, 3) or (H, W) uint8
+        BGR, or grey.
+
+    Raises
+    ------
+    InputError
+        If the disk refuses it.
+    ValueError
+        If `image` is not such a picture.
+    """
+    if image.dtype != np.uint8 or image.ndim not in (2, 3) or image.size == 0:
+        raise ValueError(f"not an 8-bit picture: {image.dtype} {image.shape}")
+    # Not imwrite: a full disk does not always reach its return value.
+    done, data = cv2.imencode(".png", image)
+    if not done:
+        raise ValueError(f"OpenCV cannot write a picture of shape {image.shape} as PNG")
+    try:
+        with atomic(path) as temporary:
+            temporary.write_bytes(data)
+    except OSError as error:
+        raise InputError(
+            f"{path}: expected to write {len(data)} bytes, found {error.strerror}: free or allow the space"
+        ) from error
+
+
+def sharpness(image):
+    """Measure how sharp a picture is: the variance of the Laplacian of its grey values.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+        BGR.
+
+    Returns
+    -------
+    sharpness : float
+        Squared grey levels; larger is sharper. Only pictures of one scene and size compare.
+
+    Notes
+    -----
+    Pech-Pacheco et al. 2000, Diatom autofocusing in brightfield microscopy.
+    """
+    return float(cv2.Laplacian(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.CV_64F).var())
+
+
+def _range(path, start_s, stop_s):
+    """List a file's packets and turn a range of times into a range of indices."""
+    listing = list_packets(path, stop_s=stop_s)
+    times_s = listing.times_s
+    first = 0 if start_s is None else len(times_s) - np.count_nonzero(times_s >= start_s)
+    stop = len(times_s) if stop_s is None else np.count_nonzero(times_s < stop_s)
+    if first >= stop:
+        raise InputError(
+            f"{path}: expected frames from {start_s} s to before {stop_s} s, found none: "
+            f"choose a range within the video, which runs from 0 to {listing.duration_s:.3f} s"
+        )
+    return listing, int(first), int(stop)
+
+
+def _nearest(times_s, wanted_s):
+    """Return the index of the time nearest to each wanted one; the earlier of two equally near."""
+    return np.searchsorted((times_s[:-1] + times_s[1:]) / 2, wanted_s)

@@ -1,0 +1,67 @@
+"""C3D: the biomechanics exchange format, written through ezc3d.
+
+Millimetres, because many readers take C3D points for millimetres without looking at POINT:UNITS. World axes,
+z up, which POINT:X_SCREEN and Y_SCREEN say.
+"""
+
+import ezc3d
+import numpy as np
+
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+MM_PER_M = 1000.0
+MISSING = -1.0
+MOST_FRAMES = 65535  # the header counts frames in 16 bits
+
+
+def write(path, keypoints, person):
+    """Write one person.
+
+    Parameters
+    ----------
+    path : str or Path
+    keypoints : Keypoints3D
+    person : int
+        Index of the person.
+
+    Raises
+    ------
+    InputError
+        If the take is longer than C3D's frame counter reaches.
+
+    Notes
+    -----
+    A point's residual is its root-mean-square standard deviation from the keypoints, mm; -1 marks a
+    missing point, 0 one without a known uncertainty (interpolated, for one).
+    """
+    xyz = keypoints.xyz[person] * MM_PER_M
+    n_frames, n_joints, _ = xyz.shape
+    if n_frames > MOST_FRAMES:
+        raise InputError(
+            f"{path}: expected at most {MOST_FRAMES} frames in a C3D file, found {n_frames}; split the take "
+            "with `trim_s`"
+        )
+    file = ezc3d.c3d()
+    file["header"]["points"]["first_frame"] = 0
+    point = file["parameters"]["POINT"]
+    point["UNITS"]["value"] = ["mm"]
+    point["RATE"]["value"] = [keypoints.rate_hz]
+    point["LABELS"]["value"] = [str(joint) for joint in keypoints.joints]
+    file.add_parameter("POINT", "X_SCREEN", ["+X"])
+    file.add_parameter("POINT", "Y_SCREEN", ["+Z"])
+    points = np.ones((4, n_joints, n_frames))
+    points[:3] = xyz.transpose(2, 1, 0)
+    file["data"]["points"] = points
+    file["data"]["meta_points"]["residuals"] = _residuals(keypoints, person)[None].transpose(
+        0, 2, 1
+    )
+    with atomic(path) as temporary:
+        file.write(str(temporary))
+
+
+def _residuals(keypoints, person):
+    """Return (T, J) in mm."""
+    variance = np.trace(keypoints.covariance_2d[person], axis1=-2, axis2=-1) / 3
+    residual = np.sqrt(np.nan_to_num(variance, nan=0.0)) * MM_PER_M
+    return np.where(np.isfinite(keypoints.xyz[person]).all(axis=-1), residual, MISSING)

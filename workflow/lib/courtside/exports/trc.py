@@ -1,0 +1,102 @@
+"""TRC: marker trajectories as OpenSim and Pose2Sim read them.
+
+Axes: TRC's X, Y, Z are the world's y, z, x, so that Y points up and the system stays right-handed. Metres;
+Frame# counts from 1; a missing marker is blank.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+WORLD_AXES = [1, 2, 0]  # TRC X, Y, Z <- world axis
+TRC_AXES = [2, 0, 1]  # world x, y, z <- TRC axis
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+HEADER_LINES = 5
+
+
+def write(path, keypoints, person):
+    """Write one person.
+
+    Parameters
+    ----------
+    path : str or Path
+    keypoints : Keypoints3D
+    person : int
+        Index of the person.
+    """
+    xyz = keypoints.xyz[person][..., WORLD_AXES]
+    joints, n_frames = list(keypoints.joints), len(xyz)
+    rate = f"{keypoints.rate_hz:.6g}"
+    names = ["DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units"]
+    names += ["OrigDataRate", "OrigDataStartFrame", "OrigNumFrames"]
+    values = [rate, rate, n_frames, len(joints), "m", rate, 1, n_frames]
+    lines = [
+        f"PathFileType\t4\t(X/Y/Z)\t{Path(path).name}",
+        "\t".join(names),
+        "\t".join(map(str, values)),
+        "Frame#\tTime\t" + "\t".join(f"{joint}\t\t" for joint in joints),
+        "\t\t" + "\t".join(f"X{n}\tY{n}\tZ{n}" for n in range(1, len(joints) + 1)),
+        "",
+    ]
+    for at, (time_s, row) in enumerate(
+        zip(keypoints.time_s, xyz.reshape(n_frames, -1), strict=True)
+    ):
+        cells = ["" if np.isnan(value) else f"{value:.6f}" for value in row]
+        lines.append(f"{at + 1}\t{time_s:.6f}\t" + "\t".join(cells))
+    with atomic(path) as temporary:
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def read(path):
+    """Read a TRC file, ours or another program's.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    joints : list of str
+    rate_hz : float
+    time_s : (T,) float
+    xyz_in_world : (T, J, 3) float
+        Metres, world axes, NaN where blank.
+
+    Raises
+    ------
+    InputError
+        If the file is not a TRC file in m, cm or mm, or a line has another number of values.
+    """
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        header = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
+        unit, rate_hz = header["Units"].strip(), float(header["DataRate"])
+        joints = [name.strip() for name in lines[3].split("\t")[2:] if name.strip()]
+    except (OSError, UnicodeDecodeError, KeyError, IndexError, ValueError) as error:
+        raise InputError(f"{path}: expected a TRC file, found: {error!r}") from None
+    if unit not in METRES:
+        raise InputError(f"{path}: Units: expected one of {list(METRES)}, found {unit!r}")
+    rows = [
+        _row(path, number, line, 2 + 3 * len(joints))
+        for number, line in enumerate(lines[HEADER_LINES:], start=HEADER_LINES + 1)
+        if line.strip()
+    ]
+    table = np.array(rows).reshape(len(rows), 2 + 3 * len(joints))
+    xyz = table[:, 2:].reshape(len(rows), len(joints), 3)[..., TRC_AXES] * METRES[unit]
+    return joints, rate_hz, table[:, 1], xyz
+
+
+def _row(path, number, line, wanted):
+    cells = line.rstrip("\r\n").split("\t")
+    cells += [""] * (wanted - len(cells)) if len(cells) >= 2 else []
+    if (len(cells) > wanted and any(cell.strip() for cell in cells[wanted:])) or len(
+        cells
+    ) < wanted:
+        raise InputError(f"{path}: line {number}: expected {wanted} values, found {len(cells)}")
+    try:
+        return [float(cell) if cell.strip() else np.nan for cell in cells[:wanted]]
+    except ValueError as error:
+        raise InputError(f"{path}: line {number}: expected numbers, found: {error}") from None

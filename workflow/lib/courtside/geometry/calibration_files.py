@@ -1,0 +1,288 @@
+"""Calibrations made elsewhere: Qualisys, Pose2Sim and aniposelib, Caliscope, OpenCV -> cameras."""
+
+import re
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import cv2
+import numpy as np
+
+from courtside.geometry import cameras, fields
+from courtside.study.errors import InputError
+
+LARGEST_BYTES = 1 << 24
+FARTHEST_M = 300.0
+NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
+FORMS = "Qualisys .qca.txt, TOML of Pose2Sim, aniposelib or Caliscope, or YAML or XML of OpenCV"
+QUALISYS_PER_PX = 64
+QUALISYS_CAM_FROM_CAM = np.diag(
+    [1.0, -1.0, -1.0]
+)  # it looks along -z with y up, ours along +z, y down
+OPENCV_SUFFIXES = (".yml", ".yaml", ".xml")
+OPENCV_KEYS = {  # the first is what `cameras.build` calls it
+    "matrix": ("camera_matrix", "K"),
+    "distortions": ("distortion_coefficients", "dist"),
+    "rotation": ("R", "rvec"),
+    "translation": ("T", "tvec"),
+}
+
+
+def read(path):
+    """Read the cameras of a calibration file, choosing the reader by what the file holds.
+
+    Parameters
+    ----------
+    path : str or Path
+        A Qualisys `.qca.txt`; a TOML file of Pose2Sim, aniposelib or Caliscope; a YAML or XML file of
+        OpenCV's FileStorage with one or several cameras; or a folder of such, one camera each.
+
+    Returns
+    -------
+    found : list of Camera
+        In the file's order under the file's names, in metres, with the file's world frame.
+
+    Raises
+    ------
+    InputError
+        If the form is not known, or a camera is incomplete, impossible or named twice.
+    """
+    path = Path(path)
+    if path.is_dir():
+        files = sorted(file for file in path.iterdir() if file.suffix.lower() in OPENCV_SUFFIXES)
+        found = [camera for file in files for camera in _read_opencv(file, _text(file))]
+    else:
+        text = _text(path)
+        found = _reader(text)(path, text)
+    for camera in fields.check_distinct(path, found):
+        _check_distance(path, camera)
+    return found
+
+
+def rename(found, names):
+    """Pick the cameras of a session from a calibration.
+
+    Parameters
+    ----------
+    found : list of Camera
+    names : dict of str to str
+        Name in the session -> name in the calibration.
+
+    Returns
+    -------
+    cameras : list of Camera
+        In the order of `names`, under the session's names.
+
+    Raises
+    ------
+    InputError
+        If the calibration has no such camera, two cameras of the session are the same one, or a name
+        cannot be a file name of the study.
+    """
+    by_name = {camera.name: camera for camera in found}
+    for ours, theirs in names.items():
+        if theirs not in by_name:
+            raise InputError(
+                f"camera {ours}: expected {theirs!r} in the calibration, found {', '.join(by_name)}; "
+                "give the camera its `name_in_calibration` in the session file"
+            )
+        if list(names.values()).count(theirs) > 1:
+            raise InputError(
+                f"camera {ours}: expected a camera of its own in the calibration, found {theirs!r} "
+                "given to another as well; correct the session file"
+            )
+        if not NAME.fullmatch(ours):
+            raise InputError(
+                f"camera {ours!r}: expected a name of a-z, 0-9, _ and -, begun with a letter or "
+                "digit, found another; rename it in the session file"
+            )
+    return [replace(by_name[theirs], name=ours) for ours, theirs in names.items()]
+
+
+def _text(path):
+    try:
+        if path.stat().st_size > LARGEST_BYTES:
+            raise InputError(
+                f"{path}: expected a calibration, found {path.stat().st_size} bytes; give the right file"
+            )
+        return path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        found = fields.short(error)
+        raise InputError(
+            f"{path}: expected a text file, {FORMS}, found {found}; check it"
+        ) from error
+
+
+def _reader(text):
+    start = text.lstrip()[:2000]
+    if start.startswith("%YAML") or "<opencv_storage" in start:
+        return _read_opencv
+    if start.startswith("<"):
+        return _read_qualisys
+    return _read_toml
+
+
+def _check_distance(path, camera):
+    far_m = np.linalg.norm(camera.centre_in_world)
+    if far_m > FARTHEST_M:
+        raise InputError(
+            f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's origin, "
+            f"found {far_m:.0f} m; if the file is in mm or cm, add the key unit (TOML: in [metadata])"
+        )
+
+
+def _read_toml(path, text):
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        found = fields.short(error)
+        raise InputError(f"{path}: expected {FORMS}, found {found} as TOML; check it") from error
+    tables = content.get("cameras", content)
+    if not isinstance(tables, dict):
+        raise InputError(
+            f"{path}: expected a table cameras, found {fields.short(tables)}; check it"
+        )
+    caliscope = {
+        key: table
+        for key, table in tables.items()
+        if isinstance(table, dict) and ("cam_id" in table or "cameras" in content)
+    }
+    return _read_caliscope(path, caliscope) if caliscope else cameras.read_toml(path)
+
+
+def _read_caliscope(path, tables):
+    """Read Caliscope's `[cameras.0]`, and the older `[cam_0]`; it writes metres.
+
+    Its `rotation_count` turns pictures on its screen only: the calibration is of the recorded ones.
+    """
+    found = []
+    for key, table in tables.items():
+        if not table.get("ignore", False):
+            name = table.get("name", f"cam_{table.get('cam_id', key)}")
+            found.append(cameras.build(f"{path}: camera {name}", str(name), table, 1.0))
+    return found
+
+
+def _read_qualisys(path, text):
+    if re.search(r"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
+        raise InputError(
+            f"{path}: expected plain XML, found a DOCTYPE or ENTITY; export it from QTM again"
+        )
+    try:
+        root = ElementTree.fromstring(text)
+    except (ElementTree.ParseError, ValueError) as error:
+        found = fields.short(error)
+        raise InputError(f"{path}: expected XML, found {found}; {fields.EXPORT_AGAIN}") from error
+    return [
+        _from_qualisys(path, element)
+        for element in root.findall("cameras/camera")
+        if element.get("active", "1") != "0" and element.get("calibrated", "true") != "false"
+    ]
+
+
+def _from_qualisys(path, element):
+    """Turn one <camera> into a camera.
+
+    Lengths on the sensor are in 1/64 px. Distortion is OpenCV's, without a unit; Pose2Sim 0.10 divides
+    it by 64 too, which chessboard stills of its own demonstration contradict (k1 -0.04, not -0.0007).
+    """
+    name = element.get("serial", "without serial")
+    where = f"{path}: camera {name}"
+    # ASSUME: viewrotation turns the picture in QTM's windows only; the video file and these numbers
+    # are those of the sensor as it is.
+    _one_of(where, "viewrotation", element.get("viewrotation", "0"), ("0", "90", "180", "270"))
+    left, top, right, bottom = _attributes(where, element, "fov_video", "left top right bottom")
+    focal_u, focal_v, centre_u, centre_v, skew = _attributes(
+        where, element, "intrinsic", "focalLengthU focalLengthV centerPointU centerPointV skew"
+    )
+    # ASSUME: coordinate 0 is the first pixel's centre, as Pose2Sim takes it; were it that pixel's
+    # corner, the principal point would move by half a pixel.
+    matrix = np.array([[focal_u, skew, centre_u], [0, focal_v, centre_v], [0, 0, 0]])
+    matrix = matrix / QUALISYS_PER_PX - [[0, 0, left], [0, 0, top], [0, 0, -1]]
+    dist = "radialDistortion1 radialDistortion2 tangentalDistortion1 tangentalDistortion2"
+    place = _attributes(where, element, "transform", "r11 r12 r13 r21 r22 r23 r31 r32 r33 x y z")
+    rotation = QUALISYS_CAM_FROM_CAM @ place[:9].reshape(3, 3)
+    table = {
+        "size": (right - left + 1, bottom - top + 1),
+        "matrix": matrix,
+        "distortions": _attributes(where, element, "intrinsic", f"{dist} radialDistortion3"),
+        "rotation": rotation,
+        "translation": -rotation @ place[9:],
+    }
+    return cameras.build(where, name, table, fields.METRES["mm"])
+
+
+def _attributes(where, element, tag, keys):
+    child = element.find(tag)
+    attributes = {} if child is None else child.attrib
+    return np.array(
+        [fields.numbers(where, f"{tag} {key}", attributes.get(key), ()) for key in keys.split()]
+    )
+
+
+def _one_of(where, key, value, allowed):
+    if value not in allowed:
+        raise InputError(
+            f"{where}: expected {key} as one of {', '.join(allowed)}, found {fields.short(value)}; "
+            f"{fields.EXPORT_AGAIN}"
+        )
+
+
+def _read_opencv(path, text):
+    try:
+        storage = cv2.FileStorage(text, cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
+        root = storage.root()
+    except (cv2.error, SystemError) as error:
+        found = fields.short(error)
+        raise InputError(
+            f"{path}: expected a file of OpenCV's FileStorage, found {found}"
+        ) from error
+    if _child(root, OPENCV_KEYS["matrix"]) is not None:
+        return [_from_opencv(path, root, path.stem, root)]
+    maps = [(key, root.getNode(key)) for key in (root.keys() if root.isMap() else ())]
+    maps = [(key, node) for key, node in maps if node.isMap() and _child(node, ("data",)) is None]
+    return [_from_opencv(path, node, key, root) for key, node in maps]
+
+
+def _from_opencv(path, node, name, root):
+    name_node = _child(node, ("name", "camera_name"))
+    name = name_node.string() if name_node is not None and name_node.isString() else name
+    where = f"{path}: camera {name}"
+    table = {ours: _value(_child(node, keys)) for ours, keys in OPENCV_KEYS.items()}
+    table["size"] = [_value(_child(node, (key,))) for key in ("image_width", "image_height")]
+    unit = _child(node, ("unit",)) or _child(root, ("unit",))
+    # ASSUME: metres where the file names no unit; OpenCV has none of its own.
+    metres = fields.unit_in_metres(where, "m" if unit is None else _value(unit))
+    return cameras.build(where, name, table, metres)
+
+
+def _child(node, keys):
+    found = [node.getNode(key) for key in keys] if node.isMap() else []
+    return next((child for child in found if not child.empty() and not child.isNone()), None)
+
+
+def _value(node):
+    """Return a node of FileStorage as rows of a matrix, list, number or text; None where it is none."""
+    if node is None:
+        return None
+    if node.isSeq():
+        return [_value(node.at(index)) for index in range(node.size())]
+    if node.isString():
+        return node.string()
+    if node.isInt() or node.isReal():
+        return node.real()
+    return _rows(node) if node.isMap() else None
+
+
+def _rows(node):
+    """Return a stored matrix as rows, or a vector as a list.
+
+    FileStorage's own way fails hard where rows, columns and type do not fit the data.
+    """
+    columns, data = (_value(_child(node, (key,))) for key in ("cols", "data"))
+    if not isinstance(data, list) or not isinstance(columns, float):
+        return data
+    if columns in (1, len(data)) or columns < 1:
+        return data
+    return [data[at : at + int(columns)] for at in range(0, len(data), int(columns))]

@@ -1,0 +1,290 @@
+"""Points seen by several calibrated cameras: weighted DLT, robust view selection, refinement.
+
+All steps are batched over points, and their cost grows linearly with the number of cameras: no subsets
+of views are enumerated.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.geometry import cameras as camera_models
+
+FADE = 4 / 3  # default of `fade_px`, in units of the limit
+START = 12.0  # the first robust kernel, in units of the last
+GRADUATION = 1.6  # each round narrows the kernel by this factor
+SETTLING = 5  # steps with the last kernel
+WIDEST = 2.0  # beyond this many limits a view is never used
+BATCH = 20000  # points at a time: keeps the working set in the cache and memory flat
+
+
+@dataclass(frozen=True)
+class Triangulated:
+    """Points in the world with what is known of them.
+
+    Attributes
+    ----------
+    xyz : (N, 3) float
+        Metres; NaN where too few views are usable or agree.
+    covariance : (N, 3, 3) float
+        From the keypoints' own noise, square metres; NaN where missing.
+    accepted : (C, N) bool
+        Views that the point rests on.
+    error_px : (C, N) float
+        Distance of each view's keypoint, accepted or not, to the projected point; NaN without either.
+    """
+
+    xyz: np.ndarray
+    covariance: np.ndarray
+    accepted: np.ndarray
+    error_px: np.ndarray
+
+
+def triangulate(xy, weight, cam_from_world):
+    """Triangulate points seen by calibrated cameras, by weighted DLT.
+
+    Parameters
+    ----------
+    xy : (C, N, 2) float
+        Points on the undistorted, normalised image plane (z = 1, no unit); NaN where unseen.
+    weight : (C, N) float
+        Weight of that camera's two rows; zero leaves the view out.
+    cam_from_world : (C, 3, 4) float
+        World to camera, translation in metres.
+
+    Returns
+    -------
+    xyz_in_world : (N, 3) float
+        Metres; NaN where fewer than two views have a positive weight.
+
+    Notes
+    -----
+    Hartley & Zisserman 2004, sec. 12.2, inhomogeneous form: points lie at finite distance. Minimises an
+    algebraic error: report the reprojection error beside it.
+    """
+    used = (weight > 0) & np.isfinite(xy).all(axis=-1)
+    rows = xy[..., None] * cam_from_world[:, None, 2:3, :] - cam_from_world[:, None, :2, :]
+    rows = np.where(used[..., None, None], rows * np.where(used, weight, 0)[..., None, None], 0.0)
+    stacked = rows.transpose(1, 0, 2, 3).reshape(xy.shape[1], -1, 4)
+    normal = stacked.transpose(0, 2, 1) @ stacked
+    xyz = solve_3x3(normal[:, :3, :3], -normal[:, :3, 3])
+    xyz[used.sum(axis=0) < 2] = np.nan
+    return xyz
+
+
+def solve_3x3(matrix, right):
+    """Solve symmetric (N, 3, 3) systems for (N, 3) right sides; NaN where singular."""
+    return np.einsum("nij,nj->ni", inverse_3x3(matrix), right)
+
+
+def inverse_3x3(matrix):
+    """Invert symmetric (N, 3, 3) matrices by cofactors; NaN where singular."""
+    a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 0, 2]
+    d, e, f = matrix[:, 1, 1], matrix[:, 1, 2], matrix[:, 2, 2]
+    cofactor = np.empty_like(matrix)
+    cofactor[:, 0, 0], cofactor[:, 1, 1] = d * f - e * e, a * f - c * c
+    cofactor[:, 2, 2] = a * d - b * b
+    cofactor[:, 0, 1] = cofactor[:, 1, 0] = c * e - b * f
+    cofactor[:, 0, 2] = cofactor[:, 2, 0] = b * e - c * d
+    cofactor[:, 1, 2] = cofactor[:, 2, 1] = b * c - a * e
+    determinant = a * cofactor[:, 0, 0] + b * cofactor[:, 0, 1] + c * cofactor[:, 0, 2]
+    scale = (a + d + f) / 3
+    singular = ~(np.abs(determinant) > 1e-12 * scale**3)
+    return cofactor / np.where(singular, np.nan, determinant)[:, None, None]
+
+
+def triangulate_robust(
+    cameras, xy, score, *, sigma_px, max_error_px, min_views=2, min_score=0.0, fade_px=None
+):
+    """Triangulate points, leaving out views that disagree.
+
+    Parameters
+    ----------
+    cameras : list of Camera, length C
+        Calibrated views.
+    xy : (C, N, 2) float
+        Keypoints in px, distorted as in the pictures; NaN where unseen.
+    score : (C, N) float
+        Detector confidence, 0 to 1; its square root scales the weight of a view.
+    sigma_px : float or (N,) float
+        Standard deviation per axis of a keypoint with score 1: scales the covariance only.
+    max_error_px : float
+        The limit: a view is accepted where its keypoint lies this close to the projected point.
+    min_views : int
+        Fewest accepted views of a point, at least 2.
+    min_score : float
+        Keypoints below it are not used.
+    fade_px : float, optional
+        A view with this reprojection error has a quarter of its weight; 4/3 of the limit by default.
+
+    Returns
+    -------
+    triangulated : Triangulated
+
+    Raises
+    ------
+    ValueError
+        If the inputs disagree on the number of cameras or points, or `min_views` is below 2.
+
+    Notes
+    -----
+    The start is a weighted DLT. Points with a view beyond the limit are solved again by graduated
+    non-convexity (Blake & Zisserman 1987; Yang et al. 2020): Gauss-Newton with Geman-McClure weights
+    whose scale shrinks from 12 times its last value, so that an outlier loses its weight before it
+    decides which views agree. All points then settle with the last kernel, `fade_px` wide: a view fades
+    as it disagrees instead of switching off, which keeps a point from jumping between frames when a view
+    hovers at the limit (a slightly wrong calibration makes views hover). Views beyond twice the limit
+    have no weight. Accepted are the views within the limit, and where these are fewer than `min_views`,
+    the closest ones within twice the limit.
+    """
+    _check(cameras, xy, score, min_views)
+    sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
+    pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
+    limits = {
+        "fade_px": fade_px or FADE * max_error_px,
+        "max_error_px": max_error_px,
+        "min_views": min_views,
+        "min_score": min_score,
+    }
+    parts = [_solve(cameras, xy[:, s], score[:, s], sigma_px[s], **limits) for s in pieces]
+    return Triangulated(
+        xyz=np.concatenate([part.xyz for part in parts]),
+        covariance=np.concatenate([part.covariance for part in parts]),
+        accepted=np.concatenate([part.accepted for part in parts], axis=1),
+        error_px=np.concatenate([part.error_px for part in parts], axis=1),
+    )
+
+
+def _check(cameras, xy, score, min_views):
+    if xy.shape != (len(cameras), *score.shape[1:], 2) or score.ndim != 2:
+        raise ValueError(
+            f"expected xy (C, N, 2) and score (C, N) with C = {len(cameras)} cameras, "
+            f"found {xy.shape} and {score.shape}"
+        )
+    if min_views < 2:
+        raise ValueError(f"expected min_views of 2 or more, found {min_views}")
+
+
+def _solve(cameras, xy, score, sigma_px, *, fade_px, max_error_px, min_views, min_score):
+    seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
+    usable = seen & (score >= min_score) & (score > 0)
+    views = _Views(cameras, xy, np.where(usable, score, 0.0))
+    enough = usable.sum(axis=0) >= min_views
+    xyz = np.full((xy.shape[1], 3), np.nan)
+    accepted = np.zeros_like(usable)
+    at = np.flatnonzero(enough)
+    if len(at):
+        xyz[at], accepted[:, at] = _select_and_refine(
+            views.of(at), max_error_px, fade_px, min_views
+        )
+    error_px = _error_px(cameras, xy, xyz)
+    covariance = _covariance(views, xyz, accepted, sigma_px)
+    return Triangulated(xyz, covariance, accepted, error_px)
+
+
+class _Views:
+    """Keypoints of C cameras on the normalised plane, with weights in px^-2 relative to score 1."""
+
+    def __init__(self, cameras, xy, weight):
+        self.xy = np.stack(
+            [camera_models.undistort(c, points) for c, points in zip(cameras, xy, strict=True)]
+        )
+        self.weight = np.where(np.isfinite(self.xy).all(axis=-1), weight, 0.0)
+        self.xy = np.nan_to_num(self.xy)
+        self.matrix = np.stack([camera.cam_from_world for camera in cameras])
+        self.focal_px = np.array([(c.K[0, 0] + c.K[1, 1]) / 2 for c in cameras])
+
+    def of(self, at):
+        """Return the same views of some of the points only."""
+        part = object.__new__(_Views)
+        part.xy, part.weight = self.xy[:, at], self.weight[:, at]
+        part.matrix, part.focal_px = self.matrix, self.focal_px
+        return part
+
+    def residuals(self, xyz):
+        """Return residuals (C, N, 2) px and points in each camera (C, N, 3) m."""
+        rotation, shift = self.matrix[:, :, :3], self.matrix[:, :, 3]
+        in_cam = xyz[None] @ rotation.transpose(0, 2, 1) + shift[:, None]
+        depth = np.where(np.abs(in_cam[..., 2:]) < 1e-9, 1e-9, in_cam[..., 2:])
+        residual = (in_cam[..., :2] / depth - self.xy) * self.focal_px[:, None, None]
+        return residual, in_cam
+
+    def normal(self, in_cam, weight, residual=None):
+        """Return J'WJ (N, 3, 3), and J'Wr (N, 3) where residuals are given."""
+        scale = self.focal_px[:, None] / in_cam[..., 2]
+        ratio = in_cam[..., :2] / in_cam[..., 2:]
+        rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
+        rows = rows * scale[..., None, None]
+        weighted = rows * weight[..., None, None]
+        flat = rows.transpose(1, 0, 2, 3).reshape(rows.shape[1], -1, 3)
+        flat_weighted = weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
+        square = flat_weighted @ flat
+        if residual is None:
+            return square, None
+        right = residual.transpose(1, 0, 2).reshape(rows.shape[1], -1, 1)
+        return square, (flat_weighted @ right)[..., 0]
+
+
+def _select_and_refine(views, limit_px, fade_px, min_views):
+    """Return points (N, 3), NaN where views disagree, and accepted views (C, N)."""
+    xyz = triangulate(views.xy, np.sqrt(views.weight) * views.focal_px[:, None], views.matrix)
+    xyz = _step(views, xyz, views.weight)
+    bad = np.flatnonzero(((_distance(views, xyz) > limit_px) & (views.weight > 0)).any(axis=0))
+    if len(bad):
+        xyz[bad] = _graduate(views.of(bad), xyz[bad], fade_px)
+    for _ in range(SETTLING):
+        xyz = _step(views, xyz, _faded(views, xyz, fade_px, WIDEST * limit_px))
+    accepted = _accept(_distance(views, xyz), views.weight > 0, limit_px, min_views)
+    fine = (accepted.sum(axis=0) >= min_views) & _in_front(views, xyz, accepted)
+    xyz[~fine] = np.nan
+    return xyz, accepted & fine
+
+
+def _accept(error, usable, limit_px, min_views):
+    """Accept views within the limit; where these are too few, the closest ones up to the widest limit."""
+    error = np.where(usable, error, np.inf)
+    enough_px = np.sort(error, axis=0)[min_views - 1]
+    return error <= np.clip(enough_px, limit_px, WIDEST * limit_px)
+
+
+def _graduate(views, xyz, fade_px):
+    scale = START * fade_px
+    while scale > fade_px:
+        xyz = _step(views, xyz, _faded(views, xyz, scale, np.inf))
+        scale /= GRADUATION
+    return xyz
+
+
+def _faded(views, xyz, scale_px, widest_px):
+    """Return Geman-McClure weights (C, N): an error of `scale_px` leaves a quarter."""
+    error = _distance(views, xyz)
+    return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)
+
+
+def _step(views, xyz, weight):
+    """Make one damped Gauss-Newton step; a point whose system is singular stays where it is."""
+    residual, in_cam = views.residuals(xyz)
+    square, right = views.normal(in_cam, weight, residual)
+    step = np.nan_to_num(solve_3x3(square, right))
+    return xyz - step
+
+
+def _distance(views, xyz):
+    residual, _ = views.residuals(xyz)
+    return np.sqrt(np.einsum("cni,cni->cn", residual, residual))
+
+
+def _in_front(views, xyz, accepted):
+    _, in_cam = views.residuals(xyz)
+    return ((in_cam[..., 2] > 0) | ~accepted).all(axis=0)
+
+
+def _covariance(views, xyz, accepted, sigma_px):
+    _, in_cam = views.residuals(np.nan_to_num(xyz))
+    square, _ = views.normal(in_cam, views.weight * accepted)
+    return inverse_3x3(square) * (sigma_px**2)[:, None, None]
+
+
+def _error_px(cameras, xy, xyz):
+    projected = np.stack([camera_models.project(camera, xyz) for camera in cameras])
+    return np.linalg.norm(projected - xy, axis=-1)

@@ -1,0 +1,154 @@
+"""Skeletons over time: short gaps filled, noise removed without delay.
+
+Each step is its own function and keeps the record's form; the raw record stays beside the result.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy import signal
+from scipy.interpolate import PchipInterpolator
+
+from courtside.records import reasons
+from courtside.study.errors import InputError
+
+PAD_PERIODS = 1.0  # mirrored padding at both ends, in periods of the cut-off
+
+
+def fill_gaps(points, max_gap_s):
+    """Interpolate short gaps, cubically from the trusted values around them.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+        On uniform times.
+    max_gap_s : float
+        Longer gaps stay open, as do gaps at the ends.
+
+    Returns
+    -------
+    filled : Keypoints3D
+        Filled values have reason INTERPOLATED and no covariance.
+
+    Notes
+    -----
+    A cubic Hermite spline through the neighbours with slopes from central differences (Fritsch & Butland
+    1984, as scipy's PCHIP) does not overshoot.
+    """
+    xyz, reason = points.xyz.copy(), points.reason.copy()
+    most = int(np.floor(max_gap_s * points.rate_hz + 1e-6)) if len(points.time_s) > 1 else 0
+    for person, joint in np.ndindex(xyz.shape[0], xyz.shape[2]):
+        line = xyz[person, :, joint]
+        holes = _short_gaps(~np.isfinite(line).all(axis=1), most)
+        if holes.any():
+            line[holes] = _pchip(points.time_s, line, holes)
+            reason[person, holes, joint] = reasons.INTERPOLATED
+    return replace(points, xyz=xyz, reason=reason)
+
+
+def _pchip(time_s, line, holes):
+    known = np.isfinite(line).all(axis=1)
+    return PchipInterpolator(time_s[known], line[known])(time_s[holes])
+
+
+def _short_gaps(missing, most):
+    """Return (T,) bool: missing frames in runs of at most `most`, not touching an end."""
+    chosen = np.zeros_like(missing)
+    for start, stop in _runs(missing):
+        if stop - start <= most and start > 0 and stop < len(missing):
+            chosen[start:stop] = True
+    return chosen
+
+
+def _runs(flags):
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
+    return list(zip(edges[::2], edges[1::2], strict=True))
+
+
+def corrected_cutoff(cutoff_hz, rate_hz, order):
+    """Return the cut-off of one pass so that two passes have -3 dB at `cutoff_hz`.
+
+    Parameters
+    ----------
+    cutoff_hz : float
+        Wanted for the zero-lag filter.
+    rate_hz : float
+        Frames per second.
+    order : int
+        Of one pass.
+
+    Returns
+    -------
+    one_pass_hz : float
+
+    Notes
+    -----
+    Forwards and backwards squares the gain, which would move the -3 dB point down. The correction
+    (sqrt 2 - 1)^(-1 / (2 order)) acts on the tangent of the digital frequency (Winter 2009, sec. 2.2.4.4;
+    Robertson & Dowling 2003).
+    """
+    warped = np.tan(np.pi * cutoff_hz / rate_hz)
+    corrected = warped / (np.sqrt(2) - 1) ** (1 / (2 * order))
+    return float(np.arctan(corrected) * rate_hz / np.pi)
+
+
+def smooth(points, cutoff_hz, order):
+    """Remove noise with a zero-lag Butterworth low-pass filter, each joint with its own cut-off.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+        On uniform times; runs of finite values are filtered one by one.
+    cutoff_hz : (J,) float
+        -3 dB frequency of the whole, forwards and backwards, filter.
+    order : int
+        Effective order of the whole filter; each pass has half of it, so it is even.
+
+    Returns
+    -------
+    smoothed : Keypoints3D
+        The same values missing. `covariance_2d` is scaled by the share of white noise that the filter
+        lets pass.
+
+    Raises
+    ------
+    InputError
+        If a cut-off is not below half the frame rate, or the order is odd.
+    """
+    if order < 2 or order % 2:
+        raise InputError(
+            f"filter_motion.order: expected an even number of 2 or more, found {order}"
+        )
+    if np.max(cutoff_hz) >= points.rate_hz / 2:
+        raise InputError(
+            f"filter_motion.cutoff_hz: expected less than half the frame rate ({points.rate_hz:g} Hz), "
+            f"found {np.max(cutoff_hz):g} Hz; lower it for this session"
+        )
+    xyz, covariance = points.xyz.copy(), points.covariance_2d.copy()
+    for joint, cutoff in enumerate(cutoff_hz):
+        sections = _sections(cutoff, points.rate_hz, order // 2)
+        covariance[:, :, joint] *= _noise_passed(sections)
+        pad = round(PAD_PERIODS * points.rate_hz / cutoff)
+        for person in range(len(xyz)):
+            _smooth_runs(xyz[person, :, joint], sections, pad)
+    return replace(points, xyz=xyz, covariance_2d=covariance)
+
+
+def _sections(cutoff_hz, rate_hz, order):
+    one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order)
+    return signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")
+
+
+def _smooth_runs(line, sections, pad):
+    for start, stop in _runs(np.isfinite(line).all(axis=1)):
+        run = line[start:stop]
+        if stop - start > 2:
+            line[start:stop] = signal.sosfiltfilt(
+                sections, run, axis=0, padtype="odd", padlen=min(pad, len(run) - 1)
+            )
+
+
+def _noise_passed(sections):
+    """Return the variance of filtered white noise of variance 1."""
+    _, response = signal.sosfreqz(sections, worN=4096)
+    return float(np.mean(np.abs(response) ** 4))

@@ -1,0 +1,191 @@
+"""BlazePose: the person detector and the 33-joint landmark network of MediaPipe Pose.
+
+Source: Bazarevsky et al. 2020, "BlazePose: On-device real-time body pose tracking". The steps around the
+networks follow MediaPipe 0.10.21 so closely that the joints agree with it to about 2 px.
+"""
+
+import math
+
+import cv2
+import numpy as np
+
+from courtside.pose import detector
+from courtside.pose.detector import Pose, Region
+
+DETECTOR_SIDE = 224
+LANDMARK_SIDE = 256
+N_JOINTS = 33
+ANCHOR_LAYERS = ((8, 2), (16, 2), (32, 6))  # (stride px, anchors per cell)
+OVERLAP_MERGED = 0.3  # detections that overlap more (intersection over union) are one person
+REGION_MARGIN = 1.25
+HEAT_MAP_REACH = 3  # a 7 x 7 window
+HEAT_MAP_MIN = 0.5
+
+
+def sigmoid(value):
+    """Return the logistic function of an array, without overflow."""
+    return 1 / (1 + np.exp(-np.clip(value, -80, 80)))
+
+
+def anchors():
+    """Return the detector's anchor centres, (2254, 2) float32, as fractions of its input."""
+    centres = []
+    for stride, per_cell in ANCHOR_LAYERS:
+        cells = DETECTOR_SIDE // stride
+        y, x = np.mgrid[:cells, :cells]
+        grid = np.stack([(x.ravel() + 0.5) / cells, (y.ravel() + 0.5) / cells], axis=1)
+        centres.append(np.repeat(grid, per_cell, axis=0))
+    return np.concatenate(centres).astype(np.float32)
+
+
+def region_from_points(centre, rim):
+    """Return the region of a person from the two points that BlazePose gives for it.
+
+    Parameters
+    ----------
+    centre, rim : (2,) float
+        Hip centre, and a point of the circle around the whole person above it, px.
+
+    Returns
+    -------
+    region : Region
+        Turned so that the person stands upright in it, with a margin of a quarter.
+    """
+    toward = np.asarray(rim) - centre
+    angle_rad = math.pi / 2 - math.atan2(-toward[1], toward[0])
+    angle_rad -= 2 * math.pi * math.floor((angle_rad + math.pi) / (2 * math.pi))
+    side = 2 * float(np.hypot(*toward)) * REGION_MARGIN
+    return Region(float(centre[0]), float(centre[1]), side, angle_rad)
+
+
+class BlazePoseDetector:
+    """The person detector of BlazePose.
+
+    Parameters
+    ----------
+    onnx_path : str or Path
+        `pose_detection`, converted.
+    min_score : float
+        Detections below this confidence, 0 to 1, are dropped.
+    """
+
+    def __init__(self, onnx_path, min_score=0.5):
+        self.network = detector.open_network(onnx_path)
+        self.min_score = min_score
+        self.anchors = anchors()
+
+    def detect(self, image):
+        """Return the regions of all persons in a (H, W, 3) uint8 BGR picture, best first."""
+        height, width = image.shape[:2]
+        whole = Region(width / 2, height / 2, max(height, width))
+        patch = detector.cut_out(image, whole, DETECTOR_SIDE)[:, :, ::-1]
+        tensor = patch.astype(np.float32)[None] * (2 / 255) - 1
+        boxes, logits = self.network.run(["Identity", "Identity_1"], {"input_1": tensor})
+        score = sigmoid(logits[0, :, 0])
+        kept = np.flatnonzero(score >= self.min_score)
+        box = boxes[0, kept].astype(float) / DETECTOR_SIDE
+        box += np.concatenate(
+            [self.anchors[kept], np.zeros((len(kept), 2)), np.tile(self.anchors[kept], 4)], axis=1
+        )
+        merged = merge_overlapping(box, score[kept])
+        points = [detector.to_picture(row[4:8].reshape(2, 2), whole) for row in merged]
+        return [region_from_points(*pair) for pair in points]
+
+
+def merge_overlapping(box, score):
+    """Join overlapping detections into their score-weighted mean, best first.
+
+    Parameters
+    ----------
+    box : (N, 4 + K) float
+        Centre x, y, width, height, then anything else to average.
+    score : (N,) float
+        Weights.
+
+    Returns
+    -------
+    merged : list of (4 + K,) float
+    """
+    merged = []
+    remaining = np.argsort(-score, kind="stable")
+    while len(remaining):
+        near = overlap(box[remaining[0]], box[remaining]) > OVERLAP_MERGED
+        near[0] = True
+        chosen = remaining[near]
+        merged.append(np.average(box[chosen], axis=0, weights=score[chosen]))
+        remaining = remaining[~near]
+    return merged
+
+
+def overlap(one, many):
+    """Return intersection over union of one box with (N, 4+) boxes; each is centre and size."""
+    low = np.maximum(one[:2] - one[2:4] / 2, many[:, :2] - many[:, 2:4] / 2)
+    high = np.minimum(one[:2] + one[2:4] / 2, many[:, :2] + many[:, 2:4] / 2)
+    shared = np.prod(np.clip(high - low, 0, None), axis=1)
+    return shared / (np.prod(one[2:4]) + np.prod(many[:, 2:4], axis=1) - shared)
+
+
+class BlazePoseLandmarks:
+    """The landmark network of BlazePose.
+
+    Parameters
+    ----------
+    onnx_path : str or Path
+        `pose_landmark_full` or `_lite`, converted, with outputs Identity (39 x 5 landmarks),
+        Identity_1 (presence), Identity_3 (heat maps), Identity_4 (39 x 3 metric landmarks).
+    """
+
+    n_joints = N_JOINTS
+
+    def __init__(self, onnx_path):
+        self.network = detector.open_network(onnx_path)
+
+    def estimate(self, image, region):
+        """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
+        patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)[:, :, ::-1]
+        tensor = patch.astype(np.float32)[None] / 255
+        names = ["Identity", "Identity_1", "Identity_3", "Identity_4"]
+        landmarks, presence, heat_maps, metric = self.network.run(names, {"input_1": tensor})
+        landmarks = landmarks.reshape(39, 5).astype(float)
+        fraction = refine(landmarks[:, :2] / LANDMARK_SIDE, heat_maps[0])
+        xy = detector.to_picture(fraction, region)
+        xyz = metric.reshape(39, 3)[:N_JOINTS].astype(float)
+        xyz[:, :2] = detector.rotate(xyz[:, :2], region.angle_rad)
+        visible, present = sigmoid(landmarks[:N_JOINTS, 3]), sigmoid(landmarks[:N_JOINTS, 4])
+        return Pose(
+            xy=xy[:N_JOINTS],
+            score=visible * present,
+            xyz_in_body=xyz,
+            presence=float(presence.ravel()[0]),
+            region=region_from_points(xy[N_JOINTS], xy[N_JOINTS + 1]),
+        )
+
+
+def refine(fraction, heat_maps):
+    """Move each landmark to the centre of mass of its heat map around it.
+
+    Parameters
+    ----------
+    fraction : (J, 2) float
+        Landmarks as fractions of the region.
+    heat_maps : (H, W, J) float
+        Logits.
+
+    Returns
+    -------
+    refined : (J, 2) float
+        Unchanged where the landmark lies outside, or no cell nearby reaches a probability of one half.
+    """
+    height, width, _ = heat_maps.shape
+    refined = fraction.copy()
+    for joint, (column, row) in enumerate((fraction * [width, height]).astype(int)):
+        if not (0 <= column < width and 0 <= row < height):
+            continue
+        top, left = max(0, row - HEAT_MAP_REACH), max(0, column - HEAT_MAP_REACH)
+        bottom, right = row + HEAT_MAP_REACH + 1, column + HEAT_MAP_REACH + 1
+        weight = sigmoid(heat_maps[top:bottom, left:right, joint].astype(float))
+        if weight.max() >= HEAT_MAP_MIN:
+            x = np.arange(left, left + weight.shape[1]) @ weight.sum(axis=0)
+            y = np.arange(top, top + weight.shape[0]) @ weight.sum(axis=1)
+            refined[joint] = np.array([x / width, y / height]) / weight.sum()
+    return refined

@@ -1,0 +1,158 @@
+"""What every pose network is to the rest of the study: an image and a region in, joints out.
+
+A network pair has two parts. A *person detector* finds regions in a picture; a *landmark network*
+places the joints in one region, and says which region to look at in the next frame.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import cv2
+import numpy as np
+import onnxruntime
+
+
+@dataclass(frozen=True)
+class Region:
+    """A rotated square in a picture.
+
+    Attributes
+    ----------
+    x, y : float
+        Centre, px.
+    side : float
+        Length of a side, px.
+    angle_rad : float
+        Rotation of the square; positive turns the x axis towards the y axis (clockwise as seen).
+    """
+
+    x: float
+    y: float
+    side: float
+    angle_rad: float = 0.0
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One person in one picture.
+
+    Attributes
+    ----------
+    xy : (J, 2) float
+        Joints, px of the picture.
+    score : (J,) float
+        Confidence of each joint, 0 to 1.
+    xyz_in_body : (J, 3) float
+        The network's own metric guess about the hip centre, metres, axes as in cam; NaN without one.
+    presence : float
+        Confidence that the region shows a person at all, 0 to 1.
+    region : Region
+        Where to look for the same person in the next frame.
+    """
+
+    xy: np.ndarray
+    score: np.ndarray
+    xyz_in_body: np.ndarray
+    presence: float
+    region: Region
+
+
+class PersonDetector(Protocol):
+    """Finds persons in a whole picture."""
+
+    def detect(self, image):
+        """Return the regions of all persons in a (H, W, 3) uint8 BGR picture, best first."""
+
+
+class LandmarkNetwork(Protocol):
+    """Places the joints of one person."""
+
+    n_joints: int
+
+    def estimate(self, image, region):
+        """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
+
+
+def open_network(path, threads=1):
+    """Open an ONNX file for inference on the processor.
+
+    Parameters
+    ----------
+    path : str or Path
+        The ONNX file.
+    threads : int
+        Threads within one operator. One is fastest when files are worked on side by side: idle
+        threads of onnxruntime spin.
+
+    Returns
+    -------
+    session : onnxruntime.InferenceSession
+    """
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+
+
+def cut_out(image, region, side_px, border=cv2.BORDER_CONSTANT):
+    """Cut a rotated square out of a picture and scale it to a network's input.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+        Any channel order.
+    region : Region
+        What to cut; parts outside the picture are filled as `border` says.
+    side_px : int
+        Side of the result.
+    border : int
+        OpenCV border mode.
+
+    Returns
+    -------
+    patch : (side_px, side_px, 3) uint8
+
+    Notes
+    -----
+    Bilinear without half-pixel shift and without smoothing when it shrinks, as MediaPipe's OpenCV
+    image-to-tensor calculator does: its networks were trained on such input.
+    """
+    scale = region.side / side_px
+    cosine, sine = math.cos(region.angle_rad) * scale, math.sin(region.angle_rad) * scale
+    half = side_px / 2
+    image_from_patch = np.array(
+        [
+            [cosine, -sine, region.x - (cosine - sine) * half],
+            [sine, cosine, region.y - (sine + cosine) * half],
+        ]
+    )
+    flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    return cv2.warpAffine(
+        image, image_from_patch, (side_px, side_px), flags=flags, borderMode=border
+    )
+
+
+def to_picture(fraction, region):
+    """Map positions in a region, as fractions of its side, to the picture.
+
+    Parameters
+    ----------
+    fraction : (..., 2) float
+        (0, 0) is the region's first corner, (1, 1) the opposite one.
+    region : Region
+
+    Returns
+    -------
+    xy : (..., 2) float
+        Pixels of the picture.
+    """
+    centre = np.array([region.x, region.y])
+    return centre + rotate((fraction - 0.5) * region.side, region.angle_rad)
+
+
+def rotate(xy, angle_rad):
+    """Rotate plane vectors (..., 2) by an angle that turns x towards y."""
+    cosine, sine = math.cos(angle_rad), math.sin(angle_rad)
+    return xy @ np.array([[cosine, sine], [-sine, cosine]])

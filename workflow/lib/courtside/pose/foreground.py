@@ -1,0 +1,56 @@
+"""Where a fixed camera sees something that is not the empty room: a box for the person detector."""
+
+import cv2
+import numpy as np
+
+SHRINK = 4  # the search runs on pictures a quarter the size
+OPEN_PX, CLOSE_PX = 3, 25  # at that size: specks removed, body parts joined
+MIN_SHARE = 5e-4  # of the picture's area; smaller changes are noise
+
+
+def estimate_background(images):
+    """Return the per-pixel median of pictures of one fixed camera.
+
+    Parameters
+    ----------
+    images : list of (H, W, 3) uint8
+        Spread over the recording; a person must leave each place in more than half of them.
+
+    Returns
+    -------
+    background : (H, W, 3) uint8
+    """
+    stack = np.stack(images)
+    rows = [np.median(stack[:, at : at + 64], axis=0) for at in range(0, stack.shape[1], 64)]
+    return np.concatenate(rows).astype(np.uint8)
+
+
+class Foreground:
+    """Changed regions against the background of one fixed camera.
+
+    Parameters
+    ----------
+    background : (H, W, 3) uint8
+    min_difference : float
+        A pixel has changed when one channel differs by more, of 255.
+    """
+
+    def __init__(self, background, min_difference):
+        self.background = _shrink(background).astype(np.int16)
+        self.min_difference = min_difference
+
+    def boxes(self, image):
+        """Return boxes (x, y, width, height) in px around what changed, largest area first."""
+        difference = np.abs(_shrink(image).astype(np.int16) - self.background).max(axis=2)
+        mask = (difference > self.min_difference).astype(np.uint8)
+        mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((OPEN_PX, OPEN_PX), np.uint8))
+        mask = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((CLOSE_PX, CLOSE_PX), np.uint8))
+        _, _, stats, _ = cv2.connectedComponentsWithStats(mask)
+        order = np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable") + 1
+        large = [at for at in order if stats[at, cv2.CC_STAT_AREA] >= MIN_SHARE * mask.size]
+        return [tuple(int(v) * SHRINK for v in stats[at, :4]) for at in large]
+
+
+def _shrink(image):
+    size = (image.shape[1] // SHRINK, image.shape[0] // SHRINK)
+    return cv2.resize(image, size, interpolation=cv2.INTER_AREA)

@@ -1,0 +1,119 @@
+"""Convert a TFLite network of floats to ONNX, and check the result against what the file states."""
+
+import numpy as np
+import onnx
+from onnx import helper
+
+from courtside.pose import tflite_graph, tflite_operators
+from courtside.pose.onnx_writer import Writer
+from courtside.study.errors import InputError
+from courtside.study.files import atomic, sha256
+
+OPSET = 17
+IR_VERSION = 8
+ONNX_FAULTS = (onnx.checker.ValidationError, onnx.shape_inference.InferenceError)
+
+
+def convert(tflite_path, onnx_path, *, outputs=None):
+    """Convert a TFLite network of floats to ONNX (opset 17).
+
+    Parameters
+    ----------
+    tflite_path : str or Path
+        The network to read.
+    onnx_path : str or Path
+        The network to write; it appears under its name only when whole. Equal inputs give equal
+        bytes. Inputs and outputs keep their names, order and TFLite layout; all are float32.
+    outputs : iterable of str, optional
+        Names of the outputs to keep; what only the others need is left out. Default: all.
+
+    Raises
+    ------
+    InputError
+        If the file is no TFLite network or a damaged one, lacks one of the `outputs`, or needs an
+        operator, a fused activation, a sparse layout or a tensor type that is not converted.
+
+    Notes
+    -----
+    The shape of each operator's result, as ONNX infers it, must be the one the TFLite file states.
+    """
+    graph = tflite_graph.read(tflite_path)
+    if outputs is not None:
+        graph = tflite_graph.keep_outputs(graph, outputs)
+    writer = Writer(graph)
+    for operator in graph.operators:
+        try:
+            tflite_operators.convert_operator(writer, operator)
+        except ValueError as error:
+            raise InputError(
+                f"{graph.path}: expected operators that can be converted, found {operator}: {error}; "
+                "use another network"
+            ) from None
+    model = _model(writer, sha256(tflite_path))
+    _check(model, writer)
+    with atomic(onnx_path) as temporary:
+        temporary.write_bytes(model.SerializeToString(deterministic=True))
+
+
+def _model(writer, source_sha256):
+    graph = writer.graph
+    results, writer.operator = [], "output"
+    for index in graph.outputs:
+        try:
+            results.append((writer.channels_last(index), graph.tensors[index].name))
+        except ValueError as error:
+            raise InputError(
+                f"{graph.path}: expected output {graph.tensors[index].name}, found {error}; "
+                "leave that output out, or use another network"
+            ) from None
+    nodes = [*writer.nodes, *(helper.make_node("Identity", [a], [b], b) for a, b in results)]
+    ends = [
+        [_value_info(graph, index) for index in indices]
+        for indices in (graph.inputs, graph.outputs)
+    ]
+    model = helper.make_model(
+        helper.make_graph(nodes, "network", *ends, writer.initializers),
+        opset_imports=[helper.make_opsetid("", OPSET)],
+        ir_version=IR_VERSION,
+        producer_name="courtside",
+    )
+    helper.set_model_props(model, {"source_sha256": source_sha256})
+    return model
+
+
+def _value_info(graph, index):
+    tensor = graph.tensors[index]
+    if tensor.dtype != np.float32:
+        raise InputError(
+            f"{graph.path}: expected {tensor.name} as float32, found {tensor.dtype}; "
+            "use a network of floats"
+        )
+    return helper.make_tensor_value_info(tensor.name, onnx.TensorProto.FLOAT, tensor.shape)
+
+
+def _check(model, writer):
+    """Hold what ONNX infers against what the TFLite file states."""
+    path = writer.graph.path
+    # Without the outputs' shapes, for a wrong one is to be found at the operator, not at the end.
+    bare = onnx.ModelProto()
+    bare.CopyFrom(model)
+    for output in bare.graph.output:
+        output.type.tensor_type.ClearField("shape")
+    try:
+        onnx.checker.check_model(model)
+        inferred = onnx.shape_inference.infer_shapes(bare, check_type=True, strict_mode=True)
+    except ONNX_FAULTS as error:
+        found = " ".join(str(error).split())
+        raise InputError(
+            f"{path}: expected a consistent network, found: {found}; fetch it again"
+        ) from None
+    shapes = {
+        value.name: tuple(dimension.dim_value for dimension in value.type.tensor_type.shape.dim)
+        for value in inferred.graph.value_info
+    }
+    for operator, name, expected in writer.results:
+        if shapes.get(name) != expected:
+            raise InputError(
+                f"{path}: {operator}: expected a result of shape {expected}, as the file states, "
+                f"found {shapes.get(name)}; fetch it again"
+            )

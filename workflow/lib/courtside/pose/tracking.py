@@ -1,0 +1,119 @@
+"""One person followed through the pictures of one fixed camera."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.pose.detector import Region
+from courtside.records import reasons
+
+SEARCH_MARGIN = 1.3  # the detector looks at the foreground box times this
+JUMP = 0.5  # a track that left the foreground by this share of its region is lost
+
+
+@dataclass(frozen=True)
+class Track:
+    """The joints of one person in every frame of one camera.
+
+    Attributes
+    ----------
+    time_s : (T,) float
+    xy : (T, J, 2) float
+        Pixels; NaN where nobody was found.
+    score : (T, J) float
+    reason : (T, J) uint8
+        `courtside.records.reasons`.
+    xyz_in_body : (T, J, 3) float
+        Metres, see `courtside.pose.detector.Pose`.
+    """
+
+    time_s: np.ndarray
+    xy: np.ndarray
+    score: np.ndarray
+    reason: np.ndarray
+    xyz_in_body: np.ndarray
+
+
+def track_person(frames, detector, landmarks, foreground, *, min_presence, redetect):
+    """Follow the largest moving person through a video.
+
+    Parameters
+    ----------
+    frames : iterable of (float, (H, W, 3) uint8)
+        Time in seconds and picture, BGR.
+    detector : PersonDetector
+        Asked when there is no track; it sees only the surroundings of the foreground, so that a person
+        who is small in the picture is large in its input.
+    landmarks : LandmarkNetwork
+        Asked in every frame.
+    foreground : Foreground
+        Where the camera sees something new.
+    min_presence : float
+        Below this confidence the network's answer is dropped and the person searched again, 0 to 1.
+    redetect : bool
+        Search in every frame instead of following: slower, and without memory.
+
+    Returns
+    -------
+    track : Track
+        One row per frame.
+    """
+    times, rows, region = [], [], None
+    for time_s, image in frames:
+        boxes = foreground.boxes(image) if redetect or region is None else None
+        pose = None
+        if region is not None and not redetect:
+            pose = landmarks.estimate(image, region)
+        if pose is None or pose.presence < min_presence:
+            pose = _search(image, boxes or foreground.boxes(image), detector, landmarks)
+        found = pose is not None and pose.presence >= min_presence
+        region = pose.region if found else None
+        times.append(time_s)
+        rows.append(_row(pose if found else None, landmarks.n_joints, image.shape))
+    xy, score, reason, xyz = (np.stack(column) for column in zip(*rows, strict=True))
+    return Track(np.array(times), xy, score, reason, xyz)
+
+
+def _search(image, boxes, detector, landmarks):
+    """Return the pose in the best region near the largest foreground box, or None where there is none."""
+    if not boxes:
+        return None
+    region = detect_near(image, boxes[0], detector)
+    return landmarks.estimate(image, region)
+
+
+def detect_near(image, box, detector):
+    """Return the region of the person in or near a foreground box.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+    box : (x, y, width, height)
+        Pixels.
+    detector : PersonDetector
+
+    Returns
+    -------
+    region : Region
+        The detector's best answer; the box itself, upright, where it finds nobody.
+    """
+    x, y, width, height = box
+    half = SEARCH_MARGIN * max(width, height) / 2
+    centre_x, centre_y = x + width / 2, y + height / 2
+    left, top = max(0, int(centre_x - half)), max(0, int(centre_y - half))
+    found = detector.detect(image[top : int(centre_y + half), left : int(centre_x + half)])
+    if not found:
+        return Region(centre_x, centre_y, SEARCH_MARGIN * max(width, height))
+    best = found[0]
+    return Region(best.x + left, best.y + top, best.side, best.angle_rad)
+
+
+def _row(pose, n_joints, shape):
+    if pose is None:
+        xy, xyz = np.full((n_joints, 2), np.nan), np.full((n_joints, 3), np.nan)
+        return xy, np.full(n_joints, np.nan), np.full(n_joints, reasons.UNSEEN, np.uint8), xyz
+    size = np.array([shape[1], shape[0]])
+    inside = ((pose.xy > -0.5) & (pose.xy < size - 0.5)).all(axis=1)
+    xy = np.where(inside[:, None], pose.xy, np.nan)
+    reason = np.where(inside, reasons.OK, reasons.OUT_OF_IMAGE).astype(np.uint8)
+    return xy, np.where(inside, pose.score, np.nan), reason, pose.xyz_in_body

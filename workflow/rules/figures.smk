@@ -1,0 +1,91 @@
+"""Figures of a take: what was seen, what was made of it, and how far to trust it.
+
+Inputs: 2D and 3D keypoints, cameras, videos. Outputs: results/{session}/takes/{take}/figures/.
+Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility.
+"""
+
+
+def figure(name):
+    """Return the three files of a figure; the PNG goes into the report with its caption."""
+    stem = (
+        "results/{session}/takes/{take}/figures/"
+        + name
+        + ".{calibration}.{fusion}.{model}"
+    )
+    return {
+        "pdf": f"{stem}.pdf",
+        "csv": f"{stem}.csv",
+        "png": report(
+            f"{stem}.png",
+            caption=f"../report/draw_{name}.rst",
+            category="{session}",
+            subcategory="{take}",
+            labels={
+                "figure": name,
+                "network": "{model}",
+                "calibration": "{calibration}",
+            },
+        ),
+    }
+
+
+rule draw_overlay:
+    input:
+        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        pose2d=each_camera("results/{session}/takes/{take}/pose2d/{model}/{camera}.npz"),
+        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        videos=lambda w: list(take_of(w).videos.values()),
+        skeleton=skeleton_file,
+    output:
+        **figure("overlay"),
+    log:
+        "results/{session}/logs/draw_overlay/{take}.{calibration}.{fusion}.{model}.log",
+    params:
+        code=code("draw_overlay.py"),
+        step=step("draw_overlay"),
+        blur_faces=lambda w: session_of(w).blur_faces,
+    script:
+        "../scripts/draw_overlay.py"
+
+
+rule draw_skeletons:
+    input:
+        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        skeleton=skeleton_file,
+    output:
+        **figure("skeletons"),
+    log:
+        "results/{session}/logs/draw_skeletons/{take}.{calibration}.{fusion}.{model}.log",
+    params:
+        code=code("draw_skeletons.py"),
+    script:
+        "../scripts/draw_skeletons.py"
+
+
+rule draw_reprojection:
+    input:
+        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+    output:
+        **figure("reprojection"),
+    log:
+        "results/{session}/logs/draw_reprojection/{take}.{calibration}.{fusion}.{model}.log",
+    params:
+        code=code("draw_reprojection.py"),
+    script:
+        "../scripts/draw_reprojection.py"
+
+
+rule draw_visibility:
+    input:
+        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        pose2d=each_camera("results/{session}/takes/{take}/pose2d/{model}/{camera}.npz"),
+        skeleton=skeleton_file,
+    output:
+        **figure("visibility"),
+    log:
+        "results/{session}/logs/draw_visibility/{take}.{calibration}.{fusion}.{model}.log",
+    params:
+        code=code("draw_visibility.py"),
+    script:
+        "../scripts/draw_visibility.py"

@@ -1,0 +1,45 @@
+"""Pictures of the fixed cameras without people.
+
+Inputs: videos of a session. Outputs: results/{session}/frames/, takes/{take}/background/.
+Steps: extract_frames (of a camera's `static` recording), estimate_background (per take and camera).
+"""
+
+
+def background_source(wildcards):
+    """Return the extracted frames of the static recording, or the take's own video where none exists."""
+    if session_of(wildcards).cameras[wildcards.camera].static:
+        return f"results/{wildcards.session}/frames/{wildcards.camera}"
+    return take_of(wildcards).videos[wildcards.camera]
+
+
+rule extract_frames:
+    input:
+        video=lambda w: session_of(w).cameras[w.camera].static,
+    output:
+        folder=directory("results/{session}/frames/{camera}"),
+        table="results/{session}/frames/{camera}.csv",
+    log:
+        "results/{session}/logs/extract_frames/{camera}.log",
+    benchmark:
+        "results/{session}/benchmarks/extract_frames/{camera}.tsv"
+    params:
+        code=code("extract_frames.py"),
+        step=step("extract_frames"),
+    script:
+        "../scripts/extract_frames.py"
+
+
+rule estimate_background:
+    input:
+        source=background_source,
+    output:
+        png="results/{session}/takes/{take}/background/{camera}.png",
+    log:
+        "results/{session}/logs/estimate_background/{take}.{camera}.log",
+    benchmark:
+        "results/{session}/benchmarks/estimate_background/{take}.{camera}.tsv"
+    params:
+        code=code("estimate_background.py"),
+        step=step("estimate_background"),
+    script:
+        "../scripts/estimate_background.py"

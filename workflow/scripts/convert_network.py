@@ -1,0 +1,13 @@
+"""Convert one network: TFLite -> ONNX."""
+
+from courtside.pose import tflite_onnx
+from courtside.study import log
+
+
+def main(tflite_path, onnx_path, *, outputs):
+    tflite_onnx.convert(tflite_path, onnx_path, outputs=outputs)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(snakemake.input.tflite, snakemake.output.onnx, outputs=snakemake.params.outputs)

@@ -1,0 +1,49 @@
+"""Detect one person in one camera during one take: video -> 2D keypoints."""
+
+import cv2
+import numpy as np
+
+from courtside.devices import video
+from courtside.pose import decoders, foreground, tracking
+from courtside.records import keypoints, skeleton
+from courtside.study import log
+
+
+def main(paths, pose2d_npz, names, *, decoder, trim_s, min_presence, min_difference, redetect):
+    cv2.setNumThreads(1)
+    joints = skeleton.read(paths.skeleton).joints
+    info = video.probe(paths.video)
+    start_s, stop_s = trim_s or (None, None)
+    frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
+    track = tracking.track_person(
+        log.progress(frames, info.n_frames if not trim_s else None, f"{names.camera}: frames"),
+        decoders.person_detector(paths.detector),
+        decoders.landmark_network(paths.landmarks, joints, **decoder),
+        foreground.Foreground(cv2.imread(paths.background), min_difference),
+        min_presence=min_presence,
+        redetect=redetect,
+    )
+    found = keypoints.Keypoints2D(
+        camera=names.camera,
+        model=names.model,
+        joints=np.array(joints),
+        size=np.array(info.size),
+        time_s=track.time_s,
+        xy=track.xy[None],
+        score=track.score[None],
+        reason=track.reason[None],
+        xyz_in_body=track.xyz_in_body[None],
+    )
+    keypoints.write_2d(pose2d_npz, found)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.pose2d,
+        snakemake.wildcards,
+        decoder=snakemake.params.decoder,
+        trim_s=snakemake.params.trim_s,
+        **snakemake.params.step,
+    )

@@ -1,0 +1,20 @@
+"""Draw reprojection errors per joint and camera: 3D keypoints -> figure, CSV."""
+
+from courtside.figures import reprojection, style
+from courtside.records import keypoints
+from courtside.study import log
+
+
+def main(pose3d_npz, pdf, png, csv):
+    rows = reprojection.table(keypoints.read_3d(pose3d_npz))
+    style.save(reprojection.draw(rows), rows, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.pose3d,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

@@ -1,0 +1,31 @@
+"""Import a calibration made elsewhere: its file -> cameras of the session, as their videos show them."""
+
+import json
+
+from courtside.geometry import calibration_files, cameras
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):
+    found = calibration_files.rename(calibration_files.read(calibration_path), names)
+    found = [cameras.crop(c, crops_px[c.name]) if c.name in crops_px else c for c in found]
+    cameras.write_toml(cameras_toml, found, source=f"imported from {calibration_path}")
+    quality = {
+        "source": str(calibration_path),
+        "cameras": {c.name: {"size_px": list(map(int, c.size))} for c in found},
+        "covariance": "unknown: the file gives none",
+    }
+    with atomic(quality_json) as temporary:
+        temporary.write_text(json.dumps(quality, indent=2) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.calibration,
+        snakemake.output.cameras,
+        snakemake.output.quality,
+        names=snakemake.params.names,
+        crops_px=snakemake.params.crops_px,
+    )
