@@ -32,7 +32,7 @@ for artefact in STUDY.artefacts.values():
         params:
             code=code("fetch_artefact.py"),
             artefact=artefact.name,
-            external=str(REPOSITORY / "config" / "external.yaml"),
+            external=str(CONFIG / "external.yaml"),
             mirror_folder=STUDY.parameters["mirror_folder"],
         script:
             "../scripts/fetch_artefact.py"

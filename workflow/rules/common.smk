@@ -3,10 +3,13 @@
 Inputs: config/. Outputs: none. Steps: check every YAML file, then offer the functions below.
 """
 
+import os
 import sys
 from pathlib import Path
 
 REPOSITORY = Path(str(workflow.current_basedir)).parents[1]
+# Relative, so that a study that moves with its results reruns nothing.
+CONFIG = Path(os.path.relpath(REPOSITORY / "config"))
 SCRIPTS = REPOSITORY / "workflow" / "scripts"
 LIBRARY = REPOSITORY / "workflow" / "lib"
 sys.path.insert(0, str(LIBRARY))
@@ -25,7 +28,7 @@ FORMATS = ["pdf", "png", "csv"]
 
 try:
     STUDY = configuration.load(
-        config, workflow.configfiles[-1], folder=REPOSITORY / "config", root=Path.cwd()
+        config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd()
     )
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
@@ -72,12 +75,7 @@ def each_camera(pattern):
 
 def skeleton_file(wildcards):
     """Return the path of the skeleton of a job's network."""
-    return (
-        REPOSITORY
-        / "config"
-        / "skeletons"
-        / f"{STUDY.models[wildcards.model].skeleton}.yaml"
-    )
+    return CONFIG / "skeletons" / f"{STUDY.models[wildcards.model].skeleton}.yaml"
 
 
 def each_take(pattern, **choices):

@@ -17,7 +17,7 @@ def main(paths, pdf, png, csv, *, n_frames, blur_faces):
     panels = [
         [
             overlay.panel(
-                video.read_frame(path, view.time_s[overlay.nearest(view, time_s)]),
+                video.read_frame(path, view.time_s[overlay.nearest(view, time_s)])[1],
                 view.xy[:, overlay.nearest(view, time_s)],
                 overlay.reproject(camera, points, time_s),
                 points.accepted[:, abs(points.time_s - time_s).argmin(), :, at],

@@ -5,6 +5,7 @@ decode: they are rare in H.264 and MPEG-4 and common in MJPEG, VP8 and VP9, whic
 """
 
 import operator
+from collections import deque
 
 import av
 import numpy as np
@@ -57,7 +58,7 @@ def decode_checked(listing, first, stop):
         done = first
         try:
             for index, frame in _in_order(listing, key, stop, seek):
-                if index >= first:
+                if first <= index < stop:
                     yield index, frame
                     done = index + 1
             return
@@ -67,30 +68,35 @@ def decode_checked(listing, first, stop):
 
 
 def _in_order(listing, key, stop, seek):
-    """Yield index and frame from the key frame on; raise at the first that is not the one expected."""
+    """Yield index and frame from the key frame on; raise at the first that is not the one expected.
+
+    A frame waits until all that were decoded before it have come out undamaged: it may lean on one
+    that is shown later.
+    """
     expected = 0 if listing.by_order else key
+    last = listing.leans_on[expected:stop].max()
+    held = deque()
+    why = "frame {} is missing"
     try:
         for frame in _decode(listing, int(listing.pts[expected]), seek):
-            if not listing.by_order:
-                if frame.pts is not None and frame.pts < listing.pts[key]:
-                    continue
-                if frame.pts != listing.pts[expected]:
-                    break
+            if not listing.by_order and frame.pts != listing.pts[expected]:
+                break
             if frame.is_corrupt:
-                raise _DamageError(expected, f"frame {expected} is damaged")
-            yield expected, frame
-            expected += 1
-            if expected == stop:
+                why = "frame {} is damaged"
+                break
+            held.append((expected, frame))
+            while held and listing.leans_on[held[0][0]] <= expected:
+                yield held.popleft()
+            if expected == last:
                 return
+            expected += 1
     except FFmpegError as error:
-        raise _DamageError(
-            expected, f"frame {expected} or one soon after it does not decode ({error.strerror})"
-        ) from error
-    raise _DamageError(expected, f"frame {expected} is missing")
+        why = f"frame {{}} or one soon after it does not decode ({error.strerror})"
+    raise _DamageError(held[0][0] if held else expected, why.format(expected))
 
 
 def _decode(listing, key_pts, seek):
-    """Yield what the decoder makes of the packets; faults before the key frame do not matter."""
+    """Yield what the decoder makes of the packets from the key frame on; faults before do not matter."""
     with opened(listing.path) as (container, stream):
         context = stream.codec_context
         context.options = STRICT
@@ -111,7 +117,7 @@ def _decode(listing, key_pts, seek):
                     n_logged = av.logging.get_last_error()[0]
                     continue
                 raise
-            yield from decoded
+            yield from (f for f in decoded if f.pts is None or f.pts >= key_pts)
 
 
 def pictures(listing, wanted, crop_px):

@@ -5,7 +5,7 @@ No pixel is decoded: it costs about a hundredth of decoding. Some cuts leave no 
 """
 
 import contextlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -33,6 +33,8 @@ class Listing:
         The file.
     pts : (T,) int
         When each frame is shown, increasing.
+    leans_on : (T,) int
+        For each frame, the last shown of those decoded up to it: its picture may depend on that one.
     key_pts : (K,) int
         Those where decoding can begin.
     tick_s : Fraction
@@ -51,6 +53,7 @@ class Listing:
 
     path: Path
     pts: np.ndarray
+    leans_on: np.ndarray
     key_pts: np.ndarray
     tick_s: Fraction
     end: int
@@ -102,7 +105,8 @@ def list_packets(path, *, stop_s=None):
     if stop_s is None or not len(whole) or not stop_s <= listing.seconds(whole[-1] + half):
         raise InputError(damage(listing, len(whole), listing.problem))
     end = int(whole[-1] + 2 * half)
-    return Listing(**{**vars(listing), "pts": whole, "end": end})
+    leans_on = np.minimum(listing.leans_on[: len(whole)], len(whole) - 1)
+    return replace(listing, pts=whole, leans_on=leans_on, end=end)
 
 
 def raise_logged(n_before):
@@ -134,12 +138,15 @@ def _read_listing(path):
             )
         if not packets:
             raise InputError(f"{path}: expected frames, found {problem or 'none'}: {MEND}")
-        pts = np.array(sorted(packet[0] for packet in packets))
+        stored = np.array([packet[0] for packet in packets])
+        order = np.argsort(stored, kind="stable")
+        pts = stored[order]
         last = max(packets)
         end = last[0] + (last[2] or int(np.median(np.diff(pts, prepend=pts[0] - 1))))
         listing = Listing(
             path=path,
             pts=pts,
+            leans_on=np.maximum.accumulate(np.argsort(order))[order],
             key_pts=np.array(sorted(packet[0] for packet in packets if packet[3]), dtype=int),
             tick_s=stream.time_base,
             end=end,
@@ -190,7 +197,7 @@ def _shortfall(container, stream, n_read, pts, end):
         return (
             f"the file ends early: its header declares {stream.frames} frames, it holds {n_counted}"
         )
-    if kind == "avi" or ("mov" in kind and stream.frames):
+    if kind == "avi":
         return ""
     declared_s, end_s = _declared_end_s(container, stream), float(end * stream.time_base)
     # The last frame may last as long as any other, and sound a little longer than the pictures.
@@ -253,18 +260,15 @@ def opened(path):
     with container:
         stream = container.streams.best("video")
         kind = container.format.name
+        lack = ""
         if stream is None or stream.disposition & Disposition.attached_pic:
-            raise InputError(
-                f"{path}: expected a video, found no pictures in it ({kind}): name the camera's file"
-            )
-        if kind == "tty" or kind == "image2" or kind.endswith("_pipe"):
-            raise InputError(
-                f"{path}: expected a video, found a single picture or text ({kind}): name a video"
-            )
-        if stream.codec_context is None:
-            raise InputError(
-                f"{path}: expected a video this ffmpeg decodes, found none: export it as H.264"
-            )
+            lack = "sound only: name the camera's file"
+        elif kind in ("tty", "image2") or kind.endswith("_pipe"):
+            lack = "a single picture or text: name a video"
+        elif stream.codec_context is None:
+            lack = "a codec that this ffmpeg does not decode: export it as H.264"
+        if lack:
+            raise InputError(f"{path}: expected a video, found {lack}")
         yield container, stream
 
 
@@ -288,7 +292,7 @@ def damage(listing, index, why):
     if index == 0:
         return f"{listing.path}: {why}; no frame is known to be good: {MEND}"
     time_s = listing.times_s[index - 1]
+    trim = f", or trim the take to end before {time_s:.3f} s" if index > 1 else ""
     return (
-        f"{listing.path}: {why}; the last good frame is {index - 1} at {time_s:.3f} s: "
-        f"{MEND}, or trim the take to end before {time_s:.3f} s"
+        f"{listing.path}: {why}; the last good frame is {index - 1} at {time_s:.3f} s: {MEND}{trim}"
     )

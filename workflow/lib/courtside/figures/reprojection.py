@@ -5,6 +5,8 @@ import pandas as pd
 
 from courtside.figures import style
 
+SMALLEST_PX = 0.5  # where the logarithmic axis begins
+
 
 def table(points):
     """Return the statistics of reprojection errors.
@@ -70,7 +72,7 @@ def draw(rows):
         axis.set_xlabel("reprojection error (px)")
         axis.grid(axis="x", color="#dddddd", linewidth=0.5)
     axes[0].invert_yaxis()
-    axes[0].set_xlim(left=0)
+    axes[0].set(xscale="log", xlim=(SMALLEST_PX, None))
     handles, labels = axes[0].get_legend_handles_labels()
     drawing.legend(handles, labels, loc="outside lower center", ncols=3)
     return drawing

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import MultipleLocator
 
 from courtside.figures import style
 
 PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
-ROOM_M = 0.5  # shown around the skeletons
+ROOM_M = 0.2  # shown around the skeletons
 ARROW_M = 0.6
 
 
@@ -79,7 +80,7 @@ def _limits(points):
     if not len(known):
         known = np.zeros((1, 3))
     low, high = np.percentile(known, [0.5, 99.5], axis=0)
-    return np.floor(low - ROOM_M), np.ceil(high + ROOM_M)
+    return np.floor(2 * (low - ROOM_M)) / 2, np.ceil(2 * (high + ROOM_M)) / 2
 
 
 def _draw_space(axis, points, skeleton, n_poses):
@@ -91,15 +92,17 @@ def _draw_space(axis, points, skeleton, n_poses):
     _floor(axis, low, high)
     axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(0, high[2]))
     axis.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
-    axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2]), zoom=0.85)
+    axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2]), zoom=0.9)
+    for each in (axis.xaxis, axis.yaxis, axis.zaxis):
+        each.set_major_locator(MultipleLocator(1.0))
     axis.view_init(elev=18, azim=-60)
     axis.set_title("Skeletons and paths of wrists and ankles")
 
 
 def _floor(axis, low, high):
-    for x in np.arange(low[0], high[0] + 0.5):
+    for x in np.arange(np.ceil(low[0]), high[0] + 1e-9):
         axis.plot([x, x], [low[1], high[1]], [0, 0], color="#cccccc", linewidth=0.5)
-    for y in np.arange(low[1], high[1] + 0.5):
+    for y in np.arange(np.ceil(low[1]), high[1] + 1e-9):
         axis.plot([low[0], high[0]], [y, y], [0, 0], color="#cccccc", linewidth=0.5)
 
 

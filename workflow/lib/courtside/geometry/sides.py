@@ -10,9 +10,8 @@ import numpy as np
 from courtside.geometry import triangulation
 
 ROUNDS = 4  # changes per frame and limb group at most, as many as there are views that can be wrong
-GAIN = (
-    0.8  # a swap must lower the disagreement at least to this share: ties keep the network's word
-)
+# a swap must lower the disagreement at least to this share: ties keep the network's word
+GAIN = 0.8
 
 
 def swapped_views(cameras, xy, score, mirror, groups, *, max_error_px):

@@ -9,9 +9,8 @@ from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
 
 RATE_TOLERANCE = 1e-3  # frame times closer than this share of a frame are the same moment
-LONGEST_STEP = (
-    1.5  # frames further apart than this many frame intervals have a dropped frame between
-)
+# frames further apart than this many frame intervals have a dropped frame between
+LONGEST_STEP = 1.5
 
 
 def common_times(views, offset_s=None):

@@ -1,0 +1,33 @@
+"""Running Snakemake as its user does, and reading what it says."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+FOLDER = Path("tests") / "smoke"
+TINY = Path("config") / "tiny.yaml"
+
+
+def run(*options, root=ROOT, check=True, timeout_s=900):
+    """Run the tiny study of a repository; return the finished process with its whole output."""
+    command = [sys.executable, "-m", "snakemake", "--directory", str(FOLDER)]
+    command += ["--configfile", str(TINY), *options]
+    done = subprocess.run(
+        command, cwd=root, capture_output=True, text=True, timeout=timeout_s, check=False
+    )
+    if check and done.returncode:
+        raise AssertionError(done.stdout + done.stderr)
+    return done
+
+
+def planned(*options, root=ROOT):
+    """Return the number of jobs of each rule that Snakemake would run now."""
+    done = run("-n", *options, root=root)
+    table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\n\n", done.stdout + done.stderr, re.S)
+    if table is None:
+        assert "Nothing to be done" in done.stdout + done.stderr
+        return {}
+    rows = dict(line.split() for line in table.group(1).splitlines())
+    return {rule: int(count) for rule, count in rows.items() if rule not in ("all", "total")}

@@ -1,0 +1,70 @@
+"""The tiny study through every rule: all files are there, readable, and plausible."""
+
+import re
+
+import ezc3d
+import numpy as np
+import pandas as pd
+from smoke.snakemake_runs import ROOT, planned
+
+from courtside.exports import tidy, trc
+from courtside.geometry import cameras
+from courtside.records import keypoints
+
+TAKE = "walk-4cams-tiny/takes/balancing"
+METHOD = "file/all-robust/blazepose-full"
+
+
+def test_every_rule_of_the_study_ran(tiny_study):
+    rules = (ROOT / "workflow" / "rules").glob("*.smk")
+    names = {name for file in rules for name in re.findall(r"^rule (\w+):", file.read_text(), re.M)}
+    logged = {path.parent.name for path in tiny_study.glob("*/logs/*/*.log")}
+    assert names <= logged
+    assert len(names) >= 12
+
+
+def test_a_second_run_has_nothing_to_do(tiny_study):
+    assert planned() == {}
+
+
+def test_the_skeleton_is_a_person_in_metres(tiny_study):
+    points = keypoints.read_3d(tiny_study / TAKE / "pose3d" / f"{METHOD}.npz")
+    assert points.xyz.shape == (1, 24, 33, 3)
+    assert np.isfinite(points.xyz).all(axis=-1).mean() > 0.95
+    names = points.joints.tolist()
+    nose, ankle = (
+        np.nanmedian(points.xyz[0, :, names.index(n), 2]) for n in ("nose", "left_ankle")
+    )
+    assert 1.1 < nose - ankle < 1.7
+    np.testing.assert_allclose(np.diff(points.time_s), 1 / 60, atol=1e-4)
+
+
+def test_raw_and_filtered_results_are_both_exported(tiny_study):
+    for stage in ("pose3d", "pose3d_filtered"):
+        stem = tiny_study / TAKE / stage / f"{METHOD}.p1"
+        joints, rate_hz, _, xyz = trc.read(f"{stem}.trc")
+        rows = pd.read_csv(f"{stem}.csv")
+        c3d = ezc3d.c3d(f"{stem}.c3d")
+        assert rate_hz == 60
+        assert list(rows.columns) == list(tidy.DICTIONARY)
+        assert c3d["parameters"]["POINT"]["LABELS"]["value"] == joints
+        np.testing.assert_allclose(
+            rows[["x_m", "y_m", "z_m"]].to_numpy().reshape(xyz.shape), xyz, atol=2e-5
+        )
+        np.testing.assert_allclose(
+            c3d["data"]["points"][:3].transpose(2, 1, 0) / 1000, xyz, atol=2e-5
+        )
+
+
+def test_cameras_fit_the_videos(tiny_study):
+    found = cameras.read_toml(tiny_study / "walk-4cams-tiny/calibration/file/cameras.toml")
+    assert [camera.name for camera in found] == ["cam01", "cam02", "cam03", "cam04"]
+    assert [tuple(camera.size) for camera in found] == [(1080, 1920)] * 2 + [(1088, 1920)] * 2
+
+
+def test_every_figure_has_its_numbers(tiny_study):
+    for name in ("overlay", "skeletons", "reprojection", "visibility"):
+        stem = tiny_study / TAKE / "figures" / f"{name}.{METHOD.replace('/', '.')}"
+        assert (stem.parent / f"{stem.name}.png").read_bytes().startswith(b"\x89PNG")
+        assert (stem.parent / f"{stem.name}.pdf").read_bytes().startswith(b"%PDF")
+        assert len(pd.read_csv(stem.parent / f"{stem.name}.csv")) > 10

@@ -1,0 +1,141 @@
+"""What reruns when something changes, what a kill leaves behind, and what a bad configuration says."""
+
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from smoke.snakemake_runs import FOLDER, ROOT, TINY, planned, run
+
+KEPT = ("Snakefile", "workflow", "config", "profiles", "tests/smoke")
+
+
+@pytest.fixture
+def copy(tiny_study, tmp_path):
+    """Return a copy of the repository with the results of the tiny study."""
+    for name in KEPT:
+        source, target = ROOT / name, tmp_path / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_dir():
+            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__", "locks"))
+        else:
+            shutil.copy2(source, target)
+    return tmp_path
+
+
+def edit(path, old, new):
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+DOWNSTREAM_OF_3D = {
+    "filter_motion": 1,
+    "export_take": 2,
+    "draw_overlay": 1,
+    "draw_skeletons": 1,
+    "draw_reprojection": 1,
+    "draw_visibility": 1,
+}
+
+
+def test_a_copied_study_has_nothing_to_do(copy):
+    assert planned(root=copy) == {}
+
+
+def test_editing_a_module_reruns_exactly_what_imports_it(copy):
+    module = copy / "workflow/lib/courtside/geometry/sides.py"
+    edit(module, "GAIN = 0.8", "GAIN = 0.7")
+    assert planned(root=copy) == {"triangulate": 1, **DOWNSTREAM_OF_3D}
+
+
+def test_editing_a_figure_module_reruns_that_figure(copy):
+    module = copy / "workflow/lib/courtside/figures/visibility.py"
+    edit(module, "Confidence of the network", "Confidence of this network")
+    assert planned(root=copy) == {"draw_visibility": 1}
+
+
+def test_a_comment_reruns_nothing(copy):
+    module = copy / "workflow/lib/courtside/geometry/triangulation.py"
+    module.write_text(module.read_text() + "\n# a remark\n")
+    assert planned(root=copy) == {}
+
+
+def test_a_parameter_reruns_its_step_and_what_follows(copy):
+    edit(copy / "config/config.yaml", "max_error_px: 15", "max_error_px: 16")
+    assert planned(root=copy) == {"triangulate": 1, **DOWNSTREAM_OF_3D}
+
+
+def test_a_filter_parameter_spares_the_triangulation(copy):
+    edit(copy / "config/config.yaml", "max_gap_s: 0.2", "max_gap_s: 0.1")
+    assert planned(root=copy) == {"filter_motion": 1, "export_take": 1}
+
+
+def test_faults_of_the_configuration_are_single_lines(copy):
+    edit(copy / "config/config.yaml", "max_gap_s: 0.2", "max_gap: 0.2")
+    edit(copy / "config/sessions/walk-4cams-tiny.yaml", "sex: m", "sex: male")
+    done = run("-n", root=copy, check=False)
+    assert done.returncode != 0
+    lines = [
+        line for line in (done.stdout + done.stderr).splitlines() if line.startswith("Error: ")
+    ]
+    assert any("max_gap" in line and "did you mean 'max_gap_s'" in line for line in lines)
+    assert "Traceback" not in done.stdout + done.stderr
+
+
+def test_a_missing_video_is_named_before_any_job(copy):
+    session = copy / "config/sessions/walk-4cams-tiny.yaml"
+    path = "results/external/pose2sim/Pose2Sim/Demo_SinglePerson/videos/cam03.mp4"
+    edit(session, path, "data/gym/cam03.mp4")
+    done = run(root=copy, check=False)
+    output = done.stdout + done.stderr
+    assert done.returncode != 0
+    assert "takes.balancing.videos.cam03" in output
+    assert "data/gym/cam03.mp4" in output
+
+
+def checksums(root):
+    """Return the checksum of every result but logs and timings."""
+    folder = root / FOLDER / "results"
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and not {"logs", "benchmarks"} & set(path.parts)
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("after_s", [4.0, 7.0, 11.0])
+def test_killed_and_restarted_it_ends_with_the_same_files(copy, after_s):
+    untouched = checksums(copy)
+    results = copy / FOLDER / "results"
+    for folder in results.iterdir():
+        if folder.name != "external":
+            shutil.rmtree(folder)
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--directory",
+        str(FOLDER),
+        "--configfile",
+        str(TINY),
+    ]
+    process = subprocess.Popen(
+        command,
+        cwd=copy,
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    time.sleep(after_s)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    run("--unlock", root=copy)
+    run(root=copy)
+    assert checksums(copy) == untouched
+    assert planned(root=copy) == {}

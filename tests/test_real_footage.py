@@ -1,0 +1,174 @@
+"""The whole method on real video of a real person, against another program's result and rigid limbs.
+
+The reference is the TRC that Pose2Sim made from OpenPose keypoints of the same videos. It is another markerless
+result with other joint definitions, not truth: agreement to a few centimetres is what can be asked.
+"""
+
+import json
+from pathlib import Path
+
+import cv2
+import networks
+import numpy as np
+import pytest
+from courtside.devices import video
+from courtside.exports import trc
+from courtside.geometry import calibration_files, cameras, triangulation
+from courtside.motion import fusion
+from courtside.pose import decoders, foreground, tracking
+from courtside.records import keypoints, skeleton
+from courtside.study import yaml_files
+from real_data import REAL, needs_real
+
+pytestmark = needs_real
+ROOT = Path(__file__).parents[1]
+FOLDER = REAL / "walk-4cams"
+NAMES = ["cam01", "cam02", "cam03", "cam04"]
+CUT = (0, 0, 1080, 1920)
+PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+LIMBS = [f"{side}_{part}" for side in ("left", "right") for part in PARTS]
+BODY_25B = (
+    "nose left_eye right_eye left_ear right_ear left_shoulder right_shoulder left_elbow right_elbow left_wrist "
+    "right_wrist left_hip right_hip left_knee right_knee left_ankle right_ankle"
+).split()
+
+
+@pytest.fixture(scope="module")
+def reference():
+    """Return (T, 12, 3) of the limb joints, metres in the world of the calibration."""
+    joints, _, _, xyz = trc.read(FOLDER / "trc" / "Balancing_for_IK.trc")
+    names = [f"{limb[0].upper()}{limb.split('_')[1].capitalize()}" for limb in LIMBS]
+    return xyz[:, [joints.index(name) for name in names]]
+
+
+@pytest.fixture(scope="module")
+def views():
+    found = calibration_files.read(FOLDER / "calibration" / "Calib.qca.txt")
+    return [cameras.crop(c, CUT) if c.name in ("cam01", "cam02") else c for c in found]
+
+
+@pytest.fixture(scope="module")
+def study():
+    return yaml_files.read(ROOT / "config" / "config.yaml")
+
+
+@pytest.fixture(scope="module")
+def detected(study):
+    """Return the Keypoints2D of the four videos, found as the default study finds them."""
+    joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml").joints
+    find = decoders.person_detector(networks.detector_onnx())
+    place = decoders.landmark_network(networks.landmarks_onnx(), joints, decoder="blazepose")
+    cv2.setNumThreads(1)
+    return [detect(name, joints, find, place, study) for name in NAMES]
+
+
+def detect(name, joints, find, place, study):
+    path = FOLDER / "videos" / f"{name}.mp4"
+    every_fourth = [image for at, (_, image) in enumerate(video.frames(path)) if at % 4 == 0]
+    step = study["detect_pose"]
+    scene = foreground.Foreground(
+        foreground.estimate_background(every_fourth), step["min_difference"]
+    )
+    limits = {"min_presence": step["min_presence"], "redetect": step["redetect"]}
+    track = tracking.track_person(video.frames(path), find, place, scene, **limits)
+    return keypoints.Keypoints2D(
+        camera=name,
+        model="blazepose-full",
+        joints=np.array(joints),
+        size=np.array(video.probe(path).size),
+        time_s=track.time_s,
+        xy=track.xy[None],
+        score=track.score[None],
+        reason=track.reason[None],
+        xyz_in_body=track.xyz_in_body[None],
+    )
+
+
+@pytest.fixture(scope="module")
+def fused(views, detected, study):
+    joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
+    return fusion.triangulate_take(views, detected, joints, ["p1"], **study["triangulate"])
+
+
+def limbs(points):
+    return [points.joints.tolist().index(name) for name in LIMBS]
+
+
+def test_the_person_is_found_in_the_camera_frames(detected):
+    found = [np.isfinite(view.xy[0]).all(axis=-1).mean(axis=1) > 0.5 for view in detected]
+    assert sum(len(frames) for frames in found) == 400
+    assert np.mean(found) >= 0.99
+
+
+def test_four_views_agree_with_another_program(fused, reference):
+    points, _ = fused
+    error_mm = 1e3 * np.linalg.norm(points.xyz[0][:, limbs(points)] - reference, axis=-1)
+    assert np.isnan(error_mm).mean() <= 0.02
+    assert np.nanmedian(error_mm) <= 40
+    assert np.nanpercentile(error_mm, 90) <= 80
+
+
+def test_accepted_views_reproject_closely(fused):
+    points, _ = fused
+    error_px = points.reproj_error_px[0][:, limbs(points)]
+    assert np.median(error_px[points.accepted[0][:, limbs(points)]]) <= 6
+
+
+def test_limbs_keep_their_length(fused):
+    points, _ = fused
+    variation = []
+    for ends in skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml").segments.values():
+        a, b = (points.joints.tolist().index(joint) for joint in ends)
+        length = np.linalg.norm(points.xyz[0, :, a] - points.xyz[0, :, b], axis=-1)
+        variation.append(np.nanstd(length) / np.nanmean(length))
+    assert len(variation) == 8
+    assert np.median(variation) <= 0.06
+    assert np.max(variation) <= 0.10
+
+
+def test_the_camera_that_takes_left_for_right_is_found(fused):
+    _, swapped = fused
+    frames = swapped.any(axis=(1, 3)).sum(axis=1)
+    assert frames[1] >= 10
+    assert frames[[0, 2, 3]].max() <= 2
+
+
+def openpose(name):
+    """Return (T, 12, 3): x, y, score of the limb joints of the person with the highest scores."""
+    files = sorted((FOLDER / "openpose_body25b" / f"cam{name[-1]}_json").glob("*.json"))
+    rows = np.full((len(files), 12, 3), np.nan)
+    for at, file in enumerate(files):
+        people = [
+            np.reshape(p["pose_keypoints_2d"], (-1, 3))
+            for p in json.loads(file.read_text())["people"]
+        ]
+        if people:
+            best = max(people, key=lambda person: person[:, 2].sum())
+            rows[at] = best[[BODY_25B.index(joint) for joint in LIMBS]]
+    return np.where(rows[..., 2:] > 0, rows, np.nan)
+
+
+def test_openpose_keypoints_give_the_other_programs_result(views, reference):
+    seen = np.stack([openpose(name) for name in NAMES])
+    n_frames = seen.shape[1]
+    # Pose2Sim keeps a view until the mean error of all exceeds its limit; a wide fade comes closest to that.
+    found = triangulation.triangulate_robust(
+        views,
+        seen[..., :2].reshape(4, -1, 2),
+        seen[..., 2].reshape(4, -1),
+        sigma_px=1,
+        max_error_px=18,
+        fade_px=36,
+        min_score=0.1,
+    )
+    xyz = found.xyz.reshape(n_frames, 12, 3)
+    median_mm = {}
+    for shift in (-1, 0, 1):
+        ours = slice(max(0, shift), n_frames + min(0, shift))
+        theirs = slice(max(0, -shift), n_frames + min(0, -shift))
+        error_mm = 1e3 * np.linalg.norm(xyz[ours] - reference[theirs], axis=-1)
+        median_mm[shift] = np.nanmedian(error_mm)
+        if shift == 0:
+            assert np.nanpercentile(error_mm, 90) <= 45
+    assert median_mm[0] <= 12
+    assert min(median_mm, key=median_mm.get) == 0
