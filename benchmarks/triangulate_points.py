@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import peers
+
 import scene
 
 POINTS_OF_POSE2SIM = {"spoiled": 26000, "bad": 260}

@@ -1,16 +1,17 @@
-"""The whole method on real video of a real person, against another program's result and rigid limbs.
+"""The whole method on real video of a real person: against another result, and rigid limbs.
 
-The reference is the TRC that Pose2Sim made from OpenPose keypoints of the same videos. It is another markerless
-result with other joint definitions, not truth: agreement to a few centimetres is what can be asked.
+The reference is the TRC that Pose2Sim made from OpenPose keypoints of the same videos: another markerless
+result with other joint definitions, not truth. Agreement to a few centimetres is what can be asked.
 """
 
 import json
 from pathlib import Path
 
 import cv2
-import networks
 import numpy as np
 import pytest
+
+import networks
 from courtside.devices import video
 from courtside.exports import trc
 from courtside.geometry import calibration_files, cameras, triangulation
@@ -27,10 +28,25 @@ NAMES = ["cam01", "cam02", "cam03", "cam04"]
 CUT = (0, 0, 1080, 1920)
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 LIMBS = [f"{side}_{part}" for side in ("left", "right") for part in PARTS]
-BODY_25B = (
-    "nose left_eye right_eye left_ear right_ear left_shoulder right_shoulder left_elbow right_elbow left_wrist "
-    "right_wrist left_hip right_hip left_knee right_knee left_ankle right_ankle"
-).split()
+BODY_25B = [
+    "nose",
+    "left_eye",
+    "right_eye",
+    "left_ear",
+    "right_ear",
+    "left_shoulder",
+    "right_shoulder",
+    "left_elbow",
+    "right_elbow",
+    "left_wrist",
+    "right_wrist",
+    "left_hip",
+    "right_hip",
+    "left_knee",
+    "right_knee",
+    "left_ankle",
+    "right_ankle",
+]
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +167,7 @@ def openpose(name):
 def test_openpose_keypoints_give_the_other_programs_result(views, reference):
     seen = np.stack([openpose(name) for name in NAMES])
     n_frames = seen.shape[1]
-    # Pose2Sim keeps a view until the mean error of all exceeds its limit; a wide fade comes closest to that.
+    # Pose2Sim keeps all views until their mean error exceeds its limit; a wide fade comes closest.
     found = triangulation.triangulate_robust(
         views,
         seen[..., :2].reshape(4, -1, 2),

@@ -1,6 +1,7 @@
 """The tiny study, run once for all tests that look at its results."""
 
 import pytest
+
 from smoke.snakemake_runs import FOLDER, ROOT, run
 
 

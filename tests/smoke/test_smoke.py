@@ -5,11 +5,11 @@ import re
 import ezc3d
 import numpy as np
 import pandas as pd
-from smoke.snakemake_runs import ROOT, planned
 
 from courtside.exports import tidy, trc
 from courtside.geometry import cameras
 from courtside.records import keypoints
+from smoke.snakemake_runs import ROOT, planned
 
 TAKE = "walk-4cams-tiny/takes/balancing"
 METHOD = "file/all-robust/blazepose-full"

@@ -9,6 +9,7 @@ import sys
 import time
 
 import pytest
+
 from smoke.snakemake_runs import FOLDER, ROOT, TINY, planned, run
 
 KEPT = ("Snakefile", "workflow", "config", "profiles", "tests/smoke")

@@ -41,5 +41,6 @@ rule estimate_background:
     params:
         code=code("estimate_background.py"),
         step=step("estimate_background"),
+        trim_s=lambda w: take_of(w).trim_s,
     script:
         "../scripts/estimate_background.py"

@@ -12,8 +12,8 @@ from courtside.study import log
 def main(paths, pose2d_npz, names, *, decoder, trim_s, min_presence, min_difference, redetect):
     cv2.setNumThreads(1)
     joints = skeleton.read(paths.skeleton).joints
-    info = video.probe(paths.video)
     start_s, stop_s = trim_s or (None, None)
+    info = video.probe(paths.video, stop_s=stop_s)
     frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
     track = tracking.track_person(
         log.progress(frames, info.n_frames if not trim_s else None, f"{names.camera}: frames"),

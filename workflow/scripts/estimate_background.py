@@ -10,13 +10,17 @@ from courtside.pose import foreground
 from courtside.study import log
 
 
-def main(source, background_png, *, n_frames):
+def main(source, background_png, *, trim_s, n_frames):
     if Path(source).is_dir():
         paths = sorted(Path(source).glob("*.png"))
         images = [cv2.imread(str(paths[at])) for at in spread(len(paths), n_frames)]
     else:
-        chosen = set(spread(len(video.frame_times(source)), n_frames))
-        images = [i for at, (_, i) in enumerate(video.frames(source)) if at in chosen]
+        start_s, stop_s = trim_s or (None, None)
+        times_s = video.frame_times(source, stop_s=stop_s)
+        count = (times_s >= (start_s or 0.0)).sum()
+        chosen = set(spread(count, n_frames))
+        frames = video.frames(source, start_s=start_s, stop_s=stop_s)
+        images = [image for at, (_, image) in enumerate(frames) if at in chosen]
     video.write_png(background_png, foreground.estimate_background(images))
 
 
@@ -26,4 +30,9 @@ def spread(n_available, n_wanted):
 
 if __name__ == "__main__":
     log.to_file(snakemake.log[0])
-    main(snakemake.input.source, snakemake.output.png, **snakemake.params.step)
+    main(
+        snakemake.input.source,
+        snakemake.output.png,
+        trim_s=snakemake.params.trim_s,
+        **snakemake.params.step,
+    )

@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 import pytest
 import scipy.ndimage
-from real_data import REAL, needs_real
 from video_files import draw, number_in, numbers, write
 
 from courtside.devices import video
 from courtside.study.errors import InputError
+from real_data import REAL, needs_real
 
 
 @pytest.fixture(scope="module")

@@ -5,10 +5,10 @@ import re
 import cv2
 import numpy as np
 import pytest
-from real_data import REAL, needs_real
 
 from courtside.geometry import calibration_files, cameras
 from courtside.study.errors import InputError
+from real_data import REAL, needs_real
 
 WALK = REAL / "walk-4cams" / "calibration"
 CHARUCO = REAL / "charuco-4cams"

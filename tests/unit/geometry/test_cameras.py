@@ -7,10 +7,10 @@ import cv2
 import numpy as np
 import pycolmap
 import pytest
-from real_data import REAL, needs_real
 
 from courtside.geometry import calibration_files, cameras
 from courtside.study.errors import InputError
+from real_data import REAL, needs_real
 
 ROTATION_VECTOR = np.array([1.2, -0.7, 0.4])
 TRANSLATION = np.array([0.3, -0.5, 6.0])

@@ -1,8 +1,8 @@
 """Left and right exchanged in known places must be found there and nowhere else."""
 
 import numpy as np
-import scene
 
+import scene
 from courtside.geometry import sides
 
 MIRROR = np.array([1, 0, 3, 2, 4])

@@ -3,10 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
-import scene
-from real_data import REAL, needs_real
 
+import scene
 from courtside.geometry import calibration_files, cameras, triangulation
+from real_data import REAL, needs_real
 
 LENS = (-0.25, 0.08, 1e-3, -5e-4, -0.01)
 LIMITS = {"max_error_px": 15, "min_views": 2}

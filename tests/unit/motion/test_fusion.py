@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import scene
 
+import scene
 from courtside.motion import fusion
 from courtside.records import reasons, skeleton
 from courtside.records.keypoints import Keypoints2D

@@ -3,13 +3,13 @@
 from pathlib import Path
 
 import cv2
-import networks
 import numpy as np
 import pandas as pd
 import pytest
-from real_data import REAL, needs_real
 
+import networks
 from courtside.pose import blazepose, detector
+from real_data import REAL, needs_real
 
 RECORDED = Path(__file__).with_name("mediapipe_landmarks.csv")
 
@@ -23,9 +23,9 @@ def blazepose_pair():
 
 
 def picture(name, frame_idx):
-    if name.endswith(".jpg"):
-        return cv2.imread(str(REAL / "people" / name))
-    stream = cv2.VideoCapture(str(REAL / "walk-4cams" / "videos" / name))
+    if name.isdigit():
+        return cv2.imread(str(REAL / "people" / f"{name}.jpg"))
+    stream = cv2.VideoCapture(str(REAL / "walk-4cams" / "videos" / f"{name}.mp4"))
     for _ in range(frame_idx + 1):
         found, image = stream.read()
     return image if found else pytest.fail(f"{name}: no frame {frame_idx}")
@@ -34,7 +34,7 @@ def picture(name, frame_idx):
 @needs_real
 def test_joints_agree_with_mediapipe(blazepose_pair):
     find, place = blazepose_pair
-    recorded = pd.read_csv(RECORDED, comment="#")
+    recorded = pd.read_csv(RECORDED, comment="#", dtype={"video": str})
     distances_px, metric_m, pictures = [], [], 0
     for (video, frame_idx), rows in recorded.groupby(["video", "frame_idx"]):
         if rows.x_px.isna().any():
@@ -98,7 +98,7 @@ def test_the_logistic_function_does_not_overflow():
 @needs_real
 def test_a_turned_picture_gives_turned_joints(blazepose_pair):
     find, place = blazepose_pair
-    image = picture("cam03.mp4", 0)
+    image = picture("cam03", 0)
     upright = place.estimate(image, find.detect(image)[0])
     turned_region = detector.Region(
         image.shape[0] - upright.region.y,

@@ -1,11 +1,11 @@
 """The names in config/models.yaml lead to networks that fit their skeletons."""
 
-import networks
 import pytest
-from real_data import REAL, needs_real
 
+import networks
 from courtside.pose import blazepose, decoders, heatmaps, tflite_onnx
 from courtside.study.errors import InputError
+from real_data import REAL, needs_real
 
 
 def test_blazepose_is_built():

@@ -5,11 +5,11 @@ import json
 import cv2
 import numpy as np
 import pytest
-from real_data import REAL, needs_real
 
 from courtside.pose import heatmaps, tflite_onnx
 from courtside.pose.detector import Region
 from courtside.records import skeleton
+from real_data import REAL, needs_real
 
 
 @pytest.mark.parametrize(("x", "y"), [(40.0, 20.0), (40.3, 20.4), (10.5, 60.25)])

@@ -31,7 +31,7 @@ class Placer:
         rows, columns = np.nonzero(image[..., 0])
         near = len(rows) and np.hypot(columns.mean() - region.x, rows.mean() - region.y) < 40
         centre = np.array([columns.mean(), rows.mean()]) if near else np.zeros(2)
-        xy = np.stack([centre, centre + [400, 0]])
+        xy = np.stack([centre, centre + np.array([400, 0])])
         nothing = np.full((2, 3), np.nan)
         return Pose(xy, np.array([0.9, 0.8]), nothing, float(bool(near)), Region(*centre, 80.0))
 
