@@ -95,7 +95,7 @@ def test_a_missing_video_is_named_before_any_job(copy):
     done = run(root=copy, check=False)
     output = done.stdout + done.stderr
     assert done.returncode != 0
-    assert "takes.balancing.videos.cam03" in output
+    assert "cameras.cam03.static: expected a file" in output
     assert "data/gym/cam03.mp4" in output
 
 

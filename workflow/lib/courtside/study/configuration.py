@@ -10,6 +10,13 @@ from courtside.study.errors import InputError
 
 SCHEMAS = Path(__file__).parents[3] / "schemas"
 EXTERNAL = "results/external/"
+RESERVED = (
+    "external",
+    "networks",
+    "run",
+    "figures",
+    "virtual",
+)  # folders of results/ that are no session
 
 
 class ConfigurationError(InputError):
@@ -55,10 +62,16 @@ def load(config, config_file, folder, root="."):
     faults += _unknown(f"{config_file}: models", config["models"], models)
     found = {}
     for name in config["sessions"]:
+        if name in RESERVED:
+            faults.append(
+                f"{config_file}: sessions: expected none of {RESERVED}, found {name!r}; rename it"
+            )
         file = folder / "sessions" / f"{name}.yaml"
         if not file.is_file():
             there = sorted(path.stem for path in file.parent.glob("*.yaml"))
-            faults.append(f"{config_file}: sessions: expected a file {file}, found {there}")
+            faults.append(
+                f"{config_file}: sessions: expected a file {file}, found {there}; correct the name"
+            )
             continue
         before = len(faults)
         content = _checked(file, "session", faults)

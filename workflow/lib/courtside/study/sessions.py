@@ -157,12 +157,17 @@ def session(name, file, content, parameters):
         description=content["description"],
         court=None if content["court"] == "none" else content["court"],
         subjects=subjects,
-        cameras={key: FixedCamera(**(value or {})) for key, value in content["cameras"].items()},
+        cameras={key: _camera(value or {}) for key, value in content["cameras"].items()},
         takes=takes,
         calibration_file=content["calibration"]["file"],
         blur_faces=content.get("blur_faces", True),
         parameters=merged,
     )
+
+
+def _camera(content):
+    crop_px = tuple(content["crop_px"]) if "crop_px" in content else None
+    return FixedCamera(**{**content, "crop_px": crop_px})
 
 
 def model(name, content):

@@ -1,0 +1,205 @@
+"""The house keeps its own rules: sizes, names, formatting, lint, lock, documentation."""
+
+import ast
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import jsonschema
+import pytest
+import yaml
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).parents[1]
+LIBRARY = ROOT / "workflow" / "lib" / "courtside"
+MODULES = sorted(LIBRARY.rglob("*.py"))
+SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
+RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
+SCHEMAS = sorted((ROOT / "workflow" / "schemas").glob("*.yaml"))
+UNTESTED = {"__init__", "errors", "reasons"}  # names and constants only
+TESTED_THROUGH = {  # parts of one thing, split for length: the tests of the whole cover them
+    "onnx_writer": "pose/test_tflite_onnx.py",
+    "tflite_operators": "pose/test_tflite_onnx.py",
+    "tflite_tensors": "pose/test_tflite_graph.py",
+    "distortion": "geometry/test_cameras.py",
+    "fields": "geometry/test_calibration_files.py",
+}
+PER_ARTEFACT = "fetch_artefact.py"  # one rule for each artefact runs it
+# Written in pieces, so that this file does not name them itself.
+FOREIGN = ["/" + "work/", "/" + "tmp/", "pypi" + ".org", "python" + "hosted"]
+LARGEST_BYTES = 1 << 20
+
+
+def tracked():
+    done = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return [ROOT / line for line in done.stdout.splitlines() if (ROOT / line).is_file()]
+
+
+def run(*command):
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def long_functions(source, limit=40):
+    """Return functions whose body, docstring apart, has more lines than the limit."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.FunctionDef):
+            first = node.body[0]
+            text = isinstance(first, ast.Expr) and isinstance(
+                getattr(first.value, "value", None), str
+            )
+            lines = node.end_lineno - node.lineno + 1
+            lines -= first.end_lineno - first.lineno + 1 if text else 0
+            if lines > limit:
+                found.append(f"{node.name}: {lines}")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("paths", "limit"),
+    [(SCRIPTS, 60), (RULES, 150), (MODULES, 300)],
+    ids=["scripts", "rules", "modules"],
+)
+def test_files_stay_short(paths, limit):
+    lengths = {path.name: len(path.read_text().splitlines()) for path in paths}
+    assert {name: length for name, length in lengths.items() if length > limit} == {}
+
+
+def test_functions_stay_short():
+    found = {path.name: long_functions(path.read_text()) for path in [*MODULES, *SCRIPTS]}
+    assert {name: functions for name, functions in found.items() if functions} == {}
+    assert long_functions("def f():\n" + "    x = 1\n" * 41) == ["f: 42"]
+
+
+def rules():
+    """Return (rule name, script name, log folder) of every scripted rule with a fixed name."""
+    text = "\n".join(path.read_text() for path in RULES)
+    blocks = re.split(r"^(?=rule \w+:)", text, flags=re.M)[1:]
+    return [
+        (
+            re.match(r"rule (\w+):", block).group(1),
+            re.search(r"scripts/(\w+)\.py", block).group(1),
+            re.search(r"/logs/(\w+)/", block).group(1),
+        )
+        for block in blocks
+    ]
+
+
+def test_rule_script_and_log_folder_have_one_name():
+    found = rules()
+    assert len(found) >= 12
+    assert [names for names in found if len(set(names)) > 1] == []
+    assert {f"{script}.py" for _, script, _ in found} | {PER_ARTEFACT} == {p.name for p in SCRIPTS}
+
+
+def test_public_functions_say_what_they_take():
+    missing = []
+    for path in MODULES:
+        for node in ast.parse(path.read_text()).body:
+            if not isinstance(node, ast.FunctionDef) or node.name.startswith("_"):
+                continue
+            n_arguments = len(node.args.args) + len(node.args.kwonlyargs)
+            if n_arguments >= 3 and "Parameters\n" not in (ast.get_docstring(node) or ""):
+                missing.append(f"{path.name}: {node.name}")
+    assert missing == []
+
+
+def test_the_library_is_mirrored_by_tests():
+    folder = ROOT / "tests" / "unit"
+    missing = []
+    for path in MODULES:
+        mirror = TESTED_THROUGH.get(path.stem, f"{path.parent.name}/test_{path.stem}.py")
+        if path.stem not in UNTESTED and not (folder / mirror).is_file():
+            missing.append(mirror)
+    assert missing == []
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("-m", "ruff", "check", "."),
+        ("-m", "ruff", "format", "--check", "."),
+        ("-m", "snakefmt", "--check", "Snakefile", "workflow/rules"),
+        (
+            "-m",
+            "codespell_lib",
+        ),
+    ],
+    ids=["ruff", "format", "snakefmt", "codespell"],
+)
+def test_tools_find_nothing(command):
+    done = run(sys.executable, *command)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_lint_finds_only_the_missing_conda_environments():
+    done = run(sys.executable, "-m", "snakemake", "--lint")
+    titles = set(re.findall(r"^    \* (.*)$", done.stdout + done.stderr, flags=re.M))
+    assert titles == {"Specify a conda environment or container for each rule.:"}
+
+
+def locked():
+    """Return the versions of each package in the lock, and its text."""
+    text = (ROOT / "environment.lock").read_text()
+    versions = {}
+    for name, version in re.findall(r"^([A-Za-z0-9._-]+)(?:\[[^]]*\])?==([^ ]+)", text, flags=re.M):
+        versions.setdefault(canonicalize_name(name), []).append(version)
+    return versions, text
+
+
+def test_the_lock_is_hashed_and_names_no_index():
+    versions, text = locked()
+    blocks = re.split(r"^(?=[A-Za-z0-9])", text, flags=re.M)[1:]
+    assert len(blocks) == sum(map(len, versions.values()))
+    assert [block.split()[0] for block in blocks if "--hash=sha256:" not in block] == []
+    assert "http" not in text
+
+
+def test_the_lock_covers_the_direct_dependencies():
+    versions, _ = locked()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    wanted = [*project["project"]["dependencies"], *project["dependency-groups"]["test"]]
+    for requirement in map(Requirement, wanted):
+        found = versions[canonicalize_name(requirement.name)]
+        assert all(requirement.specifier.contains(version) for version in found), requirement
+
+
+def test_nothing_large_or_foreign_is_tracked():
+    for path in tracked():
+        content = path.read_bytes()
+        assert len(content) <= LARGEST_BYTES, path
+        named = [needle for needle in FOREIGN if needle.encode() in content]
+        assert named == [], path
+
+
+@pytest.mark.parametrize("path", SCHEMAS, ids=lambda p: p.name)
+def test_schemas_are_schemas(path):
+    jsonschema.Draft202012Validator.check_schema(yaml.safe_load(path.read_text()))
+
+
+def keys(schema):
+    """Yield the names of all properties of a schema, at any depth."""
+    for name, value in schema.get("properties", {}).items():
+        yield name
+        yield from keys(value)
+    if isinstance(schema.get("additionalProperties"), dict):
+        yield from keys(schema["additionalProperties"])
+
+
+@pytest.mark.parametrize("name", ["config", "session"])
+def test_every_key_is_documented(name):
+    text = (ROOT / "config" / "README.md").read_text()
+    schema = yaml.safe_load((ROOT / "workflow" / "schemas" / f"{name}.schema.yaml").read_text())
+    found = set(keys(schema))
+    assert len(found) > 10
+    assert {key for key in found if not re.search(rf"\b{key}\b", text)} == set()
+
+
+def test_the_readme_gives_the_two_commands():
+    text = (ROOT / "README.md").read_text()
+    start = "python3 -m venv .venv && . .venv/bin/activate && pip install -r environment.lock && "
+    assert f"{start}snakemake\n" in text
+    assert f"{start}pytest\n" in text

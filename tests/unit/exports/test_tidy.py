@@ -1,0 +1,46 @@
+"""The CSV against the record it was made from."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+import walker
+from courtside.exports import tidy
+from courtside.records import reasons
+
+
+def test_columns_and_values_are_the_records(tmp_path):
+    record = walker.points(n_persons=2)
+    tidy.write(tmp_path / "p2.csv", record, 1)
+    rows = pd.read_csv(tmp_path / "p2.csv")
+    assert list(rows.columns) == list(tidy.DICTIONARY)
+    assert len(rows) == 20 * 33
+    assert set(rows.person) == {"p2"}
+    at = rows[(rows.frame_idx == 6) & (rows.joint == "left_hip")].iloc[0]
+    joint = record.joints.tolist().index("left_hip")
+    np.testing.assert_allclose(
+        at[["x_m", "y_m", "z_m"]].astype(float), record.xyz[1, 6, joint], atol=5e-6
+    )
+    np.testing.assert_allclose(at[["sd_x_mm", "sd_y_mm", "sd_z_mm"]].astype(float), [10, 20, 30])
+    assert at.reproj_error_px == round(record.reproj_error_px[1, 6, joint].mean(), 2)
+    assert (at.n_views, at.reason, at.time_s) == (3, "ok", 0.12)
+
+
+def test_only_accepted_views_count_for_the_error():
+    record = walker.points()
+    rows = tidy.table(record, 0)
+    error = rows[(rows.frame_idx == 5) & (rows.joint == record.joints[7])].reproj_error_px.item()
+    assert error == round(record.reproj_error_px[0, 5, 7, [0, 2]].mean(), 2)
+
+
+def test_missing_points_are_empty_and_say_why(tmp_path):
+    record = walker.points()
+    tidy.write(tmp_path / "p.csv", record, 0)
+    line = (tmp_path / "p.csv").read_text().splitlines()[1 + 3 * 33 + 4]
+    assert line == f"3,0.06,p1,{record.joints[4]},,,,,,,0,,{reasons.WORDS[reasons.REJECTED]}"
+
+
+def test_every_column_is_explained_in_the_documentation():
+    text = (Path(__file__).parents[3] / "config" / "README.md").read_text()
+    assert [name for name in tidy.DICTIONARY if f"`{name}`" not in text] == []

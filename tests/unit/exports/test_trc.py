@@ -1,0 +1,99 @@
+"""TRC written here, read by pandas and by ourselves; a TRC of another program read the same."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import walker
+from courtside.exports import trc
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+
+
+def by_pandas(path):
+    """Return (T, J, 3) as the file has them, by an independent reader."""
+    table = pd.read_csv(path, sep="\t", skiprows=5, header=None).dropna(axis=1, how="all")
+    return table.to_numpy()
+
+
+@pytest.fixture
+def written(tmp_path):
+    record = walker.points()
+    trc.write(tmp_path / "walk.trc", record, 0)
+    return record, tmp_path / "walk.trc"
+
+
+def test_axes_are_the_worlds_y_z_x(written):
+    record, path = written
+    found = by_pandas(path)[:, 2:].reshape(20, -1, 3)
+    np.testing.assert_allclose(found, record.xyz[0][..., [1, 2, 0]], atol=1e-6)
+
+
+def test_the_axis_map_keeps_hands():
+    assert np.linalg.det(np.eye(3)[trc.WORLD_AXES]) == pytest.approx(1)
+    assert np.array(trc.WORLD_AXES)[trc.TRC_AXES].tolist() == [0, 1, 2]
+
+
+def test_header_is_the_one_other_programs_expect(written):
+    _, path = written
+    lines = path.read_text().split("\n")
+    assert lines[0] == "PathFileType\t4\t(X/Y/Z)\twalk.trc"
+    names, values = lines[1].split("\t"), lines[2].split("\t")
+    header = dict(zip(names, values, strict=True))
+    assert header["DataRate"] == "50"
+    assert (header["NumFrames"], header["NumMarkers"], header["Units"]) == ("20", "33", "m")
+    assert lines[3].startswith("Frame#\tTime\tnose\t\t\tleft_eye_inner\t\t\t")
+    assert lines[4].startswith("\t\tX1\tY1\tZ1\tX2")
+    assert lines[5] == ""
+    assert lines[6].startswith("1\t0.000000\t")
+
+
+def test_missing_values_are_blank(written):
+    _, path = written
+    cells = path.read_text().split("\n")[6 + 3].split("\t")
+    assert cells[2 + 3 * 4 : 5 + 3 * 4] == ["", "", ""]
+    assert all(cells[: 2 + 3 * 4])
+
+
+def test_the_round_trip_keeps_micrometres(written):
+    record, path = written
+    joints, rate_hz, time_s, xyz = trc.read(path)
+    assert joints == record.joints.tolist()
+    assert rate_hz == 50
+    np.testing.assert_allclose(time_s, record.time_s, atol=1e-6)
+    np.testing.assert_allclose(xyz, record.xyz[0], atol=1e-6)
+
+
+@needs_real
+def test_another_programs_file_reads_as_pandas_reads_it():
+    path = REAL / "walk-4cams" / "trc" / "Balancing_for_IK.trc"
+    joints, rate_hz, _, xyz = trc.read(path)
+    assert (len(joints), rate_hz, xyz.shape) == (21, 60, (100, 21, 3))
+    np.testing.assert_allclose(xyz[..., [1, 2, 0]].reshape(100, -1), by_pandas(path)[:, 2:65])
+
+
+def test_millimetres_become_metres(written, tmp_path):
+    _, path = written
+    other = tmp_path / "mm.trc"
+    other.write_text(path.read_text().replace("\tm\t", "\tmm\t"))
+    np.testing.assert_allclose(trc.read(other)[3], trc.read(path)[3] / 1000)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("\tm\t", "\tinch\t", "Units"),
+        ("DataRate", "Rate", "expected a TRC file"),
+        ("1\t0.000000\t", "1\t0.000000\tx", "line 7: expected numbers"),
+        ("\n1\t0.000000\t", "\n1\t0.000000\t1\t2\t3\t", "line 7: expected 101 values"),
+    ],
+)
+def test_a_damaged_file_is_one_line(written, tmp_path, old, new, message):
+    _, path = written
+    text = path.read_text()
+    assert old in text
+    bad = tmp_path / "bad.trc"
+    bad.write_text(text.replace(old, new, 1))
+    with pytest.raises(InputError, match=message) as caught:
+        trc.read(bad)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,48 @@
+"""Records of keypoints survive their files."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+import scene
+import walker
+from courtside.records import keypoints
+from courtside.study.errors import InputError
+
+
+def equal(one, other):
+    for field in fields(one):
+        np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
+
+
+def test_3d_round_trip(tmp_path):
+    record = walker.points(n_persons=2)
+    keypoints.write_3d(tmp_path / "f.npz", record)
+    found = keypoints.read_3d(tmp_path / "f.npz")
+    equal(found, record)
+    assert isinstance(found.model, str)
+
+
+def test_2d_round_trip(tmp_path):
+    record = walker.views(walker.points(), scene.ring(1))[0]
+    keypoints.write_2d(tmp_path / "f.npz", record)
+    equal(keypoints.read_2d(tmp_path / "f.npz"), record)
+
+
+def test_one_kind_is_not_read_as_the_other(tmp_path):
+    keypoints.write_3d(tmp_path / "f.npz", walker.points())
+    with pytest.raises(InputError, match="keypoints2d"):
+        keypoints.read_2d(tmp_path / "f.npz")
+
+
+def test_the_rate_is_frames_per_second():
+    assert walker.points().rate_hz == pytest.approx(50)
+    assert np.isnan(replace(walker.points(), time_s=np.zeros(1)).rate_hz)
+
+
+def test_a_wrong_shape_is_not_written(tmp_path):
+    with pytest.raises(ValueError, match="n_views"):
+        keypoints.write_3d(
+            tmp_path / "f.npz", replace(walker.points(), n_views=np.zeros((1, 2, 3), int))
+        )

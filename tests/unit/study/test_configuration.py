@@ -1,0 +1,153 @@
+"""The configuration that is committed has no fault; a bad one reports all of its own."""
+
+import copy
+import shutil
+from pathlib import Path
+
+import pytest
+import yaml
+
+from courtside.study import configuration, yaml_files
+
+CONFIG = Path(__file__).parents[3] / "config"
+SESSION = {
+    "description": "a hall",
+    "court": "none",
+    "subjects": {"p1": None},
+    "cameras": {"left": None, "right": {"crop_px": [0, 0, 100, 50]}},
+    "calibration": {"file": "cal.toml"},
+    "takes": {"t1": {"videos": {"left": "l.mp4", "right": "r.mp4"}}},
+}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a copy of config/ with a session `hall` whose files exist."""
+    shutil.copytree(CONFIG, tmp_path / "config")
+    for name in ("cal.toml", "l.mp4", "r.mp4"):
+        (tmp_path / name).touch()
+    return tmp_path / "config"
+
+
+def load(folder, session=None, **changes):
+    (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(session or SESSION))
+    config = yaml_files.read(CONFIG / "config.yaml") | {"sessions": ["hall"]} | changes
+    return configuration.load(config, "config/config.yaml", folder, root=folder.parent)
+
+
+def faults(folder, session=None, **changes):
+    with pytest.raises(configuration.ConfigurationError) as caught:
+        load(folder, session, **changes)
+    assert all("\n" not in line for line in caught.value.faults)
+    return caught.value.faults
+
+
+def changed(*keys, value):
+    session = copy.deepcopy(SESSION)
+    inner = session
+    for key in keys[:-1]:
+        inner = inner[key]
+    inner[keys[-1]] = value
+    return session
+
+
+@pytest.mark.parametrize("name", ["config", "tiny", "full"])
+def test_the_committed_configuration_has_no_fault(name):
+    config = yaml_files.read(CONFIG / "config.yaml") | yaml_files.read(CONFIG / f"{name}.yaml")
+    study = configuration.load(config, f"config/{name}.yaml", CONFIG)
+    assert list(study.sessions) == config["sessions"]
+
+
+def test_every_committed_session_has_no_fault():
+    config = yaml_files.read(CONFIG / "config.yaml")
+    config["sessions"] = [path.stem for path in (CONFIG / "sessions").glob("*.yaml")]
+    study = configuration.load(config, "config/config.yaml", CONFIG)
+    assert len(study.sessions) >= 2
+
+
+def test_a_session_becomes_records(folder):
+    session = load(folder).sessions["hall"]
+    assert session.takes["t1"].subjects == ("p1",)
+    assert session.cameras["right"].crop_px == (0, 0, 100, 50)
+    assert session.court is None
+    assert session.blur_faces
+    assert session.calibration_camera_names() == {"left": "left", "right": "right"}
+
+
+def test_an_override_changes_one_key_and_keeps_the_others(folder):
+    session = SESSION | {"override": {"triangulate": {"max_error_px": 40}}}
+    study = load(folder, session)
+    ours, common = study.sessions["hall"].parameters["triangulate"], study.parameters["triangulate"]
+    assert ours == common | {"max_error_px": 40}
+    assert common["max_error_px"] != 40
+
+
+def test_all_faults_of_all_files_come_at_once(folder):
+    (folder / "sessions" / "gym.yaml").write_text("description: 3\ncourts: none\n")
+    steps = yaml_files.read(CONFIG / "config.yaml")
+    found = faults(
+        folder,
+        changed("takes", "t1", "videos", "centre", value="c.mp4"),
+        sessions=["hall", "gym", "nowhere"],
+        models=["blazepose-full", "resnet"],
+        draw_overlay=steps["draw_overlay"],
+    )
+    text = "\n".join(found)
+    for part in ("resnet", "nowhere", "gym.yaml: description", "did you mean 'court'?", "'centre'"):
+        assert part in text
+    assert len(found) >= 6
+
+
+@pytest.mark.parametrize(
+    ("changes", "parts"),
+    [
+        ({"fusions": ["all-robust", "all-robust"]}, ["fusions", "entries that differ"]),
+        ({"draw_overlay": {"n_frame": 3}}, ["draw_overlay", "did you mean 'n_frames'?"]),
+        ({"draw_overlay": {"n_frames": 0}}, ["draw_overlay.n_frames", "at least 1", "found 0"]),
+        ({"draw_overlay": {"n_frames": "x"}}, ["draw_overlay.n_frames", "integer", "'x'"]),
+        ({"sessions": ["../hall"]}, ["sessions.0", "'../hall'"]),
+        ({"sessions": ["hall; ls"]}, ["sessions.0"]),
+        ({"sessions": ["hall\n"]}, ["sessions.0"]),
+        ({"sessions": ["external"]}, ["sessions", "'external'; rename it"]),
+    ],
+)
+def test_a_fault_of_the_study_names_key_and_value(folder, changes, parts):
+    found = faults(folder, **changes)
+    assert any(all(part in line for part in ["config/config.yaml", *parts]) for line in found)
+
+
+@pytest.mark.parametrize(
+    ("session", "parts"),
+    [
+        (changed("takes", "t1", "videos", "left", value="gone.mp4"), ["videos.left", "gone.mp4"]),
+        (changed("takes", "t1", "trim_s", value=[3, 1]), ["trim_s", "start before the stop"]),
+        (changed("takes", "t1", "subjects", value=["p2"]), ["subjects", "'p2'"]),
+        (changed("takes", "t1", "videos", value={"left": "l.mp4"}), ["videos", "at least 2"]),
+        (changed("court", value="tennis"), ["court", "'tennis'"]),
+        (changed("subjects", "p1", value={"height_m": 174}), ["height_m", "at most 2.5", "174"]),
+        (changed("cameras", "left", value={"crop": [0, 0, 1, 1]}), ["did you mean 'crop_px'?"]),
+        (changed("takes", "Take 1", value={}), ["takes", "lower-case letters"]),
+        (
+            changed("override", value={"triangulat": {}}),
+            ["override", "did you mean 'triangulate'?"],
+        ),
+        (changed("override", value={"triangulate": {"min_views": 1}}), ["min_views", "at least 2"]),
+        (
+            changed("calibration", "file", value="results/external/pose2sim/nothing.toml"),
+            ["calibration.file", "member of external.yaml"],
+        ),
+    ],
+)
+def test_a_fault_of_a_session_names_key_and_value(folder, session, parts):
+    found = faults(folder, session)
+    assert any(all(part in line for part in ["hall.yaml", *parts]) for line in found), found
+
+
+def test_a_model_must_fit_its_artefact_and_skeleton(folder):
+    models = yaml_files.read(CONFIG / "models.yaml")
+    models["blazepose-full"]["skeleton"] = "octopus"
+    models["blazepose-full"]["landmarks"]["sha256"] = "0" * 64
+    (folder / "models.yaml").write_text(yaml.safe_dump(models))
+    text = "\n".join(faults(folder))
+    assert "blazepose-full.skeleton" in text
+    assert "blazepose-full.landmarks" in text

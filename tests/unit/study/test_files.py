@@ -1,0 +1,35 @@
+"""Files appear whole or not at all."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from courtside.study import files
+
+
+def test_a_file_appears_when_the_block_ends(tmp_path):
+    path = tmp_path / "deep" / "table.csv"
+    with files.atomic(path) as temporary:
+        temporary.write_text("a")
+        assert not path.exists()
+        assert temporary.suffix == ".csv"
+        assert temporary.parent == path.parent
+    assert path.read_text() == "a"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    with pytest.raises(RuntimeError), files.atomic(path) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_checksum_is_sha256(tmp_path):
+    content = np.random.default_rng(0).bytes(3_000_001)
+    (tmp_path / "f").write_bytes(content)
+    assert files.sha256(tmp_path / "f") == hashlib.sha256(content).hexdigest()

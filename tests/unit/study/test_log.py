@@ -1,0 +1,52 @@
+"""What a job's log holds after a fault, by a real process."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from courtside.study import log
+
+LIBRARY = Path(__file__).parents[3] / "workflow" / "lib"
+
+
+def run(tmp_path, statement):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import sys\n"
+        f"sys.path.insert(0, {str(LIBRARY)!r})\n"
+        "from courtside.study import log\n"
+        "from courtside.study.errors import InputError\n"
+        f"log.to_file({str(tmp_path / 'logs' / 'job.log')!r})\n{statement}\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False)
+    return done, (tmp_path / "logs" / "job.log").read_text()
+
+
+def test_a_fault_of_the_user_is_one_line(tmp_path):
+    done, text = run(tmp_path, "raise InputError('a.mp4: expected a video, found text')")
+    assert done.returncode == 1
+    assert done.stderr == ""
+    assert len(text.splitlines()) == 1
+    assert text.endswith("ERROR a.mp4: expected a video, found text\n")
+
+
+def test_a_fault_of_the_program_keeps_its_traceback(tmp_path):
+    done, text = run(tmp_path, "1 / 0")
+    assert done.returncode == 1
+    assert "ZeroDivisionError" in text
+    assert "Traceback" in text
+
+
+def test_progress_passes_items_on_and_counts(caplog):
+    with caplog.at_level("INFO", logger="courtside"):
+        assert list(log.progress(range(5), 5, "cam: frames", every_s=0.0)) == [0, 1, 2, 3, 4]
+    assert "cam: frames: 5 of 5" in caplog.messages[-1]
+
+
+@pytest.mark.parametrize("total", [None, 3])
+def test_progress_of_nothing_says_so(total, caplog):
+    with caplog.at_level("INFO", logger="courtside"):
+        assert list(log.progress([], total, "frames")) == []
+    assert caplog.messages[-1].startswith("frames: 0")

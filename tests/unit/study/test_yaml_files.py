@@ -1,0 +1,42 @@
+"""YAML read strictly."""
+
+import pytest
+
+from courtside.study import yaml_files
+from courtside.study.errors import InputError
+
+
+def read(tmp_path, text):
+    path = tmp_path / "f.yaml"
+    path.write_text(text)
+    return yaml_files.read(path)
+
+
+def test_a_mapping_is_read_with_anchors(tmp_path):
+    found = read(tmp_path, "a: &x {b: 1}\nc: *x\nd: {<<: *x, e: 2}\n")
+    assert found == {"a": {"b": 1}, "c": {"b": 1}, "d": {"b": 1, "e": 2}}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: 1\nb: 2\na: 3\n", "line 3: expected each key once, found 'a' again"),
+        ("takes:\n  no: 1\n", "line 2: expected a name, found False"),
+        ("1: 2\n", "line 1: expected a name, found 1"),
+        ("a: [1\n", "line 2"),
+        ("- 1\n", "expected keys and values, found list"),
+        ("", "expected keys and values, found NoneType"),
+        ("a: !!python/object/apply:os.system [ls]\n", "could not determine a constructor"),
+    ],
+)
+def test_what_is_wrong_is_one_line_with_its_number(tmp_path, text, message):
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    assert message in str(caught.value)
+    assert "f.yaml" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_one_line(tmp_path):
+    with pytest.raises(InputError, match="expected a readable YAML file"):
+        yaml_files.read(tmp_path / "none.yaml")
