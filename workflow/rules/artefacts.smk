@@ -10,10 +10,7 @@ for artefact in STUDY.artefacts.values():
         name:
             f"fetch_{artefact.name.replace('-', '_')}"
         output:
-            [
-                f"results/external/{artefact.name}/{member}"
-                for member in artefact.members
-            ],
+            [f"results/external/{artefact.name}/{member}" for member in artefact.members],
         log:
             f"results/external/logs/fetch_artefact/{artefact.name}.log",
         retries: 2

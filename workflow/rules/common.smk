@@ -27,9 +27,7 @@ FIGURES = ["overlay", "skeletons", "reprojection", "visibility"]
 FORMATS = ["pdf", "png", "csv"]
 
 try:
-    STUDY = configuration.load(
-        config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd()
-    )
+    STUDY = configuration.load(config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd())
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 
@@ -97,11 +95,8 @@ def background_source(wildcards):
 
 def figure(name):
     """Return the three files of a figure; the PNG goes into the report with its caption."""
-    stem = (
-        "results/{session}/takes/{take}/figures/"
-        + name
-        + ".{calibration}.{fusion}.{model}"
-    )
+    folder = "results/{session}/takes/{take}/figures"
+    stem = f"{folder}/{name}.{{calibration}}.{{fusion}}.{{model}}"
     return {
         "pdf": f"{stem}.pdf",
         "csv": f"{stem}.csv",
@@ -121,9 +116,7 @@ def figure(name):
 
 def each_take(pattern, **choices):
     """Return `pattern` for every take of every session and every method of the study."""
-    methods = {
-        key: STUDY.parameters[f"{key}s"] for key in ("calibration", "fusion", "model")
-    }
+    methods = {key: STUDY.parameters[f"{key}s"] for key in ("calibration", "fusion", "model")}
     return [
         path
         for session in STUDY.sessions.values()

@@ -73,6 +73,13 @@ def _mean_error(keypoints, person):
 
 
 def write(path, keypoints, person):
-    """Write the table of one person, see `table`, as CSV."""
+    """Write one person as CSV.
+
+    Parameters
+    ----------
+    path : str or Path
+    keypoints, person
+        As for `table`.
+    """
     with atomic(path) as temporary:
         table(keypoints, person).to_csv(temporary, index=False, lineterminator="\n")

@@ -24,7 +24,19 @@ def nearest(view, time_s):
 
 
 def reproject(camera, points, time_s):
-    """Return the skeletons nearest to a time as one camera sees them, (P, J, 2) px."""
+    """Return the skeletons nearest to a time as one camera sees them.
+
+    Parameters
+    ----------
+    camera : Camera
+    points : Keypoints3D
+    time_s : float
+
+    Returns
+    -------
+    xy : (P, J, 2) float
+        Pixels.
+    """
     at = int(np.abs(points.time_s - time_s).argmin())
     return camera_models.project(camera, points.xyz[:, at])
 

@@ -165,12 +165,11 @@ def crop(camera, crop_px):
     ----------
     camera : Camera
     crop_px : (x, y, width, height) of int
-        The part, in px of the calibrated picture.
+        In px of the calibrated picture.
 
     Returns
     -------
-    camera : Camera
-        With that size and a shifted principal point; nothing is scaled.
+    camera : Camera, with that size and a shifted principal point; nothing is scaled.
 
     Raises
     ------
@@ -182,7 +181,7 @@ def crop(camera, crop_px):
     if min(x, y) < 0 or min(width, height) <= 0 or outside:
         raise InputError(
             f"camera {camera.name}: expected crop_px [x, y, width, height] inside the calibrated "
-            f"{_times(camera.size)} px, found {list(crop_px)}; correct crop_px in the session file"
+            f"{fields.times(camera.size)} px, found {list(crop_px)}; correct crop_px in the session file"
         )
     shift = np.zeros((3, 3))
     shift[:2, 2] = x, y
@@ -190,18 +189,22 @@ def crop(camera, crop_px):
 
 
 def check_size(camera, video_size, video_path):
-    """Raise `InputError` unless a video has the size (width, height) its camera was calibrated at."""
+    """Raise `InputError` unless a video has the size its camera was calibrated at.
+
+    Parameters
+    ----------
+    camera : Camera
+    video_size : (int, int)
+        Width and height, px.
+    video_path : str or Path
+    """
     if tuple(video_size) != camera.size:
         raise InputError(
-            f"{video_path}: expected {_times(camera.size)} px, the size that camera {camera.name} was "
-            f"calibrated at, found {_times(video_size)}; declare `crop_px: [x, y, width, height]` for "
+            f"{video_path}: expected {fields.times(camera.size)} px, the size that camera {camera.name} was "
+            f"calibrated at, found {fields.times(video_size)}; declare `crop_px: [x, y, width, height]` for "
             "this camera in the session file if the video is a cut-out of the calibrated picture, "
             "else calibrate at the video's size"
         )
-
-
-def _times(size):
-    return f"{size[0]}x{size[1]}"
 
 
 def read_toml(path):
@@ -226,8 +229,9 @@ def read_toml(path):
     try:
         tables = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        found = fields.short(error)
-        raise InputError(f"{path}: expected TOML, found {found}; {fields.EXPORT_AGAIN}") from error
+        raise InputError(
+            f"{path}: expected TOML, found {fields.short(error)}; {fields.EXPORT_AGAIN}"
+        ) from error
     metadata = tables.get("metadata", {})
     unit = metadata.get("unit", "m") if isinstance(metadata, dict) else metadata
     metres = fields.unit_in_metres(path, unit)
@@ -242,10 +246,15 @@ def read_toml(path):
 
 
 def build(where, name, table, metres):
-    """Make a camera of a table as a file holds it; `where`, file and camera, begins messages.
+    """Make a camera of a table as a file holds it; `where` begins messages.
 
-    The table has `size matrix distortions rotation translation` as lists or arrays, rotation from world
-    to camera as a vector or matrix, and perhaps `fisheye`; `metres` is the unit of the translation.
+    Parameters
+    ----------
+    where, name : str
+    table : dict
+        `size matrix distortions rotation translation` and perhaps `fisheye`, rotation as vector or matrix.
+    metres : float
+        Unit of the translation.
     """
     if table.get("fisheye", False):
         raise InputError(

@@ -58,7 +58,17 @@ def five_coefficients(where, value):
 
 
 def pose(where, rotation, translation, metres):
-    """Return `cam_from_world` (3, 4) of a rotation vector or matrix, and a translation in any unit.
+    """Return `cam_from_world` (3, 4).
+
+    Parameters
+    ----------
+    where : str
+        File and camera: begins messages.
+    rotation : (3,) or (3, 3) array_like
+        Rodrigues vector, radians, or matrix.
+    translation : (3,) array_like
+    metres : float
+        Unit of the translation.
 
     Raises
     ------
@@ -99,3 +109,8 @@ def check_distinct(path, cameras):
 def short(value):
     """Return a value as at most 80 characters of one line."""
     return " ".join(str(value).split())[:80]
+
+
+def times(size):
+    """Return a size in px as text, `1080x1920`."""
+    return f"{size[0]}x{size[1]}"

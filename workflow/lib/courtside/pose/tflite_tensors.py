@@ -53,7 +53,17 @@ def entries(table, name):
 
 
 def integers(table, name, most):
-    """Return a table's vector of integers as a tuple; at most so many are accepted."""
+    """Return a table's vector of integers as a tuple.
+
+    Parameters
+    ----------
+    table : object
+        A flatbuffer table.
+    name : str
+        The field.
+    most : int
+        A longer vector is damage.
+    """
     count = getattr(table, f"{name}Length")()
     if count > most:
         raise ValueError(f"{count} {name.lower()} (at most {most})")

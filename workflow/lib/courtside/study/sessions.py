@@ -135,7 +135,16 @@ class Study:
 
 
 def session(name, file, content, parameters):
-    """Build a `Session` from a checked YAML dictionary and the study's parameters."""
+    """Build a `Session`.
+
+    Parameters
+    ----------
+    name, file : str
+    content : dict
+        The session's YAML file, checked.
+    parameters : dict
+        The study's configuration, whose steps `override` in `content` changes.
+    """
     override = content.get("override", {})
     merged = {
         key: {**value, **override.get(key, {})} if isinstance(value, dict) else value
