@@ -142,11 +142,26 @@ def test_limbs_keep_their_length(fused):
     assert np.max(variation) <= 0.10
 
 
-def test_the_camera_that_takes_left_for_right_is_found(fused):
-    _, swapped = fused
-    frames = swapped.any(axis=(1, 3)).sum(axis=1)
-    assert frames[1] >= 10
-    assert frames[[0, 2, 3]].max() <= 2
+def test_left_and_right_are_exchanged_where_the_reference_says_so(
+    fused, views, detected, reference
+):
+    points, swapped = fused
+    other = [LIMBS.index(("right_", "left_")[n[0] == "r"] + n.split("_")[1]) for n in LIMBS]
+    for part in (("elbow", "wrist"), ("knee", "ankle")):
+        joints = [at for at, name in enumerate(LIMBS) if name.endswith(part)]
+        wrong, found = [], []
+        for at, (camera, view) in enumerate(zip(views, detected, strict=True)):
+            seen, truth = view.xy[0][:, limbs(view)], cameras.project(camera, reference)
+            as_named, exchanged = (
+                np.linalg.norm(xy - truth, axis=-1)[:, joints].sum(axis=1)
+                for xy in (seen, seen[:, other])
+            )
+            wrong.append(exchanged < 0.8 * as_named)
+            found.append(swapped[at, 0][:, limbs(points)][:, joints[0]])
+        wrong, found = np.array(wrong), np.array(found)
+        assert wrong[1].sum() >= 20
+        assert found[wrong].mean() >= 0.85
+        assert found[~wrong].mean() <= 0.02
 
 
 def openpose(name):

@@ -63,3 +63,70 @@ def test_a_take_too_long_for_the_format_is_refused(tmp_path, monkeypatch):
     with pytest.raises(InputError, match="at most 19 frames"):
         c3d.write(tmp_path / "long.c3d", replace(walker.points()), 0)
     assert list(tmp_path.iterdir()) == []
+
+
+def fourth_words(path, n_points, n_frames):
+    """Return (T, J, 4) as the bytes of a file with floating-point data have them."""
+    content = path.read_bytes()
+    block, scale = (
+        struct.unpack_from("<H", content, 16)[0],
+        struct.unpack_from("<f", content, 12)[0],
+    )
+    assert scale < 0  # floating-point data
+    count = n_points * n_frames * 4
+    found = np.frombuffer(content, "<f4", count, (block - 1) * 512)
+    return found.reshape(n_frames, n_points, 4)
+
+
+def test_the_bytes_hold_the_points_frame_by_frame(written):
+    record, path = written
+    found = fourth_words(path, 33, 20)
+    missing = np.isnan(record.xyz[0]).any(axis=-1)
+    np.testing.assert_allclose(found[..., :3][~missing], 1000 * record.xyz[0][~missing], atol=1e-3)
+    assert (found[..., 3][missing] == -1).all()
+    assert (found[..., 3][~missing] >= 0).all()
+    assert struct.unpack_from("<f", path.read_bytes(), 20)[0] == 50
+
+
+@pytest.mark.parametrize(("sd_m", "residual_mm"), [(0.02, 20), (0.127, 127), (0.2, 127), (9, 127)])
+def test_a_large_deviation_neither_wraps_nor_looks_missing(tmp_path, sd_m, residual_mm):
+    record = walker.points()
+    covariance = np.broadcast_to(np.eye(3) * sd_m**2, record.covariance_2d.shape)
+    path = tmp_path / "f.c3d"
+    c3d.write(path, replace(record, covariance_2d=covariance), 0)
+    assert ezc3d.c3d(str(path))["data"]["meta_points"]["residuals"][0, 0, 0] == residual_mm
+    # as a signed 16-bit number, which must not be negative for a point that is there
+    assert 0 <= fourth_words(path, 33, 20)[0, 0, 3] < 32768
+
+
+def test_an_unknown_deviation_is_zero(tmp_path):
+    record = walker.points()
+    unknown = np.full_like(record.covariance_2d, np.nan)
+    c3d.write(tmp_path / "f.c3d", replace(record, covariance_2d=unknown), 0)
+    found = ezc3d.c3d(str(tmp_path / "f.c3d"))["data"]["meta_points"]["residuals"][0].T
+    np.testing.assert_array_equal(found, np.where(np.isnan(record.xyz[0, ..., 0]), -1, 0))
+
+
+def one_joint(n_frames):
+    return replace(
+        walker.points(),
+        joints=np.array(["nose"]),
+        time_s=np.arange(n_frames) / 50,
+        xyz=np.zeros((1, n_frames, 1, 3)),
+        covariance_2d=np.zeros((1, n_frames, 1, 3, 3)),
+    )
+
+
+def test_the_frame_counter_reaches_65535_and_no_further(tmp_path):
+    path = tmp_path / "long.c3d"
+    with pytest.raises(InputError, match=r"long\.c3d: expected at most 65535 .* found 65536"):
+        c3d.write(path, one_joint(65536), 0)
+    assert not path.exists()
+    c3d.write(path, one_joint(65535), 0)
+    assert struct.unpack_from("<HH", path.read_bytes(), 6) == (1, 65535)
+    assert ezc3d.c3d(str(path))["data"]["points"].shape == (4, 1, 65535)
+
+
+def test_labels_differ(written):
+    labels = ezc3d.c3d(str(written[1]))["parameters"]["POINT"]["LABELS"]["value"]
+    assert len(set(labels)) == len(labels) == 33

@@ -1,9 +1,12 @@
 """The CSV against the record it was made from."""
 
+import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pytest
 
 import walker
 from courtside.exports import tidy
@@ -44,3 +47,40 @@ def test_missing_points_are_empty_and_say_why(tmp_path):
 def test_every_column_is_explained_in_the_documentation():
     text = (Path(__file__).parents[3] / "config" / "README.md").read_text()
     assert [name for name in tidy.DICTIONARY if f"`{name}`" not in text] == []
+
+
+def test_every_row_is_the_records(tmp_path):
+    record = walker.points(n_persons=2)
+    tidy.write(tmp_path / "p.csv", record, 1)
+    with (tmp_path / "p.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    at = 0
+    for frame in range(20):
+        for joint, name in enumerate(record.joints):
+            row, at = rows[at], at + 1
+            assert (int(row["frame_idx"]), row["joint"]) == (frame, name)
+            xyz = record.xyz[1, frame, joint]
+            if np.isnan(xyz).any():
+                assert [row[f"{axis}_m"] for axis in "xyz"] == ["", "", ""]
+                continue
+            assert [float(row[f"{axis}_m"]) for axis in "xyz"] == pytest.approx(xyz, abs=5.1e-6)
+            assert int(row["n_views"]) == record.accepted[1, frame, joint].sum()
+    assert at == len(rows)
+
+
+def test_the_same_record_gives_the_same_bytes(tmp_path):
+    for name in ("a.csv", "b.csv"):
+        tidy.write(tmp_path / name, walker.points(), 0)
+    content = (tmp_path / "a.csv").read_bytes()
+    assert content == (tmp_path / "b.csv").read_bytes()
+    assert b"\r" not in content
+    assert [path.name for path in sorted(tmp_path.iterdir())] == ["a.csv", "b.csv"]
+
+
+def test_every_reason_has_a_word():
+    record = walker.points()
+    reason = np.zeros_like(record.reason)
+    reason[0, 0, : len(reasons.WORDS)] = list(reasons.WORDS)
+    rows = tidy.table(replace(record, reason=reason), 0)
+    assert rows.reason[: len(reasons.WORDS)].tolist() == list(reasons.WORDS.values())
+    assert rows.reason.notna().all()

@@ -1,5 +1,7 @@
 """TRC written here, read by pandas and by ourselves; a TRC of another program read the same."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -97,3 +99,45 @@ def test_a_damaged_file_is_one_line(written, tmp_path, old, new, message):
     with pytest.raises(InputError, match=message) as caught:
         trc.read(bad)
     assert "\n" not in str(caught.value)
+
+
+def test_a_known_point_stands_where_it_should(tmp_path):
+    record = walker.points()
+    xyz = record.xyz.copy()
+    xyz[0, 0, 0] = (1.0, 2.0, 3.0)  # x, y and height in the world
+    trc.write(tmp_path / "f.trc", replace(record, xyz=xyz), 0)
+    assert by_pandas(tmp_path / "f.trc")[0, 2:5].tolist() == [2.0, 3.0, 1.0]
+    assert by_pandas(tmp_path / "f.trc")[:, 0].tolist() == list(range(1, 21))
+
+
+@needs_real
+def test_the_header_is_laid_out_as_in_another_programs_file(written):
+    _, path = written
+    theirs = (REAL / "walk-4cams" / "trc" / "Balancing_for_IK.trc").read_text().splitlines()
+    ours = path.read_text().splitlines()
+    assert ours[0].split("\t")[:3] == theirs[0].split("\t")[:3]
+    assert ours[1].split("\t") == theirs[1].split("\t")
+    assert len(ours[2].split("\t")) == len(theirs[2].split("\t"))
+    for lines, n_markers in ((ours, 33), (theirs, 21)):
+        names = lines[3].rstrip("\t").split("\t")
+        assert names[:2] == ["Frame#", "Time"]
+        assert [bool(name) for name in names[2:]] == ([True, False, False] * n_markers)[:-2]
+        axes = lines[4].rstrip("\t").split("\t")
+        assert axes == ["", "", *(f"{a}{n + 1}" for n in range(n_markers) for a in "XYZ")]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.1, 0.5, 0.9])
+def test_a_cut_off_file_is_one_line(written, tmp_path, share):
+    text = written[1].read_text()
+    (tmp_path / "cut.trc").write_text(text[: int(share * len(text))])
+    with pytest.raises(InputError, match=r"cut\.trc") as caught:
+        trc.read(tmp_path / "cut.trc")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_or_binary_file_is_one_line(tmp_path):
+    (tmp_path / "b.trc").write_bytes(bytes(range(256)))
+    for name in ("none.trc", "b.trc"):
+        with pytest.raises(InputError, match="expected a TRC file") as caught:
+            trc.read(tmp_path / name)
+        assert "\n" not in str(caught.value)

@@ -46,3 +46,38 @@ def test_a_wrong_shape_is_not_written(tmp_path):
         keypoints.write_3d(
             tmp_path / "f.npz", replace(walker.points(), n_views=np.zeros((1, 2, 3), int))
         )
+
+
+@pytest.mark.parametrize(
+    ("kind", "spec"),
+    [
+        (keypoints.Keypoints2D, keypoints.SPEC_2D),
+        (keypoints.Keypoints3D, keypoints.SPEC_3D),
+    ],
+)
+def test_every_field_is_stored(kind, spec):
+    assert [field.name for field in fields(kind)] == list(spec)
+
+
+@pytest.mark.parametrize("name", list(keypoints.SPEC_3D))
+def test_every_field_is_checked(tmp_path, name):
+    wrong = replace(walker.points(), **{name: np.zeros((7, 7, 7, 7, 7, 7), complex)})
+    with pytest.raises(ValueError, match=f"{name}: expected"):
+        keypoints.write_3d(tmp_path / "f.npz", wrong)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_same_record_gives_the_same_bytes(tmp_path):
+    for name in ("a.npz", "b.npz"):
+        keypoints.write_3d(tmp_path / name, walker.points())
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+def test_a_cut_off_or_missing_file_is_named(tmp_path):
+    path = tmp_path / "f.npz"
+    with pytest.raises(InputError, match=r"f\.npz: expected an npz file"):
+        keypoints.read_3d(path)
+    keypoints.write_3d(path, walker.points())
+    path.write_bytes(path.read_bytes()[:-100])
+    with pytest.raises(InputError, match=r"f\.npz: expected an npz file"):
+        keypoints.read_3d(path)

@@ -1,5 +1,7 @@
 """npz files that hold what they say, or are refused."""
 
+import zipfile
+
 import numpy as np
 import pytest
 
@@ -73,3 +75,62 @@ def test_pickled_objects_are_refused(tmp_path):
     np.savez(tmp_path / "f.npz", format=np.array("test 1"), x=np.array([{"a": 1}], dtype=object))
     with pytest.raises(InputError, match="expected an npz file"):
         npz.read(tmp_path / "f.npz", "test 1", SPEC)
+
+
+def test_any_changed_byte_is_refused_or_changes_nothing(path):
+    content = path.read_bytes()
+    n_refused = 0
+    for at in range(len(content)):
+        path.write_bytes(content[:at] + bytes([content[at] ^ 0xFF]) + content[at + 1 :])
+        try:
+            found = npz.read(path, "test 1", SPEC)
+        except InputError as error:
+            n_refused += 1
+            assert "\n" not in str(error)
+            continue
+        for key, value in GOOD.items():
+            np.testing.assert_array_equal(found[key], value)
+    assert n_refused > len(content) / 2
+
+
+def test_files_of_other_kinds_are_refused(tmp_path):
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    (tmp_path / "text.npz").write_text("no arrays")
+    with zipfile.ZipFile(tmp_path / "zip.npz", "w") as archive:
+        archive.writestr("x.txt", "no array")
+    for name in ("array.npy", "text.npz", "zip.npz", "none.npz"):
+        with pytest.raises(InputError, match=name) as caught:
+            npz.read(tmp_path / name, "test 1", SPEC)
+        assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "rule"), [("x", ("int", ("T", "2"))), ("x", ("float", ("T", "3"))), ("n", ("int", ()))]
+)
+def test_arrays_that_are_not_as_stated_are_not_read(path, key, rule):
+    with pytest.raises(InputError, match=rf"f\.npz: {key}: expected .*; make it again"):
+        npz.read(path, "test 1", SPEC | {key: rule})
+
+
+def test_a_failed_write_leaves_the_old_file(path, monkeypatch):
+    def half(stream, **_):
+        stream.write(b"half")
+        raise OSError("disk full")
+
+    before = path.read_bytes()
+    monkeypatch.setattr(np, "savez_compressed", half)
+    with pytest.raises(OSError, match="disk full"):
+        npz.write(path, "test 1", SPEC, GOOD)
+    assert path.read_bytes() == before
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_no_date_enters_the_file(path):
+    with zipfile.ZipFile(path) as archive:
+        assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+def test_numpy_alone_reads_the_file(path):
+    with np.load(path, allow_pickle=False) as found:
+        assert str(found["format"]) == "test 1"
+        np.testing.assert_array_equal(found["n"], GOOD["n"])

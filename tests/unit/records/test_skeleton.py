@@ -48,3 +48,52 @@ def test_an_unknown_joint_is_named(tmp_path, old, new, named):
     (tmp_path / "bad.yaml").write_text(text.replace(old, new, 1))
     with pytest.raises(InputError, match=named):
         skeleton.read(tmp_path / "bad.yaml")
+
+
+GOOD = """
+joints: [neck, left_hip, right_hip]
+bones: [[neck, left_hip]]
+segments: {left_trunk: [neck, left_hip]}
+groups: {legs: [left_hip, right_hip], trunk: [neck]}
+"""
+
+
+def test_a_small_skeleton_reads(tmp_path):
+    (tmp_path / "small.yaml").write_text(GOOD)
+    found = skeleton.read(tmp_path / "small.yaml")
+    assert found.name == "small"
+    assert found.mirror() == [0, 2, 1]
+    assert found.side_groups() == [["neck"], ["left_hip", "right_hip"]]
+    assert found.by_group({"trunk": 1.5, "legs": 2.5}) == [1.5, 2.5, 2.5]
+    with pytest.raises(ValueError, match="not in tuple"):
+        found.index("nose")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "named"),
+    [
+        ("[neck, left_hip, right_hip]\n", "[neck, left_hip, right_hip, neck]\n", "'neck'"),
+        ("[neck, left_hip, right_hip]\n", "[neck, left_hip, right_hip, 7]\n", "found 7"),
+        ("[neck, left_hip, right_hip]\n", "[neck, left_hip]\n", "'right_hip'"),
+        ("[[neck, left_hip]]", "[[neck, left_hip, right_hip]]", "two joints"),
+        ("[[neck, left_hip]]", "[neck]", "two joints"),
+        ("left_trunk: [neck, left_hip]", "left_trunk: [neck]", "two joints"),
+        ("trunk: [neck]}", "trunk: 3}", "groups"),
+        ("trunk: [neck]}", "trunk: [chest]}", "'chest'"),
+        ("bones:", "bone:", "'bones'"),
+        ("bones:", "joints: [neck]\nbones:", "each key once"),
+        ("joints: [", "joints: ", "bad.yaml"),
+    ],
+)
+def test_a_bad_skeleton_is_one_line(tmp_path, old, new, named):
+    assert old in GOOD
+    (tmp_path / "bad.yaml").write_text(GOOD.replace(old, new, 1))
+    with pytest.raises(InputError, match=named) as caught:
+        skeleton.read(tmp_path / "bad.yaml")
+    assert "bad.yaml" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_skeleton_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"none\.yaml: expected a readable YAML file"):
+        skeleton.read(tmp_path / "none.yaml")

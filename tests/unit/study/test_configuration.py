@@ -151,3 +151,99 @@ def test_a_model_must_fit_its_artefact_and_skeleton(folder):
     text = "\n".join(faults(folder))
     assert "blazepose-full.skeleton" in text
     assert "blazepose-full.landmarks" in text
+
+
+def test_a_fault_in_one_file_hides_no_fault_in_another(folder):
+    (folder / "external.yaml").write_text("a: {sha256: x, licence: MIT, members: {../b: y}}\n")
+    (folder / "models.yaml").write_text("m: {decoder: heatmap}\n")
+    (folder / "sessions" / "gym.yaml").write_text("court: none\ncourt: none\n")
+    session = changed("takes", "t1", "videos", "left", value="gone.mp4")
+    found = faults(folder, session, sessions=["hall", "gym", "hal"], draw_overlay={"n_frames": 0})
+    for part in (
+        "external.yaml: a.sha256",
+        "external.yaml: a.members: expected text",
+        "external.yaml: a: expected either",
+        "models.yaml: m.decoder",
+        "config.yaml: draw_overlay.n_frames",
+        "hall.yaml: takes.t1.videos.left",
+        "gym.yaml: line 2: expected each key once, found 'court' again",
+        "did you mean 'hall'?",
+    ):
+        assert len([line for line in found if part in line]) == 1, (part, found)
+    assert all("expected" in line for line in found)
+
+
+@pytest.mark.parametrize("name", ["external", "networks", "run", "figures", "virtual"])
+def test_a_session_may_not_be_named_like_a_folder_of_results(folder, name):
+    shutil.copy(CONFIG / "sessions" / "walk-4cams.yaml", folder / "sessions" / f"{name}.yaml")
+    assert len(faults(folder, sessions=[name])) == 1
+
+
+@pytest.mark.parametrize(
+    ("override", "part"),
+    [
+        ({"filter_motion": {"cutoff_hz": {"head": 6, "trunk": 6, "arms": 6, "legs": 600}}}, "600"),
+        ({"filter_motion": {"max_gap_s": float("nan")}}, "type number, found nan"),
+        ({"filter_motion": {"max_gap_s": float("inf")}}, "type number, found inf"),
+        ({"filter_motion": {"max_gap_s": 10**400}}, "type number, found 1000"),
+        ({"draw_overlay": {"n_frames": 3.0}}, "type integer, found 3.0"),
+        ({"draw_overlay": {"n_frames": True}}, "type integer, found True"),
+        ({"detect_pose": {"redetect": "yes"}}, "type boolean, found 'yes'"),
+        ({"detect_pose": [1]}, "type object, found [1]"),
+        ({"sessions": ["hall"]}, "found 'sessions'"),
+    ],
+)
+def test_an_override_obeys_the_rules_of_its_step(folder, override, part):
+    found = faults(folder, SESSION | {"override": override})
+    assert len(found) == 1
+    assert "hall.yaml: override" in found[0]
+    assert part in found[0]
+
+
+def test_an_override_of_all_cut_offs_is_taken(folder):
+    cutoff_hz = {"head": 1, "trunk": 2, "arms": 3, "legs": 4}
+    study = load(folder, SESSION | {"override": {"filter_motion": {"cutoff_hz": cutoff_hz}}})
+    common = study.parameters["filter_motion"]
+    ours = study.sessions["hall"].parameters["filter_motion"]
+    assert ours == common | {"cutoff_hz": cutoff_hz}
+
+
+@pytest.mark.parametrize(
+    ("session", "part"),
+    [
+        (changed("calibration", "file", value="cal.toml\n"), "calibration.file"),
+        (changed("takes", "t1\n", value=SESSION["takes"]["t1"]), "takes"),
+        (changed("takes", "$(ls)", value=SESSION["takes"]["t1"]), "takes"),
+        (changed("subjects", "p\n2", value={"height_m": 9}), "subjects.'p\\n2'.height_m"),
+        (changed("cameras", "a/b", value=None), "cameras"),
+        (changed("cameras", "left", value={"crop_px": [0, 0, 0, 50]}), "cameras.left.crop_px.2"),
+        (changed("cameras", "left", value={"crop_px": [0, 0, 50]}), "at least 4 entries"),
+        (changed("takes", "t1", "trim_s", value=[float("nan"), 1]), "takes.t1.trim_s.0"),
+        (changed("takes", "t1", "trim_s", value=[1, 1]), "takes.t1.trim_s"),
+        (changed("court", value="../config"), "court"),
+        (
+            changed("calibration", "file", value="results/external/../../cal.toml"),
+            "member of external.yaml",
+        ),
+    ],
+)
+def test_odd_names_paths_and_numbers_are_one_line(folder, session, part):
+    assert any(part in line for line in faults(folder, session))
+
+
+def test_a_skeleton_is_a_name_not_a_path(folder):
+    models = yaml_files.read(CONFIG / "models.yaml")
+    models["blazepose-full"]["skeleton"] = "../skeletons/blazepose33"
+    (folder / "models.yaml").write_text(yaml.safe_dump(models))
+    assert "blazepose-full.skeleton" in "\n".join(faults(folder))
+
+
+def test_every_missing_key_is_named(folder):
+    config = yaml_files.read(CONFIG / "config.yaml")
+    del config["fusions"], config["filter_motion"]["order"]
+    with pytest.raises(configuration.ConfigurationError) as caught:
+        configuration.load(config, "mine.yaml", folder)
+    assert [line.split(";")[0] for line in caught.value.faults] == [
+        "mine.yaml: top level: expected the key 'fusions', missing ['fusions']",
+        "mine.yaml: filter_motion: expected the key 'order', missing ['order']",
+    ]

@@ -33,3 +33,27 @@ def test_the_checksum_is_sha256(tmp_path):
     content = np.random.default_rng(0).bytes(3_000_001)
     (tmp_path / "f").write_bytes(content)
     assert files.sha256(tmp_path / "f") == hashlib.sha256(content).hexdigest()
+
+
+def test_an_interruption_leaves_nothing(tmp_path):
+    with pytest.raises(KeyboardInterrupt), files.atomic(tmp_path / "a.npz") as temporary:
+        temporary.write_text("half")
+        raise KeyboardInterrupt
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_two_writers_of_one_file_do_not_meet(tmp_path):
+    path = tmp_path / "a.npz"
+    with files.atomic(path) as one:
+        with files.atomic(path) as other:
+            assert one != other
+            one.write_text("1")
+            other.write_text("2")
+        assert path.read_text() == "2"
+    assert path.read_text() == "1"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_checksum_of_an_empty_file(tmp_path):
+    (tmp_path / "f").touch()
+    assert files.sha256(tmp_path / "f") == hashlib.sha256(b"").hexdigest()

@@ -50,3 +50,29 @@ def test_progress_of_nothing_says_so(total, caplog):
     with caplog.at_level("INFO", logger="courtside"):
         assert list(log.progress([], total, "frames")) == []
     assert caplog.messages[-1].startswith("frames: 0")
+
+
+def test_warnings_reach_the_log_and_a_run_that_ends_well_returns_zero(tmp_path):
+    done, text = run(tmp_path, "import warnings; warnings.warn('thin data')")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "WARNING" in text
+    assert "thin data" in text
+
+
+def test_a_second_run_starts_a_new_log(tmp_path):
+    run(tmp_path, "raise InputError('first')")
+    _, text = run(tmp_path, "raise InputError('second')")
+    assert "first" not in text
+    assert len(text.splitlines()) == 1
+
+
+def test_progress_speaks_only_after_the_interval(caplog, monkeypatch):
+    clock = iter([0.0, 1.0, 4.0, 6.0, 8.0, 12.0, 13.0])
+    monkeypatch.setattr(log.time, "monotonic", lambda: next(clock))
+    with caplog.at_level("INFO", logger="courtside"):
+        assert list(log.progress("abcde", None, "c1: frames", every_s=5.0)) == list("abcde")
+    assert caplog.messages == [
+        "c1: frames: 3, 0.5 per second",
+        "c1: frames: 5, 0.4 per second",
+        "c1: frames: 5, 0.4 per second",
+    ]

@@ -40,3 +40,32 @@ def test_what_is_wrong_is_one_line_with_its_number(tmp_path, text, message):
 def test_a_missing_file_is_one_line(tmp_path):
     with pytest.raises(InputError, match="expected a readable YAML file"):
         yaml_files.read(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: 2026-02-30\n",
+        "a: " + "1" * 5000,
+        "a: !!int ''\n",
+        "a: !!bool x\n",
+        "a: !!float x\n",
+        "a: !!timestamp x\n",
+        "a: 0b_\n",
+        "a: \0\n",
+        "? [a]\n: 1\n",
+        "a: " + "[" * 5000,
+        "on: 1\n",
+        "2026-11-21: 1\n",
+    ],
+)
+def test_values_that_do_not_exist_are_one_line(tmp_path, text):
+    with pytest.raises(InputError, match=r"f\.yaml: ") as caught:
+        read(tmp_path, text)
+    assert "\n" not in str(caught.value)
+
+
+def test_other_bytes_than_utf_8_are_one_line(tmp_path):
+    (tmp_path / "f.yaml").write_bytes("a: Jörg".encode("latin-1"))
+    with pytest.raises(InputError, match="expected a readable YAML file"):
+        yaml_files.read(tmp_path / "f.yaml")

@@ -12,6 +12,7 @@ from courtside.study.files import atomic
 
 MM_PER_M = 1000.0
 MISSING = -1.0
+MOST_RESIDUAL_MM = 127.0  # above, other readers see a missing point; from 256 on it wraps
 MOST_FRAMES = 65535  # the header counts frames in 16 bits
 
 
@@ -32,8 +33,8 @@ def write(path, keypoints, person):
 
     Notes
     -----
-    A point's residual is its root-mean-square standard deviation from the keypoints, mm; -1 marks a
-    missing point, 0 one without a known uncertainty (interpolated, for one).
+    A point's residual is its root-mean-square standard deviation from the keypoints, mm, 127 where it is
+    larger; -1 marks a missing point, 0 one without a known uncertainty (interpolated, for one).
     """
     xyz = keypoints.xyz[person] * MM_PER_M
     n_frames, n_joints, _ = xyz.shape
@@ -64,4 +65,5 @@ def _residuals(keypoints, person):
     """Return (T, J) in mm."""
     variance = np.trace(keypoints.covariance_2d[person], axis1=-2, axis2=-1) / 3
     residual = np.sqrt(np.nan_to_num(variance, nan=0.0)) * MM_PER_M
+    residual = np.minimum(residual, MOST_RESIDUAL_MM)
     return np.where(np.isfinite(keypoints.xyz[person]).all(axis=-1), residual, MISSING)

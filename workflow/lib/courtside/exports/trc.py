@@ -68,12 +68,14 @@ def read(path):
     Raises
     ------
     InputError
-        If the file is not a TRC file in m, cm or mm, or a line has another number of values.
+        If the file is not a TRC file in m, cm or mm, a line has another number of values, or the header
+        counts other markers or frames than there are.
     """
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
         header = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
         unit, rate_hz = header["Units"].strip(), float(header["DataRate"])
+        stated = {key: int(header[key]) for key in ("NumMarkers", "NumFrames")}
         joints = [name.strip() for name in lines[3].split("\t")[2:] if name.strip()]
     except (OSError, UnicodeDecodeError, KeyError, IndexError, ValueError) as error:
         raise InputError(f"{path}: expected a TRC file, found: {error!r}") from None
@@ -84,6 +86,11 @@ def read(path):
         for number, line in enumerate(lines[HEADER_LINES:], start=HEADER_LINES + 1)
         if line.strip()
     ]
+    if stated != {"NumMarkers": len(joints), "NumFrames": len(rows)}:
+        raise InputError(
+            f"{path}: expected {stated} as its header says, found {len(joints)} markers and "
+            f"{len(rows)} frames; the file may be cut off"
+        )
     table = np.array(rows).reshape(len(rows), 2 + 3 * len(joints))
     xyz = table[:, 2:].reshape(len(rows), len(joints), 3)[..., TRC_AXES] * METRES[unit]
     return joints, rate_hz, table[:, 1], xyz

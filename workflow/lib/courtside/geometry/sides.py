@@ -10,8 +10,8 @@ import numpy as np
 from courtside.geometry import triangulation
 
 ROUNDS = 4  # changes per frame and limb group at most, as many as there are views that can be wrong
-# a swap must lower the disagreement at least to this share: ties keep the network's word
-GAIN = 0.8
+GAIN = 2.0  # full disagreements of a keypoint that a swap must end: ties keep the network's word
+APART = 2.0  # joints of a pair closer than this many limits in a view say nothing about sides there
 
 
 def swapped_views(cameras, xy, score, mirror, groups, *, max_error_px):
@@ -87,7 +87,7 @@ def _settle(cameras, xy, score, mirror, max_error_px):
             trials.append(_cost(cameras, xy, score, trial, mirror, max_error_px))
         best = np.argmin(trials, axis=0)
         lowest = np.min(trials, axis=0)
-        better = lowest < GAIN * cost
+        better = lowest < cost - GAIN
         if not better.any():
             break
         flags[best[better], np.flatnonzero(better)] ^= True
@@ -102,7 +102,10 @@ def _fewer(flags):
 
 
 def _cost(cameras, xy, score, flags, mirror, max_error_px):
-    """Return (T,) disagreement: score-weighted squared errors in units of the limit, cut off at 1."""
+    """Return (T,) disagreement: score-weighted squared errors in units of the limit, cut off at 1.
+
+    Only joints that lie apart from their mirror image in a view count there.
+    """
     swapped = np.broadcast_to(flags[..., None], score.shape)
     xy, score = apply_swaps(xy, swapped, mirror), apply_swaps(score, swapped, mirror)
     flat = np.nan_to_num(score).reshape(len(cameras), -1)
@@ -110,4 +113,5 @@ def _cost(cameras, xy, score, flags, mirror, max_error_px):
         cameras, xy.reshape(len(cameras), -1, 2), flat, sigma_px=1.0, max_error_px=max_error_px
     )
     share = np.minimum(np.nan_to_num(found.error_px / max_error_px, nan=1.0) ** 2, 1.0)
-    return (share * flat).sum(axis=0).reshape(score.shape[1:]).sum(axis=1)
+    apart = np.linalg.norm(xy - xy[:, :, mirror], axis=-1) > APART * max_error_px
+    return (share.reshape(score.shape) * np.nan_to_num(score) * apart).sum(axis=(0, 2))

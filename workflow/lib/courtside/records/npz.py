@@ -4,12 +4,16 @@ Every file holds `format` (what it is, with a version) beside its arrays, and ne
 """
 
 import zipfile
+import zlib
 
 import numpy as np
 
 from courtside.study.errors import InputError
 from courtside.study.files import atomic
 
+# What numpy, zipfile and zlib raise on damaged files.
+DAMAGED = (ValueError, OSError, EOFError, KeyError, TypeError, RuntimeError, MemoryError)
+DAMAGED += (zipfile.BadZipFile, zlib.error)
 KINDS = {"float": np.floating, "int": np.integer, "bool": np.bool_, "str": np.str_}
 
 
@@ -62,8 +66,9 @@ def read(path, form, spec):
     try:
         with np.load(path, allow_pickle=False) as stored:
             found = {key: stored[key] for key in stored.files}
-    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: expected an npz file ({form}), found: {error}") from None
+    except DAMAGED as error:
+        found = " ".join(str(error).split())
+        raise InputError(f"{path}: expected an npz file ({form}), found: {found}") from None
     stated = str(found.pop("format", "no format"))
     if stated != form:
         raise InputError(f"{path}: expected format {form!r}, found {stated!r}; make it again")

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import yaml
-
+from courtside.study import yaml_files
 from courtside.study.errors import InputError
 
 SIDES = {"left_": "right_", "right_": "left_"}
@@ -102,21 +101,33 @@ def read(path):
     Raises
     ------
     InputError
-        If a bone, segment or group names a joint that is not in `joints`, or a side has no mirror.
+        If a key is missing, a joint stands twice in `joints`, a bone or segment is no pair, a bone, segment
+        or group names a joint that is not in `joints`, or a side has no mirror.
     """
-    content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    skeleton = Skeleton(
-        name=Path(path).stem,
-        joints=tuple(content["joints"]),
-        bones=tuple(tuple(bone) for bone in content["bones"]),
-        segments={name: tuple(ends) for name, ends in content["segments"].items()},
-        groups={name: tuple(joints) for name, joints in content["groups"].items()},
-    )
+    content = yaml_files.read(path)
+    try:
+        skeleton = Skeleton(
+            name=Path(path).stem,
+            joints=tuple(content["joints"]),
+            bones=tuple((start, end) for start, end in content["bones"]),
+            segments={name: (start, end) for name, (start, end) in content["segments"].items()},
+            groups={name: tuple(joints) for name, joints in content["groups"].items()},
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            f"{path}: expected lists `joints` and `bones` and mappings `segments` and `groups`, bones and "
+            f"segments of two joints each, found: {error!r}; see the files beside it"
+        ) from None
     _check(path, skeleton)
     return skeleton
 
 
 def _check(path, skeleton):
+    for at, joint in enumerate(skeleton.joints):
+        if not isinstance(joint, str) or joint in skeleton.joints[:at]:
+            raise InputError(
+                f"{path}: joints: expected names that differ, found {joint!r}; rename it"
+            )
     used = [*skeleton.bones, *skeleton.segments.values(), *skeleton.groups.values()]
     used.append(tuple(_other_side(joint) for joint in skeleton.joints))
     for joints in used:

@@ -1,10 +1,12 @@
 """Pinned files from outside: fetched, checked, and only their named members unpacked."""
 
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import zipfile
+import zlib
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -97,8 +99,19 @@ def _in_mirror(artefact, mirror_folder):
         raise InputError(
             f"mirror_folder: expected a folder, found none at {folder}; correct config.yaml"
         )
-    pattern = artefact.mirror_file or artefact.requirement.replace("==", "-") + "-*.whl"
-    return next(iter(sorted(folder.glob(pattern))), None)
+    if artefact.mirror_file:
+        matching = [folder / artefact.mirror_file]
+    else:
+        wanted = _project(artefact.requirement.split("=="))
+        wheels = sorted(folder.glob("*-*.whl"))
+        matching = [path for path in wheels if _project(path.name.split("-")[:2]) == wanted]
+    return next((path for path in matching if path.is_file()), None)
+
+
+def _project(name_and_version):
+    """Return (name, version) as wheels write them: `My.Thing` is `my_thing` there."""
+    name, version = name_and_version
+    return re.sub(r"[-_.]+", "_", name).lower(), version
 
 
 def _download(artefact, folder):
@@ -148,9 +161,9 @@ def unpack(source, artefact, outputs):
                 f"artefact {artefact.name}: expected members inside it, found {member}"
             )
     with ExitStack() as stack:
-        archive = (
-            stack.enter_context(zipfile.ZipFile(source)) if zipfile.is_zipfile(source) else None
-        )
+        # Some networks are readable as zip files too: the register says what is one file.
+        single = artefact.mirror_file in artefact.members
+        archive = None if single else stack.enter_context(_archive(source))
         for member, path in outputs.items():
             temporary = stack.enter_context(files.atomic(path))
             if archive is None:
@@ -162,6 +175,13 @@ def unpack(source, artefact, outputs):
                 raise InputError(
                     f"{source}: member {member}: expected sha256 {artefact.members[member]}, found {found}"
                 )
+
+
+def _archive(source):
+    try:
+        return zipfile.ZipFile(source)
+    except (zipfile.BadZipFile, OSError) as error:
+        raise InputError(f"{source}: expected a zip file, found: {error}") from None
 
 
 def _copy_member(archive, source, member, temporary):
@@ -177,7 +197,7 @@ def _copy_member(archive, source, member, temporary):
             while left > 0 and (piece := stream.read(min(files.CHUNK_BYTES, left))):
                 target.write(piece)
                 left -= len(piece)
-    except (zipfile.BadZipFile, OSError, EOFError) as error:
+    except (zipfile.BadZipFile, zlib.error, RuntimeError, OSError, EOFError) as error:
         raise InputError(
             f"{source}: member {member}: expected a whole file, found: {error}"
         ) from None

@@ -1,6 +1,8 @@
 """Reading and checking all configuration at once: every fault, one line each."""
 
 import difflib
+import re
+import sys
 from pathlib import Path
 
 import jsonschema
@@ -17,6 +19,20 @@ RESERVED = (
     "figures",
     "virtual",
 )  # folders of results/ that are no session
+
+NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
+# JSON Schema lets 3.0 pass for an integer, and a comparison lets nan pass for any number.
+TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
+    {
+        "integer": lambda _, value: isinstance(value, int) and not isinstance(value, bool),
+        "number": lambda _, value: (
+            isinstance(value, int | float)
+            and not isinstance(value, bool)
+            and abs(value) <= sys.float_info.max
+        ),
+    }
+)
+VALIDATOR = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=TYPES)
 
 
 class ConfigurationError(InputError):
@@ -54,28 +70,20 @@ def load(config, config_file, folder, root="."):
     external = _checked(folder / "external.yaml", "external", faults)
     models = _checked(folder / "models.yaml", "models", faults)
     faults += schema_faults(config, "config", config_file)
-    if faults:
-        raise ConfigurationError(faults)
-    known = {name: artefacts.Artefact.of(name, entry) for name, entry in external.items()}
-    for name, entry in models.items():
-        faults += _model_faults(folder, name, entry, known)
-    faults += _unknown(f"{config_file}: models", config["models"], models)
+    known = None
+    if external is not None:
+        known = {name: artefacts.Artefact.of(name, entry) for name, entry in external.items()}
+    if models is not None:
+        for name, entry in models.items():
+            faults += _model_faults(folder, name, entry, known)
+        faults += _unknown(f"{config_file}: models", _names(config, "models"), models)
     found = {}
-    for name in config["sessions"]:
-        if name in RESERVED:
-            faults.append(
-                f"{config_file}: sessions: expected none of {RESERVED}, found {name!r}; rename it"
-            )
+    for name in _names(config, "sessions"):
         file = folder / "sessions" / f"{name}.yaml"
-        if not file.is_file():
-            there = sorted(path.stem for path in file.parent.glob("*.yaml"))
-            faults.append(
-                f"{config_file}: sessions: expected a file {file}, found {there}; correct the name"
-            )
-            continue
-        before = len(faults)
-        content = _checked(file, "session", faults)
-        if len(faults) == before:
+        missing = list(_name_faults(f"{config_file}: sessions", name, file))
+        faults += missing
+        content = None if missing else _checked(file, "session", faults)
+        if content is not None:
             faults += _session_faults(folder, file, content, known, Path(root))
             found[name] = (file, content)
     if faults:
@@ -89,13 +97,32 @@ def load(config, config_file, folder, root="."):
 
 
 def _checked(path, schema, faults):
+    """Return what a file says, None if it has faults; add those to `faults`."""
     try:
         content = yaml_files.read(path)
     except InputError as error:
         faults.append(str(error))
-        return {}
-    faults += schema_faults(content, schema, path)
-    return content
+        return None
+    found = schema_faults(content, schema, path)
+    faults += found
+    return None if found else content
+
+
+def _names(config, key):
+    """Return the well-formed names of a list; the schema tells the others."""
+    names = config.get(key)
+    names = names if isinstance(names, list) else []
+    return [name for name in names if isinstance(name, str) and NAME.fullmatch(name)]
+
+
+def _name_faults(where, name, file):
+    if name in RESERVED:
+        yield f"{where}: expected none of {RESERVED}, found {name!r}; rename it"
+    elif not file.is_file():
+        there = sorted(path.stem for path in file.parent.glob("*.yaml"))
+        close = difflib.get_close_matches(name, there, n=1)
+        advice = f"did you mean {close[0]!r}?" if close else "correct the name"
+        yield f"{where}: expected a file {file}, found {there}; {advice}"
 
 
 def schema_faults(content, schema, file):
@@ -118,7 +145,8 @@ def schema_faults(content, schema, file):
     if schema == "session":
         steps = yaml_files.read(SCHEMAS / "config.schema.yaml")
         rules["properties"]["override"] = _overridable(steps)
-    errors = jsonschema.Draft202012Validator(rules).iter_errors(content)
+        rules["$defs"] = steps["$defs"] | rules["$defs"]
+    errors = VALIDATOR(rules).iter_errors(content)
     return [
         f"{file}: {line}"
         for error in sorted(errors, key=lambda e: [str(at) for at in e.absolute_path])
@@ -137,7 +165,7 @@ def _overridable(steps):
 
 
 def _lines(error):
-    where = ".".join(str(part) for part in error.absolute_path) or "top level"
+    where = ".".join(_plain(str(part)) for part in error.absolute_path) or "top level"
     if error.validator in ("additionalProperties", "propertyNames") and isinstance(
         error.instance, dict
     ):
@@ -147,7 +175,7 @@ def _lines(error):
         yield f"{where}: expected the key {error.message.split(' ')[0]}, missing {missing}; add it"
     elif error.validator in ("oneOf", "anyOf"):
         expected = error.schema.get("description", "another form")
-        yield f"{where}: expected {expected}, found {error.instance!r}"
+        yield f"{where}: expected {expected}, found {_shown(error.instance)}"
     else:
         hint = error.schema.get("description")
         wanted = f"{_wanted(error)} ({hint})" if hint else _wanted(error)
@@ -184,6 +212,11 @@ def _wanted(error):
     return words.get(error.validator, error.validator + " {}").format(error.validator_value)
 
 
+def _plain(text):
+    """Return a text as it is, or quoted if it would break the line."""
+    return text if text.isprintable() else repr(text)
+
+
 def _shown(value):
     text = repr(value)
     return text if len(text) <= 80 else f"{text[:77]}..."
@@ -205,12 +238,14 @@ def _model_faults(folder, name, entry, known):
     if (entry["decoder"] == "heatmaps") != ("input" in entry):
         yield f"{file}: {name}.input: expected for heat-map networks and only there"
     for part in ("detector", "landmarks"):
+        if known is None:
+            return
         source = entry[part]
         members = known[source["artefact"]].members if source["artefact"] in known else {}
         if members.get(source["member"]) != source["sha256"]:
             yield (
                 f"{file}: {name}.{part}: expected a member of external.yaml with its checksum, "
-                f"found {source['artefact']}: {source['member']}"
+                f"found {_shown(source['artefact'])}: {_shown(source['member'])}"
             )
 
 
@@ -238,6 +273,8 @@ def _path_faults(where, path, known, root):
     if not path.startswith(EXTERNAL):
         if not (root / path).exists():
             yield f"{where}: expected a file, found none at {path}; correct the path or put it there"
+        return
+    if known is None:
         return
     artefact, _, member = path.removeprefix(EXTERNAL).partition("/")
     if artefact not in known or member not in known[artefact].members:

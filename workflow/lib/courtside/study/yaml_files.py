@@ -55,6 +55,9 @@ def read(path):
         raise InputError(f"{path}: {_one_line(error)}") from None
     except RecursionError:
         raise InputError(f"{path}: expected YAML, found too deep nesting") from None
+    except (ValueError, LookupError, AttributeError) as error:
+        # PyYAML lets these through for 2026-02-30, or for !!int without a number.
+        raise InputError(f"{path}: expected dates and numbers that exist, found: {error}") from None
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected keys and values, found {type(content).__name__}")
     return content
