@@ -119,12 +119,18 @@ def one_joint(n_frames):
 
 def test_the_frame_counter_reaches_65535_and_no_further(tmp_path):
     path = tmp_path / "long.c3d"
-    with pytest.raises(InputError, match=r"long\.c3d: expected at most 65535 .* found 65536"):
+    with pytest.raises(InputError, match=r"long\.c3d: expected .* at most 65535 .* found 65536"):
         c3d.write(path, one_joint(65536), 0)
     assert not path.exists()
     c3d.write(path, one_joint(65535), 0)
     assert struct.unpack_from("<HH", path.read_bytes(), 6) == (1, 65535)
     assert ezc3d.c3d(str(path))["data"]["points"].shape == (4, 1, 65535)
+
+
+def test_one_frame_has_no_rate(tmp_path):
+    with pytest.raises(InputError, match=r"at least 2 .* found 1; change `trim_s`"):
+        c3d.write(tmp_path / "f.c3d", one_joint(1), 0)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_labels_differ(written):

@@ -141,3 +141,11 @@ def test_a_missing_or_binary_file_is_one_line(tmp_path):
         with pytest.raises(InputError, match="expected a TRC file") as caught:
             trc.read(tmp_path / name)
         assert "\n" not in str(caught.value)
+
+
+def test_one_frame_has_no_rate(tmp_path):
+    record = walker.points()
+    one = replace(record, time_s=record.time_s[:1], xyz=record.xyz[:, :1])
+    with pytest.raises(InputError, match=r"at least 2 frames .* found 1; change `trim_s`"):
+        trc.write(tmp_path / "f.trc", one, 0)
+    assert list(tmp_path.iterdir()) == []

@@ -25,15 +25,15 @@ class Finder:
 class Placer:
     """Sees the square when the region holds it."""
 
-    n_joints = 2
+    n_joints = 3
 
     def estimate(self, image, region):
         rows, columns = np.nonzero(image[..., 0])
         near = len(rows) and np.hypot(columns.mean() - region.x, rows.mean() - region.y) < 40
         centre = np.array([columns.mean(), rows.mean()]) if near else np.zeros(2)
-        xy = np.stack([centre, centre + np.array([400, 0])])
-        nothing = np.full((2, 3), np.nan)
-        return Pose(xy, np.array([0.9, 0.8]), nothing, float(bool(near)), Region(*centre, 80.0))
+        xy = np.stack([centre, centre, centre + np.array([400, 0])])
+        nothing = np.full((3, 3), np.nan)
+        return Pose(xy, np.array([0.9, 0.9, 0.8]), nothing, float(bool(near)), Region(*centre, 80.0))
 
 
 def picture(x):
@@ -79,9 +79,9 @@ def test_redetection_asks_in_every_frame():
 
 def test_joints_outside_the_picture_say_so():
     track, _ = follow([20])
-    assert track.reason[0].tolist() == [reasons.OK, reasons.OUT_OF_IMAGE]
-    assert np.isnan(track.xy[0, 1]).all()
-    assert np.isnan(track.score[0, 1])
+    assert track.reason[0].tolist() == [reasons.OK, reasons.OK, reasons.OUT_OF_IMAGE]
+    assert np.isnan(track.xy[0, 2]).all()
+    assert np.isnan(track.score[0, 2])
 
 
 @pytest.mark.parametrize("finds", [True, False])
@@ -92,3 +92,29 @@ def test_the_search_looks_near_the_foreground(finds):
         finder.detect = lambda _: []
     region = tracking.detect_near(image, (200, 100, 40, 40), finder)
     assert (region.x, region.y) == pytest.approx((219.5, 119.5), abs=1)
+
+
+def test_a_track_that_leaves_what_moves_is_searched_again():
+    finder, place = Finder(), Placer()
+    frames = [(at / 30, picture(x)) for at, x in enumerate([20, 30, 40])]
+    strays = iter([False, True, False])
+
+    def estimate(image, region):
+        pose = Placer.estimate(place, image, region)
+        away = 250.0 if next(strays, False) else 0.0
+        return Pose(pose.xy + away, pose.score, pose.xyz_in_body, pose.presence, pose.region)
+
+    place.estimate = estimate
+    track = tracking.track_person(
+        frames, finder, place, foreground.Foreground(EMPTY, 30), min_presence=0.5, redetect=False
+    )
+    assert finder.asked == 2
+    np.testing.assert_allclose(track.xy[:, 0, 0], [39.5, 49.5, 59.5])
+
+
+def test_straying_is_told_by_the_boxes():
+    xy = np.array([[90.0, 90.0], [110.0, 110.0]])
+    assert not tracking.strayed(xy, [(80, 80, 40, 40)])
+    assert not tracking.strayed(xy, [(300, 300, 40, 40), (105, 105, 40, 40)])
+    assert tracking.strayed(xy, [(300, 300, 40, 40)])
+    assert not tracking.strayed(xy, [])

@@ -29,7 +29,7 @@ def write(path, keypoints, person):
     Raises
     ------
     InputError
-        If the take is longer than C3D's frame counter reaches.
+        If the take is longer than C3D's frame counter reaches, or one frame, which has no rate.
 
     Notes
     -----
@@ -38,10 +38,10 @@ def write(path, keypoints, person):
     """
     xyz = keypoints.xyz[person] * MM_PER_M
     n_frames, n_joints, _ = xyz.shape
-    if n_frames > MOST_FRAMES:
+    if not 2 <= n_frames <= MOST_FRAMES:
         raise InputError(
-            f"{path}: expected at most {MOST_FRAMES} frames in a C3D file, found {n_frames}; split the take "
-            "with `trim_s`"
+            f"{path}: expected at least 2 and at most {MOST_FRAMES} frames in a C3D file, found {n_frames}; "
+            "change `trim_s` of the take"
         )
     file = ezc3d.c3d()
     file["header"]["points"]["first_frame"] = 0

@@ -26,7 +26,17 @@ def write(path, keypoints, person):
     keypoints : Keypoints3D
     person : int
         Index of the person.
+
+    Raises
+    ------
+    InputError
+        If the take is one frame, which has no rate.
     """
+    if len(keypoints.time_s) < 2:
+        raise InputError(
+            f"{path}: expected at least 2 frames in a TRC file, found {len(keypoints.time_s)}; "
+            "change `trim_s` of the take"
+        )
     xyz = keypoints.xyz[person][..., WORLD_AXES]
     joints, n_frames = list(keypoints.joints), len(xyz)
     rate = f"{keypoints.rate_hz:.6g}"

@@ -8,7 +8,7 @@ from courtside.pose.detector import Region
 from courtside.records import reasons
 
 SEARCH_MARGIN = 1.3  # the detector looks at the foreground box times this
-JUMP = 0.5  # a track that left the foreground by this share of its region is lost
+STRAY = 0.25  # a track whose middle leaves every foreground box by this share of the box is lost
 
 
 @dataclass(frozen=True)
@@ -60,18 +60,40 @@ def track_person(frames, detector, landmarks, foreground, *, min_presence, redet
     """
     times, rows, region = [], [], None
     for time_s, image in frames:
-        boxes = foreground.boxes(image) if redetect or region is None else None
-        pose = None
+        boxes, pose = foreground.boxes(image), None
         if region is not None and not redetect:
             pose = landmarks.estimate(image, region)
-        if pose is None or pose.presence < min_presence:
-            pose = _search(image, boxes or foreground.boxes(image), detector, landmarks)
+        if pose is None or pose.presence < min_presence or strayed(pose.xy, boxes):
+            pose = _search(image, boxes, detector, landmarks)
         found = pose is not None and pose.presence >= min_presence
         region = pose.region if found else None
         times.append(time_s)
         rows.append(_row(pose if found else None, landmarks.n_joints, image.shape))
     xy, score, reason, xyz = (np.stack(column) for column in zip(*rows, strict=True))
     return Track(np.array(times), xy, score, reason, xyz)
+
+
+def strayed(xy, boxes):
+    """Tell whether a track has left what moves, for a bystander or a poster.
+
+    Parameters
+    ----------
+    xy : (J, 2) float
+        Joints, px.
+    boxes : list of (x, y, width, height)
+        Foreground, px. Without any, nothing can be told: a person may stand still for long.
+
+    Returns
+    -------
+    strayed : bool
+    """
+    middle = np.median(xy, axis=0)
+    for x, y, width, height in boxes:
+        reach = STRAY * max(width, height)
+        low, high = np.array([x, y]) - reach, np.array([x + width, y + height]) + reach
+        if (low <= middle).all() and (middle <= high).all():
+            return False
+    return bool(boxes)
 
 
 def _search(image, boxes, detector, landmarks):
