@@ -64,7 +64,7 @@ def step(name):
 
 
 def each_camera(pattern):
-    """Return an input function for the files of all cameras of a take, in the session's order."""
+    """Return an input function for the files of all cameras of a take, in the take's order."""
     return lambda wildcards: [
         pattern.format(**dict(wildcards.items()), camera=camera)
         for camera in take_of(wildcards).videos
