@@ -33,7 +33,9 @@ class Placer:
         centre = np.array([columns.mean(), rows.mean()]) if near else np.zeros(2)
         xy = np.stack([centre, centre, centre + np.array([400, 0])])
         nothing = np.full((3, 3), np.nan)
-        return Pose(xy, np.array([0.9, 0.9, 0.8]), nothing, float(bool(near)), Region(*centre, 80.0))
+        return Pose(
+            xy, np.array([0.9, 0.9, 0.8]), nothing, float(bool(near)), Region(*centre, 80.0)
+        )
 
 
 def picture(x):
