@@ -80,18 +80,21 @@ def _settle(cameras, xy, score, mirror, max_error_px):
     flags = np.zeros(score.shape[:2], dtype=bool)
     cost = _cost(cameras, xy, score, flags, mirror, max_error_px)
     for _ in range(ROUNDS):
+        # A frame with less to gain than a swap must gain is settled, as is one without a gain before.
+        open_ = np.flatnonzero(cost > GAIN)
+        if not len(open_):
+            break
         trials = []
         for camera in range(len(cameras)):
-            trial = flags.copy()
+            trial = flags[:, open_]
             trial[camera] ^= True
-            trials.append(_cost(cameras, xy, score, trial, mirror, max_error_px))
-        best = np.argmin(trials, axis=0)
-        lowest = np.min(trials, axis=0)
-        better = lowest < cost - GAIN
-        if not better.any():
-            break
-        flags[best[better], np.flatnonzero(better)] ^= True
-        cost[better] = lowest[better]
+            trials.append(
+                _cost(cameras, xy[:, open_], score[:, open_], trial, mirror, max_error_px)
+            )
+        best, lowest = np.argmin(trials, axis=0), np.min(trials, axis=0)
+        better = lowest < cost[open_] - GAIN
+        flags[best[better], open_[better]] ^= True
+        cost[open_] = np.where(better, lowest, 0.0)
     return _fewer(flags)
 
 
