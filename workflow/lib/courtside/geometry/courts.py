@@ -1,0 +1,205 @@
+"""A court of known size: named points, the line edges that meet there, painted lines, net."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from courtside.geometry import fields
+from courtside.study import yaml_files
+from courtside.study.errors import InputError
+
+NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
+KEYS = {
+    "description", "size_m", "line_width_m", "sigma_m", "points", "sets", "lines_m", "net",
+}  # fmt: skip
+NET_KEYS = {"y_m": (), "x_m": (2,), "post_height_m": (), "mid_height_m": ()}
+ON_EDGE_M = 1e-6
+SEE = "see config/courts/badminton.yaml"
+
+
+@dataclass(frozen=True, eq=False)
+class Court:
+    """A court, with its outer corner as origin, x along its short side, y along its long side, z up.
+
+    Attributes
+    ----------
+    name : str
+        As in the file name.
+    description : str
+    size_m : (2,) float
+        Along x and y, to the outer edges of the lines.
+    line_width_m : float
+    points : tuple of str, length P
+    xyz : (P, 3) float
+        Metres.
+    edges : tuple of str, length P
+        Which edges meet at the point, in words.
+    sigma_m : (P,) float
+        How far a real court is from `xyz`, standard deviation per axis.
+    sets : dict of str to tuple of str
+        Named subsets of `points`; "all" is always there.
+    lines_m : (L, 4) float
+        Painted rectangles: x0 y0 x1 y1.
+    net : dict or None
+        `y_m`, `x_m` [left, right], `post_height_m`, `mid_height_m`.
+    """
+
+    name: str
+    description: str
+    size_m: np.ndarray
+    line_width_m: float
+    points: tuple
+    xyz: np.ndarray
+    edges: tuple
+    sigma_m: np.ndarray
+    sets: dict
+    lines_m: np.ndarray
+    net: dict | None
+
+    def indices(self, chosen):
+        """Return the positions in `points` of a set's name or a list of points, (n,) int."""
+        names = self.sets[chosen] if isinstance(chosen, str) else chosen
+        return np.array([self.points.index(name) for name in names], dtype=int)
+
+
+def read(path):
+    """Read a court file.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML; `config/courts/badminton.yaml` shows every key.
+
+    Returns
+    -------
+    court : Court
+
+    Raises
+    ------
+    InputError
+        If a key is missing or unknown, a number is none, a set names an unknown point, two points are at one
+        place, a line leaves the court, or x is not the short side.
+    """
+    content = yaml_files.read(path)
+    odd = KEYS.symmetric_difference(content)
+    if odd:
+        raise InputError(
+            f"{path}: expected the keys {', '.join(sorted(KEYS))}, found {', '.join(sorted(content))}; {SEE}"
+        )
+    sigma = content["sigma_m"] if isinstance(content["sigma_m"], dict) else {}
+    floor_m, raised_m = (
+        fields.numbers(path, f"sigma_m {kind}", sigma.get(kind), ()) for kind in ("floor", "raised")
+    )
+    points, xyz, edges = _points(path, content["points"])
+    lines = content["lines_m"] if isinstance(content["lines_m"], list) else None
+    court = Court(
+        name=Path(path).stem,
+        description=str(content["description"]),
+        size_m=fields.numbers(path, "size_m", content["size_m"], (2,)),
+        line_width_m=float(fields.numbers(path, "line_width_m", content["line_width_m"], ())),
+        points=points,
+        xyz=xyz,
+        edges=edges,
+        sigma_m=np.where(xyz[:, 2] > 0, raised_m, floor_m),
+        sets={**_sets(path, content["sets"], points), "all": points},
+        lines_m=fields.numbers(path, "lines_m", lines, (len(lines or "-"), 4)),
+        net=_net(path, content["net"]),
+    )
+    _check(path, court)
+    return court
+
+
+def _points(path, table):
+    if not isinstance(table, dict) or not table:
+        raise InputError(f"{path}: expected points with xyz_m and edges, found none; {SEE}")
+    for name, point in table.items():
+        if (
+            not NAME.fullmatch(name)
+            or not isinstance(point, dict)
+            or set(point) != {"xyz_m", "edges"}
+        ):
+            raise InputError(
+                f"{path}: points: expected names of a-z, 0-9, _ and -, each with xyz_m and edges, "
+                f"found {name}: {fields.short(point)}; {SEE}"
+            )
+    xyz = [fields.numbers(f"{path}: {n}", "xyz_m", p["xyz_m"], (3,)) for n, p in table.items()]
+    return tuple(table), np.array(xyz), tuple(str(point["edges"]) for point in table.values())
+
+
+def _sets(path, table, points):
+    if not isinstance(table, dict):
+        raise InputError(f"{path}: expected sets of points, found {fields.short(table)}; {SEE}")
+    for name, members in table.items():
+        unknown = (
+            [m for m in members if m not in points] if isinstance(members, list) else [members]
+        )
+        if unknown or len(set(members)) < len(members):
+            raise InputError(
+                f"{path}: sets: {name}: expected a list of different points, found "
+                f"{fields.short(unknown or members)}; correct it"
+            )
+    return {name: tuple(members) for name, members in table.items()}
+
+
+def _net(path, table):
+    if table is None:
+        return None
+    if not isinstance(table, dict) or set(table) != set(NET_KEYS):
+        raise InputError(
+            f"{path}: net: expected null or {', '.join(NET_KEYS)}, found {fields.short(table)}; {SEE}"
+        )
+    numbers = {
+        key: fields.numbers(f"{path}: net", key, table[key], s) for key, s in NET_KEYS.items()
+    }
+    return {key: value.tolist() for key, value in numbers.items()}
+
+
+def _check(path, court):
+    if not 0 < court.size_m[0] <= court.size_m[1]:
+        raise InputError(
+            f"{path}: expected size_m as [short side, long side], found {court.size_m.tolist()}; "
+            "exchange them"
+        )
+    apart_m = np.linalg.norm(court.xyz[:, None] - court.xyz, axis=-1)
+    first, second = np.unravel_index(np.argmin(apart_m + 1e9 * np.eye(len(apart_m))), apart_m.shape)
+    if len(court.points) < 3 or apart_m[first, second] < ON_EDGE_M:
+        raise InputError(
+            f"{path}: expected three points or more at different places, found {court.points[first]} and "
+            f"{court.points[second]} {apart_m[first, second]:g} m apart; correct them"
+        )
+    if min(court.line_width_m, court.sigma_m.min()) <= 0:
+        raise InputError(
+            f"{path}: expected line_width_m and sigma_m above 0, found 0 or less; correct it"
+        )
+    corners = court.lines_m.reshape(-1, 2)
+    if (corners < -ON_EDGE_M).any() or (corners > court.size_m + ON_EDGE_M).any():
+        raise InputError(
+            f"{path}: expected lines_m inside the court of {fields.times(court.size_m)} m, found a line "
+            "beyond it; correct it"
+        )
+
+
+def to_line_centres(court):
+    """Return where each named point would move if line centres were taken for edges, (P, 3) m.
+
+    Zero for raised points, and along lines whose middle is meant.
+
+    Parameters
+    ----------
+    court : Court
+    """
+    low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    across = np.argmin(high - low, axis=1)  # the axis that the line's width is measured along
+    shift = np.zeros_like(court.xyz)
+    for line in range(len(low)):
+        axis = across[line]
+        inside = (court.xyz[:, :2] >= low[line] - ON_EDGE_M) & (
+            court.xyz[:, :2] <= high[line] + ON_EDGE_M
+        )
+        on = inside.all(axis=1) & (court.xyz[:, 2] == 0)
+        middle = (low[line, axis] + high[line, axis]) / 2
+        shift[on, axis] = middle - court.xyz[on, axis]
+    return shift

@@ -1,0 +1,124 @@
+"""Court points clicked in the static pictures of the fixed cameras: one CSV row each."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+COLUMNS = ("camera", "point", "frame_idx", "x_px", "y_px")
+STATIC = 0  # frame_idx of the static picture
+
+
+def read(path, cameras, points):
+    """Read clicked court points.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV with the columns camera, point, frame_idx (0, the static picture), x_px, y_px (px of the video's
+        size, first pixel's centre at (0, 0)). A point that is hidden has no row.
+    cameras : list of str
+        Fixed cameras of the session.
+    points : sequence of str, length P
+        Points of the court.
+
+    Returns
+    -------
+    clicks : dict of str to (P, 2) float
+        For every camera, px; NaN where not clicked.
+
+    Raises
+    ------
+    InputError
+        If the file is no such table, a row names an unknown camera, point or frame, a position is no number,
+        or one camera has a point twice.
+    """
+    clicks = {camera: np.full((len(points), 2), np.nan) for camera in cameras}
+    index = {point: at for at, point in enumerate(points)}
+    seen = {}
+    for line, row in _rows(path):
+        where = f"{path}: line {line}"
+        camera = _known(where, "camera", row["camera"], clicks)
+        point = _known(where, "point", row["point"], index)
+        _number(where, "frame_idx", row["frame_idx"], expected=STATIC)
+        if (camera, point) in seen:
+            raise InputError(
+                f"{where}: expected one click for point {point} in camera {camera}, found another in line "
+                f"{seen[camera, point]}; delete one"
+            )
+        seen[camera, point] = line
+        clicks[camera][index[point]] = [_number(where, key, row[key]) for key in ("x_px", "y_px")]
+    return clicks
+
+
+def write(path, clicks, points):
+    """Write clicked court points as `read` takes them, without the missing ones.
+
+    Parameters
+    ----------
+    path : str or Path
+    clicks : dict of str to (P, 2) float
+        By camera, px; NaN where not clicked.
+    points : sequence of str, length P
+    """
+    for camera, xy in clicks.items():
+        if np.shape(xy) != (len(points), 2):
+            raise ValueError(
+                f"camera {camera}: expected ({len(points)}, 2) px, found {np.shape(xy)}"
+            )
+    with atomic(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        for camera, xy in clicks.items():
+            for point, (x, y) in zip(points, np.asarray(xy, float).tolist(), strict=True):
+                if math.isfinite(x) and math.isfinite(y):
+                    writer.writerow([camera, point, STATIC, x, y])
+
+
+def _rows(path):
+    """Return (line number, row) of every row, the cells without blanks around them."""
+    try:
+        with Path(path).open(newline="", encoding="utf-8-sig") as stream:
+            table = csv.reader(stream, strict=True)
+            lines = [(table.line_num, [cell.strip() for cell in row]) for row in table]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(
+            f"{path}: expected a readable CSV file, found: {error}; save it again as CSV (UTF-8)"
+        ) from None
+    lines = [(number, row) for number, row in lines if any(row)]
+    header = lines[0][1] if lines else []
+    if sorted(header) != sorted(COLUMNS):
+        raise InputError(
+            f"{path}: expected the columns {','.join(COLUMNS)} with commas between, found "
+            f"{','.join(header)[:80] or 'an empty file'}; correct the first line"
+        )
+    for line, row in lines[1:]:
+        if len(row) != len(header):
+            raise InputError(
+                f"{path}: line {line}: expected {len(header)} cells, found {len(row)}; correct it"
+            )
+    return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
+
+
+def _known(where, what, name, names):
+    if name not in names:
+        raise InputError(
+            f"{where}: expected a {what} of {', '.join(names)}, found {name[:40]!r}; correct it or "
+            "delete the line"
+        )
+    return name
+
+
+def _number(where, key, text, expected=None):
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number) or expected not in (None, number):
+        wanted = "a finite number" if expected is None else f"{expected}, the static picture"
+        raise InputError(f"{where}: expected {key} as {wanted}, found {text[:40]!r}; correct it")
+    return number

@@ -1,0 +1,275 @@
+"""Film one virtual session: videos of the fixed cameras and of a walk, clicks, and the truth."""
+
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from courtside.devices import video_writer
+from courtside.records import clicks as click_records
+from courtside.records import truth
+from courtside.study import log
+from courtside.virtual import boards, clicking, hall, layouts, people, presets, walk
+from courtside.virtual.renderer import Renderer
+
+WALK = "walk"
+STATIC_HZ = 5.0
+TREMBLE_PX = 0.03  # of a tripod, standard deviation per axis at 1280 px width
+# Independent streams of random numbers, so that a change of one part leaves the others as they are.
+HALL, LENSES, STATIC, CLICKS, BOARDS = range(5)  # of the scene's seed
+PATH, PEOPLE, GRAIN = range(5, 8)  # of the walk's seed
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What makes one virtual session.
+
+    Attributes
+    ----------
+    preset : str
+        A key of `presets.PRESETS`.
+    layout : str
+        A key of `layouts.LAYOUTS`.
+    seed : int
+        Of the hall, the fixed cameras, the clicks and the boards.
+    size_px : (int, int)
+        Width and height of every video, even numbers.
+    walk_frames : int
+        Frames that the walk's video has, at least two: no more is filmed than the study's grid needs.
+    walk_seed : int
+        Of the walk, its camera, its noise, and the people.
+    speed_kmh : float
+        Of the walk.
+    stabiliser : bool
+        Whether the walked camera has one.
+    static_frames : int
+        Frames of each fixed camera's video.
+    baseline_deg : float or None
+        Angle between the fixed cameras of layout "a", if not 90.
+    boards : bool
+        Whether each fixed camera also takes pictures of a chessboard.
+    people : int or None
+        How many walk about during the walk, if not the preset's number.
+    """
+
+    preset: str
+    layout: str
+    seed: int
+    size_px: tuple
+    walk_frames: int
+    walk_seed: int = 0
+    speed_kmh: float = walk.USUAL_KMH
+    stabiliser: bool = True
+    static_frames: int = 9
+    baseline_deg: float | None = None
+    boards: bool = False
+    people: int | None = None
+
+    def __post_init__(self):
+        object.__setattr__(self, "size_px", tuple(self.size_px))
+        if self.preset not in presets.PRESETS:
+            expected = sorted(presets.PRESETS)
+            raise ValueError(f"expected a preset of {expected}, found {self.preset!r}")
+        if self.walk_frames < 2 or self.static_frames < 1:
+            found = f"{self.walk_frames} and {self.static_frames}"
+            raise ValueError(f"expected walk_frames >= 2 and static_frames >= 1, found {found}")
+
+
+class Studio:
+    """The hall of a session and everything in it, ready for pictures.
+
+    Parameters
+    ----------
+    settings : Settings
+    court : courtside.geometry.courts.Court
+
+    Attributes
+    ----------
+    fixed : list of Camera
+    walk : walk.Walk
+    people : list of people.Person
+    """
+
+    def __init__(self, settings, court):
+        self.settings, self.preset = settings, presets.PRESETS[settings.preset]
+        self.fixed, self.walk = plan(settings, court)
+        count = self.preset.n_people if settings.people is None else settings.people
+        self.people = people.plan(count, court, _rng(settings.walk_seed, PEOPLE))
+        self._renderer = Renderer(hall.build(self.preset, court, _stream(settings.seed, HALL)))
+
+    def court_xyz(self):
+        """Return where the court's points really are, (P, 3) m."""
+        return self._renderer.scene.court_xyz
+
+    def empty_hall(self, index):
+        """Return what fixed camera `index` sees, without people and without noise."""
+        return self._renderer.render(self.fixed[index])
+
+    def walk_picture(self, index):
+        """Return frame `index` of the walk."""
+        settings, preset = self.settings, self.preset
+        time_s = self.walk.grid(settings.walk_frames)[index]
+        return self._renderer.render(
+            self.walk.camera(time_s),
+            twist=self.walk.twist(time_s),
+            readout_s=preset.readout_s,
+            exposure_s=preset.exposure_s,
+            extra=people.quads(self.people, time_s),
+            noise=preset.noise_sigma,
+            rng=_rng(settings.walk_seed, GRAIN, index),
+        )
+
+
+def plan(settings, court):
+    """Return the fixed cameras (list of Camera) and the `walk.Walk` of a session, without its hall.
+
+    Parameters
+    ----------
+    settings : Settings
+    court : courtside.geometry.courts.Court
+    """
+    preset = presets.PRESETS[settings.preset]
+    fixed = layouts.fixed_cameras(
+        settings.layout,
+        court,
+        settings.size_px,
+        preset,
+        _rng(settings.seed, LENSES),
+        baseline_deg=settings.baseline_deg,
+    )
+    walked = walk.plan(
+        fixed,
+        court,
+        settings.size_px,
+        preset,
+        _rng(settings.walk_seed, PATH),
+        speed_kmh=settings.speed_kmh,
+        stabiliser=settings.stabiliser,
+    )
+    return fixed, walked
+
+
+def simulate(settings, court, folder, *, threads=1):
+    """Film a session.
+
+    Parameters
+    ----------
+    settings : Settings
+    court : courtside.geometry.courts.Court
+    folder : str or Path
+        Gets `{camera}.mp4` for each camera of the layout, `walk.mp4`, `court_points.csv`, `truth.npz`, and
+        `boards/{camera}/*.png` where asked for; each file appears under its name only when whole.
+    threads : int
+        Processes that render; the files do not depend on it.
+
+    Raises
+    ------
+    InputError
+        If the disk refuses a file.
+    """
+    folder = Path(folder)
+    fixed, walked = plan(settings, court)
+    with _crew(settings, court, threads) as call:
+        court_xyz = next(call("court_xyz", [()]))
+        empty = list(call("empty_hall", [(at,) for at in range(len(fixed))]))
+        for at, (camera, picture) in enumerate(zip(fixed, empty, strict=True)):
+            _film_fixed(settings, folder, at, camera, picture)
+        frames = call("walk_picture", [(at,) for at in range(settings.walk_frames)])
+        _film_walk(settings, folder, walked, frames)
+    preset = presets.PRESETS[settings.preset]
+    marked = clicking.simulate(
+        fixed,
+        court_xyz,
+        sigma_px_at_3840=preset.click_sigma_px_at_3840,
+        bias_px_at_3840=preset.click_bias_px_at_3840,
+        rng=_rng(settings.seed, CLICKS),
+    )
+    click_records.write(folder / "court_points.csv", marked, court.points)
+    walks = {WALK: _true_walk(walked, settings.walk_frames)}
+    truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz)
+
+
+def _film_fixed(settings, folder, at, camera, picture):
+    """Write the recording of a fixed camera, and its pictures of a chessboard."""
+    preset = presets.PRESETS[settings.preset]
+    rng = _rng(settings.seed, STATIC, at)
+    count = range(settings.static_frames)
+    frames = (_trembled(picture, preset.noise_sigma, rng) for _ in count)
+    video_writer.write_video(folder / f"{camera.name}.mp4", frames, STATIC_HZ, crf=preset.crf)
+    if settings.boards:
+        rng = _rng(settings.seed, BOARDS, at)
+        place = folder / "boards" / camera.name
+        boards.simulate(camera, place, picture, rng, noise=preset.noise_sigma)
+
+
+def _film_walk(settings, folder, walked, frames):
+    rate_hz = (settings.walk_frames - 1) / walked.duration_s  # frame k is at the grid's time k
+    frames = log.progress(frames, settings.walk_frames, f"{WALK}: frames")
+    crf = presets.PRESETS[settings.preset].crf
+    video_writer.write_video(folder / f"{WALK}.mp4", frames, rate_hz, crf=crf)
+
+
+def _trembled(picture, noise, rng):
+    shift_px = rng.standard_normal(2) * TREMBLE_PX * picture.shape[1] / 1280
+    moved = cv2.warpAffine(
+        picture.astype(np.float32),
+        np.column_stack([np.eye(2), shift_px]),
+        picture.shape[1::-1],
+        flags=cv2.INTER_CUBIC,
+        borderMode=cv2.BORDER_REPLICATE,
+    )
+    moved += rng.standard_normal(picture.shape, dtype=np.float32) * np.float32(noise)
+    return np.clip(np.rint(moved), 0, 255).astype(np.uint8)
+
+
+def _true_walk(walked, n_frames):
+    time_s = walked.grid(n_frames)
+    return truth.Walk(
+        time_s=time_s,
+        K=walked.K,
+        dist=walked.dist,
+        cam_from_world=np.array([walked.pose(time) for time in time_s]),
+        principal_point_px=np.array([walked.principal_point_px(time) for time in time_s]),
+    )
+
+
+def _stream(seed, *key):
+    return np.random.SeedSequence(seed, spawn_key=key)
+
+
+def _rng(seed, *key):
+    return np.random.default_rng(_stream(seed, *key))
+
+
+@contextmanager
+def _crew(settings, court, threads):
+    """Give a function that calls a method of a `Studio` for each of some arguments, in order."""
+    if threads == 1:
+        studio = Studio(settings, court)
+        yield lambda method, arguments: (getattr(studio, method)(*each) for each in arguments)
+        return
+    # Spawned: the libraries that render have threads of their own, which a fork would lose.
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(threads, context, _open_studio, (settings, court))
+    try:
+        yield lambda method, arguments: pool.map(partial(_in_studio, method), arguments)
+    finally:
+        pool.shutdown(cancel_futures=True)  # after an error, no picture more than those begun
+
+
+_studio = None  # of a rendering process
+
+
+def _open_studio(settings, court):
+    global _studio
+    cv2.setNumThreads(1)
+    _studio = Studio(settings, court)
+
+
+def _in_studio(method, arguments):
+    return getattr(_studio, method)(*arguments)

@@ -1,0 +1,171 @@
+"""Which ray each pixel of a picture sees, also while the camera moves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import BarycentricInterpolator
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry import cameras, transforms
+
+NODES = 28  # per axis: the lens is smooth, so that a polynomial through so many is exact to 1e-9 px
+
+
+def grid(camera):
+    """Return where each pixel's centre looks, on the normalised image plane.
+
+    Parameters
+    ----------
+    camera : courtside.geometry.cameras.Camera
+
+    Returns
+    -------
+    xy : (2, H, W) float32
+        On the z = 1 plane in front of the camera.
+
+    Raises
+    ------
+    ValueError
+        If the lens model shows nothing in a part of the picture.
+
+    Notes
+    -----
+    `cameras.undistort` at Chebyshev nodes, a polynomial between them.
+    """
+    nodes = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+    places = [(nodes + 1) / 2 * length - 0.5 for length in camera.size]
+    xy = np.stack(np.meshgrid(*places), axis=-1)
+    seen = cameras.undistort(camera, xy)
+    if not np.isfinite(seen).all():
+        raise ValueError(
+            f"camera {camera.name}: expected a lens that fills the picture, found {camera.dist}"
+        )
+    across, down = (
+        BarycentricInterpolator(place, np.eye(NODES))(np.arange(length))
+        for place, length in zip(places, camera.size, strict=True)
+    )
+    return np.stack([down @ seen[..., axis] @ across.T for axis in (0, 1)]).astype(np.float32)
+
+
+@dataclass(frozen=True, eq=False)
+class Rays:
+    """All rays of one picture.
+
+    Attributes
+    ----------
+    xy : (2, H, W) float32
+        From `grid`.
+    eye : (3,) float
+        The camera's centre at mid-exposure of the middle row; world, metres.
+    velocity : (3,) float or None
+        Of the centre, m/s; None where the camera stands still.
+    world_from_cam : (H or 1, 3, 3) float32
+        Rotation of each row, or of all.
+    time_s : (H,) float32
+        When each row is exposed, from the middle one.
+    steps : (2, 3) float
+        Change of a direction in the world by one pixel to the right, and by one down.
+    """
+
+    xy: np.ndarray
+    eye: np.ndarray
+    velocity: np.ndarray | None
+    world_from_cam: np.ndarray
+    time_s: np.ndarray
+    steps: np.ndarray
+
+    @property
+    def moving(self):
+        """Whether rows differ."""
+        return self.velocity is not None
+
+    def of_band(self, start, stop):
+        """Return directions (3, n) and times (n,) or None of all pixels of the rows start..stop-1."""
+        x, y = self.xy[:, start:stop]
+        rotation = self.world_from_cam[start:stop] if self.moving else self.world_from_cam
+        direction = _turn(rotation[:, None], x, y).reshape(3, -1)
+        return direction, self._times(np.repeat(np.arange(start, stop), x.shape[1]))
+
+    def near(self, pixel, offset=(0.0, 0.0)):
+        """Return directions (3, n) and times (n,) or None of some pixels, or beside their centres.
+
+        Parameters
+        ----------
+        pixel : (n,) intp
+            Row times width plus column.
+        offset : (2,) float
+            To the right and down, px.
+        """
+        width = self.xy.shape[2]
+        row, column = np.divmod(pixel, width)
+        before, above = np.maximum(column - 1, 0), np.maximum(row - 1, 0)
+        after, below = (
+            np.minimum(before + 2, width - 1),
+            np.minimum(above + 2, self.xy.shape[1] - 1),
+        )
+        across = (self.xy[:, row, after] - self.xy[:, row, before]) / (after - before)
+        down = (self.xy[:, below, column] - self.xy[:, above, column]) / (below - above)
+        x, y = self.xy[:, row, column] + (offset[0] * across + offset[1] * down).astype(np.float32)
+        rotation = self.world_from_cam[row] if self.moving else self.world_from_cam
+        return _turn(rotation, x, y), self._times(row)
+
+    def halved(self):
+        """Return the rays of a picture of half the size: each the mean of four."""
+        height, width = (2 * (length // 2) for length in self.xy.shape[1:])
+        quarters = self.xy[:, :height, :width].reshape(2, height // 2, 2, width // 2, 2)
+        rows = slice(0, height, 2) if self.moving else slice(None)
+        return Rays(
+            np.ascontiguousarray(quarters.mean(axis=(2, 4))),
+            self.eye,
+            self.velocity,
+            self.world_from_cam[rows],
+            self.time_s[:height].reshape(-1, 2).mean(axis=1),
+            self.steps * 2,
+        )
+
+    def origins(self, time_s):
+        """Return where rays of these times begin, (n, 3) or (3,) float32."""
+        eye = self.eye.astype(np.float32)
+        if time_s is None:
+            return eye
+        return eye + time_s[:, None] * self.velocity.astype(np.float32)
+
+    def _times(self, row):
+        return self.time_s[row] if self.moving else None
+
+
+def of_camera(camera, xy, twist, readout_s):
+    """Return the rays of a picture.
+
+    Parameters
+    ----------
+    camera : Camera
+        At mid-exposure of the middle row.
+    xy : (2, H, W) float32
+        From `grid`.
+    twist : ((3,) float, (3,) float) or None
+        Angular velocity in the camera's own frame, rad/s, and velocity of its centre in the world, m/s.
+    readout_s : float
+        From the first row's exposure to the one after the last row's.
+
+    Returns
+    -------
+    rays : Rays
+    """
+    world_from_cam = camera.cam_from_world[:, :3].T
+    height = xy.shape[1]
+    time_s = ((np.arange(height) + 0.5) / height - 0.5) * readout_s
+    steps = (world_from_cam[:, :2] / np.diag(camera.K)[:2]).T
+    rotation, velocity = world_from_cam[None], None
+    if twist is not None and readout_s > 0:
+        angular, velocity = (np.asarray(part, dtype=float) for part in twist)
+        rotation = world_from_cam @ Rotation.from_rotvec(time_s[:, None] * angular).as_matrix()
+    eye = transforms.invert(camera.cam_from_world)[:, 3]
+    return Rays(xy, eye, velocity, rotation.astype(np.float32), time_s.astype(np.float32), steps)
+
+
+def _turn(rotation, x, y):
+    """Turn rays (x, y, 1) by rotations (..., 3, 3) that broadcast with them; (3, ...)."""
+    return np.stack(
+        [rotation[..., i, 0] * x + rotation[..., i, 1] * y + rotation[..., i, 2] for i in range(3)]
+    )

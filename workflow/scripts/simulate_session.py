@@ -1,0 +1,29 @@
+"""Film one virtual session: its settings and a court -> videos, clicked court points, truth."""
+
+from pathlib import Path
+
+from courtside.geometry import courts
+from courtside.study import log
+from courtside.study.errors import InputError
+from courtside.virtual import capture, layouts
+
+
+def main(court_yaml, folder, *, settings, names, threads):
+    expected = [*layouts.LAYOUTS[settings["layout"]], capture.WALK]
+    if sorted(names) != sorted(expected):
+        raise InputError(
+            f"session {Path(folder).name}: expected the cameras and the walk of layout {settings['layout']}, "
+            f"{expected}, found {names}; rename them"
+        )
+    capture.simulate(capture.Settings(**settings), courts.read(court_yaml), folder, threads=threads)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.court,
+        Path(snakemake.output.truth).parent,
+        settings=snakemake.params.settings,
+        names=snakemake.params.names,
+        threads=snakemake.threads,
+    )
