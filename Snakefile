@@ -6,9 +6,14 @@ min_version("9.27.1")
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/inputs.smk"
+include: "workflow/rules/targets.smk"
 include: "workflow/rules/artefacts.smk"
+include: "workflow/rules/simulation.smk"
 include: "workflow/rules/frames.smk"
+include: "workflow/rules/sfm.smk"
 include: "workflow/rules/cameras.smk"
+include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/pose.smk"
 include: "workflow/rules/motion.smk"
 include: "workflow/rules/figures.smk"
@@ -19,5 +24,7 @@ report: "workflow/report/study.rst"
 
 rule all:
     input:
+        every_calibration(),
+        every_evaluation(),
         every_export(),
         every_figure(),

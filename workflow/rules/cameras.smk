@@ -1,8 +1,12 @@
 """Where the fixed cameras are.
 
-Inputs: a calibration made elsewhere. Outputs: results/{session}/calibration/{calibration}/.
-Steps: import_cameras.
+Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points, or these alone.
+Outputs: results/{session}/calibration/{calibration}/.
+Steps: import_cameras (`file`), calibrate_cameras (`sfm-n40`, the default), align_cameras (`paper-n40`,
+`paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`).
 """
+
+FOUND = "results/{session}/calibration/{calibration}"
 
 
 rule import_cameras:
@@ -23,3 +27,78 @@ rule import_cameras:
         },
     script:
         "../scripts/import_cameras.py"
+
+
+rule calibrate_cameras:
+    input:
+        ties=ties_file,
+        clicks=lambda w: session_of(w).court_points or [],
+        court=lambda w: court_file(session_of(w)) or [],
+    output:
+        cameras=f"{FOUND}/cameras.toml",
+        covariance=f"{FOUND}/covariance.npz",
+        quality=f"{FOUND}/quality.json",
+    log:
+        "results/{session}/logs/calibrate_cameras/{calibration}.log",
+    wildcard_constraints:
+        calibration="sfm-n[0-9]+(-o[0-2])?",
+    params:
+        code=code("calibrate_cameras.py"),
+        step=click_parameters,
+    script:
+        "../scripts/calibrate_cameras.py"
+
+
+rule align_cameras:
+    input:
+        ties=ties_file,
+        clicks=lambda w: session_of(w).court_points,
+        court=lambda w: court_file(session_of(w)),
+    output:
+        cameras=f"{FOUND}/cameras.toml",
+        quality=f"{FOUND}/quality.json",
+    log:
+        "results/{session}/logs/align_cameras/{calibration}.log",
+    wildcard_constraints:
+        calibration="(sim3|paper|paper-global)-n[0-9]+(-o[0-2])?",
+    params:
+        code=code("align_cameras.py"),
+        step=click_parameters,
+    script:
+        "../scripts/align_cameras.py"
+
+
+rule calibrate_lens:
+    input:
+        images=board_source,
+    output:
+        lens="results/{session}/calibration/lens/{camera}.toml",
+    log:
+        "results/{session}/logs/calibrate_lens/{camera}.log",
+    params:
+        code=code("calibrate_lens.py"),
+        images=lambda w: session_of(w).cameras[w.camera].chessboard["images"],
+        inner_corners=lambda w: session_of(w).cameras[w.camera].chessboard["inner_corners"],
+    script:
+        "../scripts/calibrate_lens.py"
+
+
+rule resect_cameras:
+    input:
+        clicks=lambda w: session_of(w).court_points,
+        court=lambda w: court_file(session_of(w)),
+        static=each_fixed("results/{session}/static/{camera}.png"),
+        lenses=lens_files,
+    output:
+        cameras=f"{FOUND}/cameras.toml",
+        quality=f"{FOUND}/quality.json",
+    log:
+        "results/{session}/logs/resect_cameras/{calibration}.log",
+    wildcard_constraints:
+        calibration="(dlt|known)[0-9]+(-board)?",
+    params:
+        code=code("resect_cameras.py"),
+        step=click_parameters,
+        cameras=lambda w: list(session_of(w).cameras),
+    script:
+        "../scripts/resect_cameras.py"

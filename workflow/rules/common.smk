@@ -1,6 +1,7 @@
 """What all rules share: the checked configuration, the library on the path, names of files.
 
-Inputs: config/. Outputs: none. Steps: check every YAML file, then offer the functions below.
+Inputs: config/. Outputs: none. Steps: check every YAML file, then offer the functions below. Input functions of the
+calibration are in inputs.smk, lists of what the study makes in targets.smk.
 """
 
 import os
@@ -22,6 +23,7 @@ configfile: str(REPOSITORY / "config" / "config.yaml")
 
 
 NAME = "[a-z0-9][a-z0-9_-]*"
+MODEL_PARTS = ["cameras", "images", "points3D", "rigs", "frames"]  # files of a COLMAP model
 STAGES = ["pose3d", "pose3d_filtered"]
 FIGURES = ["overlay", "skeletons", "reprojection", "visibility"]
 FORMATS = ["pdf", "png", "csv"]
@@ -41,6 +43,10 @@ wildcard_constraints:
     calibration=NAME,
     fusion=NAME,
     stage="|".join(STAGES),
+    walk=NAME,
+    mapper="global|incremental",
+    n_images="[1-9][0-9]*",
+    offset="[0-2]",
 
 
 def code(script):
@@ -86,13 +92,6 @@ def tflite_file(wildcards):
     return f"results/external/{network(wildcards).artefact}/{network(wildcards).member}"
 
 
-def background_source(wildcards):
-    """Return the extracted frames of the static recording, or the take's own video where none exists."""
-    if session_of(wildcards).cameras[wildcards.camera].static:
-        return f"results/{wildcards.session}/frames/{wildcards.camera}"
-    return take_of(wildcards).videos[wildcards.camera]
-
-
 def figure(name):
     """Return the three files of a figure; the PNG goes into the report with its caption."""
     folder = "results/{session}/takes/{take}/figures"
@@ -112,39 +111,3 @@ def figure(name):
             },
         ),
     }
-
-
-def each_take(pattern, **choices):
-    """Return `pattern` for every take of every session and every method of the study."""
-    methods = {key: STUDY.parameters[f"{key}s"] for key in ("calibration", "fusion", "model")}
-    return [
-        path
-        for session in STUDY.sessions.values()
-        for take in session.takes.values()
-        for path in expand(
-            pattern,
-            session=session.name,
-            take=take.name,
-            person=take.subjects,
-            **methods,
-            **choices,
-        )
-    ]
-
-
-def every_export():
-    """Return the files for other programs that the study makes."""
-    return each_take(
-        "results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.{person}.{suffix}",
-        stage=STAGES,
-        suffix=["trc", "c3d", "csv"],
-    )
-
-
-def every_figure():
-    """Return the figures that the study makes."""
-    return each_take(
-        "results/{session}/takes/{take}/figures/{figure}.{calibration}.{fusion}.{model}.{suffix}",
-        figure=FIGURES,
-        suffix=FORMATS,
-    )

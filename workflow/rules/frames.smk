@@ -1,30 +1,47 @@
-"""Pictures of the fixed cameras without people.
+"""Pictures of the fixed cameras without people, and the frames of walks.
 
-Inputs: videos of a session. Outputs: results/{session}/frames/, takes/{take}/background/.
-Steps: extract_frames (of a camera's `static` recording), estimate_background (per take and camera).
+Inputs: videos of a session. Outputs: results/{session}/static/, frames/, takes/{take}/background/.
+Steps: extract_static (of a camera's `static` recording), extract_frames (of a walk), estimate_background (of a take
+whose camera has no static recording).
 """
+
+
+rule extract_static:
+    input:
+        video=lambda w: session_of(w).cameras[w.camera].static,
+    output:
+        png="results/{session}/static/{camera}.png",
+        csv="results/{session}/static/{camera}.csv",
+    log:
+        "results/{session}/logs/extract_static/{camera}.log",
+    params:
+        code=code("extract_static.py"),
+        step=step("extract_static"),
+    script:
+        "../scripts/extract_static.py"
 
 
 rule extract_frames:
     input:
-        video=lambda w: session_of(w).cameras[w.camera].static,
+        video=lambda w: session_of(w).walks[w.walk],
     output:
-        folder=directory("results/{session}/frames/{camera}"),
-        table="results/{session}/frames/{camera}.csv",
+        folder=directory("results/{session}/frames/{walk}"),
+        table="results/{session}/frames/{walk}.csv",
     log:
-        "results/{session}/logs/extract_frames/{camera}.log",
+        "results/{session}/logs/extract_frames/{walk}.log",
     benchmark:
-        "results/{session}/benchmarks/extract_frames/{camera}.tsv"
+        "results/{session}/benchmarks/extract_frames/{walk}.tsv"
     params:
         code=code("extract_frames.py"),
-        step=step("extract_frames"),
+        # A virtual walk is filmed on the grid's frames only.
+        step=lambda w: {"every_frame": 1} if session_of(w).virtual else step("extract_frames")(w),
     script:
         "../scripts/extract_frames.py"
 
 
 rule estimate_background:
     input:
-        source=background_source,
+        source=lambda w: take_of(w).videos[w.camera],
     output:
         png="results/{session}/takes/{take}/background/{camera}.png",
     log:

@@ -8,7 +8,7 @@ Steps: detect_pose.
 rule detect_pose:
     input:
         video=lambda w: take_of(w).videos[w.camera],
-        background="results/{session}/takes/{take}/background/{camera}.png",
+        background=background_file,
         detector="results/networks/{model}/detector.onnx",
         landmarks="results/networks/{model}/landmarks.onnx",
         skeleton=skeleton_file,

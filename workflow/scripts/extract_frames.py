@@ -1,23 +1,23 @@
-"""Extract the frames of one static recording on a fixed grid: video -> PNG files and their table."""
+"""Extract the frames of one walk on a fixed grid: video or photos -> PNG files and their table."""
 
 from pathlib import Path
 
-import pandas as pd
-
-from courtside.devices import video
+from courtside.devices import walks
+from courtside.records import frame_table
+from courtside.sfm import bridging
 from courtside.study import log
-from courtside.study.files import atomic
+from courtside.study.folders import atomic_folder
 
 
-def main(video_path, folder, table_csv, *, every_s):
-    rows = []
-    for frame_idx, time_s, image in video.extract_frames(video_path, every_s):
-        name = f"{len(rows):06d}.png"
-        video.write_png(Path(folder) / name, image)
-        rows.append((frame_idx, round(time_s, 6), round(video.sharpness(image), 3), name))
-    table = pd.DataFrame(rows, columns=["frame_idx", "time_s", "sharpness", "name"])
-    with atomic(table_csv) as temporary:
-        table.to_csv(temporary, index=False)
+def main(video_path, folder, table_csv, *, every_s=None, every_frame=None, walk="walk"):
+    with atomic_folder(folder) as beside:
+        found = walks.frames(video_path, every_s=every_s, every_frame=every_frame)
+        table, small = walks.extract(log.progress(found, None, f"{walk}: frames"), beside)
+        kept, reason = bridging.judge(table, small)
+        table = table.assign(kept=kept, reason=reason)
+        frame_table.write(table_csv, table)
+    for reason, count in table["reason"].value_counts().items():
+        log.logger.info("%s: %d of %d frames %s", walk, count, len(table), reason or "kept")
 
 
 if __name__ == "__main__":
@@ -26,5 +26,6 @@ if __name__ == "__main__":
         snakemake.input.video,
         snakemake.output.folder,
         snakemake.output.table,
+        walk=Path(snakemake.output.table).stem,
         **snakemake.params.step,
     )

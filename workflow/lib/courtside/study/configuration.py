@@ -7,11 +7,10 @@ from pathlib import Path
 
 import jsonschema
 
-from courtside.study import artefacts, sessions, yaml_files
+from courtside.study import artefacts, session_faults, sessions, yaml_files
 from courtside.study.errors import InputError
 
 SCHEMAS = Path(__file__).parents[3] / "schemas"
-EXTERNAL = "results/external/"
 RESERVED = (
     "external",
     "networks",
@@ -76,7 +75,7 @@ def load(config, config_file, folder, root="."):
     if models is not None:
         for name, entry in models.items():
             faults += _model_faults(folder, name, entry, known)
-        faults += _unknown(f"{config_file}: models", _names(config, "models"), models)
+        faults += session_faults.unknown(f"{config_file}: models", _names(config, "models"), models)
     found = {}
     for name in _names(config, "sessions"):
         file = folder / "sessions" / f"{name}.yaml"
@@ -84,16 +83,27 @@ def load(config, config_file, folder, root="."):
         faults += missing
         content = None if missing else _checked(file, "session", faults)
         if content is not None:
-            faults += _session_faults(folder, file, content, known, Path(root))
+            faults += session_faults.find(folder, file, content, known, Path(root))
             found[name] = (file, content)
+    if not faults:
+        faults += session_faults.conditions(config_file, config, found)
     if faults:
         raise ConfigurationError(faults)
     return sessions.Study(
-        sessions={name: sessions.session(name, *pair, config) for name, pair in found.items()},
+        sessions=_sessions(config, found),
         artefacts=known,
         models={name: sessions.model(name, entry) for name, entry in models.items()},
         parameters=config,
     )
+
+
+def _sessions(config, found):
+    """Return all `Session`s: those of the files, and the variations that conditions make of them."""
+    made = {name: sessions.session(name, *pair, config) for name, pair in found.items()}
+    for name, condition in config["conditions"].items():
+        base = made[condition["session"]]
+        made |= sessions.variations(base, name, condition["vary"], condition.get("override", {}))
+    return made
 
 
 def _checked(path, schema, faults):
@@ -146,6 +156,14 @@ def schema_faults(content, schema, file):
         steps = yaml_files.read(SCHEMAS / "config.schema.yaml")
         rules["properties"]["override"] = _overridable(steps)
         rules["$defs"] = steps["$defs"] | rules["$defs"]
+    elif schema == "config":
+        condition = rules["properties"]["conditions"]["additionalProperties"]["properties"]
+        condition["override"] = _overridable(rules)
+        virtual = yaml_files.read(SCHEMAS / "session.schema.yaml")["properties"]["virtual"]
+        condition["vary"]["properties"] = {
+            key: {"type": "array", "minItems": 1, "items": value}
+            for key, value in virtual["properties"].items()
+        }
     errors = VALIDATOR(rules).iter_errors(content)
     return [
         f"{file}: {line}"
@@ -159,7 +177,7 @@ def _overridable(steps):
     blocks = {
         key: {name: value for name, value in block.items() if name != "required"}
         for key, block in steps["properties"].items()
-        if block.get("type") == "object"
+        if block.get("type") == "object" and key != "conditions"
     }
     return {"type": "object", "additionalProperties": False, "properties": blocks}
 
@@ -222,14 +240,6 @@ def _shown(value):
     return text if len(text) <= 80 else f"{text[:77]}..."
 
 
-def _unknown(where, names, known):
-    return [
-        f"{where}: expected one of {sorted(known)}, found {name!r}"
-        for name in names
-        if name not in known
-    ]
-
-
 def _model_faults(folder, name, entry, known):
     file = folder / "models.yaml"
     if not (folder / "skeletons" / f"{entry['skeleton']}.yaml").is_file():
@@ -247,35 +257,3 @@ def _model_faults(folder, name, entry, known):
                 f"{file}: {name}.{part}: expected a member of external.yaml with its checksum, "
                 f"found {_shown(source['artefact'])}: {_shown(source['member'])}"
             )
-
-
-def _session_faults(folder, file, content, known, root):
-    cameras, subjects = content["cameras"], content["subjects"]
-    court = content["court"]
-    if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
-        there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
-        yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
-    paths = {"calibration.file": content["calibration"]["file"]}
-    paths |= {f"cameras.{n}.static": c["static"] for n, c in cameras.items() if c and "static" in c}
-    for name, take in content["takes"].items():
-        where = f"{file}: takes.{name}"
-        yield from _unknown(f"{where}.videos", take["videos"], cameras)
-        yield from _unknown(f"{where}.subjects", take.get("subjects", []), subjects)
-        start_s, stop_s = take.get("trim_s", (0, 1))
-        if start_s >= stop_s:
-            yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
-        paths |= {f"takes.{name}.videos.{camera}": path for camera, path in take["videos"].items()}
-    for where, path in paths.items():
-        yield from _path_faults(f"{file}: {where}", path, known, root)
-
-
-def _path_faults(where, path, known, root):
-    if not path.startswith(EXTERNAL):
-        if not (root / path).exists():
-            yield f"{where}: expected a file, found none at {path}; correct the path or put it there"
-        return
-    if known is None:
-        return
-    artefact, _, member = path.removeprefix(EXTERNAL).partition("/")
-    if artefact not in known or member not in known[artefact].members:
-        yield f"{where}: expected a member of external.yaml, found {path}; add it there"

@@ -1,6 +1,9 @@
 """What a checked configuration says, as plain records."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import product
+
+VIRTUAL = "results/virtual"
 
 
 @dataclass(frozen=True)
@@ -25,11 +28,14 @@ class FixedCamera:
         (x, y, width, height): the part of the calibrated picture that the videos show.
     name_in_calibration : str or None
         Its name in the calibration file where that differs.
+    chessboard : dict or None
+        `images`, `inner_corners`, `square_m`: pictures of a chessboard that this camera took.
     """
 
     static: str | None = None
     crop_px: tuple | None = None
     name_in_calibration: str | None = None
+    chessboard: dict | None = None
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,16 @@ class Session:
     subjects : dict of str to Subject
     cameras : dict of str to FixedCamera
     takes : dict of str to Take
-    calibration_file : str
+    calibration_file : str or None
+        Cameras found elsewhere.
+    walks : dict of str to str
+        Video, or folder of photos, of each walk by the mobile camera.
+    court_points : str or None
+        Clicked court points.
+    virtual : dict or None
+        What a virtual session is made from.
+    condition : dict
+        What makes this session differ from the one it is a variation of.
     blur_faces : bool
     parameters : dict
         The steps' parameters of the study, with this session's overrides.
@@ -77,13 +92,54 @@ class Session:
     subjects: dict
     cameras: dict
     takes: dict
-    calibration_file: str
+    calibration_file: str | None
+    walks: dict
+    court_points: str | None
+    virtual: dict | None
+    condition: dict
     blur_faces: bool
     parameters: dict
 
     def calibration_camera_names(self):
         """Return for each camera its name in the calibration file."""
         return {name: c.name_in_calibration or name for name, c in self.cameras.items()}
+
+    def calibrations(self):
+        """Return those of the study's ways to find cameras for which this session has recordings."""
+        clicked, walked = self.court_points is not None, bool(self.walks)
+        boards = clicked and all(camera.chessboard for camera in self.cameras.values())
+        possible = {
+            "file": self.calibration_file is not None,
+            "known": clicked,
+            "dlt": clicked,
+            "sfm": walked and bool(self.cameras),
+            "sim3": walked and clicked,
+            "paper": walked and clicked,
+        }
+        return [
+            way
+            for way in self.parameters["calibrations"]
+            if next(there for kind, there in possible.items() if way.startswith(kind))
+            and (boards or not way.endswith("-board"))
+        ]
+
+    def variants(self):
+        """Return the names of all structures from motion of the sweep: `{mapper}-n{N}-o{offset}`."""
+        sweep = self.parameters["sweep"]
+        return [
+            f"{mapper}-n{count}-o{offset}"
+            for mapper in sweep["mappers"]
+            for count in sweep["n_images"]
+            for offset in range(sweep["n_offsets"] if count <= sweep["offsets_up_to"] else 1)
+        ]
+
+    def filmed(self):
+        """Return the names of all cameras and walks."""
+        return [*self.cameras, *self.walks]
+
+    def films_boards(self):
+        """Say whether this is a virtual session whose cameras take pictures of a chessboard."""
+        return bool(self.virtual and self.virtual.get("boards"))
 
 
 @dataclass(frozen=True)
@@ -145,12 +201,7 @@ def session(name, file, content, parameters):
     parameters : dict
         The study's configuration, whose steps `override` in `content` changes.
     """
-    override = content.get("override", {})
-    merged = {
-        key: {**value, **override.get(key, {})} if isinstance(value, dict) else value
-        for key, value in parameters.items()
-    }
-    subjects = {key: Subject(**(value or {})) for key, value in content["subjects"].items()}
+    subjects = {key: Subject(**(value or {})) for key, value in content.get("subjects", {}).items()}
     takes = {
         key: Take(
             name=key,
@@ -158,20 +209,88 @@ def session(name, file, content, parameters):
             subjects=tuple(value.get("subjects", subjects)),
             trim_s=tuple(value["trim_s"]) if "trim_s" in value else None,
         )
-        for key, value in content["takes"].items()
+        for key, value in content.get("takes", {}).items()
     }
+    recordings = {} if content.get("virtual") is None else _virtual(name, content)
+    cameras = {key: _camera(value or {}) for key, value in content["cameras"].items()}
+    for key, path in recordings.get("static", {}).items():
+        cameras[key] = replace(cameras[key], static=path)
     return Session(
         name=name,
         file=str(file),
         description=content["description"],
         court=None if content["court"] == "none" else content["court"],
         subjects=subjects,
-        cameras={key: _camera(value or {}) for key, value in content["cameras"].items()},
+        cameras=cameras,
         takes=takes,
-        calibration_file=content["calibration"]["file"],
+        calibration_file=content.get("calibration", {}).get("file"),
+        walks=recordings.get("walks") or _walks(content.get("walks", {})),
+        court_points=recordings.get("court_points") or content.get("court_points"),
+        virtual=content.get("virtual"),
+        condition={},
         blur_faces=content.get("blur_faces", True),
-        parameters=merged,
+        parameters=_merged(parameters, content.get("override", {})),
     )
+
+
+def variations(base, name, vary, override):
+    """Build the sessions that differ from a virtual one in some of its settings.
+
+    Parameters
+    ----------
+    base : Session
+    name : str
+        Of the condition.
+    vary : dict of str to list
+        Values of keys of `virtual`; every combination is one session.
+    override : dict
+        Steps' parameters that differ from the base session's own.
+
+    Returns
+    -------
+    sessions : dict of str to Session
+        `{name}-{k}`.
+    """
+    found = {}
+    for k, values in enumerate(product(*vary.values())):
+        condition = dict(zip(vary, values, strict=True))
+        own = f"{name}-{k}"
+        files = _virtual(own, {"cameras": base.cameras, "walks": base.walks})
+        found[own] = replace(
+            base,
+            name=own,
+            cameras={
+                c: replace(v, static=files["static"][c], chessboard=None)
+                for c, v in base.cameras.items()
+            },
+            walks=files["walks"],
+            court_points=files["court_points"],
+            virtual={**base.virtual, **condition},
+            condition={"condition": name, **condition},
+            parameters=_merged(base.parameters, override),
+        )
+    return found
+
+
+def _merged(parameters, override):
+    return {
+        key: {**value, **override.get(key, {})} if isinstance(value, dict) else value
+        for key, value in parameters.items()
+    }
+
+
+def _walks(content):
+    return {key: value.get("video") or value["images"] for key, value in content.items()}
+
+
+def _virtual(name, content):
+    """Return the files that a simulation makes, by the keys of a session."""
+    folder = f"{VIRTUAL}/{name}"
+    return {
+        "static": {camera: f"{folder}/{camera}.mp4" for camera in content["cameras"]},
+        "walks": {walk: f"{folder}/{walk}.mp4" for walk in content["walks"]},
+        "court_points": f"{folder}/court_points.csv",
+    }
 
 
 def _camera(content):

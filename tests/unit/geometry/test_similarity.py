@@ -1,0 +1,116 @@
+"""Similarities against exact truth, scipy's rotation fit, and a camera's own picture."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry import similarity
+from courtside.study.errors import InputError
+from scene import opencv_projection, points, ring
+
+TRUE = similarity.Sim3(
+    2.5, Rotation.from_rotvec([0.4, -1.1, 2.0]).as_matrix(), np.array([3.0, -7, 1])
+)
+
+
+def assert_same(found, true, tolerance=1e-9):
+    assert found.scale == pytest.approx(true.scale, rel=tolerance)
+    np.testing.assert_allclose(found.rotation, true.rotation, atol=tolerance)
+    np.testing.assert_allclose(found.translation, true.translation, atol=10 * tolerance)
+
+
+def test_exact_points_give_the_transform_and_its_inverse():
+    x_in_a = points(6)
+    x_in_b = 2.5 * Rotation.from_matrix(TRUE.rotation).apply(x_in_a) + TRUE.translation
+    assert_same(similarity.umeyama(x_in_a, x_in_b), TRUE)
+    assert_same(similarity.umeyama(x_in_b, x_in_a), TRUE.inverse())
+    np.testing.assert_allclose(TRUE.inverse().points(x_in_b), x_in_a, atol=1e-12)
+
+
+def test_a_camera_shows_the_same_picture_in_both_frames():
+    camera = ring(3, dist=(-0.1, 0.02, 1e-3, 1e-3, 0))[1]
+    moved = TRUE.camera(camera)
+    xyz = points(9)
+    xy = opencv_projection(moved, TRUE.points(xyz))
+    np.testing.assert_allclose(xy, opencv_projection(camera, xyz), atol=1e-9)
+    np.testing.assert_allclose(
+        moved.centre_in_world, TRUE.points(camera.centre_in_world), atol=1e-12
+    )
+    rotation = moved.cam_from_world[:, :3]
+    np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
+
+
+def test_the_rotation_is_scipys_and_the_fit_is_the_least_squares_one():
+    rng = np.random.default_rng(0)
+    x_in_a, weight = points(10), rng.uniform(0.2, 3, 10)
+    x_in_b = TRUE.points(x_in_a) + rng.normal(0, 0.2, (10, 3))
+    found = similarity.umeyama(x_in_a, x_in_b, weight)
+    middle_a, middle_b = (np.average(x, axis=0, weights=weight) for x in (x_in_a, x_in_b))
+    theirs, _ = Rotation.align_vectors(x_in_b - middle_b, x_in_a - middle_a, weight)
+    np.testing.assert_allclose(found.rotation, theirs.as_matrix(), atol=1e-7)
+
+    def cost(scale, shift):
+        placed = similarity.Sim3(scale, found.rotation, shift).points(x_in_a)
+        return (weight * ((placed - x_in_b) ** 2).sum(axis=1)).sum()
+
+    least = cost(found.scale, found.translation)
+    assert all(cost(found.scale * factor, found.translation) > least for factor in (0.999, 1.001))
+    for step in 0.01 * np.eye(3):
+        assert cost(found.scale, found.translation + step) > least
+
+
+@pytest.mark.parametrize(
+    ("x_in_a", "x_in_b"),
+    [
+        (points(2), points(2)),
+        (np.outer(range(5), [1, 2, 3]), points(5)),
+        (points(5) * np.nan, points(5)),
+        (points(5), points(4)),
+    ],
+    ids=["two", "line", "missing", "shapes"],
+)
+def test_points_without_a_transform_are_programming_faults(x_in_a, x_in_b):
+    with pytest.raises(ValueError, match="expected"):
+        similarity.umeyama(x_in_a, x_in_b)
+
+
+@pytest.mark.parametrize("n_wrong", [0, 1, 3, 6])
+def test_wrong_points_are_left_out(n_wrong):
+    rng = np.random.default_rng(n_wrong)
+    x_in_a = points(18)
+    x_in_b = TRUE.points(x_in_a) + rng.normal(0, 0.002, (18, 3))
+    x_in_b[:n_wrong] += rng.uniform(0.5, 2, (n_wrong, 3))
+    found, accepted = similarity.robust(x_in_a, x_in_b, 0.002)
+    assert accepted.tolist() == [False] * n_wrong + [True] * (18 - n_wrong)
+    assert_same(found, similarity.umeyama(x_in_a[n_wrong:], x_in_b[n_wrong:]))
+    again, _ = similarity.robust(x_in_a, x_in_b, 0.002)
+    assert again.scale == found.scale and (again.rotation == found.rotation).all()
+
+
+def test_points_that_scatter_more_than_stated_are_kept_all_the_same():
+    rng = np.random.default_rng(1)
+    x_in_a = points(18)
+    x_in_b = TRUE.points(x_in_a) + rng.normal(0, 0.1, (18, 3))
+    _, accepted = similarity.robust(x_in_a, x_in_b, 0.002)
+    assert accepted.sum() >= 16
+
+
+def test_missing_points_are_no_obstacle():
+    x_in_a, x_in_b = points(8), TRUE.points(points(8))
+    x_in_a[2], x_in_b[5, 1] = np.nan, np.nan
+    found, accepted = similarity.robust(x_in_a, x_in_b, 0.01)
+    assert np.flatnonzero(~accepted).tolist() == [2, 5]
+    assert_same(found, TRUE)
+
+
+def test_mirrored_and_collinear_points_are_refused():
+    x_in_b = TRUE.points(points(12))
+    with pytest.raises(InputError, match=r"right-handed world .* exchange the names"):
+        similarity.robust(points(12) * [-1, 1, 1], x_in_b, 0.005)
+    line = np.outer(range(6), [1, 2, 3])
+    with pytest.raises(
+        InputError, match=r"court points: expected three or more that are not on one line"
+    ):
+        similarity.robust(line, line, 0.005)
+    with pytest.raises(InputError, match="found 2 that two cameras see"):
+        similarity.robust(points(2), points(2), 0.005)

@@ -1,0 +1,157 @@
+"""Mapping: exact matches give the exact model, the door its measured cameras, noise nothing."""
+
+import numpy as np
+import pycolmap
+import pytest
+import scipy.io
+import sfm_made
+
+from courtside.geometry import similarity
+from courtside.sfm import features, mapping, matching, model
+from real_data import REAL, needs_real
+
+DOOR = REAL / "sfm-door"
+both_mappers = pytest.mark.parametrize("mapper", mapping.MAPPERS)
+
+
+@pytest.fixture(scope="module")
+def synthetic(tmp_path_factory):
+    path = tmp_path_factory.mktemp("synthetic") / "matches.db"
+    return path, sfm_made.synthetic(path)
+
+
+def parameters(folder):
+    network, names, _ = model.read(folder)
+    return names, network.cam_from_world, network.lens, network.xyz
+
+
+def assert_placed(found, truth, tolerance):
+    """Compare the places of images by name after a similarity, in parts of the longest distance."""
+    names = sorted(found)
+    ours, theirs = (np.array([places[name] for name in names]) for places in (found, truth))
+    span = np.linalg.norm(theirs[:, None] - theirs, axis=-1).max()
+    off = similarity.umeyama(ours, theirs).points(ours) - theirs
+    assert np.linalg.norm(off, axis=1).max() < tolerance * span
+
+
+@both_mappers
+def test_exact_matches_give_the_exact_model(synthetic, tmp_path, mapper):
+    path, truth = synthetic
+    before, names = path.read_bytes(), sorted(sfm_made.centres(truth))
+    summary = mapping.map_images(path, names, tmp_path / "model", mapper=mapper, seed=0)
+    counts = {"n_images": 6, "n_models": 1, "n_registered": 6, "n_points3d": 150}
+    assert summary | {**counts, "mapper": mapper, "seed": 0, "track_length": 6.0} == summary
+    assert summary["reprojection_px"] < 1e-3
+    found = pycolmap.Reconstruction(str(tmp_path / "model"))
+    assert_placed(sfm_made.centres(found), sfm_made.centres(truth), 1e-4)
+    assert path.read_bytes() == before and [p.name for p in path.parent.iterdir()] == [path.name]
+
+
+@both_mappers
+def test_images_that_are_not_asked_for_are_as_if_not_there(synthetic, tmp_path, mapper):
+    path, truth = synthetic
+    names = sorted(sfm_made.centres(truth))[1:5]
+    mapping.map_images(path, names, tmp_path / "model", mapper=mapper, seed=0)
+    network, found, _ = model.read(tmp_path / "model")
+    assert found == names and set(network.image_idx) == {0, 1, 2, 3}
+
+
+@both_mappers
+def test_the_same_seed_gives_the_same_model(synthetic, tmp_path, mapper):
+    path, truth = synthetic
+    names = sorted(sfm_made.centres(truth))
+    for folder in ("a", "b"):
+        mapping.map_images(path, names, tmp_path / folder, mapper=mapper, seed=5)
+    first, second = (parameters(tmp_path / folder) for folder in ("a", "b"))
+    assert first[0] == second[0]
+    for ours, theirs in zip(first[1:], second[1:], strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-9)
+
+
+@both_mappers
+def test_noise_gives_an_empty_model(tmp_path, mapper):
+    names = tuple(f"{at}.png" for at in range(3))
+    noise = np.random.default_rng(0).integers(0, 255, (3, 120, 160), dtype=np.uint8)
+    sfm_made.write(tmp_path, dict(zip(names, noise, strict=True)))
+    group = features.Group("noise", names)
+    features.extract(tmp_path / "f.db", tmp_path, [group], **sfm_made.EXTRACTION)
+    pairs = [(names[0], names[1]), (names[0], names[2]), (names[1], names[2])]
+    assert set(matching.match(tmp_path / "f.db", tmp_path / "m.db", pairs, seed=0).values()) == {0}
+    summary = mapping.map_images(
+        tmp_path / "m.db", list(names), tmp_path / "model", mapper=mapper, seed=0
+    )
+    assert (summary["n_images"], summary["n_registered"], summary["n_points3d"]) == (3, 0, 0)
+    network, found, sizes = model.read(tmp_path / "model")
+    assert found == [] and sizes == [] and len(network.xy) == 0
+
+
+def test_options_reach_the_mapper(synthetic, tmp_path):
+    path, truth = synthetic
+    names = sorted(sfm_made.centres(truth))
+    options = {"ba_refine_focal_length": False, "ba_refine_extra_params": False}
+    mapping.map_images(
+        path, names, tmp_path / "kept", mapper="incremental", seed=0, options=options
+    )
+    lens = model.read(tmp_path / "kept")[0].lens[0]
+    np.testing.assert_allclose(lens[0] * lens[1], sfm_made.LENS[0], rtol=1e-12)
+    options = {"mapper.init_min_num_inliers": 10**6}
+    summary = mapping.map_images(
+        path, names, tmp_path / "none", mapper="incremental", seed=0, options=options
+    )
+    assert summary["n_registered"] == 0
+
+
+def test_an_unknown_option_is_refused(synthetic, tmp_path):
+    with pytest.raises(ValueError, match=r"no option mapper\.speed"):
+        mapping.map_images(
+            synthetic[0], [], tmp_path, mapper="incremental", seed=0, options={"mapper.speed": 1}
+        )
+
+
+@pytest.fixture(scope="module")
+def door(tmp_path_factory):
+    """Match all pairs of the door's twelve photos."""
+    folder = tmp_path_factory.mktemp("door")
+    names = tuple(sorted(path.name for path in (DOOR / "images").iterdir()))
+    group, root = features.Group("door", names), DOOR / "images"
+    extraction = {"max_features": 1500, "first_octave": 0, "focal_factor": 1.2}
+    features.extract(folder / "f.db", root, [group], **extraction, threads=2)
+    pairs = [(a, b) for at, a in enumerate(names) for b in names[at + 1 :]]
+    matching.match(folder / "f.db", folder / "m.db", pairs, seed=0, threads=2)
+    return folder / "m.db", names
+
+
+def measured_centres(names):
+    """Return where the photos were taken, as others found (data.mat: P = K [R t], by picture)."""
+    content = scipy.io.loadmat(DOOR / "data.mat")
+    assert [str(row[0][0]) for row in content["imnames"].ravel()] == list(names)
+    return {
+        name: -np.linalg.solve(P[:, :3], P[:, 3])
+        for name, P in zip(names, content["P"].ravel(), strict=True)
+    }
+
+
+@needs_real
+@both_mappers
+def test_the_door_is_mapped_as_others_measured_it(door, tmp_path, mapper):
+    path, names = door
+    summary = mapping.map_images(path, list(names), tmp_path / "model", mapper=mapper, seed=1)
+    assert summary["n_registered"] == 12
+    network, found, sizes = model.read(tmp_path / "model")
+    assert tuple(found) == names and sizes == [(1296, 1936)]
+    pose = network.cam_from_world
+    centres = -np.einsum("vji,vj->vi", pose[:, :, :3], pose[:, :, 3])
+    assert_placed(dict(zip(found, centres, strict=True)), measured_centres(names), 0.002)
+    measured_px = scipy.io.loadmat(DOOR / "data.mat")["P"][0, 0][1, 1]
+    assert network.lens[0, 0] == pytest.approx(measured_px, rel=0.025)
+
+
+@needs_real
+def test_the_door_is_mapped_twice_the_same(door, tmp_path):
+    path, names = door
+    for folder in ("a", "b"):
+        mapping.map_images(path, list(names[:5]), tmp_path / folder, mapper="global", seed=1)
+    first, second = (parameters(tmp_path / folder) for folder in ("a", "b"))
+    assert first[0] == second[0] == list(names[:5])
+    for ours, theirs in zip(first[1:], second[1:], strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-9)

@@ -1,0 +1,168 @@
+"""Trials of calibration as evaluations record them: reading, spreads, paired differences and their limits."""
+
+import numpy as np
+import pandas as pd
+
+TEXT = ("session", "preset", "layout", "condition", "mapper", "method", "outcome")
+CHOICE = ["method", "n_clicks", "in_sample"]
+STRUCTURE = ["session", "condition", "mapper", "n_bridging", "offset"]
+# What a structure from motion without a result would have been used for, where no other tells.
+USUAL = pd.DataFrame(
+    [("sfm", 18, True), ("sfm", 18, False), ("sim3", 18, True), ("sim3", 18, False), ("paper", 3, True)],
+    columns=CHOICE,
+)
+REPLICATES = 2000
+
+
+def read(paths):
+    """Read evaluation tables, of structures from motion and of known points, into one.
+
+    Parameters
+    ----------
+    paths : sequence of str or Path
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        As `tidy` returns them.
+    """
+    tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
+    return tidy(pd.concat(tables, ignore_index=True))
+
+
+def tidy(rows):
+    """Give every trial one row, also those of a structure from motion that has no result.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        As the evaluations write them: a structure without a result has one row per draw, without a method.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        No text is missing; `placed` says whether there are cameras to score (always so for known points); rows of
+        a structure without a result are repeated for each choice of method, clicks and scored points.
+    """
+    rows = rows.copy()
+    for column in TEXT:
+        rows[column] = rows[column].fillna("").astype(str) if column in rows else ""
+    for column in {"n_bridging", "offset", "in_sample"} - set(rows):
+        rows[column] = np.nan
+    empty = (rows["method"] == "").to_numpy()
+    done, failed = rows[~empty].copy(), rows[empty]
+    done["in_sample"] = done["in_sample"].astype(str) == "True"
+    done["placed"] = True
+    if failed.empty:
+        return done.reset_index(drop=True)
+    choices = done.loc[done["mapper"] != "", CHOICE].drop_duplicates()
+    failed = failed.drop(columns=CHOICE, errors="ignore").assign(placed=False)
+    failed = failed.merge(choices if len(choices) else USUAL, how="cross")
+    whole = [failed.dropna(axis=1, how="all"), done] if len(done) else [failed]
+    return pd.concat(whole, ignore_index=True)[[*rows.columns, "placed"]]
+
+
+def spread(values):
+    """Return the number of finite values and their 5, 50 and 95 % quantiles, as a Series."""
+    known = np.asarray(values, dtype=float)
+    known = known[np.isfinite(known)]
+    low, middle, high = np.quantile(known, [0.05, 0.5, 0.95]) if len(known) else (np.nan,) * 3
+    return pd.Series({"n": len(known), "p05": low, "median": middle, "p95": high})
+
+
+def summary(rows, by, value):
+    """Return the spread of one column of trials, group by group.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `tidy`.
+    by : list of str
+        Columns that make a group; rows without one of them form a group too.
+    value : str
+
+    Returns
+    -------
+    groups : pandas.DataFrame
+        The columns `by`, then n, p05, median, p95 and n_failed: the trials without a value.
+    """
+    columns = [*by, "n", "p05", "median", "p95", "n_failed"]
+    found = [
+        (*key, *(counts := spread(group[value])), len(group) - counts["n"])
+        for key, group in rows.groupby(by, dropna=False, sort=True)
+    ]
+    return pd.DataFrame(found, columns=columns).astype({"n": int, "n_failed": int})
+
+
+def structures(rows):
+    """Return one row per structure from motion: whether it is placed, images, angles between neighbours."""
+    about = ["placed", "n_registered", "n_images", "neighbour_deg_median", "neighbour_deg_max"]
+    of_walk = rows[rows["mapper"] != ""]
+    first = of_walk.drop_duplicates(STRUCTURE).reindex(columns=[*STRUCTURE, *about])
+    first["registered_share"] = first["n_registered"] / first["n_images"]
+    return first.sort_values(STRUCTURE, ignore_index=True)
+
+
+def against(rows, reference, on, value="volume_rms_cm"):
+    """Return the paired differences of trials from their reference.
+
+    Parameters
+    ----------
+    rows, reference : pandas.DataFrame
+        Of `tidy`.
+    on : list of str
+        Columns that make a pair; at most one row of `reference` has the same.
+    value : str
+
+    Returns
+    -------
+    difference : (len(rows),) float
+        NaN where one of the two is missing.
+    """
+    known = reference[[*on, value]].rename(columns={value: "reference"})
+    both = rows[[*on, value]].merge(known, on=on, how="left", validate="many_to_one")
+    return (both[value] - both["reference"]).to_numpy(dtype=float)
+
+
+def upper_limit(difference, scene, structure, *, seed=0):
+    """Return the 95 % upper confidence limit of a mean difference, by bootstrap of nested clusters.
+
+    Parameters
+    ----------
+    difference : (n,) float
+        NaN are left out.
+    scene, structure : (n,) array_like
+        Labels: trials of one scene share what the scene does to them, trials of one structure its images.
+    seed : int
+
+    Returns
+    -------
+    limit : float
+        NaN with fewer than two differences.
+
+    Notes
+    -----
+    Scenes, then the structures within each, then the draws within each are drawn again with replacement; every
+    scene counts alike, and every structure within its scene (Davison & Hinkley 1997, sec. 3.8). With one scene the
+    limit speaks of that scene only.
+    """
+    known = np.isfinite(difference)
+    if known.sum() < 2:
+        return np.nan
+    rng = np.random.default_rng(seed)
+    table = pd.DataFrame({"scene": np.asarray(scene), "structure": np.asarray(structure)})
+    table = table.assign(value=np.asarray(difference, dtype=float))[known]
+    means = [
+        _resampled_mean(
+            rng, [_resampled_mean(rng, part["value"].to_numpy()[:, None]) for _, part in of_scene]
+        )
+        for of_scene in (group.groupby("structure") for _, group in table.groupby("scene"))
+    ]
+    return float(np.quantile(_resampled_mean(rng, means), 0.95))
+
+
+def _resampled_mean(rng, values):
+    """Return means (REPLICATES,) of values (n, REPLICATES) or (n, 1), each of n drawn with replacement."""
+    values = np.asarray(values)
+    times = rng.multinomial(len(values), np.full(len(values), 1 / len(values)), REPLICATES)
+    return np.einsum("rn,nr->r", times, np.broadcast_to(values, (len(values), REPLICATES))) / len(values)

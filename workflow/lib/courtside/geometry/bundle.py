@@ -1,0 +1,245 @@
+"""Bundle adjustment of a `Network`: Levenberg-Marquardt on the images and lenses, with the points eliminated."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg, sparse
+
+from courtside.geometry import network as networks
+
+FLAT = 1e-10  # of a point's information along its best direction: no depth is known below it
+
+
+@dataclass(frozen=True, eq=False)
+class Quadratic:
+    """What else is known of the image and lens parameters: a parabola about a reference.
+
+    Attributes
+    ----------
+    reference : courtside.geometry.network.Network
+    information : (K, K) float
+        Second derivative, over all columns.
+    gradient : (K,) float
+        First derivative at the reference.
+    """
+
+    reference: networks.Network
+    information: np.ndarray
+    gradient: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """Normal equations of a network with its points eliminated.
+
+    Attributes
+    ----------
+    active : (K,) bool
+        The parameters that are not fixed, and of which anything is known.
+    information : (A, A) float
+        Of the active ones.
+    gradient : (A,) float
+    cost : float
+        Half the sum of squared, robustly weighted residuals.
+    point_information : (N, 3, 3) float
+    back : callable
+        Step of the points (N, 3) from a step of the active parameters (A,).
+    """
+
+    active: np.ndarray
+    information: np.ndarray
+    gradient: np.ndarray
+    cost: float
+    point_information: np.ndarray
+    back: object
+
+
+def adjust(network, *, quadratic=None, max_iterations=30, tolerance=1e-8):
+    """Find the network of least cost.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+        A start within the reach of Newton's method.
+    quadratic : Quadratic, optional
+        Knowledge that is not in the observations.
+    max_iterations : int
+    tolerance : float
+        Stop when the cost falls by less than this fraction.
+
+    Returns
+    -------
+    network : courtside.geometry.network.Network
+    normal : Normal
+        At the solution.
+
+    Notes
+    -----
+    Triggs et al. 2000. The Cauchy loss is kept by weights of Triggs's first order (IRLS). Without a prior on
+    points or images the world frame is free: damping keeps it where it starts, and the information is singular.
+    """
+    damping = 1e-4
+    normal = normal_equations(network, quadratic)
+    for _ in range(max_iterations):
+        moved, trial = _descend(network, normal, quadratic, damping)
+        while trial is None and damping < 1e6:
+            damping *= 10
+            moved, trial = _descend(network, normal, quadratic, damping)
+        if trial is None:
+            break
+        gain = (normal.cost - trial) / max(trial, 1e-300)
+        network, damping = moved, max(damping / 10, 1e-9)
+        normal = normal_equations(network, quadratic)
+        if gain < tolerance:
+            break
+    return network, normal
+
+
+def _descend(network, normal, quadratic, damping):
+    """Return the network after a damped step with its cost, None if the cost does not fall."""
+    information = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
+    part = linalg.solve(information, -normal.gradient, assume_a="sym")
+    step = np.zeros(len(normal.active))
+    step[normal.active] = part
+    moved = network.moved(step, normal.back(part))
+    trial = cost(moved, quadratic)
+    return moved, trial if trial <= normal.cost else None
+
+
+def cost(network, quadratic=None):
+    """Return half the sum of squares of all residuals in sigmas, inf where a point is behind its image."""
+    scaled = networks.residuals(network) / network.sigma_px[:, None]
+    if not np.isfinite(scaled).all():
+        return np.inf
+    square = (scaled**2).sum(axis=1)
+    scale = network.loss_scale**2
+    robust = np.isfinite(scale)
+    total = square[~robust].sum()
+    total += (scale[robust] * np.log1p(square[robust] / scale[robust])).sum()
+    off, _ = _prior(network)
+    total += (off**2).sum() + (_point_prior(network)[0] ** 2).sum()
+    if quadratic is not None:
+        step = network.difference(quadratic.reference)
+        total += step @ quadratic.information @ step + 2 * quadratic.gradient @ step
+    return total / 2
+
+
+def normal_equations(network, quadratic=None):
+    """Build the `Normal` of a network.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    quadratic : Quadratic, optional
+    """
+    residual = networks.residuals(network)
+    by_camera, by_point = networks.jacobians(network)
+    weight = _weight(network, residual)
+    seen = weight > 0
+    residual, by_camera, by_point = (
+        np.where(_along(seen, terms), terms, 0.0) * _along(weight, terms)
+        for terms in (residual, by_camera, by_point)
+    )
+    full, gradient = _camera_side(network, by_camera, residual, quadratic)
+    active = _active(network) & (np.diag(full) > 0)
+    root, point_gradient, point_information = _point_side(network, by_point, residual)
+    coupling = _coupling(network, root, by_point, by_camera)[:, active]
+    scaled_gradient = np.einsum("nij,nj->ni", root, point_gradient)
+    information = full[np.ix_(active, active)] - (coupling.T @ coupling).toarray()
+    gradient = gradient[active] - coupling.T @ scaled_gradient.ravel()
+
+    def back(step):
+        pulled = (coupling @ step).reshape(-1, 3) + scaled_gradient
+        return -np.einsum("nji,nj->ni", root, pulled)
+
+    total = cost(network, quadratic)
+    return Normal(active, information, gradient, total, point_information, back)
+
+
+def _along(values, terms):
+    """Return values (M,) shaped so that they apply to terms (M, ...)."""
+    return values.reshape(-1, *[1] * (terms.ndim - 1))
+
+
+def _weight(network, residual):
+    """Return the square root of each observation's weight (M,); 0 where its point is behind its image."""
+    square = (residual**2).sum(axis=1) / network.sigma_px**2
+    robust = 1 / np.sqrt(1 + square / network.loss_scale**2)
+    return np.where(np.isfinite(square), robust, 0.0) / network.sigma_px
+
+
+def _active(network):
+    flex = network.flex_sigma > 0
+    pose = np.ones((len(flex), len(networks.POSE)), dtype=bool)
+    images = np.concatenate([pose, flex], axis=1)
+    return np.concatenate([images.ravel(), (network.lens_sigma > 0).ravel()])
+
+
+def _prior(network):
+    """Return (value - mean) / sigma and 1 / sigma of all image and lens parameters, 0 where nothing is known."""
+    flex = np.concatenate(
+        [np.full((len(network.flex), len(networks.POSE)), np.inf), network.flex_sigma], axis=1
+    )
+    sigma = np.concatenate([flex.ravel(), network.lens_sigma.ravel()])
+    poses = np.zeros((len(network.flex), len(networks.POSE)))
+    value = np.concatenate([poses, network.flex], axis=1)
+    value = np.concatenate([value.ravel(), (network.lens - network.lens_mean).ravel()])
+    inverse = np.divide(1.0, sigma, out=np.zeros_like(sigma), where=sigma > 0)
+    return value * inverse, inverse
+
+
+def _point_prior(network):
+    known = np.isfinite(network.xyz_sigma)
+    inverse = np.divide(1.0, network.xyz_sigma, out=np.zeros(len(known)), where=known)
+    return np.where(known[:, None], network.xyz - network.xyz_mean, 0.0) * inverse[:, None], inverse
+
+
+def _camera_side(network, by_camera, residual, quadratic):
+    """Return information (K, K) and gradient (K,) of the image and lens parameters before elimination."""
+    size, columns = network.n_columns, network.columns()
+    blocks = np.einsum("mri,mrj->mij", by_camera, by_camera)
+    rows = np.broadcast_to(columns[:, :, None], blocks.shape).ravel()
+    flat = rows * size + np.broadcast_to(columns[:, None, :], blocks.shape).ravel()
+    information = np.bincount(flat, blocks.ravel(), minlength=size * size).reshape(size, size)
+    pull = np.einsum("mri,mr->mi", by_camera, residual)
+    gradient = np.bincount(columns.ravel(), pull.ravel(), minlength=size)
+    off, inverse = _prior(network)
+    information[np.diag_indices(size)] += inverse**2
+    gradient += off * inverse
+    if quadratic is not None:
+        step = network.difference(quadratic.reference)
+        information += quadratic.information
+        gradient += quadratic.gradient + quadratic.information @ step
+    return information, gradient
+
+
+def _point_side(network, by_point, residual):
+    """Return of the points root (N, 3, 3), root.T @ root being their covariance, gradient and information."""
+    n_points = len(network.xyz)
+    blocks = np.einsum("mri,mrj->mij", by_point, by_point).reshape(-1, 9)
+    information = _sum_by(network.point_idx, blocks, n_points).reshape(-1, 3, 3)
+    gradient = _sum_by(network.point_idx, np.einsum("mri,mr->mi", by_point, residual), n_points)
+    off, inverse = _point_prior(network)
+    information = information + (inverse**2)[:, None, None] * np.eye(3)
+    gradient = gradient + off * inverse[:, None]
+    extent, axes = np.linalg.eigh(information)
+    most = extent[:, -1:]
+    extent = np.maximum(extent, FLAT * most + (most == 0))
+    root = axes.transpose(0, 2, 1) / np.sqrt(extent)[:, :, None]
+    return root, gradient, information
+
+
+def _sum_by(index, values, length):
+    return np.stack(
+        [np.bincount(index, column, minlength=length) for column in values.T], axis=1
+    )
+
+
+def _coupling(network, root, by_point, by_camera):
+    """Return root @ by_point.T @ by_camera, summed by point: sparse (3 N, K)."""
+    block = np.einsum("mij,mrj,mrk->mik", root[network.point_idx], by_point, by_camera)
+    rows = 3 * network.point_idx[:, None, None] + np.arange(3)[None, :, None]
+    columns = network.columns()[:, None, :]
+    shape = (3 * len(network.xyz), network.n_columns)
+    at = (np.broadcast_to(rows, block.shape).ravel(), np.broadcast_to(columns, block.shape).ravel())
+    return sparse.csr_matrix((block.ravel(), at), shape=shape)

@@ -1,0 +1,222 @@
+"""A network tied to the court: ties thinned and weighted, clicked court points as control points, fixed cameras."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.geometry import bundle
+from courtside.geometry import network as networks
+from courtside.geometry.cameras import Camera
+
+
+def transform(network, b_from_a):
+    """Return a network whose frame is moved and scaled by a `similarity.Sim3`."""
+    rotation = network.cam_from_world[:, :, :3] @ b_from_a.rotation.T
+    shift = b_from_a.scale * network.cam_from_world[:, :, 3] - rotation @ b_from_a.translation
+    pose = np.concatenate([rotation, shift[:, :, None]], axis=2)
+    return replace(network, cam_from_world=pose, xyz=b_from_a.points(network.xyz))
+
+
+def select(network, points, seen=None):
+    """Return a network with some of its points and observations, all images and lenses.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    points : (N,) bool
+    seen : (M,) bool, optional
+        Observations; those of dropped points go in any case.
+    """
+    seen = points[network.point_idx] & (True if seen is None else seen)
+    number = np.cumsum(points) - 1
+    per_point = {name: getattr(network, name)[points] for name in ("xyz", "xyz_mean", "xyz_sigma")}
+    kept = ("image_idx", "xy", "sigma_px", "loss_scale")
+    per_view = {name: getattr(network, name)[seen] for name in kept}
+    return replace(network, point_idx=number[network.point_idx[seen]], **per_point, **per_view)
+
+
+def thin(network, *, min_angle_deg, max_error_px, max_points, seed):
+    """Keep those points that tie images well, and of these a random choice.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    min_angle_deg : float
+        Smallest angle between a point's two most different rays.
+    max_error_px : float
+        Observations farther from their point's projection are dropped, and points then seen once.
+    max_points : int
+    seed : int
+
+    Returns
+    -------
+    network : courtside.geometry.network.Network
+
+    Notes
+    -----
+    A random choice does better than the points seen under the widest angles: those are often wrong. More
+    points than some thousand do not help: their errors come from the features and are not independent.
+    """
+    error = np.linalg.norm(networks.residuals(network), axis=1)
+    seen = error <= max_error_px  # of a point behind its image the error is NaN
+    network = select(network, np.ones(len(network.xyz), dtype=bool), seen)
+    points = _widest_angle(network) >= np.radians(min_angle_deg)
+    n_seen = np.bincount(network.point_idx, minlength=len(network.xyz))
+    good = np.flatnonzero(points & (n_seen >= 2))
+    chosen = np.random.default_rng(seed).permutation(good)[:max_points]
+    points = np.zeros(len(network.xyz), dtype=bool)
+    points[chosen] = True
+    return select(network, points)
+
+
+def _widest_angle(network):
+    """Return twice the widest angle between a point's rays and their mean, (N,) rad."""
+    rays = network.xyz[network.point_idx] - centres(network)[network.image_idx]
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    mean = np.zeros((len(network.xyz), 3))
+    np.add.at(mean, network.point_idx, rays)
+    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-12)
+    cosine = np.einsum("mi,mi->m", rays, mean[network.point_idx])
+    widest = np.zeros(len(network.xyz))
+    np.maximum.at(widest, network.point_idx, np.arccos(np.clip(cosine, -1, 1)))
+    return 2 * widest
+
+
+def centres(network):
+    """Return the projection centres of all images, (V, 3)."""
+    pose = network.cam_from_world
+    return -np.einsum("vji,vj->vi", pose[:, :, :3], pose[:, :, 3])
+
+
+def weigh(network, *, sigma_px, loss_scale):
+    """Return a network in which all observations have one sigma and one loss."""
+    return replace(
+        network,
+        sigma_px=np.full(len(network.xy), float(sigma_px)),
+        loss_scale=np.full(len(network.xy), float(loss_scale)),
+    )
+
+
+def add(network, xyz, xyz_sigma, clicks, *, sigma_px, loss_scale):
+    """Return a network with control points behind its own points.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+        In the frame of `xyz`.
+    xyz : (P, 3) float
+        Known places, m; those with fewer than one click are left out.
+    xyz_sigma : (P,) float
+        How well they are known, m.
+    clicks : dict of int to (P, 2) float
+        Px by index of the image; NaN where not clicked.
+    sigma_px : dict of int to float
+        Of the clicks, by index of the image.
+    loss_scale : float
+        In sigmas.
+    """
+    clicked = [(v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))]
+    image_idx, point = np.array(clicked, dtype=int).reshape(-1, 2).T
+    used, point_idx = np.unique(point, return_inverse=True)
+    xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]
+    sigma = np.array([sigma_px[v] for v in image_idx])
+    places = np.array([clicks[v][p] for v, p in clicked]).reshape(-1, 2)
+    return replace(
+        network,
+        xyz=np.concatenate([network.xyz, xyz]),
+        xyz_mean=np.concatenate([network.xyz_mean, xyz]),
+        xyz_sigma=np.concatenate([network.xyz_sigma, xyz_sigma]),
+        image_idx=np.concatenate([network.image_idx, image_idx]),
+        point_idx=np.concatenate([network.point_idx, point_idx + len(network.xyz)]),
+        xy=np.concatenate([network.xy, places]),
+        sigma_px=np.concatenate([network.sigma_px, sigma]),
+        loss_scale=np.concatenate([network.loss_scale, np.full(len(places), float(loss_scale))]),
+    )
+
+
+def alone(network, images):
+    """Return a network of some images and their lenses, without any point or prior.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    images : sequence of int
+        Each with a lens of its own.
+    """
+    images = np.asarray(images, dtype=int)
+    lenses = network.lens_of_image[images]
+    empty = {name: getattr(network, name)[:0] for name in ("xyz", "xyz_mean", "xyz_sigma")}
+    unseen = {
+        name: getattr(network, name)[:0]
+        for name in ("image_idx", "point_idx", "xy", "sigma_px", "loss_scale")
+    }
+    return replace(
+        network,
+        cam_from_world=network.cam_from_world[images],
+        flex=np.zeros((len(images), 5)),
+        flex_sigma=np.zeros((len(images), 5)),
+        lens=network.lens[lenses],
+        lens_of_image=np.arange(len(images)),
+        height_px=network.height_px[images],
+        lens_mean=network.lens[lenses],
+        lens_sigma=np.full((len(images), len(networks.LENS)), np.inf),
+        **empty,
+        **unseen,
+    )
+
+
+def what_ties_say(network, images):
+    """Return what a network says of some images and their lenses, all else eliminated.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+        Without control points.
+    images : sequence of int
+        Each with a lens of its own.
+
+    Returns
+    -------
+    knowledge : courtside.geometry.bundle.Quadratic
+        About the network `alone(network, images)`, its frame and scale left open.
+    """
+    normal = bundle.normal_equations(network)
+    n_images, n_lens = len(network.cam_from_world), len(networks.LENS)
+    lenses = network.lens_of_image[np.asarray(images)]
+    blocks = [networks.IMAGE * v + np.arange(networks.IMAGE) for v in images]
+    blocks += [networks.IMAGE * n_images + n_lens * k + np.arange(n_lens) for k in lenses]
+    columns = np.concatenate(blocks)
+    place = np.full(network.n_columns, -1)
+    place[columns] = np.arange(len(columns))
+    place = place[normal.active]
+    mine, rest = place >= 0, place < 0
+    mixed = normal.information[np.ix_(rest, mine)]
+    whole = normal.information[np.ix_(rest, rest)]
+    scale = 1 / np.sqrt(np.maximum(np.diag(whole), 1e-300))
+    right = np.column_stack([mixed, normal.gradient[rest]]) * scale[:, None]
+    solved = scale[:, None] * np.linalg.lstsq(whole * np.outer(scale, scale), right)[0]
+    information = np.zeros((len(columns), len(columns)))
+    gradient = np.zeros(len(columns))
+    at = place[mine]
+    information[np.ix_(at, at)] = normal.information[np.ix_(mine, mine)] - mixed.T @ solved[:, :-1]
+    gradient[at] = normal.gradient[mine] - mixed.T @ solved[:, -1]
+    information = (information + information.T) / 2
+    return bundle.Quadratic(alone(network, images), information, gradient)
+
+
+def cameras(network, names, sizes):
+    """Return the images of a network as cameras; `names` and `sizes` are those of its first images.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    names : sequence of str
+    sizes : sequence of (int, int)
+        Width and height, px.
+    """
+    found = []
+    for v, (name, size) in enumerate(zip(names, sizes, strict=True)):
+        f_px, aspect, cx_px, cy_px, *dist = network.lens[network.lens_of_image[v]]
+        K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
+        found.append(Camera(name, size, K, [*dist, 0.0], network.cam_from_world[v]))
+    return found

@@ -1,0 +1,185 @@
+"""Fixed cameras in the court's frame: bundle adjustment of ties between images and clicked court points.
+
+The ties of one structure from motion are condensed once, into what they say of the fixed cameras; then any set
+of clicks costs milliseconds.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.geometry import alignment, bundle, control_points, uncertainty
+from courtside.geometry.network import IMAGE, POSE
+from courtside.study.errors import InputError
+
+UHD = 3840  # picture width at which click sigmas are stated
+
+
+@dataclass(frozen=True, eq=False)
+class Ties:
+    """What structure from motion says of the fixed cameras.
+
+    Attributes
+    ----------
+    cameras : tuple of str
+        Names, in the order of the images of `knowledge.reference`.
+    sizes : tuple of (int, int)
+        Of their pictures, px.
+    knowledge : courtside.geometry.bundle.Quadratic
+        In the court's frame, which the ties themselves leave open.
+    """
+
+    cameras: tuple
+    sizes: tuple
+    knowledge: bundle.Quadratic
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Fixed cameras in the court's frame with their joint covariance.
+
+    Attributes
+    ----------
+    cameras : list of Camera
+    network : courtside.geometry.network.Network
+        Of the fixed cameras and the court points used.
+    covariance : (K, K) float
+        Of the network's columns: for each camera rotation (3, rad, in its own frame) and translation of
+        cam_from_world (3, m) and its flex (5, always 0), then for each camera its lens (`network.LENS`).
+    """
+
+    cameras: list
+    network: object
+    covariance: np.ndarray
+
+    def point_covariance(self, xyz):
+        """Return the covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate without noise."""
+        return uncertainty.point_covariance(self.network, self.covariance, xyz)
+
+
+def condense(
+    network, fixed, sizes, clicks, court, *, tie_sigma_px, tie_loss, click_sigma_px, click_loss, **thinning
+):
+    """Adjust a whole network with its clicks, and keep what its ties say of the fixed cameras.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+        As `sfm.model.read` gives it.
+    fixed : dict of str to int
+        Index of each fixed camera's image; each has a lens of its own.
+    sizes : dict of str to (int, int)
+        Of their pictures, px.
+    clicks : dict of str to (P, 2) float
+        By camera; NaN where not clicked.
+    court : courtside.geometry.courts.Court
+    tie_sigma_px : float
+        Weight of the ties. Their errors are not independent: it is larger than a feature's own noise.
+    tie_loss, click_loss : float
+        Where Cauchy's loss sets in, in sigmas.
+    click_sigma_px : float
+        Of a click per axis, at a picture width of 3840 px; in proportion at others.
+    **thinning
+        Arguments of `control_points.thin`.
+
+    Returns
+    -------
+    ties : Ties
+    network : courtside.geometry.network.Network
+        All images and the chosen points after adjustment, in the court's frame.
+
+    Raises
+    ------
+    InputError
+        If the clicks cannot give a frame.
+    """
+    names = tuple(fixed)
+    cameras = _cameras(network, fixed, sizes)
+    world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
+    network = control_points.transform(network, world_from_sfm)
+    network = control_points.thin(network, **thinning)
+    network = control_points.weigh(network, sigma_px=tie_sigma_px, loss_scale=tie_loss)
+    n_ties, n_seen = len(network.xyz), len(network.xy)
+    both = control_points.add(
+        network,
+        court.xyz,
+        court.sigma_m,
+        {fixed[name]: clicks[name] for name in names},
+        sigma_px={fixed[name]: click_sigma(click_sigma_px, sizes[name]) for name in names},
+        loss_scale=click_loss,
+    )
+    if not np.isfinite(bundle.cost(both)):
+        raise InputError(
+            "court points: expected all before the cameras that saw them, found some behind after alignment; "
+            "structure from motion went wrong: take more bridging images"
+        )
+    both, _ = bundle.adjust(both, max_iterations=20, tolerance=1e-7)
+    tied = control_points.select(
+        both, np.arange(len(both.xyz)) < n_ties, np.arange(len(both.xy)) < n_seen
+    )
+    knowledge = control_points.what_ties_say(tied, list(fixed.values()))
+    return Ties(names, tuple(sizes[name] for name in names), knowledge), tied
+
+
+def click_sigma(sigma_px_at_3840, size):
+    """Return the sigma of a click in a picture of this size, px."""
+    return sigma_px_at_3840 * size[0] / UHD
+
+
+def largest_click_sigma(sigma_px_at_3840, cameras):
+    """Return the sigma of a click in the largest of the cameras' pictures, px."""
+    return max(click_sigma(sigma_px_at_3840, camera.size) for camera in cameras)
+
+
+def solve(ties, clicks, court, *, click_sigma_px, click_loss, points=None, max_iterations=8):
+    """Find the fixed cameras from the condensed ties and any clicks.
+
+    Parameters
+    ----------
+    ties : Ties
+    clicks : dict of str to (P, 2) float
+        By camera; NaN where not clicked.
+    court : courtside.geometry.courts.Court
+    click_sigma_px, click_loss : float
+        As for `condense`.
+    points : (P,) bool, optional
+        Court points to use; all without.
+    max_iterations : int
+
+    Returns
+    -------
+    solution : Solution
+
+    Raises
+    ------
+    InputError
+        If neither ties nor clicks place a camera.
+    """
+    network = ties.knowledge.reference
+    use = np.ones(len(court.points), dtype=bool) if points is None else np.asarray(points)
+    images = {at: np.where(use[:, None], clicks[name], np.nan) for at, name in enumerate(ties.cameras)}
+    sigmas = {at: click_sigma(click_sigma_px, size) for at, size in enumerate(ties.sizes)}
+    network = control_points.add(
+        network, court.xyz, court.sigma_m, images, sigma_px=sigmas, loss_scale=click_loss
+    )
+    network, normal = bundle.adjust(
+        network, quadratic=ties.knowledge, max_iterations=max_iterations, tolerance=1e-7
+    )
+    _check_placed(ties, normal)
+    cameras = control_points.cameras(network, ties.cameras, ties.sizes)
+    return Solution(cameras, network, uncertainty.of_columns(normal))
+
+
+def _check_placed(ties, normal):
+    of_images = normal.active[: IMAGE * len(ties.cameras)].reshape(-1, IMAGE)
+    lost = [name for name, known in zip(ties.cameras, of_images, strict=True) if not known[: len(POSE)].all()]
+    if lost:
+        raise InputError(
+            f"camera {lost[0]}: expected matches with other images or clicked court points, found neither; "
+            "click points in it, or film the walk closer to it"
+        )
+
+
+def _cameras(network, fixed, sizes):
+    alone = control_points.alone(network, list(fixed.values()))
+    return control_points.cameras(alone, list(fixed), [sizes[name] for name in fixed])

@@ -1,0 +1,219 @@
+"""A photogrammetric network: images, lenses, points and observations, and how an observation depends on them.
+
+Conventions: pixels with the first pixel's centre at (0, 0); world metres; `cam_from_world` maps world to camera.
+An image that a moving camera took carries five more numbers, its *flex*: the rotation of the camera while the
+rolling shutter ran from the first to the last row (3, rad, camera frame), and the shift of the principal point by
+its stabiliser (2, px). They are zero for a camera on a tripod.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry import distortion
+
+LENS = ("f_px", "aspect", "cx_px", "cy_px", "k1", "k2", "p1", "p2")
+POSE = ("rx_rad", "ry_rad", "rz_rad", "tx_m", "ty_m", "tz_m")
+FLEX = ("wx_rad", "wy_rad", "wz_rad", "shift_x_px", "shift_y_px")
+IMAGE = len(POSE) + len(FLEX)
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """State, observations and prior knowledge.
+
+    Attributes
+    ----------
+    cam_from_world : (V, 3, 4) float
+    flex : (V, 5) float
+    lens : (L, 8) float
+        In the order of `LENS`; the focal length along y is f, along x f times aspect.
+    xyz : (N, 3) float
+    lens_of_image : (V,) int
+    height_px : (V,) float
+        Of the picture: the rolling shutter's time is (row + 0.5) / height - 0.5.
+    image_idx, point_idx : (M,) int
+        Of each observation.
+    xy : (M, 2) float
+        Observed px.
+    sigma_px : (M,) float
+        Standard deviation of an observation along each axis.
+    loss_scale : (M,) float
+        Where an observation starts to count as an outlier, in its own sigmas (Cauchy loss); inf: never.
+    flex_sigma : (V, 5) float
+        Prior about 0; 0 keeps a number at 0.
+    lens_mean, lens_sigma : (L, 8) float
+        Prior; sigma inf: unknown; 0: known exactly.
+    xyz_mean, xyz_sigma : (N, 3), (N,) float
+        Prior of points; sigma inf: unknown.
+    """
+
+    cam_from_world: np.ndarray
+    flex: np.ndarray
+    lens: np.ndarray
+    xyz: np.ndarray
+    lens_of_image: np.ndarray
+    height_px: np.ndarray
+    image_idx: np.ndarray
+    point_idx: np.ndarray
+    xy: np.ndarray
+    sigma_px: np.ndarray
+    loss_scale: np.ndarray
+    flex_sigma: np.ndarray
+    lens_mean: np.ndarray
+    lens_sigma: np.ndarray
+    xyz_mean: np.ndarray
+    xyz_sigma: np.ndarray
+
+    def __post_init__(self):
+        n_images, n_points, n_seen = len(self.cam_from_world), len(self.xyz), len(self.xy)
+        expected = {
+            "flex": n_images,
+            "lens_of_image": n_images,
+            "height_px": n_images,
+            "flex_sigma": n_images,
+            "lens_mean": len(self.lens),
+            "lens_sigma": len(self.lens),
+            "image_idx": n_seen,
+            "point_idx": n_seen,
+            "sigma_px": n_seen,
+            "loss_scale": n_seen,
+            "xyz_mean": n_points,
+            "xyz_sigma": n_points,
+        }
+        for field in fields(self):
+            object.__setattr__(self, field.name, np.asarray(getattr(self, field.name)))
+        for name, length in expected.items():
+            if len(getattr(self, name)) != length:
+                found = len(getattr(self, name))
+                raise ValueError(f"expected {name} of length {length}, found {found}")
+
+    @property
+    def n_columns(self):
+        """Number of image and lens parameters."""
+        return IMAGE * len(self.cam_from_world) + len(LENS) * len(self.lens)
+
+    def columns(self):
+        """Return for each observation its 19 columns, (M, 19): those of its image, then of its lens."""
+        image = IMAGE * self.image_idx[:, None] + np.arange(IMAGE)
+        first = IMAGE * len(self.cam_from_world) + len(LENS) * self.lens_of_image[self.image_idx]
+        return np.concatenate([image, first[:, None] + np.arange(len(LENS))], axis=1)
+
+    def moved(self, step, step_xyz):
+        """Return the network after a step of its image and lens parameters, and of its points."""
+        images, lenses = np.split(step, [IMAGE * len(self.cam_from_world)])
+        images = images.reshape(-1, IMAGE)
+        turn = Rotation.from_rotvec(images[:, :3]).as_matrix()
+        pose = turn @ self.cam_from_world
+        pose[:, :, 3] += images[:, 3:6]
+        return replace(
+            self,
+            cam_from_world=pose,
+            flex=self.flex + images[:, 6:],
+            lens=self.lens + lenses.reshape(-1, len(LENS)),
+            xyz=self.xyz + step_xyz,
+        )
+
+    def difference(self, reference):
+        """Return the step that leads from a reference network of the same form to this one, points apart."""
+        turn = self.cam_from_world[:, :, :3] @ reference.cam_from_world[:, :, :3].transpose(0, 2, 1)
+        shift = self.cam_from_world[:, :, 3] - np.einsum(
+            "vij,vj->vi", turn, reference.cam_from_world[:, :, 3]
+        )
+        images = np.concatenate(
+            [Rotation.from_matrix(turn).as_rotvec(), shift, self.flex - reference.flex], axis=1
+        )
+        return np.concatenate([images.ravel(), (self.lens - reference.lens).ravel()])
+
+
+def residuals(network):
+    """Return predicted minus observed, (M, 2) px; NaN where a point lies behind its image."""
+    *_, distorted = _see(network)
+    lens = network.lens[network.lens_of_image[network.image_idx]]
+    focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
+    shift = network.flex[network.image_idx, 3:]
+    return focal * distorted + lens[:, 2:4] + shift - network.xy
+
+
+def jacobians(network):
+    """Return the derivatives of `residuals`.
+
+    Parameters
+    ----------
+    network : Network
+
+    Returns
+    -------
+    by_camera : (M, 2, 19) float
+        Along the columns of `Network.columns`.
+    by_point : (M, 2, 3) float
+    """
+    still, in_cam, normalised, distorted = _see(network)
+    lens = network.lens[network.lens_of_image[network.image_idx]]
+    focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
+    pinhole = np.zeros((len(in_cam), 2, 3))
+    pinhole[:, 0, 0] = pinhole[:, 1, 1] = 1.0
+    pinhole[:, :, 2] = -normalised
+    bend = distortion.jacobian(_coefficients(lens), normalised)
+    by_place = (
+        focal[:, :, None] * (bend @ pinhole) / in_cam[:, 2, None, None]
+    )  # of the point in the camera's frame
+    # Before the shutter's turn: r @ (I + [spin]) = r + r x spin.
+    by_still = by_place + np.cross(by_place, _spin(network)[:, None, :])
+    rotation = network.cam_from_world[network.image_idx, :, :3]
+    by_camera = np.zeros((len(in_cam), 2, IMAGE + len(LENS)))
+    by_camera[:, :, :3] = np.cross(still[:, None, :], by_still)  # by_still @ -[x]: rows crossed
+    by_camera[:, :, 3:6] = by_still
+    turned = np.cross(still[:, None, :], by_place)
+    by_camera[:, :, 6:9] = turned * _row_time(network)[:, None, None]
+    by_camera[:, 0, 9] = by_camera[:, 1, 10] = 1.0
+    by_camera[:, :, IMAGE:] = _by_lens(lens, normalised, distorted)
+    return by_camera, by_still @ rotation
+
+
+def _by_lens(lens, normalised, distorted):
+    x, y = normalised.T
+    square = x * x + y * y
+    f, aspect = lens[:, 0], lens[:, 1]
+    along = np.zeros((len(lens), 2, len(LENS)))
+    along[:, 0, 0], along[:, 1, 0] = aspect * distorted[:, 0], distorted[:, 1]
+    along[:, 0, 1] = f * distorted[:, 0]
+    along[:, 0, 2] = along[:, 1, 3] = 1.0
+    for column, (dx, dy) in enumerate(
+        [
+            (x * square, y * square),
+            (x * square**2, y * square**2),
+            (2 * x * y, square + 2 * y * y),
+            (square + 2 * x * x, 2 * x * y),
+        ],
+        start=4,
+    ):
+        along[:, 0, column], along[:, 1, column] = f * aspect * dx, f * dy
+    return along
+
+
+def _see(network):
+    """Return the observed points in their cameras at mid-exposure and when their row is read, (M, 3) each.
+
+    And on the plane z = 1, as they are and as the lens bends them, (M, 2) each.
+    """
+    pose = network.cam_from_world[network.image_idx]
+    still = np.einsum("mij,mj->mi", pose[:, :, :3], network.xyz[network.point_idx]) + pose[:, :, 3]
+    in_cam = still + np.cross(_spin(network), still)
+    depth = np.where(in_cam[:, 2:] > 1e-6, in_cam[:, 2:], np.nan)
+    normalised = in_cam[:, :2] / depth
+    lens = network.lens[network.lens_of_image[network.image_idx]]
+    return still, in_cam, normalised, distortion.distort(_coefficients(lens), normalised)
+
+
+def _coefficients(lens):
+    return np.concatenate([lens[:, 4:], np.zeros((len(lens), 1))], axis=1).T
+
+
+def _spin(network):
+    return network.flex[network.image_idx, :3] * _row_time(network)[:, None]
+
+
+def _row_time(network):
+    return (network.xy[:, 1] + 0.5) / network.height_px[network.image_idx] - 0.5

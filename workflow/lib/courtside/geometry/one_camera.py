@@ -1,0 +1,236 @@
+"""Least squares for one camera and known points: the pose, and perhaps the focal length and k1."""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry import distortion
+
+FOCAL_WIDTHS = (0.5, 0.6, 0.72, 0.87, 1.05, 1.3, 1.6, 2.0)  # focal lengths to start from
+MAX_STEPS = 60
+SETTLED = 1e-12  # relative fall of the cost
+STIFFEST = 1e8  # damping at which no step helps any more
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A camera on its way to the solution.
+
+    Attributes
+    ----------
+    K : (3, 3) float
+    dist : (5,) float
+    cam_from_world : (3, 4) float
+    """
+
+    K: np.ndarray
+    dist: np.ndarray
+    cam_from_world: np.ndarray
+
+    def moved(self, step):
+        """Return the state after a step of the pose (from the left: turn, shift) and, if longer, f and k1."""
+        turn = Rotation.from_rotvec(step[:3]).as_matrix()
+        pose = turn @ self.cam_from_world
+        pose[:, 3] += step[3:6]
+        if len(step) == 6:
+            return replace(self, cam_from_world=pose)
+        matrix, dist = self.K.copy(), self.dist.copy()
+        matrix[[0, 1], [0, 1]] += step[6]
+        dist[0] += step[7]
+        return State(matrix, dist, pose)
+
+    @property
+    def possible(self):
+        """Whether the focal lengths are positive."""
+        return bool(self.K[0, 0] > 0 and self.K[1, 1] > 0)
+
+
+@dataclass(frozen=True, eq=False)
+class Clicks:
+    """What the camera is fitted to.
+
+    Attributes
+    ----------
+    xyz : (P, 3) float
+        Metres.
+    xy : (P, 2) float
+        Px.
+    sigma_px : float
+        Of a click per axis.
+    xyz_sigma : (P,) float or None
+        Of a point per axis, m.
+    free_lens : bool
+        Whether f and k1 are found, too.
+    """
+
+    xyz: np.ndarray
+    xy: np.ndarray
+    sigma_px: float
+    xyz_sigma: np.ndarray | None
+    free_lens: bool
+
+    def of(self, which):
+        """Return some of the clicks only; `which` is (P,) bool."""
+        spread = None if self.xyz_sigma is None else self.xyz_sigma[which]
+        return replace(self, xyz=self.xyz[which], xy=self.xy[which], xyz_sigma=spread)
+
+
+def start(clicks, size, K, dist):
+    """Find a camera within the reach of `descend`.
+
+    Parameters
+    ----------
+    clicks : Clicks
+    size : (int, int)
+        Of the picture, px.
+    K : (3, 3) float or None
+        None: several focal lengths are tried, with the principal point at the picture's centre.
+    dist : (5,) float
+
+    Returns
+    -------
+    state : State or None
+        The one of least median error; None where no pose has the points before the camera.
+    """
+    if clicks.free_lens:
+        middle = (np.array(size) - 1) / 2
+        lenses = [
+            np.array([[part * size[0], 0, middle[0]], [0, part * size[0], middle[1]], [0, 0, 1]])
+            for part in FOCAL_WIDTHS
+        ]
+    else:
+        lenses = [np.asarray(K, float)]
+    best, least = None, np.inf
+    for matrix in lenses:
+        for pose in _poses(clicks, matrix, dist):
+            state = State(matrix, dist, pose)
+            off, _, depth = residuals(state, clicks)
+            error = np.median(np.linalg.norm(off, axis=1))
+            if depth.min() > 0 and error < least:
+                best, least = state, error
+    return best
+
+
+def _poses(clicks, matrix, dist):
+    count, turns, shifts, _ = cv2.solvePnPGeneric(
+        clicks.xyz, clicks.xy, matrix, dist, flags=cv2.SOLVEPNP_SQPNP
+    )
+    return [
+        np.column_stack([Rotation.from_rotvec(turns[at].ravel()).as_matrix(), shifts[at].ravel()])
+        for at in range(count)
+    ]
+
+
+def residuals(state, clicks):
+    """Return projected minus clicked px, the derivative by the point, and the depth.
+
+    Parameters
+    ----------
+    state : State
+    clicks : Clicks
+
+    Returns
+    -------
+    off : (P, 2) float
+    by_point : (P, 2, 3) float
+        By the point in the camera's frame, px per metre.
+    depth : (P,) float
+        Metres; px are meaningless where it is not positive.
+    """
+    in_cam = clicks.xyz @ state.cam_from_world[:, :3].T + state.cam_from_world[:, 3]
+    depth = in_cam[:, 2]
+    normalised = in_cam[:, :2] / depth[:, None]
+    focal = state.K[[0, 1], [0, 1]]
+    off = distortion.distort(state.dist, normalised) * focal + state.K[:2, 2] - clicks.xy
+    pinhole = np.zeros((len(depth), 2, 3))
+    pinhole[:, 0, 0] = pinhole[:, 1, 1] = 1.0
+    pinhole[:, :, 2] = -normalised
+    bend = distortion.jacobian(state.dist, normalised)
+    return off, focal[:, None] * (bend @ pinhole) / depth[:, None, None], depth
+
+
+def whitened(state, clicks):
+    """Return residuals (P, 2) in sigmas and their derivatives (P, 2, n) by a step of the state.
+
+    Parameters
+    ----------
+    state : State
+    clicks : Clicks
+
+    Returns
+    -------
+    off, by_step : (P, 2) and (P, 2, 6 or 8) float
+        None, None where a point lies behind the camera.
+
+    Notes
+    -----
+    A point's own uncertainty becomes an ellipse in the picture, added to the click's: the residual is
+    divided by the Cholesky factor of the sum.
+    """
+    off, by_point, depth = residuals(state, clicks)
+    if not state.possible or not depth.min() > 0:
+        return None, None
+    in_cam = clicks.xyz @ state.cam_from_world[:, :3].T + state.cam_from_world[:, 3]
+    parts = [np.cross(in_cam[:, None, :], by_point), by_point]
+    if clicks.free_lens:
+        normalised = in_cam[:, :2] / depth[:, None]
+        square = (normalised**2).sum(axis=1, keepdims=True)
+        by_f = distortion.distort(state.dist, normalised)
+        parts += [by_f[..., None], (state.K[0, 0] * square * normalised)[..., None]]
+    by_step = np.concatenate(parts, axis=2)
+    if clicks.xyz_sigma is None:
+        return off / clicks.sigma_px, by_step / clicks.sigma_px
+    spread = by_point @ by_point.transpose(0, 2, 1) * clicks.xyz_sigma[:, None, None] ** 2
+    root = np.linalg.inv(np.linalg.cholesky(spread + clicks.sigma_px**2 * np.eye(2)))
+    return (root @ off[..., None])[..., 0], root @ by_step
+
+
+def descend(state, clicks, loss_scale):
+    """Find the state of least cost by Levenberg-Marquardt.
+
+    Parameters
+    ----------
+    state : State
+        With all points before the camera.
+    clicks : Clicks
+    loss_scale : float
+        Cauchy loss: sigmas at which a click starts to count less, or, where the median is larger than a good
+        click's, as many medians; inf: plain least squares.
+
+    Returns
+    -------
+    state : State
+    off, by_step : as of `whitened`
+    """
+    off, by_step = whitened(state, clicks)
+    damping = 1e-3
+    for _ in range(MAX_STEPS):
+        square = (off**2).sum(axis=1)
+        wide = (loss_scale * max(1.0, np.sqrt(np.median(square)))) ** 2
+        weight = 1 / (1 + square / wide)
+        columns = by_step.reshape(off.size, -1)
+        weighted = columns * np.repeat(weight, 2)[:, None]
+        normal, right = columns.T @ weighted, weighted.T @ off.ravel()
+        before = _cost(square, wide)
+        moved = None
+        while damping < STIFFEST:
+            damped = normal + damping * np.diag(np.diag(normal) + 1e-12)
+            trial = state.moved(-np.linalg.solve(damped, right))
+            trial_off, trial_by_step = whitened(trial, clicks)
+            after = np.inf if trial_off is None else _cost((trial_off**2).sum(axis=1), wide)
+            if after <= before:
+                moved = trial
+                break
+            damping *= 10
+        if moved is None:
+            break
+        state, off, by_step, damping = moved, trial_off, trial_by_step, max(damping / 10, 1e-9)
+        if before - after <= SETTLED * before:
+            break
+    return state, off, by_step
+
+
+def _cost(square, wide):
+    return square.sum() if np.isinf(wide) else (wide * np.log1p(square / wide)).sum()

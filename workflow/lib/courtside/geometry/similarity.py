@@ -1,0 +1,213 @@
+"""Similarity transforms (rotation, translation, scale) between frames, fitted to points."""
+
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from courtside.study.errors import InputError
+
+MOST_SUBSETS = 2000
+# Of the length of a normal vector in three dimensions, sigma 1 per axis.
+MEDIAN = 1.538
+QUANTILE_99 = 3.368
+BETTER = 4.0  # so many times better must a mirrored fit be before the points are called mirrored
+MAX_ROUNDS = 20
+
+
+@dataclass(frozen=True, eq=False)
+class Sim3:
+    """A transform from a to b, named `b_from_a`: x_in_b = scale * rotation @ x_in_a + translation.
+
+    Attributes
+    ----------
+    scale : float
+        Units of b per unit of a.
+    rotation : (3, 3) float
+        Orthonormal, right-handed.
+    translation : (3,) float
+        In units of b.
+    """
+
+    scale: float
+    rotation: np.ndarray
+    translation: np.ndarray
+
+    def points(self, x_in_a):
+        """Return points (..., 3) of a in b."""
+        return self.scale * np.asarray(x_in_a, float) @ self.rotation.T + self.translation
+
+    def inverse(self):
+        """Return `a_from_b`."""
+        rotation = self.rotation.T
+        return Sim3(1 / self.scale, rotation, -rotation @ self.translation / self.scale)
+
+    def camera(self, camera):
+        """Return a camera known in a as a camera in b: the same picture of the same points.
+
+        Parameters
+        ----------
+        camera : courtside.geometry.cameras.Camera
+            Its `cam_from_world` is from a; lengths along its axes are in units of a.
+
+        Returns
+        -------
+        camera : courtside.geometry.cameras.Camera, with lengths in units of b.
+        """
+        rotation = camera.cam_from_world[:, :3] @ self.rotation.T
+        shift = self.scale * camera.cam_from_world[:, 3] - rotation @ self.translation
+        return replace(camera, cam_from_world=np.column_stack([rotation, shift]))
+
+
+def umeyama(x_in_a, x_in_b, weight=None):
+    """Find the similarity that brings points of a nearest to their places in b, by least squares.
+
+    Parameters
+    ----------
+    x_in_a, x_in_b : (N, 3) float
+        The same points in both frames.
+    weight : (N,) float, optional
+        Of the squared distances.
+
+    Returns
+    -------
+    b_from_a : Sim3
+
+    Raises
+    ------
+    ValueError
+        If fewer than three points, or only collinear ones, have weight, or a number is not finite.
+
+    Notes
+    -----
+    Umeyama 1991, eq. 40-42. Never a reflection: of mirrored points it gives the best rotation. See `robust`.
+    """
+    x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
+    weight = np.ones(len(x_in_a)) if weight is None else np.asarray(weight, float)
+    finite = all(np.isfinite(values).all() for values in (x_in_a, x_in_b, weight))
+    if x_in_a.shape != x_in_b.shape or x_in_a.shape != (len(weight), 3) or not finite:
+        raise ValueError(
+            f"expected finite points (N, 3) twice and weights (N,), found {x_in_a.shape}, "
+            f"{x_in_b.shape}, {weight.shape}"
+        )
+    if is_collinear(x_in_a[weight > 0]) or is_collinear(x_in_b[weight > 0]):
+        raise ValueError("expected three points or more that are not on one line, found fewer")
+    scale, rotation, translation = _fit(x_in_a, x_in_b, weight)
+    return Sim3(float(scale), rotation, translation)
+
+
+def is_collinear(xyz):
+    """Say whether points (N, 3) are fewer than three or lie on one line, to 0.1 % of their extent."""
+    return len(xyz) < 3 or flatness(xyz)[1] < 1e-3
+
+
+def flatness(xyz):
+    """Return the extent of points (N, 3) along their three principal axes relative to the first, (3,)."""
+    extent = np.linalg.svd(xyz - np.mean(xyz, axis=0), compute_uv=False)
+    extent = np.pad(extent, (0, 3 - len(extent)))
+    return extent / max(extent[0], np.finfo(float).tiny)
+
+
+def robust(x_in_a, x_in_b, sigma):
+    """Find the similarity that most points agree on, and say which these are.
+
+    Parameters
+    ----------
+    x_in_a, x_in_b : (P, 3) float
+        The same points in both frames; NaN where missing in one.
+    sigma : float or (P,) float
+        Standard deviation of a point per axis, in units of b. Where points scatter more, all are taken to be
+        as many times worse.
+
+    Returns
+    -------
+    b_from_a : Sim3
+    accepted : (P,) bool
+        Points that it rests on: those within the 99 % limit.
+
+    Raises
+    ------
+    InputError
+        If the points are fewer than three, collinear, or mirrored.
+
+    Notes
+    -----
+    Least median of squares (Rousseeuw & Leroy 1987) over all subsets of three points: no random numbers. Then
+    weighted least squares on the points within the limit, until these stay the same. Mirrored points that
+    all lie in one plane fit a rotation as well: they are told apart by where the cameras are, not here.
+    """
+    x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
+    sigma = np.broadcast_to(np.asarray(sigma, float), len(x_in_a))
+    finite = np.isfinite(x_in_a).all(axis=1) & np.isfinite(x_in_b).all(axis=1)
+    known = np.flatnonzero(finite)
+    if is_collinear(x_in_a[known]) or is_collinear(x_in_b[known]):
+        raise InputError(
+            f"court points: expected three or more that are not on one line, found {len(known)} that two "
+            "cameras see, or all on one line; click more points, in two cameras or more each"
+        )
+    places = x_in_a[known], x_in_b[known], sigma[known]
+    b_from_a, agree = _select(*places)
+    _refuse_mirrored(b_from_a, *places)
+    accepted = np.zeros(len(x_in_a), dtype=bool)
+    accepted[known[agree]] = True
+    return b_from_a, accepted
+
+
+def _refuse_mirrored(b_from_a, x_in_a, x_in_b, sigma):
+    if len(x_in_a) < 4:
+        return
+    flipped = x_in_a * [1, 1, -1]
+    mirrored, agree = _select(flipped, x_in_b, sigma)
+    as_found = _distance(b_from_a, x_in_a, x_in_b, sigma)[agree]
+    as_mirrored = _distance(mirrored, flipped, x_in_b, sigma)[agree]
+    if np.sqrt(np.mean(as_found**2)) > BETTER * max(1, np.sqrt(np.mean(as_mirrored**2))):
+        raise InputError(
+            "court points: expected a right-handed world (x along the short side, y along the long side, z "
+            "up), found the points of its mirror image; exchange the names of the left and right "
+            "points in all cameras, or undo the flip of the videos"
+        )
+
+
+def _select(x_in_a, x_in_b, sigma):
+    """Return the similarity that most points agree on, and which do, (P,) bool."""
+    n_points = len(x_in_a)
+    subsets = np.array(list(combinations(range(n_points), 3)))
+    subsets = subsets[:: -(-len(subsets) // MOST_SUBSETS)]
+    weight = 1 / sigma**2
+    scale, rotation, shift = _fit(x_in_a[subsets], x_in_b[subsets], weight[subsets])
+    placed = scale[:, None, None] * (x_in_a @ rotation.transpose(0, 2, 1)) + shift[:, None]
+    distance = np.sort(np.linalg.norm(placed - x_in_b, axis=-1) / sigma, axis=1)
+    quorum = (n_points + 4) // 2 - 1
+    best = np.argmin(np.nan_to_num(distance[:, quorum], nan=np.inf))
+    fitted = Sim3(float(scale[best]), rotation[best], shift[best])
+    found = _distance(fitted, x_in_a, x_in_b, sigma)
+    # The three points of the subset fit by themselves: the limit is wide at first.
+    now = found <= 2 * QUANTILE_99 * max(1, distance[best, quorum] / MEDIAN)
+    agree = np.zeros(n_points, dtype=bool)
+    for _ in range(MAX_ROUNDS):
+        if (now == agree).all() or is_collinear(x_in_a[now]):
+            break
+        agree = now
+        fitted = umeyama(x_in_a[agree], x_in_b[agree], weight[agree])
+        found = _distance(fitted, x_in_a, x_in_b, sigma)
+        now = found <= QUANTILE_99 * max(1, np.sort(found)[quorum] / MEDIAN)
+    return fitted, agree
+
+
+def _distance(b_from_a, x_in_a, x_in_b, sigma):
+    return np.linalg.norm(b_from_a.points(x_in_a) - x_in_b, axis=1) / sigma
+
+
+def _fit(x_in_a, x_in_b, weight):
+    """Fit similarities to (..., N, 3) points: scale (...), rotation (..., 3, 3), translation (..., 3)."""
+    share = (weight / weight.sum(axis=-1, keepdims=True))[..., None]
+    middle_a = (share * x_in_a).sum(axis=-2, keepdims=True)
+    middle_b = (share * x_in_b).sum(axis=-2, keepdims=True)
+    a, b = x_in_a - middle_a, x_in_b - middle_b
+    left, extent, right = np.linalg.svd(np.swapaxes(share * b, -1, -2) @ a)
+    sign = np.ones_like(extent)
+    sign[..., 2] = np.sign(np.linalg.det(left) * np.linalg.det(right))
+    rotation = (left * sign[..., None, :]) @ right
+    scale = (extent * sign).sum(axis=-1) / (share * a * a).sum(axis=(-1, -2))
+    turned = (middle_a @ np.swapaxes(rotation, -1, -2))[..., 0, :]
+    return scale, rotation, middle_b[..., 0, :] - scale[..., None] * turned

@@ -1,0 +1,87 @@
+"""The table of extracted frames: where each comes from, how sharp it is, whether it may be used."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+COLUMNS = ("frame_idx", "time_s", "name", "sharpness", "kept", "reason")
+NUMBERS = ("frame_idx", "time_s", "sharpness", "kept")
+REASONS = ("", "dark", "blurred", "duplicate")  # why a frame is not kept; none where it is
+
+
+def write(path, table):
+    """Write a frame table as `read` takes it.
+
+    Parameters
+    ----------
+    path : str or Path
+        The CSV file.
+    table : DataFrame
+        One row per extracted frame: `frame_idx` (of the video; of photos, the place in name order),
+        `time_s` (since the video's first frame; NaN for photos), `name` (of the PNG file), `sharpness`
+        (variance of the Laplacian, squared grey levels), `kept` (bool), `reason` ("" where kept).
+
+    Raises
+    ------
+    ValueError
+        If the table is not one.
+    """
+    fault = _fault(table)
+    if fault:
+        raise ValueError(f"{path}: {fault}")
+    table = table.loc[:, list(COLUMNS)].assign(
+        time_s=table["time_s"].round(6),
+        sharpness=table["sharpness"].round(3),
+        kept=table["kept"].astype(int),
+    )
+    with atomic(path) as temporary:
+        table.to_csv(temporary, index=False, lineterminator="\n")
+
+
+def read(path):
+    """Read a frame table.
+
+    Parameters
+    ----------
+    path : str or Path
+        The CSV file.
+
+    Returns
+    -------
+    table : DataFrame
+        As `write` describes it; `kept` is bool and `reason` a string.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or no such table.
+    """
+    try:
+        table = pd.read_csv(path, keep_default_na=False, na_values={"time_s": [""]})
+        fault = _fault(table)
+    except (OSError, ValueError) as error:
+        fault = " ".join(str(error).split())
+    if fault:
+        raise InputError(
+            f"{path}: expected a frame table, {fault}: delete it and run the study again"
+        )
+    return table.loc[:, list(COLUMNS)].assign(kept=table["kept"].astype(bool))
+
+
+def _fault(table):
+    """Say in a few words what is wrong with a table; nothing where it is right."""
+    missing = [name for name in COLUMNS if name not in table.columns]
+    if missing:
+        return f"found no column {', '.join(missing)}"
+    words = [name for name in NUMBERS if not pd.api.types.is_numeric_dtype(table[name])]
+    if len(table) and words:
+        return f"found {words[0]} that is not a number"
+    if not len(table) or np.any(np.diff(table["frame_idx"]) <= 0) or not table["name"].is_unique:
+        return "found no frames, or not each once in order"
+    if not set(table["kept"]) <= {0, 1} or not set(table["reason"]) <= set(REASONS):
+        return f"found kept other than 0 and 1, or a reason not of {', '.join(REASONS[1:])}"
+    if np.any(table["kept"].astype(bool) != (table["reason"] == "")):
+        return "found a reason beside a kept frame, or none beside another"
+    return ""

@@ -1,0 +1,1 @@
+"""Structure from motion: which images, features, matches, maps, adjustment."""

@@ -1,0 +1,78 @@
+"""A COLMAP model as the project sees it: a network of images, lenses and points."""
+
+import numpy as np
+import pycolmap
+
+from courtside.geometry.network import LENS, Network
+
+HALF_PIXEL = 0.5  # COLMAP has the first pixel's corner at (0, 0), the project its centre
+LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)  # cx, cy in picture widths
+# ASSUME: unknown focal length, square pixels within 0.1 %, a principal point within 2 % of the width of the
+# centre, and the mild distortion of a camera that is not a fisheye.
+
+
+def read(folder):
+    """Read the network of a model.
+
+    Parameters
+    ----------
+    folder : str or Path
+        With COLMAP's binary files.
+
+    Returns
+    -------
+    network : courtside.geometry.network.Network
+        In the model's own frame and unit, of registered images only, in the order of their ids; all
+        observations with a sigma of 1 px and no loss. Lenses are in the order of the model's camera ids.
+    names : list of str
+        Of the images.
+    sizes : list of (int, int)
+        Width and height, px, of each lens's pictures.
+    """
+    found = pycolmap.Reconstruction(str(folder))
+    images = [found.images[i] for i in sorted(found.reg_image_ids())]
+    camera_ids = sorted({image.camera_id for image in images})
+    cameras = [found.cameras[i] for i in camera_ids]
+    order = {image.image_id: at for at, image in enumerate(images)}
+    tracks = [found.points3D[i] for i in sorted(found.points3D)]
+    seen = [(order[e.image_id], k, e.point2D_idx) for k, t in enumerate(tracks) for e in t.track.elements]
+    places = [image.points2D for image in images]
+    image_idx, point_idx, _ = np.array(seen, dtype=int).reshape(-1, 3).T
+    xy = np.array([places[v][at].xy for v, _, at in seen]).reshape(-1, 2) - HALF_PIXEL
+    sizes = [(camera.width, camera.height) for camera in cameras]
+    mean, sigma = lens_prior(sizes)
+    network = Network(
+        cam_from_world=np.array([image.cam_from_world().matrix() for image in images]).reshape(-1, 3, 4),
+        flex=np.zeros((len(images), 5)),
+        lens=np.array([_lens(camera) for camera in cameras]).reshape(-1, len(LENS)),
+        xyz=np.array([track.xyz for track in tracks]).reshape(-1, 3),
+        lens_of_image=np.array([camera_ids.index(i.camera_id) for i in images], dtype=int),
+        height_px=np.array([i.camera.height for i in images], dtype=float),
+        image_idx=image_idx,
+        point_idx=point_idx,
+        xy=xy,
+        sigma_px=np.ones(len(xy)),
+        loss_scale=np.full(len(xy), np.inf),
+        flex_sigma=np.zeros((len(images), 5)),
+        lens_mean=mean,
+        lens_sigma=sigma,
+        xyz_mean=np.zeros((len(tracks), 3)),
+        xyz_sigma=np.full(len(tracks), np.inf),
+    )
+    return network, [image.name for image in images], sizes
+
+
+def lens_prior(sizes):
+    """Return mean and sigma of lenses, (L, 8) each, that are known by their picture's size only."""
+    width, height = np.array(sizes, dtype=float).reshape(-1, 2).T
+    mean = np.zeros((len(width), len(LENS)))
+    mean[:, 0], mean[:, 1] = width, 1.0
+    mean[:, 2], mean[:, 3] = (width - 1) / 2, (height - 1) / 2
+    sigma = np.tile(np.array(LENS_SIGMA), (len(width), 1))
+    sigma[:, 2:4] *= width[:, None]
+    return mean, sigma
+
+
+def _lens(camera):
+    fx, fy, cx, cy, *dist = camera.params
+    return [fy, fx / fy, cx - HALF_PIXEL, cy - HALF_PIXEL, *dist]

@@ -1,0 +1,64 @@
+"""Which pairs of a walk's frames are matched, whatever images are taken later.
+
+Places in the grid are counted from 0 to G - 1. Nothing here knows where the camera was.
+"""
+
+import numpy as np
+
+STRIDES = 8  # longest stride within a level of the pairs; the widest gap of images, in multiples
+
+
+def pair_list(n_grid):
+    """List the pairs of grid frames to match, for any number of bridging images.
+
+    Parameters
+    ----------
+    n_grid : int
+        Frames of the grid, G.
+
+    Returns
+    -------
+    pairs : (M, 2) int
+        Places i < j in the grid, each pair once, sorted; about 12 G.
+
+    Notes
+    -----
+    Level l holds the frames whose place is a multiple of q = 2**l, and their pairs up to 8 q apart. Those up
+    to 4 q apart are in the levels below already.
+    """
+    pairs, level = [], 1
+    while level < n_grid:
+        first = 1 if level == 1 else STRIDES // 2 + 1
+        for stride in range(first * level, (STRIDES + 1) * level, level):
+            start = np.arange(0, n_grid - stride, level)
+            pairs.append(np.column_stack([start, start + stride]))
+        level *= 2
+    found = np.concatenate(pairs) if pairs else np.empty((0, 2), dtype=int)
+    return found[np.lexsort((found[:, 1], found[:, 0]))]
+
+
+def missing_pairs(place_idx, n_grid, *, reach=1):
+    """Return the pairs of neighbours among chosen frames that `pair_list` does not hold.
+
+    Parameters
+    ----------
+    place_idx : (n,) int
+        Chosen places in the grid, ascending.
+    n_grid : int
+        Frames of the grid.
+    reach : int
+        1 for next neighbours only, 2 for second neighbours too, and so on.
+
+    Returns
+    -------
+    pairs : (M, 2) int
+        To be matched besides; none for the rule "even" and reach 1 unless a long stretch is unusable.
+    """
+    place_idx = np.asarray(place_idx, dtype=int)
+    listed = set(map(tuple, pair_list(n_grid).tolist()))
+    wanted = [
+        pair
+        for step in range(1, reach + 1)
+        for pair in zip(place_idx[:-step].tolist(), place_idx[step:].tolist(), strict=True)
+    ]
+    return np.array(sorted(set(wanted) - listed), dtype=int).reshape(-1, 2)

@@ -1,0 +1,49 @@
+"""Whether structure from motion placed the fixed cameras, and what to film again where it did not."""
+
+import numpy as np
+
+
+def outcome(network, images, fixed, *, min_points, n_models=1):
+    """Say in one line what keeps a model from placing the fixed cameras.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+        As `model.read` gives it.
+    images : list of str
+        Names of the registered images.
+    fixed : dict of str to str
+        Image of each fixed camera, by camera.
+    min_points : int
+        Fewest points that a placed camera sees: COLMAP calls an image registered that sees none.
+    n_models : int
+        Separate models that the images fell into.
+
+    Returns
+    -------
+    outcome : str
+        Empty if all are placed.
+    """
+    if not images:
+        return (
+            "walk: expected images that overlap, found no two that could be mapped together; take more bridging "
+            "images, or film slower, with posters, bags and gear in view"
+        )
+    apart = f"; the images fall into {n_models} separate models" if n_models > 1 else ""
+    for camera, image in fixed.items():
+        seen = n_seen(network, images, image)
+        if seen < min_points:
+            what = f"{seen} points" if image in images else "it unregistered"
+            return (
+                f"camera {camera}: expected {min_points} points or more in common with the walk, found {what}"
+                f"{apart}; film the walk from close beside this camera, slowly, aimed as it is, or take more "
+                "bridging images"
+            )
+    return ""
+
+
+def n_seen(network, images, image):
+    """Return how many points of a model an image sees, 0 if it is not in it."""
+    if image not in images:
+        return 0
+    return int(np.count_nonzero(network.image_idx == images.index(image)))

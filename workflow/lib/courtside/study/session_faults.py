@@ -1,0 +1,142 @@
+"""What a session's file gets wrong beyond its schema: names, files, and ways to find the cameras."""
+
+EXTERNAL = "results/external/"
+VIRTUAL = "results/virtual/"  # made by the workflow itself
+
+
+def find(folder, file, content, known, root):
+    """Return what contradicts the rest of the configuration or the disk in a session, one line for each fault.
+
+    Parameters
+    ----------
+    folder : Path
+        config/.
+    file : Path
+        The session's.
+    content : dict
+        As its schema allows it.
+    known : dict or None
+        Artefacts by name.
+    root : Path
+        Where relative paths start.
+
+    Yields
+    ------
+    fault : str
+    """
+    cameras, subjects = content["cameras"], content.get("subjects", {})
+    court = content["court"]
+    if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
+        there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
+        yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
+    yield from _source_faults(file, content)
+    paths = dict(_paths(content))
+    for name, take in content.get("takes", {}).items():
+        where = f"{file}: takes.{name}"
+        yield from unknown(f"{where}.videos", take["videos"], cameras)
+        yield from unknown(f"{where}.subjects", take.get("subjects", []), subjects)
+        start_s, stop_s = take.get("trim_s", (0, 1))
+        if start_s >= stop_s:
+            yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
+        paths |= {f"takes.{name}.videos.{camera}": path for camera, path in take["videos"].items()}
+    for where, path in paths.items():
+        yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _paths(content):
+    """Yield (key, path) of all recordings but those of takes."""
+    if "calibration" in content:
+        yield "calibration.file", content["calibration"]["file"]
+    for name, camera in content["cameras"].items():
+        if camera and "static" in camera:
+            yield f"cameras.{name}.static", camera["static"]
+        if camera and "chessboard" in camera:
+            yield f"cameras.{name}.chessboard.images", camera["chessboard"]["images"]
+    for name, walk in content.get("walks", {}).items():
+        for key, path in (walk or {}).items():
+            yield f"walks.{name}.{key}", path
+    if "court_points" in content:
+        yield "court_points", content["court_points"]
+
+
+def _source_faults(file, content):
+    """Check that the cameras can be found one way or another, and that virtual sessions name no files."""
+    cameras, walks = content["cameras"], content.get("walks", {})
+    virtual = "virtual" in content
+    if virtual:
+        if not walks or not cameras:
+            yield f"{file}: virtual: expected cameras and a walk that it films, found none; name them"
+        named = [key for key, _ in _paths(content) if not key.endswith("chessboard.images")]
+        if named:
+            yield (
+                f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes its own; remove it"
+            )
+        if content["court"] == "none":
+            yield f"{file}: court: expected a court to build the virtual hall around, found 'none'; name one"
+        return
+    if not walks and "calibration" not in content:
+        yield f"{file}: expected `walks` or `calibration`, found neither; say how the cameras are to be found"
+    if len(cameras) < 2 and ("calibration" in content or content.get("takes")):
+        yield f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
+    for name, walk in walks.items():
+        if not walk:
+            yield f"{file}: walks.{name}: expected `video` or `images`, found neither; name a file or a folder"
+    for name, camera in cameras.items():
+        if walks and not (camera or {}).get("static"):
+            yield (
+                f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty court, found none; "
+                "bridging images are tied to it"
+            )
+    if walks and content["court"] != "none" and "court_points" not in content and cameras:
+        yield f"{file}: expected `court_points` for a session with a court, found none; click them or set court: none"
+
+
+def conditions(config_file, config, found):
+    """Return the faults of the conditions, one line each.
+
+    Parameters
+    ----------
+    config_file : str
+    config : dict
+    found : dict
+        (file, content) of each session, by name.
+    """
+    faults = []
+    for name, condition in config["conditions"].items():
+        where, base = f"{config_file}: conditions.{name}", condition["session"]
+        faults += unknown(f"{where}.session", [base], found)
+        if base in found and "virtual" not in found[base][1]:
+            faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
+        if name in found:
+            faults.append(f"{where}: expected a name that no session has, found {name!r}; rename it")
+    return faults
+
+
+def unknown(where, names, known):
+    """Return a fault for each name that is not known.
+
+    Parameters
+    ----------
+    where : str
+    names : iterable of str
+    known : collection of str
+    """
+    return [
+        f"{where}: expected one of {sorted(known)}, found {name!r}"
+        for name in names
+        if name not in known
+    ]
+
+
+def _path_faults(where, path, known, root):
+    if path.startswith(VIRTUAL):
+        return
+    if not path.startswith(EXTERNAL):
+        if not (root / path).exists():
+            yield f"{where}: expected a file, found none at {path}; correct the path or put it there"
+        return
+    if known is None:
+        return
+    artefact, _, member = path.removeprefix(EXTERNAL).partition("/")
+    if artefact not in known or member not in known[artefact].members:
+        yield f"{where}: expected a member of external.yaml, found {path}; add it there"

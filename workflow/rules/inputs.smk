@@ -1,0 +1,96 @@
+"""Input functions and parameters of rules.
+
+Inputs: the checked configuration. Outputs: none. Steps: which files and settings belong to a job.
+"""
+
+
+def court_file(session):
+    """Return the path of a session's court, None without a court."""
+    return CONFIG / "courts" / f"{session.court}.yaml" if session.court else None
+
+
+def each_fixed(pattern):
+    """Return an input function for the files of all fixed cameras of a session."""
+    return lambda wildcards: [
+        pattern.format(**dict(wildcards.items()), camera=camera)
+        for camera in session_of(wildcards).cameras
+    ]
+
+
+def each_walk(pattern):
+    """Return an input function for the files of all walks of a session."""
+    return lambda wildcards: [
+        pattern.format(**dict(wildcards.items()), walk=walk) for walk in session_of(wildcards).walks
+    ]
+
+
+def background_file(wildcards):
+    """Return the empty picture of a camera: of its static recording, or estimated from the take."""
+    if session_of(wildcards).cameras[wildcards.camera].static:
+        return f"results/{wildcards.session}/static/{wildcards.camera}.png"
+    return f"results/{wildcards.session}/takes/{wildcards.take}/background/{wildcards.camera}.png"
+
+
+def map_parameters(wildcards):
+    """Return the parameters of one mapping: those of its mapper among COLMAP's."""
+    chosen = dict(step("map_images")(wildcards))
+    colmap = chosen.pop("colmap")
+    return {**chosen, "options": colmap[wildcards.mapper]}
+
+
+def click_parameters(wildcards):
+    """Return what is said of clicks, which all calibrations share."""
+    chosen = step("adjust_network")(wildcards)
+    return {key: chosen[key] for key in ("click_sigma_px", "click_loss")}
+
+
+def ties_file(wildcards):
+    """Return the ties that a calibration rests on; only the paper's own row is mapped incrementally."""
+    name, n_images, *offset = wildcards.calibration.rsplit(
+        "-", 1 + wildcards.calibration.count("-o")
+    )
+    mapper = "incremental" if name == "paper" else "global"
+    offset = offset[0] if offset else "o0"
+    return f"results/{wildcards.session}/sfm/{mapper}-{n_images}-{offset}/ties.npz"
+
+
+def board_source(wildcards):
+    """Return the folder that a camera's pictures of a chessboard come from."""
+    session = session_of(wildcards)
+    if session.films_boards():
+        return f"results/virtual/{session.name}/boards"
+    return session.cameras[wildcards.camera].chessboard["images"]
+
+
+def lens_files(wildcards):
+    """Return the lens of each fixed camera where the calibration needs it."""
+    if not wildcards.calibration.endswith("-board"):
+        return []
+    return each_fixed("results/{session}/calibration/lens/{camera}.toml")(wildcards)
+
+
+def every_lens_file(wildcards):
+    """Return the lens of each fixed camera where all have pictures of a chessboard."""
+    session = session_of(wildcards)
+    if not all(camera.chessboard for camera in session.cameras.values()):
+        return []
+    return each_fixed("results/{session}/calibration/lens/{camera}.toml")(wildcards)
+
+
+def evaluation_parameters(wildcards, labels, keys):
+    """Return what an evaluation needs to know: how clicks are drawn, and what its rows are labelled with."""
+    session = session_of(wildcards)
+    draws = step("evaluate_calibration")(wildcards)
+    adjusting = step("adjust_network")(wildcards)
+    made = {key: session.virtual[key] for key in ("preset", "layout")}
+    return {
+        "labels": {"session": session.name, **made, **session.condition, **labels},
+        "clicks": {
+            "n_draws": draws["n_draws"],
+            "seed": draws["seed"],
+            "preset": session.virtual["preset"],
+            "session": session.name,
+        },
+        "sets": draws["sets"],
+        **{key: adjusting[key] for key in keys},
+    }

@@ -1,0 +1,45 @@
+"""Align a model with the court by a similarity: ties, clicked court points -> cameras as the paper or all points say."""
+
+import json
+
+from courtside.geometry import alignment, court_adjustment, courts, quality
+from courtside.geometry import cameras as camera_models
+from courtside.records import clicks, ties
+from courtside.study import log
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+
+def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, click_sigma_px):
+    record = ties.read(ties_npz)
+    if record.outcome:
+        raise InputError(record.outcome)
+    court = courts.read(court_yaml)
+    marked = clicks.read(clicks_csv, [c.name for c in record.sfm_cameras], list(court.points))
+    xyz_in_sfm = alignment.reconstruct(record.sfm_cameras, marked)
+    if name.startswith("paper"):
+        frame = alignment.paper_frame(court, xyz_in_sfm)
+        world_from_sfm, how = frame.nearest, {"skew_deg": frame.skew_deg}
+    else:
+        world_from_sfm, accepted = alignment.align(court, xyz_in_sfm)
+        how = {"n_points": int(accepted.sum())}
+    found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
+    sigma_px = court_adjustment.largest_click_sigma(click_sigma_px, found)
+    checked = quality.of_court(court, found, marked, click_sigma_px=sigma_px, strict=False)
+    report = {"calibration": name, "scale": world_from_sfm.scale, **how, **checked}
+    camera_models.write_toml(cameras_toml, found, source=name)
+    with atomic(quality_json) as temporary:
+        temporary.write_text(json.dumps(report, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.ties,
+        snakemake.input.clicks,
+        snakemake.input.court,
+        snakemake.output.cameras,
+        snakemake.output.quality,
+        name=snakemake.wildcards.calibration,
+        click_sigma_px=snakemake.params.step["click_sigma_px"],
+    )

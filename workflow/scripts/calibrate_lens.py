@@ -1,0 +1,28 @@
+"""Calibrate the lens of one fixed camera from pictures of a chessboard: images -> K and distortion."""
+
+import numpy as np
+
+from courtside.devices import chessboard
+from courtside.geometry import cameras
+from courtside.study import log
+
+
+def main(images, lens_toml, *, camera, inner_corners):
+    boards = chessboard.find(images, inner_corners)
+    lens = chessboard.calibrate(boards, name=camera)
+    log.logger.info("%s: %d boards, %.2f px", camera, lens.n_used, lens.rms_px)
+    for path, why in lens.dropped.items():
+        log.logger.info("%s: left out, %s", path, why)
+    nowhere = np.eye(3, 4)  # a lens has no place
+    found = cameras.Camera(camera, lens.size, lens.K, lens.dist, nowhere)
+    cameras.write_toml(lens_toml, [found], source=f"chessboard, {lens.n_used} pictures")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.params.images,
+        snakemake.output.lens,
+        camera=snakemake.wildcards.camera,
+        inner_corners=snakemake.params.inner_corners,
+    )

@@ -1,0 +1,63 @@
+"""Evaluate one structure from motion against the truth: ties, truth, simulated clicks -> errors of every draw."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from courtside.geometry import court_trials, courts
+from courtside.records import ties, truth
+from courtside.sfm import bridging
+from courtside.study import log
+from courtside.study.files import atomic
+from courtside.virtual import clicking
+
+CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there
+
+
+def main(ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, clicks, sets, **options):
+    court, real, record = courts.read(court_yaml), truth.read(truth_npz), ties.read(ties_npz)
+    summary = json.loads(Path(summary_json).read_text())
+    rows = []
+    for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
+        if record.outcome:
+            rows.append({"draw": draw, "outcome": record.outcome})
+            continue
+        found = court_trials.of_ties(record, real.cameras, court, marked, sets=sets, **options)
+        rows += [{"draw": draw, **row} for row in found]
+    angles = neighbour_angles_deg(record, court) if not record.outcome else [np.nan]
+    about = {
+        **labels,
+        "n_registered": summary["n_registered"],
+        "n_images": summary["n_images"],
+        "n_fixed_registered": len(record.sfm_cameras),
+        "n_points3d": summary["n_points3d"],
+        "reprojection_px": summary["reprojection_px"],
+        "tie_residual_px": record.residual_px,
+        "neighbour_deg_median": np.median(angles),
+        "neighbour_deg_max": np.max(angles),
+    }
+    table = pd.DataFrame(rows).assign(**about)
+    columns = [*about, "draw", *court_trials.COLUMNS]
+    with atomic(errors_csv) as temporary:
+        table.reindex(columns=columns).to_csv(temporary, index=False, float_format="%.6g")
+
+
+def neighbour_angles_deg(record, court):
+    centres = record.centres[
+        bridging.path_order(record.centres, np.char.startswith(record.images, "static/"))
+    ]
+    return bridging.neighbour_angles_deg(centres, [*court.size_m / 2, CENTRE_HEIGHT_M])
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.ties,
+        snakemake.input.summary,
+        snakemake.input.truth,
+        snakemake.input.court,
+        snakemake.output.errors,
+        **snakemake.params.settings,
+    )

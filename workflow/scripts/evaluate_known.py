@@ -1,0 +1,35 @@
+"""Evaluate calibration from known court points against the truth: truth, simulated clicks -> errors of every draw."""
+
+import pandas as pd
+
+from courtside.geometry import cameras, court_trials, courts
+from courtside.records import truth
+from courtside.study import log
+from courtside.study.files import atomic
+from courtside.virtual import clicking
+
+
+def main(truth_npz, court_yaml, lens_toml, errors_csv, *, labels, clicks, sets, click_sigma_px):
+    court, real = courts.read(court_yaml), truth.read(truth_npz)
+    lenses = {camera: cameras.read_toml(path)[0] for camera, path in lens_toml.items()}
+    rows = []
+    for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
+        found = court_trials.of_known(
+            real.cameras, court, marked, lenses, sets=sets, click_sigma_px=click_sigma_px
+        )
+        rows += [{**labels, "draw": draw, **row} for row in found]
+    columns = [*labels, "draw", *court_trials.COLUMNS]
+    with atomic(errors_csv) as temporary:
+        table = pd.DataFrame(rows).reindex(columns=columns)
+        table.to_csv(temporary, index=False, float_format="%.6g")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.truth,
+        snakemake.input.court,
+        dict(zip(snakemake.params.cameras, snakemake.input.lenses, strict=False)),
+        snakemake.output.errors,
+        **snakemake.params.settings,
+    )

@@ -1,0 +1,36 @@
+"""Extract the static picture of one fixed camera: its static recording -> PNG without people."""
+
+import pandas as pd
+
+from courtside.devices import still, video, walks
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(
+    video_path, out_png, out_csv=None, *, frames, max_shift_px, max_zoom_percent, camera="camera"
+):
+    image, moved = still.static_picture(
+        camera,
+        video_path,
+        walks.spread(video_path, frames),
+        max_shift_px=max_shift_px,
+        max_zoom_percent=max_zoom_percent,
+    )
+    video.write_png(out_png, image)
+    row = {"camera": camera, **moved.row()}
+    log.logger.info("%s", row)
+    if out_csv:
+        with atomic(out_csv) as temporary:
+            pd.DataFrame([row]).to_csv(temporary, index=False)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.video,
+        snakemake.output.png,
+        snakemake.output.get("csv"),
+        camera=snakemake.wildcards.camera,
+        **snakemake.params.step,
+    )
