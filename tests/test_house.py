@@ -27,7 +27,7 @@ TESTED_THROUGH = {  # parts of one thing, split for length: the tests of the who
     "distortion": "geometry/test_cameras.py",
     "fields": "geometry/test_calibration_files.py",
 }
-PER_ARTEFACT = "fetch_artefact.py"  # one rule for each artefact runs it
+PER_NAME = {"fetch_artefact.py", "simulate_session.py"}  # one rule for each artefact, each virtual session
 # Written in pieces, so that this file does not name them itself.
 FOREIGN = ["/" + "work/", "/" + "tmp/", "pypi" + ".org", "python" + "hosted"]
 LARGEST_BYTES = 1 << 20
@@ -92,7 +92,7 @@ def test_rule_script_and_log_folder_have_one_name():
     found = rules()
     assert len(found) >= 12
     assert [names for names in found if len(set(names)) > 1] == []
-    assert {f"{script}.py" for _, script, _ in found} | {PER_ARTEFACT} == {p.name for p in SCRIPTS}
+    assert {f"{script}.py" for _, script, _ in found} | PER_NAME == {p.name for p in SCRIPTS}
 
 
 def test_public_functions_say_what_they_take():

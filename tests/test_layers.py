@@ -33,6 +33,7 @@ OWNERS = {
     "av": "devices",
     "bvhio": "devices",
     "ezc3d": "exports",
+    "embreex": "virtual",
 }
 FOR_SCRIPTS = {"courtside", "numpy", "pandas", "cv2", *sys.stdlib_module_names}
 
@@ -103,3 +104,19 @@ def test_only_the_last_block_of_a_script_names_snakemake(path):
 def test_every_module_imports(path):
     name = ".".join(path.relative_to(LIBRARY).with_suffix("").parts)
     assert importlib.import_module(name.removesuffix(".__init__")).__doc__
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.name)
+def test_methods_see_neither_simulation_nor_truth(path):
+    used = {".".join(name.split(".")[:3]) for name in imports(path.read_text())}
+    if not path.name.startswith(("simulate_", "evaluate_")):
+        assert not [n for n in used if n.startswith(("courtside.virtual", "courtside.records.truth"))]
+
+
+def test_only_evaluations_take_truth_files():
+    rules = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
+    takers = []
+    for path in rules:
+        blocks = path.read_text().split("\nrule ")[1:]
+        takers += [block.split(":")[0] for block in blocks if "truth.npz" in block]
+    assert takers == ["evaluate_calibration", "evaluate_known"]

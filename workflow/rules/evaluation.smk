@@ -22,7 +22,7 @@ rule evaluate_calibration:
         settings=lambda w: evaluation_parameters(
             w,
             labels={"mapper": w.mapper, "n_bridging": w.n_images, "offset": w.offset},
-            keys=["click_sigma_px", "click_loss"],
+            keys=["click_sigma_px", "click_bias_px", "click_loss"],
         ),
     script:
         "../scripts/evaluate_calibration.py"

@@ -41,7 +41,7 @@ def map_parameters(wildcards):
 def click_parameters(wildcards):
     """Return what is said of clicks, which all calibrations share."""
     chosen = step("adjust_network")(wildcards)
-    return {key: chosen[key] for key in ("click_sigma_px", "click_loss")}
+    return {key: chosen[key] for key in ("click_sigma_px", "click_bias_px", "click_loss")}
 
 
 def ties_file(wildcards):

@@ -17,29 +17,33 @@ def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points,
     network, images, sizes = model.read(Path(summary_json).parent)
     summary = json.loads(Path(summary_json).read_text())
     fixed = {camera: f"static/{camera}.png" for camera in cameras}
-    outcome = registration.outcome(
-        network, images, fixed, min_points=min_points, n_models=summary["n_models"]
-    )
+    least = {"min_points": min_points, "n_models": summary["n_models"]}
+    outcome = registration.outcome(network, images, fixed, **least)
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
     alone = control_points.alone(network, list(placed.values()))
     found = control_points.cameras(alone, list(placed), list(size_of.values()))
     known, fault, adjusted, residual_px = None, "", network, np.nan
     if not outcome:
-        court = courts.read(court_yaml)
-        marked = clicks.read(clicks_csv, cameras, list(court.points))
         try:
-            known, adjusted = court_adjustment.condense(
-                network, placed, size_of, marked, court, **options
-            )
+            known, adjusted = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
             residual_px = 1.4826 * np.median(np.abs(networks.residuals(adjusted)))
         except InputError as error:
             fault = str(error)
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
     seen = [registration.n_seen(network, images, fixed[camera]) for camera in placed]
-    centres = control_points.centres(adjusted)
-    record = ties.Record(outcome, fault, found, seen, known, images, centres, adjusted.xyz, residual_px)
-    ties.write(ties_npz, record)
+    places = images, control_points.centres(adjusted), adjusted.xyz
+    ties.write(ties_npz, ties.Record(outcome, fault, found, seen, known, *places, residual_px))
+
+
+def adjust(network, placed, size_of, clicks_csv, court_yaml, *, click_bias_px, **options):
+    if not court_yaml:
+        options = {k: v for k, v in options.items() if not k.startswith("click_")}
+        return court_adjustment.condense_free(network, placed, size_of, **options)
+    court = courts.read(court_yaml)
+    marked = clicks.read(clicks_csv, list(placed), list(court.points))
+    options["click_sigma_px"] = np.hypot(options["click_sigma_px"], click_bias_px)
+    return court_adjustment.condense(network, placed, size_of, marked, court, **options)
 
 
 if __name__ == "__main__":

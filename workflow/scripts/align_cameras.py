@@ -1,13 +1,11 @@
 """Align a model with the court by a similarity: ties, clicked court points -> cameras as the paper or all points say."""
 
-import json
-
 from courtside.geometry import alignment, court_adjustment, courts, quality
 from courtside.geometry import cameras as camera_models
 from courtside.records import clicks, ties
 from courtside.study import log
 from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.study.files import write_json
 
 
 def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, click_sigma_px):
@@ -28,8 +26,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, 
     checked = quality.of_court(court, found, marked, click_sigma_px=sigma_px, strict=False)
     report = {"calibration": name, "scale": world_from_sfm.scale, **how, **checked}
     camera_models.write_toml(cameras_toml, found, source=name)
-    with atomic(quality_json) as temporary:
-        temporary.write_text(json.dumps(report, indent=1) + "\n")
+    write_json(quality_json, report)
 
 
 if __name__ == "__main__":

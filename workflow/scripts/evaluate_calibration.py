@@ -16,7 +16,9 @@ from courtside.virtual import clicking
 CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there
 
 
-def main(ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, clicks, sets, **options):
+def main(
+    ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, clicks, sets, **options
+):
     court, real, record = courts.read(court_yaml), truth.read(truth_npz), ties.read(ties_npz)
     summary = json.loads(Path(summary_json).read_text())
     rows = []
@@ -26,7 +28,10 @@ def main(ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, c
             continue
         found = court_trials.of_ties(record, real.cameras, court, marked, sets=sets, **options)
         rows += [{"draw": draw, **row} for row in found]
-    angles = neighbour_angles_deg(record, court) if not record.outcome else [np.nan]
+    angles = [np.nan]
+    if record.ties:
+        point = [*court.size_m / 2, CENTRE_HEIGHT_M]
+        angles = bridging.path_angles_deg(record.images, record.centres, point)
     about = {
         **labels,
         "n_registered": summary["n_registered"],
@@ -38,17 +43,9 @@ def main(ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, c
         "neighbour_deg_median": np.median(angles),
         "neighbour_deg_max": np.max(angles),
     }
-    table = pd.DataFrame(rows).assign(**about)
-    columns = [*about, "draw", *court_trials.COLUMNS]
+    table, columns = pd.DataFrame(rows).assign(**about), [*about, "draw", *court_trials.COLUMNS]
     with atomic(errors_csv) as temporary:
         table.reindex(columns=columns).to_csv(temporary, index=False, float_format="%.6g")
-
-
-def neighbour_angles_deg(record, court):
-    centres = record.centres[
-        bridging.path_order(record.centres, np.char.startswith(record.images, "static/"))
-    ]
-    return bridging.neighbour_angles_deg(centres, [*court.size_m / 2, CENTRE_HEIGHT_M])
 
 
 if __name__ == "__main__":

@@ -18,7 +18,9 @@ def main(static_png, frames_csv, features_db, table_csv, *, threads, **options):
     ]
     groups += [features.Group(walk, walks.of_walk(walk)) for walk in frames_csv]
     counts, guessed = features.extract(features_db, root, groups, threads=threads, **options)
-    log.logger.info("no focal length stated, a guess to start from: %s", ", ".join(guessed))
+    for group in guessed:
+        guess = f"{options['focal_factor']:g} picture widths"
+        log.logger.info("%s: no focal length in its pictures, first guess %s", group, guess)
     table = pd.DataFrame(
         [(g.name, name, counts[name]) for g in groups for name in g.images],
         columns=["source", "name", "n_features"],

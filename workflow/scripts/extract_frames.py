@@ -4,7 +4,7 @@ from pathlib import Path
 
 from courtside.devices import walks
 from courtside.records import frame_table
-from courtside.sfm import bridging
+from courtside.sfm import usable
 from courtside.study import log
 from courtside.study.folders import atomic_folder
 
@@ -13,7 +13,7 @@ def main(video_path, folder, table_csv, *, every_s=None, every_frame=None, walk=
     with atomic_folder(folder) as beside:
         found = walks.frames(video_path, every_s=every_s, every_frame=every_frame)
         table, small = walks.extract(log.progress(found, None, f"{walk}: frames"), beside)
-        kept, reason = bridging.judge(table, small)
+        kept, reason = usable.judge(table, small)
         table = table.assign(kept=kept, reason=reason)
         frame_table.write(table_csv, table)
     for reason, count in table["reason"].value_counts().items():

@@ -1,10 +1,8 @@
 """Import a calibration made elsewhere: its file -> cameras of the session, as their videos show them."""
 
-import json
-
 from courtside.geometry import calibration_files, cameras
 from courtside.study import log
-from courtside.study.files import atomic
+from courtside.study.files import write_json
 
 
 def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):
@@ -16,8 +14,7 @@ def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):
         "cameras": {c.name: {"size_px": list(map(int, c.size))} for c in found},
         "covariance": "unknown: the file gives none",
     }
-    with atomic(quality_json) as temporary:
-        temporary.write_text(json.dumps(quality, indent=2) + "\n", encoding="utf-8")
+    write_json(quality_json, quality)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,17 @@
 """Map a session's fixed cameras with N bridging images: matches -> COLMAP model."""
 
-import json
 from pathlib import Path
 
 import pandas as pd
 
 from courtside.sfm import grid, mapping
 from courtside.study import log
-from courtside.study.files import atomic
+from courtside.study.files import write_json
 
 
-def main(matches_db, features_csv, frames_csv, folder, summary_json, *, n_images, offset, rule, **options):
+def main(
+    matches_db, features_csv, frames_csv, folder, summary_json, *, n_images, offset, rule, **options
+):
     walks = grid.read(frames_csv, {walk: f"frames/{walk}" for walk in frames_csv})
     images = pd.read_csv(features_csv)
     fixed = images["name"][~images["source"].isin(list(frames_csv))].tolist()
@@ -18,8 +19,7 @@ def main(matches_db, features_csv, frames_csv, folder, summary_json, *, n_images
     summary = mapping.map_images(matches_db, fixed + chosen, folder, **options)
     summary["bridging_images"] = chosen
     log.logger.info("registered %(n_registered)d of %(n_images)d images", summary)
-    with atomic(summary_json) as temporary:
-        temporary.write_text(json.dumps(summary, indent=1) + "\n")
+    write_json(summary_json, summary)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,9 @@ def main(features_db, features_csv, frames_csv, matches_db, table_csv, *, thread
     table = pd.DataFrame(
         [(*pair, n) for pair, n in found.items()], columns=["name_a", "name_b", "n_matches"]
     )
-    log.logger.info("pairs with a two-view geometry: %d of %d", (table.n_matches > 0).sum(), len(table))
+    log.logger.info(
+        "pairs with a two-view geometry: %d of %d", (table.n_matches > 0).sum(), len(table)
+    )
     with atomic(table_csv) as temporary:
         table.to_csv(temporary, index=False)
 

@@ -1,18 +1,24 @@
 """Calibrate each fixed camera from known court points alone: clicked points, lenses -> cameras, quality."""
 
-import json
-
 import cv2
 
 from courtside.geometry import cameras as camera_models
 from courtside.geometry import court_adjustment, courts, known_points, quality
 from courtside.records import clicks
 from courtside.study import log
-from courtside.study.files import atomic
+from courtside.study.files import write_json
 
 
 def main(
-    clicks_csv, court_yaml, static_png, lens_toml, cameras_toml, quality_json, *, name, click_sigma_px
+    clicks_csv,
+    court_yaml,
+    static_png,
+    lens_toml,
+    cameras_toml,
+    quality_json,
+    *,
+    name,
+    click_sigma_px,
 ):
     court = courts.read(court_yaml)
     marked = clicks.read(clicks_csv, list(static_png), list(court.points))
@@ -34,8 +40,7 @@ def main(
         **quality.of_court(court, found, marked, click_sigma_px=sigma_px, strict=not way.linear),
     }
     camera_models.write_toml(cameras_toml, found, source=name)
-    with atomic(quality_json) as temporary:
-        temporary.write_text(json.dumps(report, indent=1) + "\n")
+    write_json(quality_json, report)
 
 
 if __name__ == "__main__":

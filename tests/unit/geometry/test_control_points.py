@@ -206,6 +206,24 @@ def test_condensed_ties_and_the_same_clicks_give_the_same_to_rounding():
     np.testing.assert_allclose(sigma, expected, rtol=1e-5)
 
 
+def test_ties_that_are_not_at_rest_pull_the_fixed_cameras():
+    """The images of the walk stand off by some pixels; eliminated, they go where they belong."""
+    truth = networks_made.exact_lens_prior(networks_made.make(4, 40))
+    step = np.zeros(truth.n_columns)
+    images = step[22:66].reshape(4, 11)
+    images[:, :6] = np.random.default_rng(0).normal(size=(4, 6)) * ([2e-3] * 3 + [0.02] * 3)
+    moved = truth.moved(step, np.zeros_like(truth.xyz))
+    assert np.abs(networks.residuals(moved)).mean() > 1
+    knowledge = control_points.what_ties_say(moved, [0, 1])
+    clicks = clicks_of(truth)
+    found, normal = bundle.adjust(
+        with_clicks(knowledge.reference, clicks), quadratic=knowledge, tolerance=1e-12
+    )
+    sigma = np.sqrt(np.diag(uncertainty.of_columns(normal))[normal.active])
+    off = found.difference(control_points.alone(truth, [0, 1]))[normal.active] / sigma
+    assert np.abs(off).max() < 0.1
+
+
 def test_ties_leave_frame_and_scale_open():
     made = networks_made.exact_lens_prior(networks_made.make(4, 40))
     knowledge = control_points.what_ties_say(made, [0, 1])

@@ -234,6 +234,16 @@ def test_clicks_of_one_camera_give_no_frame():
         condense(truth, clicks)
 
 
+def test_a_court_point_behind_the_camera_that_saw_it_is_an_error():
+    truth = made()
+    clicks = clicks_of(truth)
+    clicks["side"][7] = np.nan  # the alignment cannot notice
+    xyz = COURT.xyz.copy()
+    xyz[7] = [3, -40, 0]
+    with pytest.raises(InputError, match="found some behind after alignment"):
+        condense(truth, clicks, court=replace(COURT, xyz=xyz))
+
+
 def test_clicks_are_as_good_as_the_picture_is_wide():
     assert court_adjustment.click_sigma(1.5, (3840, 2160)) == 1.5
     assert court_adjustment.click_sigma(1.5, (1280, 720)) == 0.5

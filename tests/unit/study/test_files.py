@@ -1,6 +1,7 @@
 """Files appear whole or not at all."""
 
 import hashlib
+import json
 
 import numpy as np
 import pytest
@@ -57,3 +58,9 @@ def test_two_writers_of_one_file_do_not_meet(tmp_path):
 def test_the_checksum_of_an_empty_file(tmp_path):
     (tmp_path / "f").touch()
     assert files.sha256(tmp_path / "f") == hashlib.sha256(b"").hexdigest()
+
+
+def test_json_is_written_for_people(tmp_path):
+    files.write_json(tmp_path / "a.json", {"size_px": [1, 2], "name": "Ä"})
+    assert json.loads((tmp_path / "a.json").read_text()) == {"size_px": [1, 2], "name": "Ä"}
+    assert (tmp_path / "a.json").read_text().endswith("}\n")

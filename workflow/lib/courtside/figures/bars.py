@@ -1,6 +1,7 @@
 """Medians with their 5-95 % ranges."""
 
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 
 def draw(axis, x, rows, *, colour, marker="o", filled=True, line="-", label=None):
@@ -45,6 +46,13 @@ def ticks_at(axis, values):
     axis.set_xscale("log")
     axis.set_xticks(values, [f"{value:g}" for value in values])
     axis.set_xticks([], minor=True)
+
+
+def plain_log(axis):
+    """Make the y axis logarithmic, with numbers written out."""
+    axis.set_yscale("log")
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.yaxis.set_minor_formatter(NullFormatter())
 
 
 def mark(colour, *, marker="o", filled=True, line="none", label=None):

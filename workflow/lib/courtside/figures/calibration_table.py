@@ -1,4 +1,4 @@
-"""One table of all ways to calibrate, for all sessions: errors, coverage, registration, paired differences."""
+"""One table of all ways to calibrate: errors, coverage, registration, paired differences."""
 
 import numpy as np
 import pandas as pd
@@ -11,7 +11,7 @@ METHOD = ["method", "mapper", "n_clicks", "in_sample"]
 LABELS = ["session", "preset", "layout", "condition"]
 # Columns of an evaluation table that are no setting of a varied session.
 OTHERS = {
-    *LABELS, *METHOD, *court_trials.COLUMNS, "n_bridging", "offset", "draw", "placed", "n_registered", "n_images",
+    *LABELS, *METHOD, *court_trials.COLUMNS, "n_bridging", "offset", "draw", "n_registered", "n_images",
     "n_fixed_registered", "n_points3d", "reprojection_px", "tie_residual_px", "neighbour_deg_median",
     "neighbour_deg_max",
 }  # fmt: skip
@@ -30,14 +30,15 @@ def table(rows, *, n_reference=40):
     Returns
     -------
     summary : pandas.DataFrame
-        One row per session, method, mapper, clicks, in-sample or not, and number of bridging images; and one for all
-        sessions of a condition together where they differ in their seeds only (session: `all N`). `n` trials with a
-        result, `n_failed` without; of the structures from motion the share that placed all fixed cameras
-        (`placed_share`) and the mean share of their images (`registered_share`); medians and 95 % quantiles;
-        `coverage90` mean; and paired differences of the volume error, each as number of pairs, mean, 95 % upper
-        confidence limit of the mean, and 95 % quantile of the pairs: `vs_reference_...` to `n_reference` images
-        (same draw, offset 0), `vs_known_...` to calibration from all known points (same session and draw, scored
-        points left out or not alike).
+        One row per session, method, mapper, clicks, in-sample or not, and number of bridging images;
+        and one for all sessions of a condition together where they differ in their seeds only (session:
+        `all N`). `n` trials with a result, `n_failed` without; of the structures from motion the share
+        that led to a result (`solved_share`) and the mean share of registered images
+        (`registered_share`); medians and 95 % quantiles; `coverage90` mean; and paired differences of
+        the volume error, each as number of pairs, mean, 95 % upper confidence limit of the mean, and 95
+        % quantile of the pairs: `vs_reference_...` to `n_reference` images (same draw, offset 0),
+        `vs_known_...` to calibration from all known points (same session and draw, scored points left
+        out or not alike).
     """
     rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=_to_known(rows))
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]
@@ -77,7 +78,7 @@ def _row(group):
         "n": int(volume["n"]),
         "n_failed": int(len(group) - volume["n"]),
         "n_structures": len(structures),
-        "placed_share": structures["placed"].mean(),
+        "solved_share": structures["solved_share"].mean(),
         "registered_share": structures["registered_share"].mean(),
         "volume_rms_cm_median": volume["median"],
         "volume_rms_cm_p95": volume["p95"],
@@ -92,7 +93,7 @@ def _row(group):
 
 def _differences(group, name):
     scene = group["seed"] if "seed" in group else group["session"]
-    structure = group["session"] + group["offset"].astype(str)
+    structure = group["session"] + " " + group["offset"].fillna(0).astype(str)
     found = trials.spread(group[name])
     return {
         f"{name}_n": int(found["n"]),

@@ -8,7 +8,13 @@ CHOICE = ["method", "n_clicks", "in_sample"]
 STRUCTURE = ["session", "condition", "mapper", "n_bridging", "offset"]
 # What a structure from motion without a result would have been used for, where no other tells.
 USUAL = pd.DataFrame(
-    [("sfm", 18, True), ("sfm", 18, False), ("sim3", 18, True), ("sim3", 18, False), ("paper", 3, True)],
+    [
+        ("sfm", 18, True),
+        ("sfm", 18, False),
+        ("sim3", 18, True),
+        ("sim3", 18, False),
+        ("paper", 3, True),
+    ],
     columns=CHOICE,
 )
 REPLICATES = 2000
@@ -41,8 +47,8 @@ def tidy(rows):
     Returns
     -------
     rows : pandas.DataFrame
-        No text is missing; `placed` says whether there are cameras to score (always so for known points); rows of
-        a structure without a result are repeated for each choice of method, clicks and scored points.
+        No text is missing; rows of a structure without a result are repeated for each choice of method,
+        clicks and scored points.
     """
     rows = rows.copy()
     for column in TEXT:
@@ -52,14 +58,22 @@ def tidy(rows):
     empty = (rows["method"] == "").to_numpy()
     done, failed = rows[~empty].copy(), rows[empty]
     done["in_sample"] = done["in_sample"].astype(str) == "True"
-    done["placed"] = True
+    done["n_clicks"] = done["n_clicks"].astype(int)
     if failed.empty:
         return done.reset_index(drop=True)
     choices = done.loc[done["mapper"] != "", CHOICE].drop_duplicates()
-    failed = failed.drop(columns=CHOICE, errors="ignore").assign(placed=False)
+    failed = failed.drop(columns=CHOICE, errors="ignore")
     failed = failed.merge(choices if len(choices) else USUAL, how="cross")
     whole = [failed.dropna(axis=1, how="all"), done] if len(done) else [failed]
-    return pd.concat(whole, ignore_index=True)[[*rows.columns, "placed"]]
+    return pd.concat(whole, ignore_index=True)[list(rows.columns)]
+
+
+def pick(rows, **values):
+    """Return the rows in which the named columns have these values."""
+    there = np.ones(len(rows), dtype=bool)
+    for column, value in values.items():
+        there &= (rows[column] == value).to_numpy(dtype=bool)
+    return rows[there]
 
 
 def spread(values):
@@ -95,12 +109,26 @@ def summary(rows, by, value):
 
 
 def structures(rows):
-    """Return one row per structure from motion: whether it is placed, images, angles between neighbours."""
-    about = ["placed", "n_registered", "n_images", "neighbour_deg_median", "neighbour_deg_max"]
-    of_walk = rows[rows["mapper"] != ""]
-    first = of_walk.drop_duplicates(STRUCTURE).reindex(columns=[*STRUCTURE, *about])
-    first["registered_share"] = first["n_registered"] / first["n_images"]
-    return first.sort_values(STRUCTURE, ignore_index=True)
+    """Return the structures from motion behind trials, one row each.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `tidy`.
+
+    Returns
+    -------
+    found : pandas.DataFrame
+        session, condition, mapper, n_bridging, offset; `solved_share`, 1 where any of these trials has
+        a result and else 0; `registered_share` of its images; neighbour_deg_median and
+        neighbour_deg_max.
+    """
+    about = ["n_registered", "n_images", "neighbour_deg_median", "neighbour_deg_max"]
+    of_walk = rows[rows["mapper"] != ""].reindex(columns=[*STRUCTURE, *about, "volume_rms_cm"])
+    solved = of_walk["volume_rms_cm"].notna().astype(float)
+    found = of_walk.assign(solved_share=solved).groupby(STRUCTURE, as_index=False)
+    found = found.agg({**dict.fromkeys(about, "first"), "solved_share": "max"})
+    return found.assign(registered_share=found["n_registered"] / found["n_images"])
 
 
 def against(rows, reference, on, value="volume_rms_cm"):
@@ -140,11 +168,9 @@ def upper_limit(difference, scene, structure, *, seed=0):
     limit : float
         NaN with fewer than two differences.
 
-    Notes
-    -----
-    Scenes, then the structures within each, then the draws within each are drawn again with replacement; every
-    scene counts alike, and every structure within its scene (Davison & Hinkley 1997, sec. 3.8). With one scene the
-    limit speaks of that scene only.
+    Notes ----- Scenes, then the structures within each, then the draws within each are drawn again with
+    replacement; every scene counts alike, and every structure within its scene (Davison & Hinkley 1997,
+    sec. 3.8). With one scene the limit speaks of that scene only.
     """
     known = np.isfinite(difference)
     if known.sum() < 2:
@@ -165,4 +191,6 @@ def _resampled_mean(rng, values):
     """Return means (REPLICATES,) of values (n, REPLICATES) or (n, 1), each of n drawn with replacement."""
     values = np.asarray(values)
     times = rng.multinomial(len(values), np.full(len(values), 1 / len(values)), REPLICATES)
-    return np.einsum("rn,nr->r", times, np.broadcast_to(values, (len(values), REPLICATES))) / len(values)
+    return np.einsum("rn,nr->r", times, np.broadcast_to(values, (len(values), REPLICATES))) / len(
+        values
+    )

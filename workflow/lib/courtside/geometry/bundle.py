@@ -230,9 +230,7 @@ def _point_side(network, by_point, residual):
 
 
 def _sum_by(index, values, length):
-    return np.stack(
-        [np.bincount(index, column, minlength=length) for column in values.T], axis=1
-    )
+    return np.stack([np.bincount(index, column, minlength=length) for column in values.T], axis=1)
 
 
 def _coupling(network, root, by_point, by_camera):

@@ -235,13 +235,11 @@ def read_toml(path):
     metadata = tables.get("metadata", {})
     unit = metadata.get("unit", "m") if isinstance(metadata, dict) else metadata
     metres = fields.unit_in_metres(path, unit)
-    found = [
-        build(
-            f"{path}: camera {table.get('name', key)}", str(table.get("name", key)), table, metres
-        )
-        for key, table in tables.items()
-        if isinstance(table, dict) and key not in OTHER_TABLES
-    ]
+    found = []
+    for key, table in tables.items():
+        if isinstance(table, dict) and key not in OTHER_TABLES:
+            name = str(table.get("name", key))
+            found.append(build(f"{path}: camera {name}", name, table, metres))
     return fields.check_distinct(path, found)
 
 
@@ -271,7 +269,7 @@ def build(where, name, table, metres):
         raise InputError(f"{where}: {error}; {fields.EXPORT_AGAIN}") from error
 
 
-def write_toml(path, cameras, *, source):
+def write_toml(path, cameras, *, source, unit="m"):
     """Write cameras so that `read_toml`, Pose2Sim and aniposelib read them.
 
     Parameters
@@ -280,6 +278,8 @@ def write_toml(path, cameras, *, source):
     cameras : list of Camera
     source : str
         How they were found; kept in `[metadata]`.
+    unit : str
+        `fields.UNSCALED` where lengths are not in metres: such files are refused by `read_toml`.
     """
     fields.check_distinct(path, cameras)
     digits = len(str(len(cameras) - 1))  # aniposelib sorts the tables by name
@@ -295,6 +295,6 @@ def write_toml(path, cameras, *, source):
         }
         for index, camera in enumerate(cameras)
     }
-    content["metadata"] = {"adjusted": False, "error": 0.0, "unit": "m", "source": source}
+    content["metadata"] = {"adjusted": False, "error": 0.0, "unit": unit, "source": source}
     with atomic(path) as temporary:
         temporary.write_text(tomli_w.dumps(content), encoding="utf-8")

@@ -226,6 +226,7 @@ def find(court, cameras, clicks, *, sigma_px=1.0):
     InputError
         If the points cannot be this court: see `alignment.check`.
     """
+    alignment.refuse_exchanged(court, cameras, clicks)
     xyz = alignment.reconstruct(cameras, clicks)
     warnings = alignment.check(court, xyz, cameras)
     try:

@@ -7,6 +7,7 @@ import numpy as np
 from courtside.geometry import bundle
 from courtside.geometry import network as networks
 from courtside.geometry.cameras import Camera
+from courtside.geometry.similarity import Sim3
 
 
 def transform(network, b_from_a):
@@ -15,6 +16,31 @@ def transform(network, b_from_a):
     shift = b_from_a.scale * network.cam_from_world[:, :, 3] - rotation @ b_from_a.translation
     pose = np.concatenate([rotation, shift[:, :, None]], axis=2)
     return replace(network, cam_from_world=pose, xyz=b_from_a.points(network.xyz))
+
+
+def free_frame(network, fixed):
+    """Return the similarity into a frame for sessions without a court.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    fixed : sequence of int
+        Images of the fixed cameras; the extent of all images stands in for fewer than two.
+
+    Returns
+    -------
+    frame_from_sfm : courtside.geometry.similarity.Sim3
+        Origin: mean of the projection centres. z: against the mean of the pictures' y axes, upwards if cameras
+        are held upright. x: from the first fixed camera to the second. Unit: their distance.
+    """
+    places = centres(network)
+    ends = places[fixed[:2]] if len(fixed) > 1 else places[[0, -1]]
+    along = ends[1] - ends[0]
+    up = -network.cam_from_world[:, 1, :3].mean(axis=0)
+    x = along - (along @ up) / (up @ up) * up
+    x, z = x / np.linalg.norm(x), up / np.linalg.norm(up)
+    rotation, scale = np.stack([x, np.cross(z, x), z]), 1 / np.linalg.norm(along)
+    return Sim3(float(scale), rotation, -scale * rotation @ places.mean(axis=0))
 
 
 def select(network, points, seen=None):
@@ -89,7 +115,16 @@ def centres(network):
 
 
 def weigh(network, *, sigma_px, loss_scale):
-    """Return a network in which all observations have one sigma and one loss."""
+    """Return a network in which all observations have one sigma and one loss.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    sigma_px : float
+        Standard deviation along each axis.
+    loss_scale : float
+        Where Cauchy's loss sets in, in sigmas; inf: nowhere.
+    """
     return replace(
         network,
         sigma_px=np.full(len(network.xy), float(sigma_px)),
@@ -115,7 +150,9 @@ def add(network, xyz, xyz_sigma, clicks, *, sigma_px, loss_scale):
     loss_scale : float
         In sigmas.
     """
-    clicked = [(v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))]
+    clicked = [
+        (v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))
+    ]
     image_idx, point = np.array(clicked, dtype=int).reshape(-1, 2).T
     used, point_idx = np.unique(point, return_inverse=True)
     xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]

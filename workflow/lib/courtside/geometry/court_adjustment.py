@@ -4,12 +4,12 @@ The ties of one structure from motion are condensed once, into what they say of 
 of clicks costs milliseconds.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from courtside.geometry import alignment, bundle, control_points, uncertainty
-from courtside.geometry.network import IMAGE, POSE
+from courtside.geometry.network import FLEX, IMAGE, POSE
 from courtside.study.errors import InputError
 
 UHD = 3840  # picture width at which click sigmas are stated
@@ -58,7 +58,17 @@ class Solution:
 
 
 def condense(
-    network, fixed, sizes, clicks, court, *, tie_sigma_px, tie_loss, click_sigma_px, click_loss, **thinning
+    network,
+    fixed,
+    sizes,
+    clicks,
+    court,
+    *,
+    tie_sigma_px,
+    tie_loss,
+    click_sigma_px,
+    click_loss,
+    **thinning,
 ):
     """Adjust a whole network with its clicks, and keep what its ties say of the fixed cameras.
 
@@ -95,6 +105,7 @@ def condense(
     """
     names = tuple(fixed)
     cameras = _cameras(network, fixed, sizes)
+    alignment.refuse_exchanged(court, cameras, clicks)
     world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
     network = control_points.transform(network, world_from_sfm)
     network = control_points.thin(network, **thinning)
@@ -121,6 +132,43 @@ def condense(
     return Ties(names, tuple(sizes[name] for name in names), knowledge), tied
 
 
+def condense_free(network, fixed, sizes, *, tie_sigma_px, tie_loss, **thinning):
+    """Adjust a network that no court scales, in a frame of its own.
+
+    Parameters
+    ----------
+    network, fixed, sizes, tie_sigma_px, tie_loss, **thinning
+        As for `condense`.
+
+    Returns
+    -------
+    ties : Ties
+        In the frame of `control_points.free_frame`: the unit is the distance between the first two fixed cameras.
+    network : courtside.geometry.network.Network
+    """
+    network = control_points.transform(
+        network, control_points.free_frame(network, list(fixed.values()))
+    )
+    network = control_points.thin(network, **thinning)
+    network = control_points.weigh(network, sigma_px=tie_sigma_px, loss_scale=tie_loss)
+    network, _ = bundle.adjust(network, max_iterations=20, tolerance=1e-7)
+    knowledge = control_points.what_ties_say(network, list(fixed.values()))
+    return Ties(tuple(fixed), tuple(sizes[name] for name in fixed), knowledge), network
+
+
+def free(ties):
+    """Return the `Solution` of ties that no court scales; the covariance leaves out frame and scale.
+
+    Parameters
+    ----------
+    ties : Ties
+        Of `condense_free`.
+    """
+    network = ties.knowledge.reference
+    cameras = control_points.cameras(network, ties.cameras, ties.sizes)
+    return Solution(cameras, network, uncertainty.pseudo_inverse(ties.knowledge.information))
+
+
 def click_sigma(sigma_px_at_3840, size):
     """Return the sigma of a click in a picture of this size, px."""
     return sigma_px_at_3840 * size[0] / UHD
@@ -131,7 +179,9 @@ def largest_click_sigma(sigma_px_at_3840, cameras):
     return max(click_sigma(sigma_px_at_3840, camera.size) for camera in cameras)
 
 
-def solve(ties, clicks, court, *, click_sigma_px, click_loss, points=None, max_iterations=8):
+def solve(
+    ties, clicks, court, *, click_sigma_px, click_bias_px, click_loss, points=None, max_iterations=8
+):
     """Find the fixed cameras from the condensed ties and any clicks.
 
     Parameters
@@ -142,6 +192,8 @@ def solve(ties, clicks, court, *, click_sigma_px, click_loss, points=None, max_i
     court : courtside.geometry.courts.Court
     click_sigma_px, click_loss : float
         As for `condense`.
+    click_bias_px : float
+        What all clicks in one picture have in common, standard deviation per axis, at a width of 3840 px.
     points : (P,) bool, optional
         Court points to use; all without.
     max_iterations : int
@@ -155,9 +207,11 @@ def solve(ties, clicks, court, *, click_sigma_px, click_loss, points=None, max_i
     InputError
         If neither ties nor clicks place a camera.
     """
-    network = ties.knowledge.reference
+    network = _with_bias(ties, click_bias_px)
     use = np.ones(len(court.points), dtype=bool) if points is None else np.asarray(points)
-    images = {at: np.where(use[:, None], clicks[name], np.nan) for at, name in enumerate(ties.cameras)}
+    images = {
+        at: np.where(use[:, None], clicks[name], np.nan) for at, name in enumerate(ties.cameras)
+    }
     sigmas = {at: click_sigma(click_sigma_px, size) for at, size in enumerate(ties.sizes)}
     network = control_points.add(
         network, court.xyz, court.sigma_m, images, sigma_px=sigmas, loss_scale=click_loss
@@ -167,12 +221,32 @@ def solve(ties, clicks, court, *, click_sigma_px, click_loss, points=None, max_i
     )
     _check_placed(ties, normal)
     cameras = control_points.cameras(network, ties.cameras, ties.sizes)
-    return Solution(cameras, network, uncertainty.of_columns(normal))
+    covariance = uncertainty.of_columns(normal)
+    shifts = _shift_columns(network)
+    covariance[shifts], covariance[:, shifts] = 0.0, 0.0  # of the clicks, not of the cameras
+    return Solution(cameras, network, covariance)
+
+
+def _with_bias(ties, click_bias_px):
+    """Return the fixed cameras free to shift their clicks: the ties are condensed, so nothing else shifts."""
+    network = ties.knowledge.reference
+    flex_sigma = np.zeros((len(ties.cameras), len(FLEX)))
+    flex_sigma[:, 3:] = [[click_sigma(click_bias_px, size)] for size in ties.sizes]
+    return replace(network, flex_sigma=flex_sigma)
+
+
+def _shift_columns(network):
+    first = IMAGE * np.arange(len(network.cam_from_world))
+    return np.concatenate([first + IMAGE - 2, first + IMAGE - 1])
 
 
 def _check_placed(ties, normal):
     of_images = normal.active[: IMAGE * len(ties.cameras)].reshape(-1, IMAGE)
-    lost = [name for name, known in zip(ties.cameras, of_images, strict=True) if not known[: len(POSE)].all()]
+    lost = [
+        name
+        for name, known in zip(ties.cameras, of_images, strict=True)
+        if not known[: len(POSE)].all()
+    ]
     if lost:
         raise InputError(
             f"camera {lost[0]}: expected matches with other images or clicked court points, found neither; "

@@ -109,7 +109,8 @@ def coverage(error_m, covariance):
     """
     square = uncertainty.mahalanobis(error_m, covariance)
     shares = {
-        f"coverage{100 * level:.0f}": np.mean(square <= stats.chi2.ppf(level, 3)) for level in LEVELS
+        f"coverage{100 * level:.0f}": np.mean(square <= stats.chi2.ppf(level, 3))
+        for level in LEVELS
     }
     return {**shares, "predicted_volume_cm": expected_rms_cm(covariance)}
 

@@ -6,6 +6,7 @@ from courtside.geometry import transforms
 from courtside.study.errors import InputError
 
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+UNSCALED = "unscaled"  # unit of cameras of a session without a court
 EXPORT_AGAIN = "export the calibration again or mend the file"
 
 
@@ -89,6 +90,11 @@ def pose(where, rotation, translation, metres):
 
 def unit_in_metres(where, unit):
     """Return the length of a unit that a file names: m, cm or mm."""
+    if unit == UNSCALED:
+        raise InputError(
+            f"{where}: expected cameras in metres, found unscaled ones of a session without a court; give the "
+            "session a court and click its points"
+        )
     if not isinstance(unit, str) or unit not in METRES:
         raise InputError(
             f"{where}: expected unit as one of {', '.join(METRES)}, found {short(unit)}; correct it"

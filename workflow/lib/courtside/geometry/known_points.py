@@ -104,7 +104,8 @@ def cameras(found):
     for name, result in found.items():
         if result.camera is None:
             raise InputError(
-                f"camera {name}: expected a camera, found a matrix that is none. {result.reason}; "
-                "use the non-linear method"
+                result.reason
+                or f"camera {name}: expected clicks that make a linear calibration a camera, found a matrix that is "
+                "none; click more points, more exactly, or calibrate by least squares"
             )
     return [result.camera for result in found.values()]

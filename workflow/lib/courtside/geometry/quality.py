@@ -49,7 +49,9 @@ def of_court(court, cameras, clicks, *, click_sigma_px, point_covariance=None, s
         quality["left_out"] = {
             point: {
                 "error_cm": _number(table.error_cm[at]),
-                "error_px": {c: _number(table.error_px[v, at]) for v, c in enumerate(table.cameras)},
+                "error_px": {
+                    c: _number(table.error_px[v, at]) for v, c in enumerate(table.cameras)
+                },
             }
             for at, point in enumerate(table.points)
         }

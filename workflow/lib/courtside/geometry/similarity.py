@@ -141,9 +141,10 @@ def robust(x_in_a, x_in_b, sigma):
     finite = np.isfinite(x_in_a).all(axis=1) & np.isfinite(x_in_b).all(axis=1)
     known = np.flatnonzero(finite)
     if is_collinear(x_in_a[known]) or is_collinear(x_in_b[known]):
+        line = ", all on one line" if len(known) > 2 else ""
         raise InputError(
             f"court points: expected three or more that are not on one line, found {len(known)} that two "
-            "cameras see, or all on one line; click more points, in two cameras or more each"
+            f"cameras see{line}; click more points, in two cameras or more each"
         )
     places = x_in_a[known], x_in_b[known], sigma[known]
     b_from_a, agree = _select(*places)

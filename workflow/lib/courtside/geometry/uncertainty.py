@@ -38,8 +38,14 @@ def sensitivity(network, xyz):
     by_camera, by_point = networks.jacobians(view)
     full = np.zeros((len(image_idx), 2, network.n_columns))
     np.put_along_axis(full, view.columns()[:, None, :].repeat(2, axis=1), by_camera, axis=2)
-    full = full.reshape(n_images, n_points, 2, -1).transpose(1, 0, 2, 3).reshape(n_points, 2 * n_images, -1)
-    by_point = by_point.reshape(n_images, n_points, 2, 3).transpose(1, 0, 2, 3).reshape(n_points, -1, 3)
+    full = (
+        full.reshape(n_images, n_points, 2, -1)
+        .transpose(1, 0, 2, 3)
+        .reshape(n_points, 2 * n_images, -1)
+    )
+    by_point = (
+        by_point.reshape(n_images, n_points, 2, 3).transpose(1, 0, 2, 3).reshape(n_points, -1, 3)
+    )
     return -np.linalg.pinv(by_point) @ full
 
 
@@ -72,6 +78,24 @@ def of_columns(normal):
     inverse = np.linalg.inv(normal.information * np.outer(scale, scale))
     covariance[np.ix_(normal.active, normal.active)] = inverse * np.outer(scale, scale)
     return covariance
+
+
+def pseudo_inverse(information, n_free=7):
+    """Return the covariance (K, K) of a network whose frame and scale are free, of least trace.
+
+    Parameters
+    ----------
+    information : (K, K) float
+        Zero for fixed columns.
+    n_free : int
+        Directions that nothing is known of: those of least information are left out.
+    """
+    scale = np.where(np.diag(information) > 0, np.diag(information), np.inf) ** -0.5
+    extent, axes = np.linalg.eigh(information * np.outer(scale, scale))
+    n_known = np.count_nonzero(scale) - n_free
+    known = extent.argsort()[::-1][: max(n_known, 0)]
+    root = scale[:, None] * axes[:, known] / np.sqrt(np.maximum(extent[known], 1e-300))
+    return root @ root.T
 
 
 def mahalanobis(error, covariance):

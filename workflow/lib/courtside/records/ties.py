@@ -95,7 +95,9 @@ def read(path):
     found = npz.read(path, FORM, SPEC)
     sizes = [tuple(map(int, size)) for size in found["size"]]
     names = tuple(map(str, found["camera"]))
-    sfm = control_points.cameras(bare(found["cam_from_sfm"], found["lens_sfm"], sizes), names, sizes)
+    sfm = control_points.cameras(
+        bare(found["cam_from_sfm"], found["lens_sfm"], sizes), names, sizes
+    )
     ties = None
     if len(found["information"]):
         reference = bare(found["cam_from_world"], found["lens"], sizes)

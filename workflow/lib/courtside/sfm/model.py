@@ -35,14 +35,20 @@ def read(folder):
     cameras = [found.cameras[i] for i in camera_ids]
     order = {image.image_id: at for at, image in enumerate(images)}
     tracks = [found.points3D[i] for i in sorted(found.points3D)]
-    seen = [(order[e.image_id], k, e.point2D_idx) for k, t in enumerate(tracks) for e in t.track.elements]
+    seen = [
+        (order[e.image_id], k, e.point2D_idx)
+        for k, t in enumerate(tracks)
+        for e in t.track.elements
+    ]
     places = [image.points2D for image in images]
     image_idx, point_idx, _ = np.array(seen, dtype=int).reshape(-1, 3).T
     xy = np.array([places[v][at].xy for v, _, at in seen]).reshape(-1, 2) - HALF_PIXEL
     sizes = [(camera.width, camera.height) for camera in cameras]
     mean, sigma = lens_prior(sizes)
     network = Network(
-        cam_from_world=np.array([image.cam_from_world().matrix() for image in images]).reshape(-1, 3, 4),
+        cam_from_world=np.array([image.cam_from_world().matrix() for image in images]).reshape(
+            -1, 3, 4
+        ),
         flex=np.zeros((len(images), 5)),
         lens=np.array([_lens(camera) for camera in cameras]).reshape(-1, len(LENS)),
         xyz=np.array([track.xyz for track in tracks]).reshape(-1, 3),

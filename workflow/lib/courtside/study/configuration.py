@@ -7,7 +7,7 @@ from pathlib import Path
 
 import jsonschema
 
-from courtside.study import artefacts, session_faults, sessions, yaml_files
+from courtside.study import artefacts, session_faults, session_files, sessions, yaml_files
 from courtside.study.errors import InputError
 
 SCHEMAS = Path(__file__).parents[3] / "schemas"
@@ -99,10 +99,10 @@ def load(config, config_file, folder, root="."):
 
 def _sessions(config, found):
     """Return all `Session`s: those of the files, and the variations that conditions make of them."""
-    made = {name: sessions.session(name, *pair, config) for name, pair in found.items()}
-    for name, condition in config["conditions"].items():
-        base = made[condition["session"]]
-        made |= sessions.variations(base, name, condition["vary"], condition.get("override", {}))
+    made = {name: session_files.session(name, *pair, config) for name, pair in found.items()}
+    for name in config["variations"]:
+        condition = config["conditions"][name]
+        made |= session_files.variations(made[condition["session"]], name, condition)
     return made
 
 
@@ -160,6 +160,7 @@ def schema_faults(content, schema, file):
         condition = rules["properties"]["conditions"]["additionalProperties"]["properties"]
         condition["override"] = _overridable(rules)
         virtual = yaml_files.read(SCHEMAS / "session.schema.yaml")["properties"]["virtual"]
+        condition["set"]["properties"] = virtual["properties"]
         condition["vary"]["properties"] = {
             key: {"type": "array", "minItems": 1, "items": value}
             for key, value in virtual["properties"].items()

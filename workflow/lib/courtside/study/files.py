@@ -2,6 +2,7 @@
 
 import contextlib
 import hashlib
+import json
 import secrets
 from pathlib import Path
 
@@ -31,6 +32,12 @@ def atomic(path):
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_json(path, content):
+    """Write a dictionary as a JSON file that people can read, whole or not at all."""
+    with atomic(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
 def sha256(path):

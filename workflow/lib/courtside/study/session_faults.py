@@ -1,7 +1,8 @@
 """What a session's file gets wrong beyond its schema: names, files, and ways to find the cameras."""
 
+from courtside.study.session_files import VIRTUAL
+
 EXTERNAL = "results/external/"
-VIRTUAL = "results/virtual/"  # made by the workflow itself
 
 
 def find(folder, file, content, known, root):
@@ -101,14 +102,19 @@ def conditions(config_file, config, found):
     found : dict
         (file, content) of each session, by name.
     """
-    faults = []
-    for name, condition in config["conditions"].items():
+    faults = unknown(f"{config_file}: variations", config["variations"], config["conditions"])
+    for name in config["variations"]:
+        if name not in config["conditions"]:
+            continue
+        condition = config["conditions"][name]
         where, base = f"{config_file}: conditions.{name}", condition["session"]
         faults += unknown(f"{where}.session", [base], found)
         if base in found and "virtual" not in found[base][1]:
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
         if name in found:
-            faults.append(f"{where}: expected a name that no session has, found {name!r}; rename it")
+            faults.append(
+                f"{where}: expected a name that no session has, found {name!r}; rename it"
+            )
     return faults
 
 
@@ -129,7 +135,7 @@ def unknown(where, names, known):
 
 
 def _path_faults(where, path, known, root):
-    if path.startswith(VIRTUAL):
+    if path.startswith(f"{VIRTUAL}/"):
         return
     if not path.startswith(EXTERNAL):
         if not (root / path).exists():

@@ -1,0 +1,232 @@
+"""Error by number of bridging images, with what the X_o/Y_o error hides beside it.
+
+The counterpart of [Shishido2020, fig 8].
+"""
+
+from collections import namedtuple
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures import bars, style, trials
+
+Series = namedtuple("Series", "label method mapper n_clicks in_sample colour marker")
+# [Shishido2020, sec 3.2]: mean of the X_o and Y_o errors, cm, and degrees between neighbours, by N.
+PUBLISHED_CM, PUBLISHED_BELOW_CM, PUBLISHED_STRONG_CM = (
+    {300: 4.3, 20: 229.5},
+    {150: 10, 75: 10},
+    2.2,
+)
+PUBLISHED_DEG = {40: 6.0, 20: 12.0}
+MAPPERS = {"global": style.CYCLE[0], "incremental": style.CYCLE[1]}
+BY_CLICKS = [(style.CYCLE[0], "o"), (style.CYCLE[5], "^"), (style.CYCLE[2], "v")]
+LEVELS = [
+    ("known", style.CYCLE[6], "--"),
+    ("known", style.CYCLE[3], ":"),
+    ("dlt", style.CYCLE[4], "-."),
+]
+ERRORS = {
+    "xy_cm": "error of $X_o$ and $Y_o$, mean (cm)",
+    "volume_rms_cm": "error over the volume, RMS (cm)",
+}
+DODGE = 0.045  # of the logarithm of N, between series
+WALK_DEG = {"a": 90.0}  # what a walk from one fixed camera to the other turns, by layout
+
+
+def table(rows):
+    """Return the numbers drawn.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `trials.tidy`, of one session.
+
+    Returns
+    -------
+    numbers : pandas.DataFrame
+        quantity (`xy_cm`, `volume_rms_cm`, `solved_share`, `registered_share`, `neighbour_deg_median`,
+        `neighbour_deg_max`), method, mapper, n_clicks, in_sample, n_bridging, n, p05, median, p95,
+        n_failed. Of the last four quantities n counts structures from motion. The method `published`
+        holds the paper's values.
+    """
+    keys = ["method", "mapper", "n_clicks", "in_sample", "n_bridging"]
+    parts = [trials.summary(rows, keys, name).assign(quantity=name) for name in ERRORS]
+    found = trials.structures(rows)
+    for name in ("solved_share", "registered_share", "neighbour_deg_median", "neighbour_deg_max"):
+        part = trials.summary(found, ["mapper", "n_bridging"], name)
+        if name.endswith(
+            "share"
+        ):  # a share of few structures has a mean, and no quantiles worth the name
+            means = found.groupby(["mapper", "n_bridging"])[name].mean()
+            part = part.assign(median=means.to_numpy(), p05=np.nan, p95=np.nan)
+        parts.append(part.assign(quantity=name))
+    columns = ["quantity", *keys, "n", "p05", "median", "p95", "n_failed"]
+    return pd.concat([*parts, _published()], ignore_index=True)[columns]
+
+
+def _published():
+    values = [("xy_cm", count, value) for count, value in PUBLISHED_CM.items()]
+    values += [("xy_cm_below", count, value) for count, value in PUBLISHED_BELOW_CM.items()]
+    values += [("xy_cm_strong", np.nan, PUBLISHED_STRONG_CM)]
+    values += [("neighbour_deg_median", count, value) for count, value in PUBLISHED_DEG.items()]
+    rows = pd.DataFrame(values, columns=["quantity", "n_bridging", "median"])
+    return rows.assign(method="published", mapper="", in_sample=True)
+
+
+def series(numbers):
+    """Return the `Series` to draw against the number of bridging images, the paper's own first."""
+    found = [
+        Series("paper's eq 2-5, incremental", "paper", "incremental", 3, True, style.CYCLE[1], "s")
+    ]
+    ours = trials.pick(numbers, method="sfm", mapper="global")
+    clicks = sorted(ours["n_clicks"].dropna().astype(int).unique(), reverse=True)
+    for count, look in zip(clicks, BY_CLICKS, strict=False):
+        for in_sample in (False, True):
+            if len(trials.pick(ours, n_clicks=count, in_sample=in_sample)):
+                name = f"control points, {count} clicks"
+                found.append(Series(name, "sfm", "global", count, in_sample, *look))
+    return found
+
+
+def levels(numbers, quantity):
+    """Return (label, row, colour, line) of the strong calibrations, scored points left out where tried."""
+    of = numbers[(numbers["quantity"] == quantity) & numbers["method"].isin(["known", "dlt"])]
+    clicks = sorted(of["n_clicks"].dropna().astype(int).unique(), reverse=True)
+    chosen = zip([0, 1, 0], LEVELS, strict=True)
+    found = []
+    for at, (method, colour, line) in chosen:
+        count = clicks[at] if at < len(clicks) else None
+        rows = trials.pick(of, method=method, n_clicks=count).dropna(subset=["median"])
+        rows = rows.sort_values("in_sample")
+        if len(rows):
+            label = "DLT" if method == "dlt" else "known points"
+            found.append((f"{label}, {count} clicks", rows.iloc[0], colour, line))
+    return found
+
+
+def draw(numbers, title, layout=""):
+    """Draw the table of `table`.
+
+    Parameters
+    ----------
+    numbers : pandas.DataFrame
+    title : str
+    layout : str
+        For one of `WALK_DEG` the angles of an evenly divided walk are drawn too.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    drawing = style.figure(165)
+    places = [["xy_cm", "volume_rms_cm"], ["solved", "angle"]]
+    axes = drawing.subplot_mosaic(places, height_ratios=[1.55, 1])
+    for quantity, words in ERRORS.items():
+        _draw_errors(axes[quantity], numbers, quantity)
+        axes[quantity].set_ylabel(words)
+    _mark_published(axes["xy_cm"], numbers)
+    for name in ("xy_cm", "volume_rms_cm", "angle"):
+        bars.plain_log(axes[name])
+    axes["volume_rms_cm"].sharey(axes["xy_cm"])
+    _draw_solved(axes["solved"], numbers)
+    _draw_angles(axes["angle"], numbers, layout)
+    counts = sorted(numbers["n_bridging"].dropna().astype(int).unique())
+    for axis in axes.values():
+        bars.ticks_at(axis, counts)
+        axis.set(xlabel="bridging images N", xlim=(counts[0] / 1.3, counts[-1] * 1.3))
+        axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
+        axis.set_axisbelow(True)
+    handles = _legend(numbers)
+    drawing.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=6.5)
+    drawing.suptitle(f"{title}; {_sizes(numbers)}", fontsize=8)
+    return drawing
+
+
+def _sizes(numbers):
+    """Return how many trials stand behind a mark, in words."""
+    of = trials.pick(numbers, method="sfm", quantity="xy_cm")
+    total = (of["n"] + of["n_failed"]).astype(int)
+    return f"{total.min()} to {total.max()} trials per mark" if len(of) else "no trials"
+
+
+def _draw_errors(axis, numbers, quantity):
+    shown = series(numbers)
+    of = numbers[numbers["quantity"] == quantity]
+    for _, row, colour, line in levels(numbers, quantity):
+        bars.draw_level(axis, row, colour=colour, line=line)
+    for at, each in enumerate(shown):
+        keys = ("method", "mapper", "n_clicks", "in_sample")
+        rows = trials.pick(of, **{key: getattr(each, key) for key in keys})
+        rows = rows.sort_values("n_bridging")
+        x = rows["n_bridging"] * np.exp(DODGE * (at - (len(shown) - 1) / 2))
+        lost = rows["median"].isna()
+        where = {"transform": axis.get_xaxis_transform(), "linestyle": "none", "markersize": 4}
+        axis.plot(x[lost], 0.015 + 0 * x[lost], marker="x", color=each.colour, **where)
+        x, rows = x[~lost], rows[~lost]
+        alone = any(other == each._replace(in_sample=False) for other in shown if other != each)
+        look = {"colour": each.colour, "marker": each.marker, "filled": not each.in_sample}
+        bars.draw(axis, x, rows, line="none" if alone else "-", **look)
+
+
+def _mark_published(axis, numbers):
+    of = trials.pick(numbers, method="published")
+    counts = numbers["n_bridging"].dropna()
+    kinds = ("xy_cm", "xy_cm_below", "xy_cm_strong")
+    exact, below, strong = (trials.pick(of, quantity=kind) for kind in kinds)
+    look = {"color": "black", "linestyle": "none", "markersize": 8, "zorder": 6}
+    axis.plot(exact["n_bridging"], exact["median"], "*", **look)
+    axis.plot(below["n_bridging"], below["median"], marker=r"$\downarrow$", **look)
+    axis.plot(counts.max() * 1.2, strong["median"], "P", **{**look, "markersize": 6})
+
+
+def _draw_solved(axis, numbers):
+    for quantity, line, marker in (("solved_share", "-", "o"), ("registered_share", ":", "x")):
+        _draw_mappers(axis, numbers, quantity, marker + line, factor=100)
+    axis.set(ylim=(-5, 105), ylabel="solved, registered (%)")
+
+
+def _draw_angles(axis, numbers, layout):
+    for quantity, form in (("neighbour_deg_median", "o-"), ("neighbour_deg_max", "^:")):
+        _draw_mappers(axis, numbers, quantity, form)
+    of = trials.pick(numbers, method="published", quantity="neighbour_deg_median")
+    axis.plot(of["n_bridging"], of["median"], "*", color="black", markersize=8, zorder=6)
+    if layout in WALK_DEG:
+        counts = np.sort(numbers["n_bridging"].dropna().unique())
+        axis.plot(counts, WALK_DEG[layout] / (counts + 1), color="#999999", linewidth=0.9, zorder=0)
+    axis.set_ylabel("angle between neighbours (°)")
+
+
+def _draw_mappers(axis, numbers, quantity, form, factor=1):
+    for at, (mapper, colour) in enumerate(MAPPERS.items()):
+        rows = trials.pick(numbers, quantity=quantity, mapper=mapper).dropna(subset=["median"])
+        rows = rows.sort_values("n_bridging")
+        x = rows["n_bridging"] * np.exp(DODGE * (at - 0.5))
+        axis.plot(x, factor * rows["median"], form, color=colour, markersize=4, linewidth=1)
+
+
+def _legend(numbers):
+    """Return the marks to explain: series, strong calibrations, published values, lower panels."""
+    handles = []
+    for each in series(numbers):
+        text = f"{each.label}, {'in-sample' if each.in_sample else 'left out'}"
+        handles.append(
+            bars.mark(each.colour, marker=each.marker, filled=not each.in_sample, label=text)
+        )
+    for label, row, colour, line in levels(numbers, "xy_cm"):
+        text = f"{label}, {'in-sample' if row['in_sample'] else 'left out'}"
+        handles.append(bars.mark(colour, marker="", line=line, label=text))
+    for marker, text in (
+        ("*", "published"),
+        (r"$\downarrow$", "published: below"),
+        ("P", "published: strong calibration"),
+    ):
+        handles.append(bars.mark("black", marker=marker, label=text))
+    handles.append(bars.mark("#555555", marker="x", label="no result"))
+    there = [mapper for mapper in MAPPERS if (numbers["mapper"] == mapper).any()]
+    handles += [
+        bars.mark(MAPPERS[m], line="-", label=f"{m} mapper: solved; median angle") for m in there
+    ]
+    grey = "#555555"
+    handles.append(bars.mark(grey, marker="x", line=":", label="the same: registered images"))
+    handles.append(bars.mark(grey, marker="^", line=":", label="the same: largest angle"))
+    return handles

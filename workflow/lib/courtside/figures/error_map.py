@@ -1,0 +1,126 @@
+"""Where on the court a calibration is to be trusted: the 3D error that its covariance lets expect."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures import court_plan, style
+from courtside.geometry import cameras as camera_models
+from courtside.geometry import uncertainty
+from courtside.records import ties
+
+COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
+LINES_CM = 7  # contour lines, about
+ARROW_M = 2.5
+
+
+def table(cameras, covariance, court, heights_m):
+    """Return the expected error over the court.
+
+    Parameters
+    ----------
+    cameras : list of Camera
+    covariance : courtside.records.camera_covariance.CameraCovariance
+        Of the same cameras, in the same order.
+    court : courtside.geometry.courts.Court
+    heights_m : sequence of float
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        x_m, y_m, z_m and sigma_cm: the root of the trace of a point's covariance, cm; NaN where a
+        camera does not see the point, or its covariance is unknown.
+
+    Raises
+    ------
+    ValueError
+        If the covariance is of other cameras.
+    """
+    if list(covariance.cameras) != [camera.name for camera in cameras]:
+        raise ValueError(f"covariance of {covariance.cameras}, cameras {[c.name for c in cameras]}")
+    x, y = (np.linspace(0, court.size_m[at], count) for at, count in enumerate((COLUMNS, ROWS)))
+    z, y, x = np.meshgrid(np.asarray(heights_m, dtype=float), y, x, indexing="ij")
+    xyz = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    network = ties.bare(
+        np.stack([camera.cam_from_world for camera in cameras]),
+        np.array([lens(camera) for camera in cameras]),
+        [camera.size for camera in cameras],
+    )
+    sigma = np.full(len(xyz), np.nan)
+    seen = np.all([_sees(camera, xyz) for camera in cameras], axis=0)
+    if seen.any():
+        spread = uncertainty.point_covariance(network, covariance.of_columns(), xyz[seen])
+        sigma[seen] = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
+    return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
+
+
+def lens(camera):
+    """Return a camera's lens (8,) in the order of `courtside.geometry.network.LENS`."""
+    (fx, _, cx), (_, fy, cy), _ = camera.K
+    return np.array([fy, fx / fy, cx, cy, *camera.dist[:4]])
+
+
+def _sees(camera, xyz):
+    xy = camera_models.project(camera, xyz)
+    with np.errstate(invalid="ignore"):
+        return ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=-1)
+
+
+def draw(rows, cameras, court, title):
+    """Draw the table of `table`: one panel per height, one scale of colours.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+    cameras : list of Camera
+    court : courtside.geometry.courts.Court
+    title : str
+    """
+    heights = rows["z_m"].unique()
+    drawing = style.figure(118)
+    axes = drawing.subplots(1, len(heights), sharex=True, sharey=True, squeeze=False)[0]
+    known = rows["sigma_cm"].dropna()
+    low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
+    levels = np.linspace(low, high if high > low else low + 1, 15)
+    for axis, height in zip(axes, heights, strict=True):
+        part = rows[rows["z_m"] == height]
+        filled = _draw_height(axis, part, levels)
+        court_plan.draw(axis, court, colour="white")
+        for camera in cameras:
+            _point_to(axis, camera, court)
+        median = part["sigma_cm"].median()
+        axis.set_title(f"z = {height:g} m: median {median:.2f} cm")
+        axis.set(
+            xlabel="x (m)", xlim=(-1.6, court.size_m[0] + 1.6), ylim=(-1.6, court.size_m[1] + 1.6)
+        )
+    axes[0].set_ylabel("y (m)")
+    bar = drawing.colorbar(filled, ax=list(axes), pad=0.01, aspect=35, format="%.2f")
+    bar.set_label("expected 3D error (cm)")
+    drawing.suptitle(title, fontsize=8)
+    return drawing
+
+
+def _draw_height(axis, part, levels):
+    x, y = (part[name].unique() for name in ("x_m", "y_m"))
+    values = part["sigma_cm"].to_numpy().reshape(len(y), len(x))
+    axis.set_facecolor("white")
+    filled = axis.contourf(x, y, values, levels=levels, cmap="viridis", extend="neither", zorder=0)
+    if np.isfinite(values).any() and np.nanmax(values) > np.nanmin(values):
+        lines = axis.contour(
+            x, y, values, levels=levels[1::3], colors="black", linewidths=0.5, zorder=2
+        )
+        axis.clabel(lines, fmt="%.2f", fontsize=6)
+    return filled
+
+
+def _point_to(axis, camera, court):
+    """Mark at the court's edge where a camera that stands far outside looks from."""
+    x, y, _ = camera.centre_in_world
+    centre = np.asarray(court.size_m) / 2
+    away = np.array([x, y]) - centre
+    reach = centre + 1.15
+    place = centre + away * min(1.0, *(reach / np.maximum(np.abs(away), 1e-9)))
+    inward = -away / np.linalg.norm(away)
+    arrow = {"arrowstyle": "-|>", "color": "black", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+    axis.annotate("", place + 0.9 * inward, place - 0.2 * inward, arrowprops=arrow, zorder=5)
+    where = {"ha": "center", "va": "center", "fontsize": 6.5}
+    axis.text(*(place - 0.42 * inward), f"{camera.name}, {np.linalg.norm(away):.0f} m", **where)

@@ -1,0 +1,116 @@
+"""Building sessions from their files, and variations of virtual ones from a condition."""
+
+from dataclasses import replace
+from itertools import product
+
+from courtside.study.sessions import FixedCamera, Session, Subject, Take
+
+VIRTUAL = "results/virtual"  # made by the workflow itself
+
+
+def session(name, file, content, parameters):
+    """Build a `Session`.
+
+    Parameters
+    ----------
+    name, file : str
+    content : dict
+        The session's YAML file, checked.
+    parameters : dict
+        The study's configuration, whose steps `override` in `content` changes.
+    """
+    subjects = {key: Subject(**(value or {})) for key, value in content.get("subjects", {}).items()}
+    takes = {
+        key: Take(
+            name=key,
+            videos=dict(value["videos"]),
+            subjects=tuple(value.get("subjects", subjects)),
+            trim_s=tuple(value["trim_s"]) if "trim_s" in value else None,
+        )
+        for key, value in content.get("takes", {}).items()
+    }
+    recordings = {} if content.get("virtual") is None else _virtual(name, content)
+    cameras = {key: _camera(value or {}) for key, value in content["cameras"].items()}
+    for key, path in recordings.get("static", {}).items():
+        cameras[key] = replace(cameras[key], static=path)
+    return Session(
+        name=name,
+        file=str(file),
+        description=content["description"],
+        court=None if content["court"] == "none" else content["court"],
+        subjects=subjects,
+        cameras=cameras,
+        takes=takes,
+        calibration_file=content.get("calibration", {}).get("file"),
+        walks=recordings.get("walks") or _walks(content.get("walks", {})),
+        court_points=recordings.get("court_points") or content.get("court_points"),
+        virtual=content.get("virtual"),
+        condition={},
+        blur_faces=content.get("blur_faces", True),
+        parameters=_merged(parameters, content.get("override", {})),
+    )
+
+
+def variations(base, name, content):
+    """Build the sessions that differ from a virtual one in some of its settings.
+
+    Parameters
+    ----------
+    base : Session
+    name : str
+        Of the condition.
+    content : dict
+        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys of `virtual`
+        that are the same for all; `override`: steps' parameters that differ from the base session's.
+
+    Returns
+    -------
+    sessions : dict of str to Session
+        `{name}-{k}`.
+    """
+    found, vary = {}, content["vary"]
+    for k, values in enumerate(product(*vary.values())):
+        varied = dict(zip(vary, values, strict=True))
+        own = f"{name}-{k}"
+        files = _virtual(own, {"cameras": base.cameras, "walks": base.walks})
+        found[own] = replace(
+            base,
+            name=own,
+            cameras={
+                c: replace(v, static=files["static"][c], chessboard=None)
+                for c, v in base.cameras.items()
+            },
+            walks=files["walks"],
+            court_points=files["court_points"],
+            virtual={**base.virtual, "boards": False, **content.get("set", {}), **varied},
+            condition={"condition": name, **varied},
+            # Only their errors are wanted, not camera files.
+            parameters=_merged(base.parameters, content.get("override", {})) | {"calibrations": []},
+        )
+    return found
+
+
+def _merged(parameters, override):
+    return {
+        key: {**value, **override.get(key, {})} if isinstance(value, dict) else value
+        for key, value in parameters.items()
+    }
+
+
+def _walks(content):
+    return {key: value.get("video") or value["images"] for key, value in content.items()}
+
+
+def _virtual(name, content):
+    """Return the files that a simulation makes, by the keys of a session."""
+    folder = f"{VIRTUAL}/{name}"
+    return {
+        "static": {camera: f"{folder}/{camera}.mp4" for camera in content["cameras"]},
+        "walks": {walk: f"{folder}/{walk}.mp4" for walk in content["walks"]},
+        "court_points": f"{folder}/court_points.csv",
+    }
+
+
+def _camera(content):
+    crop_px = tuple(content["crop_px"]) if "crop_px" in content else None
+    return FixedCamera(**{**content, "crop_px": crop_px})

@@ -1,0 +1,31 @@
+"""Draw the walked camera's estimated path by number of bridging images: ties, court -> figure, CSV."""
+
+import json
+from pathlib import Path
+
+from courtside.figures import badminton_fig06, style
+from courtside.geometry import courts
+from courtside.records import ties
+from courtside.study import log
+
+
+def main(ties_npz, summary_json, court_yaml, pdf, png, csv):
+    rows = badminton_fig06.table({count: ties.read(path) for count, path in ties_npz.items()})
+    n_images = {
+        count: json.loads(Path(path).read_text())["n_images"]
+        for count, path in summary_json.items()
+    }
+    drawing = badminton_fig06.draw(rows, courts.read(court_yaml), n_images)
+    style.save(drawing, rows, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        dict(zip(snakemake.params.n_images, snakemake.input.ties, strict=True)),
+        dict(zip(snakemake.params.n_images, snakemake.input.summaries, strict=True)),
+        snakemake.input.court,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

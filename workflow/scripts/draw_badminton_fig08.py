@@ -1,0 +1,22 @@
+"""Draw errors by number of bridging images: evaluations of one session -> figure, CSV."""
+
+from courtside.figures import badminton_fig08, style, trials
+from courtside.study import log
+
+
+def main(errors_csv, pdf, png, csv):
+    rows = trials.read(errors_csv)
+    numbers = badminton_fig08.table(rows)
+    layout = rows["layout"].iloc[0]
+    title = f"{rows['session'].iloc[0]}: {rows['preset'].iloc[0]} hall, layout {layout}"
+    style.save(badminton_fig08.draw(numbers, title, layout), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.errors,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

@@ -1,0 +1,25 @@
+"""Draw how a condition of filming changes the error: evaluations of its sessions -> figure, CSV."""
+
+from courtside.figures import capture, style, trials
+from courtside.study import log
+
+
+def main(errors_csv, pdf, png, csv, *, x, group, n_bridging):
+    rows = trials.read(errors_csv)
+    numbers = capture.table(rows, x, group, n_bridging)
+    about = [f"{rows['preset'].iloc[0]} hall, layout {rows['layout'].iloc[0]}"]
+    about += [] if n_bridging is None else [f"N = {n_bridging}"]
+    style.save(capture.draw(numbers, x, group, ", ".join(about)), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.errors,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        x=snakemake.params.x,
+        group=snakemake.params.group,
+        n_bridging=snakemake.params.n_bridging,
+    )

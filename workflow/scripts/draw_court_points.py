@@ -1,0 +1,20 @@
+"""Draw the named points of a court and the edges that they name: court -> figure, CSV."""
+
+from courtside.figures import court_points, style
+from courtside.geometry import courts
+from courtside.study import log
+
+
+def main(court_yaml, pdf, png, csv):
+    court = courts.read(court_yaml)
+    style.save(court_points.draw(court), court_points.table(court), pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.court,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

@@ -1,0 +1,19 @@
+"""Draw stated against true uncertainty: evaluations of several sessions -> figure, CSV."""
+
+from courtside.figures import coverage, style, trials
+from courtside.study import log
+
+
+def main(errors_csv, pdf, png, csv):
+    numbers = coverage.table(trials.read(errors_csv))
+    style.save(coverage.draw(numbers), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.errors,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

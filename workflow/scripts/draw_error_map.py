@@ -1,0 +1,27 @@
+"""Draw the error to expect over the court: cameras, covariance, court -> figure, CSV."""
+
+from courtside.figures import error_map, style
+from courtside.geometry import cameras, courts
+from courtside.records import camera_covariance
+from courtside.study import log
+
+
+def main(cameras_toml, covariance_npz, court_yaml, pdf, png, csv, *, title, heights_m):
+    found, court = cameras.read_toml(cameras_toml), courts.read(court_yaml)
+    covariance = camera_covariance.read(covariance_npz)
+    rows = error_map.table(found, covariance, court, heights_m)
+    style.save(error_map.draw(rows, found, court, title), rows, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.cameras,
+        snakemake.input.covariance,
+        snakemake.input.court,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        title=f"{snakemake.wildcards.session}, calibration {snakemake.wildcards.calibration}",
+        **snakemake.params.step,
+    )

@@ -1,0 +1,20 @@
+"""Draw how the time of each step grows with the number of images: benchmarks -> figure, CSV."""
+
+from courtside.figures import growth, style
+from courtside.study import log
+
+
+def main(benchmarks_tsv, pdf, png, csv, *, title):
+    rows = growth.table(benchmarks_tsv)
+    style.save(growth.draw(rows, title), rows, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.benchmarks,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        title=snakemake.wildcards.session,
+    )
