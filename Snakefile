@@ -17,6 +17,7 @@ include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/pose.smk"
 include: "workflow/rules/motion.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/study_figures.smk"
 
 
 report: "workflow/report/study.rst"
@@ -28,3 +29,4 @@ rule all:
         every_evaluation(),
         every_export(),
         every_figure(),
+        every_study_figure(),

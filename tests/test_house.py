@@ -27,7 +27,10 @@ TESTED_THROUGH = {  # parts of one thing, split for length: the tests of the who
     "distortion": "geometry/test_cameras.py",
     "fields": "geometry/test_calibration_files.py",
 }
-PER_NAME = {"fetch_artefact.py", "simulate_session.py"}  # one rule for each artefact, each virtual session
+PER_NAME = {
+    "fetch_artefact.py",
+    "simulate_session.py",
+}  # one rule for each artefact, each virtual session
 # Written in pieces, so that this file does not name them itself.
 FOREIGN = ["/" + "work/", "/" + "tmp/", "pypi" + ".org", "python" + "hosted"]
 LARGEST_BYTES = 1 << 20

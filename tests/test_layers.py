@@ -110,7 +110,9 @@ def test_every_module_imports(path):
 def test_methods_see_neither_simulation_nor_truth(path):
     used = {".".join(name.split(".")[:3]) for name in imports(path.read_text())}
     if not path.name.startswith(("simulate_", "evaluate_")):
-        assert not [n for n in used if n.startswith(("courtside.virtual", "courtside.records.truth"))]
+        assert not [
+            n for n in used if n.startswith(("courtside.virtual", "courtside.records.truth"))
+        ]
 
 
 def test_only_evaluations_take_truth_files():

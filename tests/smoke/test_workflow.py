@@ -76,6 +76,25 @@ def test_a_filter_parameter_spares_the_triangulation(copy):
     assert planned(root=copy) == {"filter_motion": 1, "export_take": 1}
 
 
+def test_another_number_of_images_maps_only_that_number(copy):
+    edit(copy / "config/sessions/plain-tiny.yaml", "n_images: [12]", "n_images: [12, 16]")
+    drawn = ("badminton_fig06", "badminton_fig08", "coverage", "growth")
+    assert planned(root=copy) == {
+        "map_images": 2,
+        "adjust_network": 2,
+        "evaluate_calibration": 2,
+        "tabulate_calibration": 1,
+        **{f"draw_{name}": 1 for name in drawn},
+    }
+
+
+def test_a_click_spares_structure_from_motion(copy):
+    edit(copy / "config/config.yaml", "click_sigma_px: 0.7", "click_sigma_px: 0.8")
+    jobs = planned(root=copy)
+    assert jobs["adjust_network"] == 2
+    assert not {"extract_features", "match_images", "map_images"} & set(jobs)
+
+
 def test_faults_of_the_configuration_are_single_lines(copy):
     edit(copy / "config/config.yaml", "max_gap_s: 0.2", "max_gap: 0.2")
     edit(copy / "config/sessions/walk-4cams-tiny.yaml", "sex: m", "sex: male")

@@ -47,6 +47,8 @@ wildcard_constraints:
     mapper="global|incremental",
     n_images="[1-9][0-9]*",
     offset="[0-2]",
+    court=NAME,
+    condition="[a-z_]+",
 
 
 def code(script):
@@ -93,21 +95,28 @@ def tflite_file(wildcards):
 
 
 def figure(name):
+    """Return the three files of a take's figure."""
+    stem = f"results/{{session}}/takes/{{take}}/figures/{name}.{{calibration}}.{{fusion}}.{{model}}"
+    labels = {"figure": name, "network": "{model}", "calibration": "{calibration}"}
+    return drawn(stem, name, ("{session}", "{take}"), labels)
+
+
+def session_figure(name):
+    """Return the three files of a session's figure of the calibration study."""
+    labels = {"figure": name}
+    return drawn(f"results/{{session}}/figures/{name}", name, ("calibration", "{session}"), labels)
+
+
+def drawn(stem, name, category, labels):
     """Return the three files of a figure; the PNG goes into the report with its caption."""
-    folder = "results/{session}/takes/{take}/figures"
-    stem = f"{folder}/{name}.{{calibration}}.{{fusion}}.{{model}}"
     return {
         "pdf": f"{stem}.pdf",
         "csv": f"{stem}.csv",
         "png": report(
             f"{stem}.png",
             caption=f"../report/draw_{name}.rst",
-            category="{session}",
-            subcategory="{take}",
-            labels={
-                "figure": name,
-                "network": "{model}",
-                "calibration": "{calibration}",
-            },
+            category=category[0],
+            subcategory=category[1],
+            labels=labels,
         ),
     }

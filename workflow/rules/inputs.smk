@@ -83,8 +83,10 @@ def evaluation_parameters(wildcards, labels, keys):
     draws = step("evaluate_calibration")(wildcards)
     adjusting = step("adjust_network")(wildcards)
     made = {key: session.virtual[key] for key in ("preset", "layout")}
+    made["width_px"] = session.virtual["size_px"][0]
+    varied = {key: value for key, value in session.condition.items() if key != "size_px"}
     return {
-        "labels": {"session": session.name, **made, **session.condition, **labels},
+        "labels": {"session": session.name, **made, **varied, **labels},
         "clicks": {
             "n_draws": draws["n_draws"],
             "seed": draws["seed"],
@@ -93,4 +95,27 @@ def evaluation_parameters(wildcards, labels, keys):
         },
         "sets": draws["sets"],
         **{key: adjusting[key] for key in keys},
+    }
+
+
+def condition_of(wildcards):
+    """Return the name of the condition that a figure shows: figures have _ where conditions have -."""
+    return f"capture-{wildcards.condition.replace('_', '-')}"
+
+
+def varied_axes(name):
+    """Return the axes of a condition's figure: the settings that take several values, and the number of images."""
+    vary = STUDY.parameters["conditions"][name]["vary"]
+    keys = [key for key, values in vary.items() if len(values) > 1 and not key.endswith("seed")]
+    keys = ["width_px" if key == "size_px" else key for key in keys]
+    counts = {
+        count
+        for session in STUDY.sessions.values()
+        if session.condition.get("condition") == name
+        for count in session.parameters["sweep"]["n_images"]
+    }
+    return {
+        "x": keys[0],
+        "group": keys[1] if len(keys) > 1 else None,
+        "n_bridging": counts.pop() if len(counts) == 1 else None,
     }

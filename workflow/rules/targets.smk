@@ -33,7 +33,7 @@ def every_export():
 
 
 def every_figure():
-    """Return the figures that the study makes."""
+    """Return the figures of all takes."""
     return each_take(
         "results/{session}/takes/{take}/figures/{figure}.{calibration}.{fusion}.{model}.{suffix}",
         figure=FIGURES,
@@ -52,15 +52,61 @@ def every_calibration():
 
 def every_evaluation():
     """Return the errors of every structure from motion of the virtual sessions, and of known points alone."""
-    virtual = [session for session in STUDY.sessions.values() if session.virtual]
-    known = [f"results/{session.name}/evaluation/known.csv" for session in virtual]
-    return [path for session in virtual for path in evaluations(session)] + known
+    return every_error([session for session in STUDY.sessions.values() if session.virtual])
 
 
-def evaluations(session, mapper=None):
-    """Return the tables of errors of a session's structures from motion."""
-    return [
-        f"results/{session.name}/evaluation/{variant}.csv"
-        for variant in session.variants()
-        if mapper is None or variant.startswith(mapper)
+def every_study_figure():
+    """Return the figures and tables of the calibration study."""
+    stems = [f"results/figures/court_points.{court}" for court in courts_used()]
+    stems += [
+        f"results/figures/{name.replace('-', '_')}"
+        for name in STUDY.parameters["variations"]
+        if name.startswith("capture-")
     ]
+    for session in swept():
+        names = ["badminton_fig06", "badminton_fig08", "coverage", "growth"]
+        stems += [f"results/{session.name}/figures/{name}" for name in names]
+    for session in STUDY.sessions.values():
+        ways = [way for way in session.calibrations() if way.startswith("sfm") and session.court]
+        stems += [f"results/{session.name}/figures/error_map.{way}" for way in ways]
+    tables = ["results/figures/calibration.csv"] if swept() else []
+    return [f"{stem}.{suffix}" for stem in stems for suffix in FORMATS] + tables
+
+
+def courts_used():
+    """Return the names of the courts of all sessions."""
+    return sorted({session.court for session in STUDY.sessions.values() if session.court})
+
+
+def swept():
+    """Return the virtual sessions that are no variation of another."""
+    return [s for s in STUDY.sessions.values() if s.virtual and not s.condition]
+
+
+def tabulated():
+    """Return the virtual sessions of the table: all but those that vary how the walk is filmed."""
+    sessions = [s for s in STUDY.sessions.values() if s.virtual]
+    return [s for s in sessions if not s.condition.get("condition", "").startswith("capture-")]
+
+
+def varied(condition):
+    """Return the sessions that are variations under a condition."""
+    sessions = STUDY.sessions.values()
+    return [s for s in sessions if s.condition.get("condition") == condition]
+
+
+def evaluations(session):
+    """Return the tables of errors of a session's structures from motion."""
+    return [f"results/{session.name}/evaluation/{variant}.csv" for variant in session.variants()]
+
+
+def every_error(sessions):
+    """Return all tables of errors of virtual sessions."""
+    known = [f"results/{session.name}/evaluation/known.csv" for session in sessions]
+    return [path for session in sessions for path in evaluations(session)] + known
+
+
+def first_of_each_count(session, pattern):
+    """Return a file of each number of bridging images, mapped globally, first choice of images."""
+    counts = session.parameters["sweep"]["n_images"]
+    return [pattern.format(session=session.name, variant=f"global-n{count}-o0") for count in counts]

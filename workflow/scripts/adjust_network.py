@@ -1,4 +1,4 @@
-"""Adjust a model with the clicked court points: COLMAP model, clicks -> what the ties say of the fixed cameras."""
+"""Adjust a model with clicked court points: COLMAP model, clicks -> what ties say of fixed cameras."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Align a model with the court by a similarity: ties, clicked court points -> cameras as the paper or all points say."""
+"""Align a model with the court by a similarity: ties, clicks -> cameras as paper or all points say."""
 
 from courtside.geometry import alignment, court_adjustment, courts, quality
 from courtside.geometry import cameras as camera_models
@@ -24,6 +24,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, 
     found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
     sigma_px = court_adjustment.largest_click_sigma(click_sigma_px, found)
     checked = quality.of_court(court, found, marked, click_sigma_px=sigma_px, strict=False)
+    log.logger.info("warnings: %s", checked["warnings"] or "none")
     report = {"calibration": name, "scale": world_from_sfm.scale, **how, **checked}
     camera_models.write_toml(cameras_toml, found, source=name)
     write_json(quality_json, report)

@@ -19,7 +19,5 @@ if __name__ == "__main__":
         snakemake.output.pdf,
         snakemake.output.png,
         snakemake.output.csv,
-        x=snakemake.params.x,
-        group=snakemake.params.group,
-        n_bridging=snakemake.params.n_bridging,
+        **snakemake.params.axes,
     )

@@ -1,4 +1,4 @@
-"""Evaluate one structure from motion against the truth: ties, truth, simulated clicks -> errors of every draw."""
+"""Evaluate one structure from motion against the truth: ties, truth -> errors of every draw."""
 
 import json
 from pathlib import Path
@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from courtside.geometry import court_trials, courts
+from courtside.geometry import court_trials, courts, walk_path
 from courtside.records import ties, truth
-from courtside.sfm import bridging
 from courtside.study import log
 from courtside.study.files import atomic
 from courtside.virtual import clicking
@@ -31,7 +30,7 @@ def main(
     angles = [np.nan]
     if record.ties:
         point = [*court.size_m / 2, CENTRE_HEIGHT_M]
-        angles = bridging.path_angles_deg(record.images, record.centres, point)
+        angles = walk_path.path_angles_deg(record.images, record.centres, point)
     about = {
         **labels,
         "n_registered": summary["n_registered"],

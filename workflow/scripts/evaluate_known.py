@@ -1,4 +1,4 @@
-"""Evaluate calibration from known court points against the truth: truth, simulated clicks -> errors of every draw."""
+"""Evaluate calibration from known court points: truth, lenses -> errors of every draw."""
 
 import pandas as pd
 

@@ -247,3 +247,33 @@ def test_images_become_cameras_with_the_same_view():
         mine = made.image_idx == v
         np.testing.assert_allclose(ours, (networks.residuals(made) + made.xy)[mine], atol=1e-8)
     assert [c.name for c in found] == ["side", "back"] and found[0].size == networks_made.SIZE
+
+
+def test_the_free_frame_is_that_of_the_first_two_fixed_cameras():
+    made = networks_made.in_random_frame(networks_made.make(6, 20))
+    found = control_points.transform(made, control_points.free_frame(made, [0, 1]))
+    places = centres(found)
+    np.testing.assert_allclose(places.mean(axis=0), 0, atol=1e-9)
+    along = places[1] - places[0]
+    assert np.linalg.norm(along) == pytest.approx(1)
+    assert along[1] == pytest.approx(0, abs=1e-9) and along[0] > 0
+    up = -found.cam_from_world[:, 1, :3].mean(axis=0)
+    np.testing.assert_allclose(up / np.linalg.norm(up), [0, 0, 1], atol=1e-9)
+    np.testing.assert_allclose(networks.residuals(found), networks.residuals(made), atol=1e-7)
+
+
+def test_the_free_frame_is_the_same_wherever_the_model_was():
+    made = networks_made.make(6, 20)
+    found = [
+        control_points.transform(n, control_points.free_frame(n, [0, 1])).xyz
+        for n in (made, networks_made.in_random_frame(made), networks_made.in_random_frame(made, 9))
+    ]
+    np.testing.assert_allclose(found[1], found[0], atol=1e-9)
+    np.testing.assert_allclose(found[2], found[0], atol=1e-9)
+
+
+@pytest.mark.parametrize("fixed", [[], [0]])
+def test_the_walk_gives_the_unit_where_there_are_not_two_fixed_cameras(fixed):
+    made = networks_made.in_random_frame(networks_made.make(6, 20))
+    places = centres(control_points.transform(made, control_points.free_frame(made, fixed)))
+    assert np.linalg.norm(places[-1] - places[0]) == pytest.approx(1)

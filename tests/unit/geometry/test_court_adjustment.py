@@ -15,8 +15,8 @@ COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton
 FIXED = {"side": 0, "back": 1}
 SIZES = dict.fromkeys(FIXED, networks_made.SIZE)
 EVERYTHING = {"min_angle_deg": 0, "max_error_px": 1e3, "max_points": 10**6, "seed": 0}
-GAUSSIAN = {"click_sigma_px": 2.0, "click_loss": np.inf}  # 0.67 px in a picture 1280 px wide
-SIGMA_PX = 2.0 * 1280 / 3840
+GAUSSIAN = {"click_sigma_px": 2.0, "click_bias_px": 0.0, "click_loss": np.inf}
+SIGMA_PX = 2.0 * 1280 / 3840  # of a click in these pictures
 
 
 def made(n_walk=4, n_points=30, **options):
@@ -35,6 +35,7 @@ def condense(
 ):
     in_sfm = networks_made.in_random_frame(network)
     options = {"tie_sigma_px": tie_sigma_px, "tie_loss": np.inf, **GAUSSIAN, **changes}
+    del options["click_bias_px"]
     sizes = dict.fromkeys(fixed, networks_made.SIZE)
     return court_adjustment.condense(in_sfm, fixed, sizes, clicks, court, **options, **thinning)
 
@@ -84,7 +85,7 @@ def repeated(truth, n_draws, small):
     court = replace(COURT, sigma_m=small * COURT.sigma_m)
     truth = replace(truth, lens_sigma=small * truth.lens_sigma)
     sigma = np.where(np.isfinite(truth.lens_sigma), truth.lens_sigma, 0)
-    weights = {"click_sigma_px": 2.0 * small, "click_loss": np.inf}
+    weights = {**GAUSSIAN, "click_sigma_px": 2.0 * small}
     for _ in range(n_draws):
         drawn = replace(
             truth,
@@ -121,6 +122,23 @@ def test_covariance_is_that_of_repeated_clicks_ties_and_courts():
     np.testing.assert_allclose(np.mean(of_points, axis=0), 3, atol=4 * np.sqrt(6 / n_draws))
 
 
+def test_what_the_clicks_in_a_picture_have_in_common_is_found():
+    """Clicks too high in one picture and too low in the other: no frame of the world explains that."""
+    truth = made(6, 60)
+    clicks, shift = clicks_of(truth), {"side": np.array([0, 0.5]), "back": np.array([0, -0.5])}
+    shifted = {name: xy + shift[name] for name, xy in clicks.items()}
+    ties, _ = condense(truth, clicks, tie_sigma_px=0.02)
+    bias = {**GAUSSIAN, "click_sigma_px": 0.3, "click_bias_px": 3.0}
+    found = court_adjustment.solve(ties, shifted, COURT, **bias)
+    np.testing.assert_allclose(found.network.flex[:, 3:], [[0, 0.5], [0, -0.5]], atol=0.1)
+    held = court_adjustment.solve(ties, shifted, COURT, **{**bias, "click_bias_px": 0.0})
+    assert not held.network.flex.any()
+    spread = [np.trace(s.point_covariance(COURT.xyz).sum(axis=0)) for s in (found, held)]
+    assert spread[0] > spread[1]
+    exact = court_adjustment.solve(ties, clicks, COURT, **bias)
+    assert_cameras(exact.cameras, networks_made.fixed_cameras(truth))
+
+
 def test_wrong_clicks_and_ties_count_little_under_the_loss():
     truth = made(6, 60, noise_px=0.3)
     clicks = clicks_of(truth, 0.3)
@@ -128,7 +146,7 @@ def test_wrong_clicks_and_ties_count_little_under_the_loss():
     wrong = {name: xy.copy() for name, xy in clicks.items()}
     wrong["side"][3] += 60.0
     truth.xy[np.random.default_rng(0).choice(len(truth.xy), 10, replace=False)] += 40.0
-    robust = {"click_sigma_px": 2.0, "click_loss": 2.0}
+    robust = {**GAUSSIAN, "click_loss": 2.0}
     ties, _ = condense(truth, wrong, **robust, tie_loss=2.0)
     found = court_adjustment.solve(ties, wrong, COURT, **robust)
     plain = court_adjustment.solve(condense(truth, wrong)[0], wrong, COURT, **GAUSSIAN)
@@ -247,3 +265,78 @@ def test_a_court_point_behind_the_camera_that_saw_it_is_an_error():
 def test_clicks_are_as_good_as_the_picture_is_wide():
     assert court_adjustment.click_sigma(1.5, (3840, 2160)) == 1.5
     assert court_adjustment.click_sigma(1.5, (1280, 720)) == 0.5
+
+
+FREE = {"tie_sigma_px": 1.0, "tie_loss": np.inf, **EVERYTHING}
+
+
+def from_side(cameras):
+    """Return the second camera's direction and rotation as seen from the first."""
+    one, other = cameras
+    between = other.cam_from_world[:, :3] @ one.cam_from_world[:, :3].T
+    centre = one.cam_from_world[:, :3] @ (other.centre_in_world - one.centre_in_world)
+    return centre / np.linalg.norm(centre), between
+
+
+def test_ties_without_a_court_give_the_true_cameras_up_to_frame_and_scale():
+    truth = made(6, 60)
+    start = networks_made.in_random_frame(networks_made.disturbed(truth, scale=0.3))
+    ties, whole = court_adjustment.condense_free(start, FIXED, SIZES, **FREE)
+    found = court_adjustment.free(ties)
+    assert [c.name for c in found.cameras] == ["side", "back"]
+    exact = networks_made.fixed_cameras(truth)
+    for ours, expected in zip(from_side(found.cameras), from_side(exact), strict=True):
+        np.testing.assert_allclose(ours, expected, atol=1e-5)
+    for camera, known in zip(found.cameras, exact, strict=True):
+        np.testing.assert_allclose(camera.K, known.K, rtol=1e-5, atol=1e-2)
+    apart = found.cameras[1].centre_in_world - found.cameras[0].centre_in_world
+    assert np.linalg.norm(apart) == pytest.approx(1, abs=0.01)  # the unit is that before adjustment
+    lengths = [np.linalg.norm(n.xyz[5] - n.xyz[9]) for n in (whole, truth)]
+    true_apart = np.linalg.norm(exact[1].centre_in_world - exact[0].centre_in_world)
+    assert lengths[0] / np.linalg.norm(apart) == pytest.approx(lengths[1] / true_apart, rel=1e-4)
+
+
+def test_the_covariance_without_a_court_is_that_of_repeated_ties():
+    """Of what frame and scale leave alone: the angles between the cameras and their focal lengths.
+
+    With errors of a third of the usual, as above.
+    """
+    truth, small, n_draws = made(6, 40), 0.3, 60
+    rng, sigma = np.random.default_rng(5), small * np.nan_to_num(truth.lens_sigma, posinf=0)
+    truth = replace(truth, lens_sigma=small * truth.lens_sigma)
+    options = {**FREE, "tie_sigma_px": small}
+    off = []
+    for _ in range(n_draws):
+        drawn = replace(
+            truth,
+            xy=truth.xy + small * rng.normal(size=truth.xy.shape),
+            lens_mean=truth.lens_mean + sigma * rng.normal(size=truth.lens_mean.shape),
+        )
+        found = court_adjustment.free(
+            court_adjustment.condense_free(drawn, FIXED, SIZES, **options)[0]
+        )
+        exact = networks_made.fixed_cameras(truth)
+        one, other = found.cameras
+        between = from_side(found.cameras)[1] @ from_side(exact)[1].T
+        turn = np.array([between[2, 1], between[0, 2], between[1, 0]])
+        # A turn a of the first camera and b of the second: exp(b) R exp(-a), to first order b - R a.
+        by_column = np.zeros((3, 38))
+        by_column[:, 11:14], by_column[:, :3] = np.eye(3), -from_side(exact)[1]
+        focal = np.zeros((2, 38))
+        focal[0, 22], focal[1, 30] = 1, 1
+        rows = np.concatenate([by_column, focal])
+        spread = rows @ found.covariance @ rows.T
+        error = np.concatenate(
+            [turn, [one.K[1, 1] - exact[0].K[1, 1], other.K[1, 1] - exact[1].K[1, 1]]]
+        )
+        off.append(error / np.sqrt(np.diag(spread)))
+    ratio = np.sqrt(np.mean(np.square(off), axis=0))
+    assert np.abs(ratio - 1).max() < 4 / np.sqrt(2 * n_draws)
+
+
+def test_files_under_each_others_names_are_a_fault():
+    truth = made()
+    clicks = clicks_of(truth)
+    clicks["side"], clicks["back"] = clicks["back"], clicks["side"]
+    with pytest.raises(InputError, match=r"cameras side and back: .* may be exchanged"):
+        condense(truth, clicks)

@@ -106,16 +106,3 @@ def test_wrong_arguments_are_faults(change):
     with pytest.raises(ValueError, match=r"offset|ascend") as caught:
         bridging.choose(n_grid=30, sharpness=np.ones(30), **arguments)
     assert not isinstance(caught.value, InputError)
-
-
-def test_angles_between_views_are_those_of_a_circle():
-    point = np.array([3.05, 6.7, 1.0])
-    turn = np.radians([0, 10, 35, 90, 270])
-    circle = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(5)])
-    radii = np.array([5, 9, 2, 7, 4.0])[:, None]
-    found = bridging.neighbour_angles_deg(point + radii * circle, point)
-    np.testing.assert_allclose(found, [10, 25, 55, 180], atol=1e-9)
-    with_gap = point + radii * circle
-    with_gap[2] = np.nan
-    found = bridging.neighbour_angles_deg(with_gap, point)
-    np.testing.assert_array_equal(np.isnan(found), [False, True, True, False])

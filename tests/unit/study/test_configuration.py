@@ -1,6 +1,7 @@
 """The configuration that is committed has no fault; a bad one reports all of its own."""
 
 import copy
+import math
 import shutil
 from pathlib import Path
 
@@ -31,7 +32,8 @@ def folder(tmp_path):
 
 def load(folder, session=None, **changes):
     (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(session or SESSION))
-    config = yaml_files.read(CONFIG / "config.yaml") | {"sessions": ["hall"]} | changes
+    alone = {"sessions": ["hall"], "variations": []}
+    config = yaml_files.read(CONFIG / "config.yaml") | alone | changes
     return configuration.load(config, "config/config.yaml", folder, root=folder.parent)
 
 
@@ -55,7 +57,12 @@ def changed(*keys, value):
 def test_the_committed_configuration_has_no_fault(name):
     config = yaml_files.read(CONFIG / "config.yaml") | yaml_files.read(CONFIG / f"{name}.yaml")
     study = configuration.load(config, f"config/{name}.yaml", CONFIG)
-    assert list(study.sessions) == config["sessions"]
+    variations = [name for name in study.sessions if study.sessions[name].condition]
+    assert list(study.sessions) == config["sessions"] + variations
+    assert len(variations) == sum(
+        math.prod(map(len, config["conditions"][name]["vary"].values()))
+        for name in config["variations"]
+    )
 
 
 def test_every_committed_session_has_no_fault():
@@ -123,7 +130,7 @@ def test_a_fault_of_the_study_names_key_and_value(folder, changes, parts):
         (changed("takes", "t1", "trim_s", value=[3, 1]), ["trim_s", "start before the stop"]),
         (changed("takes", "t1", "subjects", value=["p2"]), ["subjects", "'p2'"]),
         (changed("takes", "t1", "videos", value={"left": "l.mp4"}), ["videos", "at least 2"]),
-        (changed("court", value="tennis"), ["court", "'tennis'"]),
+        (changed("court", value="squash"), ["court", "'squash'"]),
         (changed("subjects", "p1", value={"height_m": 174}), ["height_m", "at most 2.5", "174"]),
         (changed("cameras", "left", value={"crop": [0, 0, 1, 1]}), ["did you mean 'crop_px'?"]),
         (changed("takes", "Take 1", value={}), ["takes", "lower-case letters"]),

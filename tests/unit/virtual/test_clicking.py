@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.virtual import clicking
+from courtside.virtual import clicking, presets
 
 POINTS = scene.points(500)
 CAMERAS = scene.ring(3, dist=(-0.1, 0.02, 1e-3, 1e-3, 0))
@@ -54,3 +54,41 @@ def test_a_click_does_not_depend_on_what_else_is_seen():
     moved = POINTS.copy()
     moved[0] = [0, 0, 9.0]  # now out of view
     np.testing.assert_array_equal(click()["c1"][1:], click(points=moved)["c1"][1:])
+
+
+def draws(n_draws=4, seed=1, session="plain-a", preset="plain", cameras=CAMERAS):
+    options = {"n_draws": n_draws, "seed": seed, "session": session, "preset": preset}
+    return list(clicking.draws(cameras, POINTS, **options))
+
+
+def test_draws_are_the_same_whatever_their_number_and_the_cameras_after():
+    few, many = draws(2), draws(6, cameras=CAMERAS[:2])
+    for one, other in zip(few, many[:2], strict=True):
+        np.testing.assert_array_equal(one["c0"], other["c0"])
+        np.testing.assert_array_equal(one["c1"], other["c1"])
+    assert len(many) == 6
+
+
+def test_draws_sessions_and_seeds_differ():
+    known = [d["c0"] for d in draws(3)] + [
+        draws(1, session="plain-b")[0]["c0"],
+        draws(1, 2)[0]["c0"],
+    ]
+    assert all(
+        np.abs(one - other).max() > 0.01
+        for at, one in enumerate(known)
+        for other in known[at + 1 :]
+    )
+
+
+def test_draws_scatter_as_their_preset_says():
+    """Scatter within a draw and a bias common to it, at half of the width that both are stated for."""
+    made = presets.PRESETS["plain"]
+    exact = {c.name: scene.opencv_projection(c, POINTS) for c in CAMERAS}
+    errors = np.array([[d[name] - xy for name, xy in exact.items()] for d in draws(80)])
+    within = errors - errors.mean(axis=(1, 2), keepdims=True)
+    assert np.std(within) == pytest.approx(made.click_sigma_px_at_3840 / 2, rel=0.02)
+    bias = errors.mean(axis=(1, 2))
+    # 160 numbers: their standard deviation scatters by 1 / sqrt(320)
+    assert np.std(bias) == pytest.approx(made.click_bias_px_at_3840 / 2, rel=0.2)
+    assert abs(np.mean(bias)) < 4 * made.click_bias_px_at_3840 / 2 / np.sqrt(160)

@@ -12,8 +12,11 @@ from courtside.figures import court_plan, style
 
 FIXED = "static/"  # how the names of the fixed cameras' images begin
 COLUMNS = 4
-FAR_M = 60.0  # from the court's centre: points beyond are not drawn
-ROOM_M = 2.5
+FAR_M = 60.0  # from the court's centre: what lies beyond does not widen the panels
+SHOWN = 3  # percentile of the points that tie: the panels reach from there to its counterpart
+ROOM_M = 1.5
+LARGEST_MM = 75  # width of a panel
+TIE = "#999999"
 TEXT_WIDTH = 26  # characters of an outcome in its panel
 
 
@@ -58,21 +61,22 @@ def draw(rows, court, n_images=None):
         How many images there were, fixed ones included, by number of bridging images.
     """
     counts = sorted(rows["n_bridging"].unique(), reverse=True)
-    n_rows = -(-len(counts) // COLUMNS)
-    low, high = _limits(rows, court)
     columns = min(COLUMNS, len(counts))
-    tall = (style.WIDTH_MM / columns - 8) * (high - low)[1] / (high - low)[0] + 14
-    drawing = style.figure(min(220, 12 + tall * n_rows))
+    n_rows = -(-len(counts) // columns)
+    low, high = _limits(rows, court)
+    width = min(style.WIDTH_MM / columns - 10, LARGEST_MM)
+    drawing = style.figure(min(225, 22 + n_rows * (8 + width * (high - low)[1] / (high - low)[0])))
     axes = drawing.subplots(n_rows, columns, sharex=True, sharey=True, squeeze=False)
     for axis, count in zip(axes.flat, counts, strict=False):
         _draw_panel(axis, rows[rows["n_bridging"] == count], court, (n_images or {}).get(count))
-        axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+        axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x (m)", ylabel="y (m)")
+        axis.label_outer()
     for axis in axes.flat[len(counts) :]:
         axis.set_visible(False)
-    drawing.supxlabel("x (m)", fontsize=8)
-    drawing.supylabel("y (m)", fontsize=8)
-    handles, labels = _legend(axes.flat[0])
-    drawing.legend(handles, labels, loc="outside lower center", ncols=3)
+    for axis in axes.flat[len(counts) - columns : len(counts)]:
+        axis.xaxis.set_tick_params(labelbottom=True)
+        axis.set_xlabel("x (m)")
+    drawing.legend(*_legend(axes.flat[0]), loc="outside lower center", ncols=3)
     return drawing
 
 
@@ -86,11 +90,15 @@ def _limits(rows, court):
     middle = np.asarray(court.size_m) / 2
     cameras = cameras[np.linalg.norm(cameras - middle, axis=1) < FAR_M]
     every = np.concatenate([cameras, [[0, 0]], [court.size_m]])
+    ties = rows.loc[rows["kind"] == "tie", ["x_m", "y_m"]].to_numpy()
+    ties = ties[np.linalg.norm(ties - middle, axis=1) < FAR_M]
+    if len(ties):
+        every = np.concatenate([every, np.percentile(ties, [SHOWN, 100 - SHOWN], axis=0)])
     return every.min(axis=0) - ROOM_M, every.max(axis=0) + ROOM_M
 
 
 def _draw_panel(axis, rows, court, n_images):
-    court_plan.draw(axis, court)
+    court_plan.draw(axis, court, colour="black", least_pt=0.4)
     count = rows["n_bridging"].iloc[0]
     outcome = rows.loc[rows["kind"] == "outcome", "name"]
     if len(outcome):
@@ -107,11 +115,11 @@ def _draw_panel(axis, rows, court, n_images):
         return
     of = {kind: part for kind, part in rows.groupby("kind")}
     ties = of.get("tie", rows[:0])
-    look = {"color": "#888888", "markersize": 0.8, "linewidth": 0, "zorder": 2, "rasterized": True}
-    axis.plot(ties["x_m"], ties["y_m"], ".", **look)
+    look = {"color": TIE, "markersize": 1.2, "markeredgewidth": 0, "zorder": 0, "rasterized": True}
+    axis.plot(ties["x_m"], ties["y_m"], "o", **look)
     path = of.get("bridging", rows[:0])
     axis.plot(
-        path["x_m"], path["y_m"], ".-", color=style.LEFT, markersize=3, linewidth=0.8, zorder=3
+        path["x_m"], path["y_m"], ".-", color=style.LEFT, markersize=2.5, linewidth=0.8, zorder=3
     )
     fixed = of.get("fixed", rows[:0])
     axis.plot(fixed["x_m"], fixed["y_m"], "s", color=style.RIGHT, markersize=4, zorder=4)
@@ -123,7 +131,7 @@ def _legend(axis):
     looks = [
         (".-", style.LEFT, "bridging images, in order of filming"),
         ("s", style.RIGHT, "fixed cameras"),
-        (".", "#888888", "points that tie the images"),
+        (".", TIE, "points that tie the images"),
     ]
     handles = [axis.plot([], [], form, color=colour, markersize=4)[0] for form, colour, _ in looks]
     return handles, [words for *_, words in looks]

@@ -20,11 +20,13 @@ PUBLISHED_CM, PUBLISHED_BELOW_CM, PUBLISHED_STRONG_CM = (
 PUBLISHED_DEG = {40: 6.0, 20: 12.0}
 MAPPERS = {"global": style.CYCLE[0], "incremental": style.CYCLE[1]}
 BY_CLICKS = [(style.CYCLE[0], "o"), (style.CYCLE[5], "^"), (style.CYCLE[2], "v")]
-LEVELS = [
-    ("known", style.CYCLE[6], "--"),
-    ("known", style.CYCLE[3], ":"),
-    ("dlt", style.CYCLE[4], "-."),
+Level = namedtuple("Level", "method rank words colour line marker")
+LEVELS = [  # rank: of the number of clicks, the largest first
+    Level("known", 0, "known points", style.CYCLE[6], "--", "D"),
+    Level("known", 1, "known points", style.CYCLE[3], ":", "p"),
+    Level("dlt", 0, "DLT", style.CYCLE[4], "-.", "h"),
 ]
+STRONG = 2.3  # where the strong calibrations stand, in units of the largest N
 ERRORS = {
     "xy_cm": "error of $X_o$ and $Y_o$, mean (cm)",
     "volume_rms_cm": "error over the volume, RMS (cm)",
@@ -75,9 +77,10 @@ def _published():
 
 def series(numbers):
     """Return the `Series` to draw against the number of bridging images, the paper's own first."""
-    found = [
-        Series("paper's eq 2-5, incremental", "paper", "incremental", 3, True, style.CYCLE[1], "s")
-    ]
+    paper = Series(
+        "paper's eq 2-5, incremental", "paper", "incremental", 3, True, style.CYCLE[1], "s"
+    )
+    found = [paper] if len(trials.pick(numbers, method="paper", mapper="incremental")) else []
     ours = trials.pick(numbers, method="sfm", mapper="global")
     clicks = sorted(ours["n_clicks"].dropna().astype(int).unique(), reverse=True)
     for count, look in zip(clicks, BY_CLICKS, strict=False):
@@ -89,18 +92,29 @@ def series(numbers):
 
 
 def levels(numbers, quantity):
-    """Return (label, row, colour, line) of the strong calibrations, scored points left out where tried."""
+    """Return the strong calibrations to draw.
+
+    Parameters
+    ----------
+    numbers : pandas.DataFrame
+        Of `table`.
+    quantity : str
+
+    Returns
+    -------
+    found : list of (str, pandas.DataFrame, Level)
+        Label, rows with a result (scored points left out first), look.
+    """
     of = numbers[(numbers["quantity"] == quantity) & numbers["method"].isin(["known", "dlt"])]
     clicks = sorted(of["n_clicks"].dropna().astype(int).unique(), reverse=True)
-    chosen = zip([0, 1, 0], LEVELS, strict=True)
     found = []
-    for at, (method, colour, line) in chosen:
-        count = clicks[at] if at < len(clicks) else None
-        rows = trials.pick(of, method=method, n_clicks=count).dropna(subset=["median"])
-        rows = rows.sort_values("in_sample")
+    for level in LEVELS:
+        if level.rank >= len(clicks):
+            continue
+        rows = trials.pick(of, method=level.method, n_clicks=clicks[level.rank])
+        rows = rows.dropna(subset=["median"]).sort_values("in_sample")
         if len(rows):
-            label = "DLT" if method == "dlt" else "known points"
-            found.append((f"{label}, {count} clicks", rows.iloc[0], colour, line))
+            found.append((f"{level.words}, {clicks[level.rank]} clicks", rows, level))
     return found
 
 
@@ -136,6 +150,9 @@ def draw(numbers, title, layout=""):
         axis.set(xlabel="bridging images N", xlim=(counts[0] / 1.3, counts[-1] * 1.3))
         axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
         axis.set_axisbelow(True)
+    for name in ERRORS:
+        axes[name].set_xlim(right=counts[-1] * STRONG * 1.25)
+        axes[name].set_xticks([*counts, STRONG * counts[-1]], [*map(str, counts), "strong"])
     handles = _legend(numbers)
     drawing.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=6.5)
     drawing.suptitle(f"{title}; {_sizes(numbers)}", fontsize=8)
@@ -146,37 +163,44 @@ def _sizes(numbers):
     """Return how many trials stand behind a mark, in words."""
     of = trials.pick(numbers, method="sfm", quantity="xy_cm")
     total = (of["n"] + of["n_failed"]).astype(int)
-    return f"{total.min()} to {total.max()} trials per mark" if len(of) else "no trials"
+    if of.empty:
+        return "no trials"
+    return f"{' to '.join(map(str, sorted({total.min(), total.max()})))} trials per mark"
 
 
 def _draw_errors(axis, numbers, quantity):
-    shown = series(numbers)
     of = numbers[numbers["quantity"] == quantity]
-    for _, row, colour, line in levels(numbers, quantity):
-        bars.draw_level(axis, row, colour=colour, line=line)
+    beside = STRONG * numbers["n_bridging"].max()
+    for at, (_, rows, level) in enumerate(levels(numbers, quantity)):
+        bars.draw_level(axis, rows.iloc[0], colour=level.colour, line=level.line)
+        for back, (_, row) in enumerate(rows.iterrows()):
+            x = [beside * np.exp(1.3 * DODGE * (2 * at + back - 2.5))]
+            look = {"colour": level.colour, "marker": level.marker, "filled": not row["in_sample"]}
+            bars.draw(axis, x, row.to_frame().T, line="none", **look)
+    shown = series(numbers)
     for at, each in enumerate(shown):
         keys = ("method", "mapper", "n_clicks", "in_sample")
-        rows = trials.pick(of, **{key: getattr(each, key) for key in keys})
-        rows = rows.sort_values("n_bridging")
+        rows = trials.pick(of, **{key: getattr(each, key) for key in keys}).sort_values(
+            "n_bridging"
+        )
         x = rows["n_bridging"] * np.exp(DODGE * (at - (len(shown) - 1) / 2))
         lost = rows["median"].isna()
         where = {"transform": axis.get_xaxis_transform(), "linestyle": "none", "markersize": 4}
         axis.plot(x[lost], 0.015 + 0 * x[lost], marker="x", color=each.colour, **where)
-        x, rows = x[~lost], rows[~lost]
-        alone = any(other == each._replace(in_sample=False) for other in shown if other != each)
+        joined = not each.in_sample or each._replace(in_sample=False) not in shown
         look = {"colour": each.colour, "marker": each.marker, "filled": not each.in_sample}
-        bars.draw(axis, x, rows, line="none" if alone else "-", **look)
+        bars.draw(axis, x[~lost], rows[~lost], line="-" if joined else "none", **look)
 
 
 def _mark_published(axis, numbers):
     of = trials.pick(numbers, method="published")
-    counts = numbers["n_bridging"].dropna()
     kinds = ("xy_cm", "xy_cm_below", "xy_cm_strong")
     exact, below, strong = (trials.pick(of, quantity=kind) for kind in kinds)
     look = {"color": "black", "linestyle": "none", "markersize": 8, "zorder": 6}
     axis.plot(exact["n_bridging"], exact["median"], "*", **look)
     axis.plot(below["n_bridging"], below["median"], marker=r"$\downarrow$", **look)
-    axis.plot(counts.max() * 1.2, strong["median"], "P", **{**look, "markersize": 6})
+    beside = STRONG * numbers["n_bridging"].max() * np.exp(-8 * DODGE)
+    axis.plot(beside, strong["median"], "*", **look)
 
 
 def _draw_solved(axis, numbers):
@@ -206,27 +230,21 @@ def _draw_mappers(axis, numbers, quantity, form, factor=1):
 
 def _legend(numbers):
     """Return the marks to explain: series, strong calibrations, published values, lower panels."""
-    handles = []
-    for each in series(numbers):
-        text = f"{each.label}, {'in-sample' if each.in_sample else 'left out'}"
-        handles.append(
-            bars.mark(each.colour, marker=each.marker, filled=not each.in_sample, label=text)
-        )
-    for label, row, colour, line in levels(numbers, "xy_cm"):
-        text = f"{label}, {'in-sample' if row['in_sample'] else 'left out'}"
-        handles.append(bars.mark(colour, marker="", line=line, label=text))
-    for marker, text in (
-        ("*", "published"),
-        (r"$\downarrow$", "published: below"),
-        ("P", "published: strong calibration"),
-    ):
-        handles.append(bars.mark("black", marker=marker, label=text))
-    handles.append(bars.mark("#555555", marker="x", label="no result"))
-    there = [mapper for mapper in MAPPERS if (numbers["mapper"] == mapper).any()]
-    handles += [
-        bars.mark(MAPPERS[m], line="-", label=f"{m} mapper: solved; median angle") for m in there
-    ]
+    named = {each.label: each for each in series(numbers)}
+    handles = [bars.mark(e.colour, marker=e.marker, label=label) for label, e in named.items()]
+    for label, _, level in levels(numbers, "xy_cm"):
+        handles.append(bars.mark(level.colour, marker=level.marker, line=level.line, label=label))
     grey = "#555555"
+    handles.append(bars.mark(grey, label="filled: scored points left out"))
+    handles.append(bars.mark(grey, filled=False, label="hollow: in-sample"))
+    handles.append(bars.mark(grey, marker="x", label="no result"))
+    handles.append(bars.mark("black", marker="*", label="published"))
+    handles.append(bars.mark("black", marker=r"$\downarrow$", label="published: below"))
+    there = [mapper for mapper in MAPPERS if (numbers["mapper"] == mapper).any()]
+    for mapper in there:
+        handles.append(
+            bars.mark(MAPPERS[mapper], line="-", label=f"{mapper} mapper: solved; median angle")
+        )
     handles.append(bars.mark(grey, marker="x", line=":", label="the same: registered images"))
     handles.append(bars.mark(grey, marker="^", line=":", label="the same: largest angle"))
     return handles

@@ -92,7 +92,9 @@ def _row(group):
 
 
 def _differences(group, name):
-    scene = group["seed"] if "seed" in group else group["session"]
+    scene = group["session"]
+    if "seed" in group:  # walks through one scene share it; other sessions stand for themselves
+        scene = group["seed"].astype(object).where(group["seed"].notna(), scene)
     structure = group["session"] + " " + group["offset"].fillna(0).astype(str)
     found = trials.spread(group[name])
     return {

@@ -48,35 +48,37 @@ def groups(court):
 
 def _draw_plan(axis, court):
     court_plan.draw(axis, court)
-    middle = np.asarray(court.size_m) / 2
     for place in np.unique(court.xyz[:, :2], axis=0):
         here = [n for n in range(len(court.points)) if (court.xyz[n, :2] == place).all()]
         few = any(court.points[n] in court.sets.get(FEW, ()) for n in here)
         raised = any(court.xyz[n, 2] > 0 for n in here)
         look = {"marker": "s" if few else "o", "markersize": 5 if few else 4}
         axis.plot(*place, color=style.RIGHT if raised else style.LEFT, zorder=4, **look)
-        outward = np.sign(place - middle)
-        inside = np.any((place < high - 0.01) & (place > low + 0.01) & (outward != 0))
-        right = outward[0] >= 0 if not inside else outward[0] <= 0
-        side = np.array([1 if right else -1, outward[1] * (1.4 if place[1] in (low[1], high[1]) else 1)])
-        align = "left" if right else "right"
-        text = ", ".join(court.points[n] for n in here)
-        where = {"textcoords": "offset points", "ha": align, "va": "center", "fontsize": 7.5}
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
-        axis.annotate(
-            text, place, (AWAY_PT * side[0], AWAY_PT * side[1]), bbox=box, zorder=5, **where
-        )
+        _number(axis, court, place, ", ".join(court.points[n] for n in here))
     low, high = (edge(court.xyz[:, :2], axis=0) for edge in (np.min, np.max))
-    axis.set(xlim=(low[0] - 2 * ROOM_M, high[0] + 2 * ROOM_M), xlabel="x (m)", ylabel="y (m)")
-    axis.set(ylim=(low[1] - ROOM_M, high[1] + ROOM_M), anchor="N")
+    room = ROOM * court.size_m[1]
+    axis.set(xlim=(low[0] - 2.8 * room, high[0] + 2.8 * room), xlabel="x (m)", ylabel="y (m)")
+    axis.set(ylim=(low[1] - room, high[1] + room), anchor="N")
     for colour, words, marker in (
         (style.LEFT, "on the floor", "o"),
-        (style.RIGHT, "with a raised point above", "o"),
+        (style.RIGHT, "on the floor, and one above it", "o"),
         (style.LEFT, "origin, end of x, end of y", "s"),
     ):
         axis.plot([], [], marker, color=colour, markersize=4, label=words)
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.09), ncols=1)
-    axis.set_title(f"{court.description}; lines {1000 * court.line_width_m:.0f} mm, to scale")
+    axis.set_title(f"{court.description}\nlines {1000 * court.line_width_m:.0f} mm, to scale")
+
+
+def _number(axis, court, place, text):
+    """Write a point's name beside it: outside the court, away from its neighbours."""
+    size = np.asarray(court.size_m)
+    aside = np.sign(place - size / 2)
+    on_end = not 0 < place[1] < size[1]
+    right = aside[0] <= 0 if on_end and 0 < place[0] < size[0] else aside[0] >= 0
+    away = (AWAY_PT if right else -AWAY_PT, AWAY_PT * aside[1] * (1.4 if on_end else 1))
+    where = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "zorder": 5}
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+    axis.annotate(text, place, away, ha="left" if right else "right", bbox=box, **where)
 
 
 def _write_list(axis, court):
@@ -85,11 +87,11 @@ def _write_list(axis, court):
         lines += [" ".join(points)]
         lines += textwrap.wrap(edges, LINE_LENGTH, initial_indent="   ", subsequent_indent="   ")
     axis.axis("off")
-    axis.set_title("Which edges meet at a point", loc="left")
+    axis.set_title("Which edges meet at a point", loc="left", fontweight="bold")
     for at, line in enumerate(lines):
         weight = "normal" if line.startswith(" ") else "bold"
         look = {"va": "top", "fontsize": 7, "fontweight": weight, "transform": axis.transAxes}
-        axis.text(0, 1 - (at + 0.3) / max(len(lines), 16), line, **look)
+        axis.text(0, 1 - (at + 0.3) / max(len(lines), 21), line, **look)
 
 
 def _details(court):
@@ -141,10 +143,11 @@ def _draw_net(axis, court):
             "ha": "right" if side < 0 else "left",
             "va": "center",
         }
-        away = (AWAY_PT * side, 0 if height > 0 else AWAY_PT)
+        away = (AWAY_PT * side, 0 if height > 0 else -AWAY_PT)
         axis.annotate(court.points[n], (at, height), away, fontsize=7.5, **where)
     axis.text((left + right) / 2, middle - 0.12, f"{middle:g} m", ha="center", va="top", fontsize=7)
-    axis.set(xlim=(left - ROOM_M, right + ROOM_M), ylim=(-0.3, post + 0.3), aspect="equal")
+    room = 0.15 * (right - left)
+    axis.set(xlim=(left - room, right + room), ylim=(-0.7 * room, post + 0.3), aspect="equal")
     axis.set(
         xlabel="x (m)", ylabel="z (m)", title=f"Net, y = {court.net['y_m']:g} m, posts {post:g} m"
     )

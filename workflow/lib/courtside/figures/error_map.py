@@ -2,6 +2,8 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
 
 from courtside.figures import court_plan, style
 from courtside.geometry import cameras as camera_models
@@ -9,8 +11,8 @@ from courtside.geometry import uncertainty
 from courtside.records import ties
 
 COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
-LINES_CM = 7  # contour lines, about
-ARROW_M = 2.5
+LEVELS = 14  # of colour, about
+ROOM_M = 3.2  # around the court, for the cameras
 
 
 def table(cameras, covariance, court, heights_m):
@@ -76,24 +78,24 @@ def draw(rows, cameras, court, title):
     title : str
     """
     heights = rows["z_m"].unique()
-    drawing = style.figure(118)
+    wide, tall = np.asarray(court.size_m) + 2 * ROOM_M
+    drawing = style.figure(min(160, 18 + (style.WIDTH_MM - 30) / len(heights) * tall / wide))
     axes = drawing.subplots(1, len(heights), sharex=True, sharey=True, squeeze=False)[0]
     known = rows["sigma_cm"].dropna()
     low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
-    levels = np.linspace(low, high if high > low else low + 1, 15)
+    levels = MaxNLocator(LEVELS).tick_values(low, max(high, low + 1e-3))
     for axis, height in zip(axes, heights, strict=True):
         part = rows[rows["z_m"] == height]
         filled = _draw_height(axis, part, levels)
-        court_plan.draw(axis, court, colour="white")
+        court_plan.draw(axis, court)
         for camera in cameras:
             _point_to(axis, camera, court)
-        median = part["sigma_cm"].median()
-        axis.set_title(f"z = {height:g} m: median {median:.2f} cm")
-        axis.set(
-            xlabel="x (m)", xlim=(-1.6, court.size_m[0] + 1.6), ylim=(-1.6, court.size_m[1] + 1.6)
-        )
+        axis.set_title(f"z = {height:g} m: median {part['sigma_cm'].median():.2f} cm")
+        axis.set(xlim=(-ROOM_M, wide - ROOM_M), ylim=(-ROOM_M, tall - ROOM_M), xlabel="x (m)")
+        for each in (axis.xaxis, axis.yaxis):
+            each.set_major_locator(MaxNLocator(4, integer=True, steps=[1, 2, 5, 10]))
     axes[0].set_ylabel("y (m)")
-    bar = drawing.colorbar(filled, ax=list(axes), pad=0.01, aspect=35, format="%.2f")
+    bar = drawing.colorbar(filled, ax=list(axes), pad=0.01, aspect=30, ticks=levels[::2])
     bar.set_label("expected 3D error (cm)")
     drawing.suptitle(title, fontsize=8)
     return drawing
@@ -102,25 +104,24 @@ def draw(rows, cameras, court, title):
 def _draw_height(axis, part, levels):
     x, y = (part[name].unique() for name in ("x_m", "y_m"))
     values = part["sigma_cm"].to_numpy().reshape(len(y), len(x))
-    axis.set_facecolor("white")
-    filled = axis.contourf(x, y, values, levels=levels, cmap="viridis", extend="neither", zorder=0)
+    filled = axis.contourf(x, y, values, levels=levels, cmap="YlGnBu", zorder=0)
     if np.isfinite(values).any() and np.nanmax(values) > np.nanmin(values):
         lines = axis.contour(
-            x, y, values, levels=levels[1::3], colors="black", linewidths=0.5, zorder=2
+            x, y, values, levels=levels[::2], colors="black", linewidths=0.5, zorder=2
         )
-        axis.clabel(lines, fmt="%.2f", fontsize=6)
+        for text in axis.clabel(lines, fontsize=6.5):
+            text.set_path_effects([withStroke(linewidth=1.8, foreground="white")])
     return filled
 
 
 def _point_to(axis, camera, court):
-    """Mark at the court's edge where a camera that stands far outside looks from."""
-    x, y, _ = camera.centre_in_world
+    """Mark at the court's edge from where a camera, which stands far outside, looks."""
     centre = np.asarray(court.size_m) / 2
-    away = np.array([x, y]) - centre
-    reach = centre + 1.15
-    place = centre + away * min(1.0, *(reach / np.maximum(np.abs(away), 1e-9)))
-    inward = -away / np.linalg.norm(away)
+    away = camera.centre_in_world[:2] - centre
+    outward = away / np.linalg.norm(away)
+    reach = np.min((centre + 0.3) / np.maximum(np.abs(outward), 1e-9))
+    tip = centre + reach * outward
     arrow = {"arrowstyle": "-|>", "color": "black", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
-    axis.annotate("", place + 0.9 * inward, place - 0.2 * inward, arrowprops=arrow, zorder=5)
-    where = {"ha": "center", "va": "center", "fontsize": 6.5}
-    axis.text(*(place - 0.42 * inward), f"{camera.name}, {np.linalg.norm(away):.0f} m", **where)
+    axis.annotate("", tip, tip + 1.1 * outward, arrowprops=arrow, zorder=5)
+    text = f"{camera.name}\n{np.linalg.norm(away):.0f} m"
+    axis.text(*(tip + 2.0 * outward), text, ha="center", va="center", fontsize=6.5)

@@ -92,5 +92,5 @@ def draw(rows, title=""):
     bars.plain_log(axis)
     axis.set(xlabel="bridging images N", ylabel="time (s)", title=title)
     axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
-    axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    drawing.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return drawing

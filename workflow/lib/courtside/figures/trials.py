@@ -52,7 +52,7 @@ def tidy(rows):
     """
     rows = rows.copy()
     for column in TEXT:
-        rows[column] = rows[column].fillna("").astype(str) if column in rows else ""
+        rows[column] = rows[column].astype(object).fillna("").astype(str) if column in rows else ""
     for column in {"n_bridging", "offset", "in_sample"} - set(rows):
         rows[column] = np.nan
     empty = (rows["method"] == "").to_numpy()
@@ -182,15 +182,20 @@ def upper_limit(difference, scene, structure, *, seed=0):
         _resampled_mean(
             rng, [_resampled_mean(rng, part["value"].to_numpy()[:, None]) for _, part in of_scene]
         )
-        for of_scene in (group.groupby("structure") for _, group in table.groupby("scene"))
+        for of_scene in (
+            group.groupby("structure", dropna=False)
+            for _, group in table.groupby("scene", dropna=False)
+        )
     ]
     return float(np.quantile(_resampled_mean(rng, means), 0.95))
 
 
 def _resampled_mean(rng, values):
-    """Return means (REPLICATES,) of values (n, REPLICATES) or (n, 1), each of n drawn with replacement."""
+    """Return means (REPLICATES,) of n drawn with replacement from values (n, REPLICATES) or (n, 1).
+
+    A cluster that is drawn twice comes with two resamples of its own.
+    """
     values = np.asarray(values)
-    times = rng.multinomial(len(values), np.full(len(values), 1 / len(values)), REPLICATES)
-    return np.einsum("rn,nr->r", times, np.broadcast_to(values, (len(values), REPLICATES))) / len(
-        values
-    )
+    member = rng.integers(len(values), size=(REPLICATES, len(values)))
+    resample = rng.integers(values.shape[1], size=member.shape)
+    return values[member, resample].mean(axis=1)

@@ -10,7 +10,6 @@ from courtside.study.errors import InputError
 
 HOPELESS = 0.03  # a court that most points miss by this part of its length is no fit
 STRETCHED = 0.01  # of the ratio of the sides: less can be the clicks' own bias
-EXCHANGED = 5.0  # so many times nearer must the court be with two cameras' clicks exchanged
 FLAT = 0.01  # relative to the longest extent: points lower than this all lie on the floor
 
 
@@ -143,47 +142,6 @@ def align(court, xyz_in_sfm):
     return similarity.robust(xyz_in_sfm, court.xyz, court.sigma_m)
 
 
-def refuse_exchanged(court, cameras, clicks):
-    """Raise where the clicks fit the court only after those of two cameras are exchanged.
-
-    Parameters
-    ----------
-    court : courtside.geometry.courts.Court
-    cameras : list of Camera
-        Fixed cameras in one frame, of structure from motion: clicks must not have shaped it.
-    clicks : dict of str to (P, 2) float
-        By camera name, px; NaN where not clicked.
-
-    Raises
-    ------
-    InputError
-        If so: the files of these cameras may be exchanged. Any other fault of the clicks is not looked for.
-    """
-    off_m = _off_m(court, cameras, clicks)
-    if off_m < STRETCHED * np.max(court.size_m):
-        return
-    for one, other in combinations([camera.name for camera in cameras], 2):
-        exchanged = {**clicks, one: clicks[other], other: clicks[one]}
-        better_m = _off_m(court, cameras, exchanged)
-        if better_m < off_m / EXCHANGED:
-            found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
-            raise InputError(
-                f"cameras {one} and {other}: expected court points where the walk puts them, found them {found}, "
-                f"but {100 * better_m:.0f} cm off with the two cameras' clicks exchanged: the camera files may be "
-                "exchanged; correct their names in the session, or those in the court points"
-            )
-
-
-def _off_m(court, cameras, clicks):
-    """Return how far most reconstructed points are from the court, inf where they cannot be aligned."""
-    xyz = reconstruct(cameras, clicks)
-    try:
-        world_from_sfm, _ = align(court, xyz)
-    except InputError:
-        return np.inf
-    return float(np.nanmedian(np.linalg.norm(world_from_sfm.points(xyz) - court.xyz, axis=1)))
-
-
 def check(court, xyz_in_sfm, cameras=()):
     """Check that reconstructed points can be this court, seen the right way round.
 
@@ -212,9 +170,9 @@ def check(court, xyz_in_sfm, cameras=()):
     if off_m > HOPELESS * np.max(court.size_m):
         short_m, long_m = court.size_m
         raise InputError(
-            f"court points: expected them near those of {court.name} ({short_m:g} m by {long_m:g} m), found most "
-            f"{100 * off_m:.0f} cm off after the best alignment; give the right court file, or correct the names "
-            "of points and cameras in the clicks"
+            f"court points: expected them near those of {court.name} ({short_m:g} m by {long_m:g} m), found "
+            f"most {100 * off_m:.0f} cm off after the best alignment; give the right court file, or correct "
+            "the names of points and cameras in the clicks"
         )
     below = [c.name for c in cameras if world_from_sfm.camera(c).centre_in_world[2] < 0]
     if below:

@@ -1,4 +1,4 @@
-"""Bundle adjustment of a `Network`: Levenberg-Marquardt on the images and lenses, with the points eliminated."""
+"""Bundle adjustment of a `Network`: Levenberg-Marquardt on images and lenses, points eliminated."""
 
 from dataclasses import dataclass
 
@@ -76,7 +76,8 @@ def adjust(network, *, quadratic=None, max_iterations=30, tolerance=1e-8):
     Notes
     -----
     Triggs et al. 2000. The Cauchy loss is kept by weights of Triggs's first order (IRLS). Without a prior on
-    points or images the world frame is free: damping keeps it where it starts, and the information is singular.
+    points or images the world frame is free: damping keeps it where it starts, and the information is
+    singular.
     """
     damping = 1e-4
     normal = normal_equations(network, quadratic)
@@ -176,7 +177,7 @@ def _active(network):
 
 
 def _prior(network):
-    """Return (value - mean) / sigma and 1 / sigma of all image and lens parameters, 0 where nothing is known."""
+    """Return (value - mean) / sigma and 1 / sigma of image and lens parameters, 0 where nothing is known."""
     flex = np.concatenate(
         [np.full((len(network.flex), len(networks.POSE)), np.inf), network.flex_sigma], axis=1
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import alignment, courts
+from courtside.geometry import alignment, courts, exchanged_cameras
 from courtside.geometry import cameras as camera_models
 from courtside.study.errors import InputError
 
@@ -203,7 +203,7 @@ def _small_similarity(xyz):
     return np.concatenate([shifted, turned, xyz[..., None]], axis=2)
 
 
-def find(court, cameras, clicks, *, sigma_px=1.0):
+def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None):
     """Check clicked court points as far as the fixed cameras allow.
 
     Parameters
@@ -215,6 +215,9 @@ def find(court, cameras, clicks, *, sigma_px=1.0):
         By camera name, px; NaN where not clicked.
     sigma_px : float
         Of a good click per axis.
+    inwards : (float, float), optional
+        Shift of all clicks towards line centres and its sigma, from `line_centres.shift`; without it,
+        `line_centre_pattern`.
 
     Returns
     -------
@@ -226,7 +229,7 @@ def find(court, cameras, clicks, *, sigma_px=1.0):
     InputError
         If the points cannot be this court: see `alignment.check`.
     """
-    alignment.refuse_exchanged(court, cameras, clicks)
+    exchanged_cameras.refuse(court, cameras, clicks)
     xyz = alignment.reconstruct(cameras, clicks)
     warnings = alignment.check(court, xyz, cameras)
     try:
@@ -234,7 +237,7 @@ def find(court, cameras, clicks, *, sigma_px=1.0):
     except InputError:
         return warnings  # too few points to leave one out, which `check` has said
     warnings += [str(click) for click in find_wrong_clicks(table, sigma_px=sigma_px)]
-    shift, sigma = line_centre_pattern(court, xyz)
+    shift, sigma = inwards or line_centre_pattern(court, xyz)
     if CENTRES[0] < shift < CENTRES[1] and shift > CERTAIN * sigma:
         warnings.append(
             f"court points: all lie inwards of the edges by {500 * court.line_width_m * shift:.0f} mm (+-"

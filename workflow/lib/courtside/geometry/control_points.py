@@ -1,4 +1,4 @@
-"""A network tied to the court: ties thinned and weighted, clicked court points as control points, fixed cameras."""
+"""A network tied to the court: ties thinned and weighted, clicked points as control points, cameras."""
 
 from dataclasses import replace
 
@@ -30,7 +30,8 @@ def free_frame(network, fixed):
     Returns
     -------
     frame_from_sfm : courtside.geometry.similarity.Sim3
-        Origin: mean of the projection centres. z: against the mean of the pictures' y axes, upwards if cameras
+        Origin: mean of the projection centres. z: against the mean of the pictures' y axes, upwards if
+        cameras
         are held upright. x: from the first fixed camera to the second. Unit: their distance.
     """
     places = centres(network)

@@ -1,6 +1,7 @@
 """Fixed cameras in the court's frame: bundle adjustment of ties between images and clicked court points.
 
-The ties of one structure from motion are condensed once, into what they say of the fixed cameras; then any set
+The ties of one structure from motion are condensed once, into what they say of the fixed cameras; then
+any set
 of clicks costs milliseconds.
 """
 
@@ -8,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from courtside.geometry import alignment, bundle, control_points, uncertainty
+from courtside.geometry import alignment, bundle, control_points, exchanged_cameras, uncertainty
 from courtside.geometry.network import FLEX, IMAGE, POSE
 from courtside.study.errors import InputError
 
@@ -53,7 +54,7 @@ class Solution:
     covariance: np.ndarray
 
     def point_covariance(self, xyz):
-        """Return the covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate without noise."""
+        """Return the covariance (N, 3, 3) m2 of points (N, 3) triangulated from exact pixels."""
         return uncertainty.point_covariance(self.network, self.covariance, xyz)
 
 
@@ -105,7 +106,7 @@ def condense(
     """
     names = tuple(fixed)
     cameras = _cameras(network, fixed, sizes)
-    alignment.refuse_exchanged(court, cameras, clicks)
+    exchanged_cameras.refuse(court, cameras, clicks)
     world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
     network = control_points.transform(network, world_from_sfm)
     network = control_points.thin(network, **thinning)
@@ -143,7 +144,8 @@ def condense_free(network, fixed, sizes, *, tie_sigma_px, tie_loss, **thinning):
     Returns
     -------
     ties : Ties
-        In the frame of `control_points.free_frame`: the unit is the distance between the first two fixed cameras.
+        In the frame of `control_points.free_frame`: the unit is the distance between the first two fixed
+        cameras.
     network : courtside.geometry.network.Network
     """
     network = control_points.transform(

@@ -64,7 +64,7 @@ def court_points(court, xyz):
 
 
 def poses(cameras, truth):
-    """Return the mean errors of the cameras themselves: position in cm, rotation in degrees, focal length in %.
+    """Return mean errors of the cameras themselves: position (cm), rotation (degrees), focal length (%).
 
     Parameters
     ----------
@@ -105,7 +105,8 @@ def coverage(error_m, covariance):
     Returns
     -------
     shares : dict of str to float
-        `coverage50`, `coverage90`, `coverage95` in 0..1 and `predicted_volume_cm`, the expected root mean square.
+        `coverage50`, `coverage90`, `coverage95` in 0..1 and `predicted_volume_cm`, the expected root
+        mean square.
     """
     square = uncertainty.mahalanobis(error_m, covariance)
     shares = {

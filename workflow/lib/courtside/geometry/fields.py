@@ -92,7 +92,8 @@ def unit_in_metres(where, unit):
     """Return the length of a unit that a file names: m, cm or mm."""
     if unit == UNSCALED:
         raise InputError(
-            f"{where}: expected cameras in metres, found unscaled ones of a session without a court; give the "
+            f"{where}: expected cameras in metres, found unscaled ones of a session without a "
+            "court; give the "
             "session a court and click its points"
         )
     if not isinstance(unit, str) or unit not in METRES:

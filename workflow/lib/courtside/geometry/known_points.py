@@ -1,4 +1,4 @@
-"""Calibrating fixed cameras from known court points alone, each by itself: the methods of the study by name."""
+"""Calibrating fixed cameras from known court points alone: the methods of the study by name."""
 
 import re
 from dataclasses import dataclass
@@ -105,7 +105,7 @@ def cameras(found):
         if result.camera is None:
             raise InputError(
                 result.reason
-                or f"camera {name}: expected clicks that make a linear calibration a camera, found a matrix that is "
-                "none; click more points, more exactly, or calibrate by least squares"
+                or f"camera {name}: expected a linear calibration that is a camera, found one that is none; "
+                "click more points, more exactly, or calibrate by least squares"
             )
     return [result.camera for result in found.values()]

@@ -1,8 +1,10 @@
 """A photogrammetric network: images, lenses, points and observations, and how an observation depends on them.
 
-Conventions: pixels with the first pixel's centre at (0, 0); world metres; `cam_from_world` maps world to camera.
+Conventions: pixels with the first pixel's centre at (0, 0); world metres; `cam_from_world` maps world to
+camera.
 An image that a moving camera took carries five more numbers, its *flex*: the rotation of the camera while the
-rolling shutter ran from the first to the last row (3, rad, camera frame), and the shift of the principal point by
+rolling shutter ran from the first to the last row (3, rad, camera frame), and the shift of the principal
+point by
 its stabiliser (2, px). They are zero for a camera on a tripod.
 """
 

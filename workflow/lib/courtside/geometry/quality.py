@@ -6,7 +6,9 @@ from courtside.geometry import click_faults, court_errors
 from courtside.study.errors import InputError
 
 
-def of_court(court, cameras, clicks, *, click_sigma_px, point_covariance=None, strict=True):
+def of_court(
+    court, cameras, clicks, *, click_sigma_px, point_covariance=None, inwards=None, strict=True
+):
     """Check cameras against the clicked court points, each left out in turn.
 
     Parameters
@@ -20,14 +22,18 @@ def of_court(court, cameras, clicks, *, click_sigma_px, point_covariance=None, s
         Of a good click, in the largest picture.
     point_covariance : callable, optional
         Covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate.
+    inwards : (float, float), optional
+        As for `click_faults.find`.
     strict : bool
         Whether points that cannot be this court are an error; otherwise they are a warning.
 
     Returns
     -------
     quality : dict
-        For a JSON file: `warnings`; `left_out`, by point: how far it is from its place (cm) and from each click
-        (px) in a similarity fitted to the other points; `expected_volume_rms_cm` where the covariance is known.
+        For a JSON file: `warnings`; `left_out`, by point: how far it is from its place (cm) and from
+        each click
+        (px) in a similarity fitted to the other points; `expected_volume_rms_cm` where the covariance is
+        known.
 
     Raises
     ------
@@ -35,7 +41,9 @@ def of_court(court, cameras, clicks, *, click_sigma_px, point_covariance=None, s
         If the points cannot be this court.
     """
     try:
-        warnings = click_faults.find(court, cameras, clicks, sigma_px=click_sigma_px)
+        warnings = click_faults.find(
+            court, cameras, clicks, sigma_px=click_sigma_px, inwards=inwards
+        )
     except InputError as error:
         if strict:
             raise

@@ -272,8 +272,8 @@ def nonlinear(xyz, xy, size, *, K=None, dist=None, sigma_px=1.0, xyz_sigma=None,
     few = agree.sum() < fewest or similarity.is_collinear(clicks.xyz[agree])
     if few or off_px > HOPELESS * size[0]:
         raise InputError(
-            f"camera {name}: expected {fewest} clicks or more that fit one camera, found {agree.sum()}, half of "
-            f"all {off_px:.1f} px off or more; check the names of the clicked points and the court"
+            f"camera {name}: expected {fewest} clicks or more that fit one camera, found {agree.sum()} and "
+            f"half of all {off_px:.1f} px off or more; check the names of the clicked points, and the court"
         )
     state, _, by_step = one_camera.descend(state, clicks.of(agree), np.inf)
     accepted = np.zeros(len(seen), dtype=bool)

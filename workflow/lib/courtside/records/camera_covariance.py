@@ -24,7 +24,8 @@ class CameraCovariance:
     ----------
     cameras : list of str
     covariance : (14 C, 14 C) float
-        Camera after camera, each in the order of `PARAMETERS`: a small turn of the camera in its own frame (rad,
+        Camera after camera, each in the order of `PARAMETERS`: a small turn of the camera in its own
+        frame (rad,
         applied on the left of cam_from_world), translation of cam_from_world (m), focal length along y (px),
         focal length along x over that along y, principal point (px), k1, k2, p1, p2.
     """

@@ -1,4 +1,4 @@
-"""Bridging images: which frames of a walk's grid are taken, and what angles lie between them.
+"""Bridging images: which frames of a walk's grid are taken.
 
 Places in the grid are counted from 0 to G - 1, one per row of the walk's frame table. Nothing here
 knows where the camera was.
@@ -71,64 +71,6 @@ def choose(kept_idx, n_grid, n, offset_idx, sharpness, rule="even", *, walk="wal
         every = len(kept_idx) // n
         return kept_idx[every * offset_idx // OFFSETS + every * np.arange(n)]
     return _choose_even(kept_idx, n_grid, n, offset_idx, np.asarray(sharpness, dtype=float))
-
-
-def neighbour_angles_deg(centres, point):
-    """Measure the angles between neighbouring views, as seen from a point.
-
-    Parameters
-    ----------
-    centres : (V, 3) float
-        Optical centres in order along the path, the fixed cameras at its ends included; metres.
-    point : (3,) float
-        Where the angles are measured: for the study the court's centre, 1 m high.
-
-    Returns
-    -------
-    angle_deg : (V - 1,) float
-        Between 0 and 180; NaN beside a centre that is NaN.
-    """
-    ray = np.asarray(centres, dtype=float) - np.asarray(point, dtype=float)
-    cross = np.linalg.norm(np.cross(ray[:-1], ray[1:]), axis=1)
-    return np.degrees(np.arctan2(cross, np.sum(ray[:-1] * ray[1:], axis=1)))
-
-
-def path_order(centres, fixed):
-    """Put fixed cameras where a walk passes them.
-
-    Parameters
-    ----------
-    centres : (V, 3) float
-        Optical centres, those of the walk in order.
-    fixed : (V,) bool
-        Which are fixed cameras.
-
-    Returns
-    -------
-    order : (V,) int
-        Each fixed camera stands where it lengthens the path least: before, within or behind the walk.
-    """
-    order = np.flatnonzero(~fixed).tolist()
-    for camera in np.flatnonzero(fixed):
-        near = np.linalg.norm(centres[order] - centres[camera], axis=1)
-        steps = np.linalg.norm(np.diff(centres[order], axis=0), axis=1)
-        longer = np.concatenate([near[:1], near[:-1] + near[1:] - steps, near[-1:]])
-        order.insert(int(np.argmin(longer)), int(camera))
-    return np.array(order, dtype=int)
-
-
-def path_angles_deg(images, centres, point):
-    """Return `neighbour_angles_deg` of registered images, fixed cameras put where the walk passes them.
-
-    Parameters
-    ----------
-    images : (V,) str
-        Names; those of fixed cameras begin with `static/`.
-    centres : (V, 3) float
-    point : (3,) float
-    """
-    order = path_order(centres, np.char.startswith(images, "static/"))
-    return neighbour_angles_deg(centres[order], point)
 
 
 def _choose_even(kept_idx, n_grid, n, offset_idx, sharpness):

@@ -1,4 +1,4 @@
-"""COLMAP databases as single, finished files: pycolmap keeps part of an open one in a write-ahead log beside it."""
+"""COLMAP databases as single, finished files: an open one keeps part of itself in a log beside it."""
 
 import contextlib
 import shutil

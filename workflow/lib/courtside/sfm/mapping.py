@@ -29,7 +29,8 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None):
     Returns
     -------
     summary : dict
-        Of the model: pycolmap's version, n_models, n_images, n_registered, n_points3d, reprojection_px, track_length.
+        Of the model: pycolmap's version, n_models, n_images, n_registered, n_points3d, reprojection_px,
+        track_length.
     """
     with database.working_copy(matches_db) as copy, tempfile.TemporaryDirectory() as temporary:
         arguments = (copy, temporary, temporary, _options(mapper, images, seed, options))

@@ -26,20 +26,26 @@ def outcome(network, images, fixed, *, min_points, n_models=1):
     """
     if not images:
         return (
-            "walk: expected images that overlap, found no two that could be mapped together; take more bridging "
-            "images, or film slower, with posters, bags and gear in view"
+            "walk: expected images that overlap, found no two that could be mapped together; take more "
+            "bridging images, or film slower, with posters, bags and gear in view"
         )
+    seen = {camera: n_seen(network, images, image) for camera, image in fixed.items()}
+    lost = [camera for camera in fixed if seen[camera] < min_points]
+    if not lost:
+        return ""
+    one = len(lost) == 1
+    found = [
+        (f"{seen[camera]} points" if fixed[camera] in images else "it unregistered")
+        + ("" if one else f" ({camera})")
+        for camera in lost
+    ]
     apart = f"; the images fall into {n_models} separate models" if n_models > 1 else ""
-    for camera, image in fixed.items():
-        seen = n_seen(network, images, image)
-        if seen < min_points:
-            what = f"{seen} points" if image in images else "it unregistered"
-            return (
-                f"camera {camera}: expected {min_points} points or more in common with the walk, found {what}"
-                f"{apart}; film the walk from close beside this camera, slowly, aimed as it is, or take more "
-                "bridging images"
-            )
-    return ""
+    names = f"camera{'' if one else 's'} {', '.join(lost)}"
+    return (
+        f"{names}: expected {min_points} points or more in common with the walk, found {', '.join(found)}"
+        f"{apart}; film the walk from close beside each such camera, slowly, aimed as it is, or take more "
+        "bridging images"
+    )
 
 
 def n_seen(network, images, image):

@@ -3,9 +3,14 @@
 import numpy as np
 
 BLOCKS = (9, 16)  # rows and columns of blocks in which two pictures are compared
-FLAT, RICH = 25, 50  # percentiles: blocks with less texture show the noise, those with more the motion
+FLAT, RICH = (
+    25,
+    50,
+)  # percentiles: blocks with less texture show the noise, those with more the motion
 BLACK_LEVEL, BLACK_SHARE = 20, 0.8  # dark: so much of the picture is below that
-MIN_TEXTURE = 1.0  # squared grey levels per pixel; less in most blocks: nothing can be said of motion
+MIN_TEXTURE = (
+    1.0  # squared grey levels per pixel; less in most blocks: nothing can be said of motion
+)
 
 
 def judge(table, images, *, window=15, min_share=0.6, still_share=5e-4):

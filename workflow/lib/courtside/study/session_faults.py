@@ -1,12 +1,14 @@
 """What a session's file gets wrong beyond its schema: names, files, and ways to find the cameras."""
 
+import re
+
 from courtside.study.session_files import VIRTUAL
 
 EXTERNAL = "results/external/"
 
 
 def find(folder, file, content, known, root):
-    """Return what contradicts the rest of the configuration or the disk in a session, one line for each fault.
+    """Return what contradicts the rest of the configuration or the disk in a session, one line each.
 
     Parameters
     ----------
@@ -62,34 +64,72 @@ def _paths(content):
 
 def _source_faults(file, content):
     """Check that the cameras can be found one way or another, and that virtual sessions name no files."""
+    for name in sorted(set(content["cameras"]) & set(content.get("walks", {}))):
+        yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
+    if "virtual" in content:
+        yield from _virtual_faults(file, content)
+    else:
+        yield from _recorded_faults(file, content)
+        yield from _court_faults(file, content)
+
+
+def _virtual_faults(file, content):
+    if not content.get("walks") or not content["cameras"]:
+        yield f"{file}: virtual: expected cameras and a walk that it films, found none; name them"
+    named = [key for key, _ in _paths(content) if not key.endswith("chessboard.images")]
+    if named:
+        yield (
+            f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes its own; "
+            "remove it"
+        )
+    if content["court"] == "none":
+        yield f"{file}: court: expected a court to build the virtual hall around, found 'none'; name one"
+    yield from setting_faults(f"{file}: virtual", content["virtual"])
+
+
+def _recorded_faults(file, content):
     cameras, walks = content["cameras"], content.get("walks", {})
-    virtual = "virtual" in content
-    if virtual:
-        if not walks or not cameras:
-            yield f"{file}: virtual: expected cameras and a walk that it films, found none; name them"
-        named = [key for key, _ in _paths(content) if not key.endswith("chessboard.images")]
-        if named:
-            yield (
-                f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes its own; remove it"
-            )
-        if content["court"] == "none":
-            yield f"{file}: court: expected a court to build the virtual hall around, found 'none'; name one"
-        return
     if not walks and "calibration" not in content:
         yield f"{file}: expected `walks` or `calibration`, found neither; say how the cameras are to be found"
     if len(cameras) < 2 and ("calibration" in content or content.get("takes")):
         yield f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
-    for name, walk in walks.items():
-        if not walk:
-            yield f"{file}: walks.{name}: expected `video` or `images`, found neither; name a file or a folder"
-    for name, camera in cameras.items():
-        if walks and not (camera or {}).get("static"):
+    for name in (name for name, walk in walks.items() if not walk):
+        yield (
+            f"{file}: walks.{name}: expected `video` or `images`, found neither; name a file or a folder"
+        )
+    for name, camera in cameras.items() if walks else ():
+        if not (camera or {}).get("static"):
             yield (
-                f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty court, found none; "
-                "bridging images are tied to it"
+                f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty court, found "
+                "none; bridging images are tied to it"
             )
-    if walks and content["court"] != "none" and "court_points" not in content and cameras:
-        yield f"{file}: expected `court_points` for a session with a court, found none; click them or set court: none"
+
+
+def _court_faults(file, content):
+    clicked = "court_points" in content
+    if content["court"] == "none" and clicked:
+        yield f"{file}: court_points: expected none without a court, found some; name their court"
+    if content["court"] != "none" and content.get("walks") and content["cameras"] and not clicked:
+        yield (
+            f"{file}: expected `court_points` for a session with a court, found none; click them or set "
+            "court: none"
+        )
+
+
+def setting_faults(where, virtual):
+    """Return what contradicts itself in the settings of a virtual session, one line each.
+
+    Parameters
+    ----------
+    where : str
+    virtual : dict
+        As its schema allows it.
+    """
+    if "baseline_deg" in virtual and virtual["layout"] != "a":
+        return [
+            f"{where}.baseline_deg: expected it with layout a only, found {virtual['layout']}; remove it"
+        ]
+    return []
 
 
 def conditions(config_file, config, found):
@@ -111,11 +151,21 @@ def conditions(config_file, config, found):
         faults += unknown(f"{where}.session", [base], found)
         if base in found and "virtual" not in found[base][1]:
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
-        if name in found:
-            faults.append(
-                f"{where}: expected a name that no session has, found {name!r}; rename it"
-            )
+        elif base in found:
+            keys = {**found[base][1]["virtual"], **condition.get("set", {}), **condition["vary"]}
+            # Any of the layouts varied may be the wrong one; a name in `vary` stands for its values.
+            layouts = condition["vary"].get("layout", [keys["layout"]])
+            faults += [f for at in layouts for f in setting_faults(where, {**keys, "layout": at})]
+        faults += _condition_faults(where, name, condition, found)
     return faults
+
+
+def _condition_faults(where, name, condition, found):
+    for key in sorted(set(condition.get("set", {})) & set(condition["vary"])):
+        yield f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
+    # Variations are sessions named after their condition.
+    for taken in (own for own in found if own == name or re.fullmatch(rf"{name}-\d+", own)):
+        yield f"{where}: expected a name that no session has, found session {taken!r}; rename it"
 
 
 def unknown(where, names, known):

@@ -60,7 +60,8 @@ def variations(base, name, content):
     name : str
         Of the condition.
     content : dict
-        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys of `virtual`
+        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys of
+        `virtual`
         that are the same for all; `override`: steps' parameters that differ from the base session's.
 
     Returns

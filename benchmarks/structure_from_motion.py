@@ -1,0 +1,185 @@
+"""Calibrate from the same images with this project and with COLMAP's defaults: seconds and error.
+
+    python benchmarks/structure_from_motion.py results SESSION [--images 75] [--json OUT]
+
+SESSION is a virtual session that the study has rendered and extracted (static pictures, frames of the
+walk, clicks,
+truth). Both sides get the same pictures, lens model, one lens per physical camera, and all cores; this
+project matches
+the pairs of its list and maps globally, COLMAP matches all pairs and maps incrementally, with its own default
+options. Errors are those of the playing volume, from the session's own clicks, after the alignment that
+each side
+stops at (a similarity to all court points) and after this project's adjustment of either model.
+"""
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pycolmap
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+from courtside.geometry import alignment, control_points, court_adjustment, court_errors, courts
+from courtside.records import clicks, truth
+from courtside.sfm import database, features, grid, mapping, matching, model
+from courtside.study import yaml_files
+
+ROOT = Path(__file__).parents[1]
+LINE = "{:<11}{:>10}{:>10}{:>10}{:>9}{:>12}{:>12}{:>13}"
+
+
+class Watch:
+    """Seconds of each step of one side."""
+
+    def __init__(self):
+        self.seconds, self.last = {}, time.perf_counter()
+
+    def stop(self, step):
+        """Note the seconds since the last stop as those of a step."""
+        now = time.perf_counter()
+        self.seconds[step], self.last = now - self.last, now
+
+
+def ours(root, groups, walked, fixed, folder, parameters):
+    watch = Watch()
+    features.extract(
+        folder / "f.db", root, groups, threads=os.cpu_count(), **parameters["extract_features"]
+    )
+    watch.stop("features")
+    matching.match(
+        folder / "f.db",
+        folder / "m.db",
+        walked.pairs(fixed),
+        threads=os.cpu_count(),
+        **parameters["match_images"],
+    )
+    watch.stop("matching")
+    images = [*fixed, *walked.names.tolist()]
+    options = parameters["map_images"]["colmap"]["global"]
+    mapping.map_images(folder / "m.db", images, folder, mapper="global", seed=0, options=options)
+    watch.stop("mapping")
+    return watch.seconds
+
+
+def colmap(root, groups, folder):
+    watch = Watch()
+    defaults = pycolmap.SiftExtractionOptions()
+    features.extract(
+        folder / "f.db",
+        root,
+        groups,
+        threads=os.cpu_count(),
+        max_features=defaults.max_num_features,
+        first_octave=defaults.first_octave,
+        focal_factor=pycolmap.ImageReaderOptions().default_focal_length_factor,
+    )
+    watch.stop("features")
+    with database.working_copy(folder / "f.db") as copy:
+        pycolmap.match_exhaustive(copy, device=pycolmap.Device.cpu)
+        watch.stop("matching")
+        found = pycolmap.incremental_mapping(copy, root, folder)
+    max(found.values(), key=lambda each: each.num_reg_images()).write_binary(str(folder))
+    watch.stop("mapping")
+    return watch.seconds
+
+
+def errors(folder, real, court, marked, parameters):
+    """Return registered images, and the volume error (cm) after a similarity and after adjustment."""
+    network, images, sizes = model.read(folder)
+    placed = {c.name: images.index(f"static/{c.name}.png") for c in real.cameras}
+    size_of = {name: sizes[network.lens_of_image[at]] for name, at in placed.items()}
+    alone = control_points.alone(network, list(placed.values()))
+    sfm = control_points.cameras(alone, list(placed), list(size_of.values()))
+    world_from_sfm, _ = alignment.align(court, alignment.reconstruct(sfm, marked))
+    options = dict(parameters["adjust_network"])
+    options.pop("min_points")
+    bias_px = options.pop("click_bias_px")
+    ties, _ = court_adjustment.condense(network, placed, size_of, marked, court, **options)
+    solved = court_adjustment.solve(
+        ties,
+        marked,
+        court,
+        click_bias_px=bias_px,
+        click_sigma_px=options["click_sigma_px"],
+        click_loss=options["click_loss"],
+    )
+    volume = court_errors.volume(court)
+    return len(images), *(
+        court_errors.over_volume(court_errors.displaced(cameras, real.cameras, volume) - volume)[
+            "volume_rms_cm"
+        ]
+        for cameras in ([world_from_sfm.camera(camera) for camera in sfm], solved.cameras)
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path)
+    parser.add_argument("session")
+    parser.add_argument("--images", type=int, default=75)
+    parser.add_argument("--json", type=Path)
+    chosen = parser.parse_args()
+    root, virtual = chosen.results / chosen.session, chosen.results / "virtual" / chosen.session
+    court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
+    real = truth.read(virtual / "truth.npz")
+    names = [camera.name for camera in real.cameras]
+    marked = clicks.read(virtual / "court_points.csv", names, list(court.points))
+    parameters = yaml_files.read(ROOT / "config" / "config.yaml")
+    whole = grid.read({"walk": root / "frames" / "walk.csv"}, {"walk": "frames/walk"})
+    taken = np.array(whole.choose(chosen.images, 0, "even"))
+    everything = np.ones(len(taken), dtype=bool)
+    walked = grid.Grid(np.full(len(taken), "walk"), taken, everything, everything * 1.0)
+    fixed = [f"static/{name}.png" for name in names]
+    groups = [features.Group(n, (f,)) for n, f in zip(names, fixed, strict=True)]
+    groups.append(features.Group("walk", tuple(taken.tolist())))
+    rows = {}
+    for side in ("courtside", "colmap"):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            if side == "courtside":
+                seconds = ours(root, groups, walked, fixed, folder, parameters)
+            else:
+                seconds = colmap(root, groups, folder)
+            found = errors(folder, real, court, marked, parameters)
+        named = ("registered", "similarity_cm", "adjusted_cm")
+        rows[side] = {**seconds, **dict(zip(named, found, strict=True))}
+    table = pd.DataFrame(rows)
+    print(
+        LINE.format(
+            "side",
+            "features",
+            "matching",
+            "mapping",
+            "total",
+            "registered",
+            "sim. cm",
+            "adjusted cm",
+        )
+    )
+    for side, row in rows.items():
+        spent = [row[step] for step in ("features", "matching", "mapping")]
+        cells = [f"{value:.1f}" for value in (*spent, sum(spent))]
+        cells += [
+            f"{row['registered']}",
+            f"{row['similarity_cm']:.2f}",
+            f"{row['adjusted_cm']:.2f}",
+        ]
+        print(LINE.format(side, *cells))
+    steps = table.loc[["features", "matching", "mapping"]].sum()
+    after = table.loc[["matching", "mapping"]].sum()
+    print(
+        f"COLMAP's seconds over this project's: {steps.colmap / steps.courtside:.2f} in all, "
+        f"{after.colmap / after.courtside:.2f} after features"
+    )
+    if chosen.json:
+        chosen.json.write_text(json.dumps(rows, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+"""Conditions of filming: the settings in order, the spread as made, failures in words."""
+
+import pandas as pd
+import pytest
+
+import trials_made
+from courtside.figures import capture, trials
+
+OUT, SFM, PAPER = ("sfm", 18, False), ("sfm", 18, True), ("paper", 3, True)
+
+
+def rows():
+    parts = []
+    for speed in (1, 4):
+        for stabiliser in (True, False):
+            settings = {"condition": "speed", "speed_kmh": speed, "stabiliser": stabiliser}
+            settings |= {"session": f"speed-{speed}-{stabiliser}", "n_bridging": 20}
+            ours = {OUT: [speed + 0.0, speed + 2.0], SFM: [0.1, 0.1], PAPER: [3.0, 3.0]}
+            parts.append(trials_made.structure(ours, **settings))
+            lost = speed == 4 and not stabiliser
+            faithful = 2 if lost else {PAPER: [8.0, 10.0]}
+            parts.append(trials_made.structure(faithful, mapper="incremental", **settings))
+    other = trials_made.structure(
+        {OUT: [99.0]}, session="x", speed_kmh=1, stabiliser=True, n_bridging=40
+    )
+    return trials.tidy(pd.concat([*parts, other]))
+
+
+@pytest.fixture(scope="module")
+def numbers():
+    return capture.table(rows(), "speed_kmh", "stabiliser", 20)
+
+
+def at(numbers, way, speed, stabiliser):
+    return trials.pick(numbers, way=way, speed_kmh=speed, stabiliser=stabiliser).squeeze()
+
+
+def test_the_scored_points_are_left_out_where_they_can_be(numbers):
+    ours, paper = capture.METHODS
+    assert at(numbers, ours, 4, True)["median"] == 5.0
+    assert not at(numbers, ours, 4, True)["in_sample"]
+    assert at(numbers, paper, 1, False)["median"] == 9.0
+    assert at(numbers, paper, 1, False)["in_sample"]
+
+
+def test_failures_are_counted_and_said(numbers):
+    paper = list(capture.METHODS)[1]
+    lost = at(numbers, paper, 4, False)
+    assert (lost["n"], lost["n_failed"]) == (0, 2)
+    drawing = capture.draw(numbers, "speed_kmh", "stabiliser")
+    said = [text.get_text() for axis in drawing.axes for text in axis.texts]
+    assert said == ["2 of 2 failed"]
+
+
+def test_every_second_setting_has_a_line(numbers):
+    axis = capture.draw(numbers, "speed_kmh", "stabiliser").axes[0]
+    assert axis.get_legend_handles_labels()[1] == ["stabiliser off", "stabiliser on"]
+    assert [text.get_text() for text in axis.get_xticklabels()] == ["1", "4"]
+
+
+def test_sizes_are_ordered_by_their_width():
+    parts = [
+        trials_made.structure({OUT: [1.0], PAPER: [2.0]}, session=f"s{n}", size_px=size)
+        for n, size in enumerate(("1280x720", "640x360", "960x540"))
+    ]
+    numbers = capture.table(trials.tidy(pd.concat(parts)), "size_px")
+    axis = capture.draw(numbers, "size_px").axes[0]
+    ticks = [text.get_text() for text in axis.get_xticklabels()]
+    assert ticks == ["640x360", "960x540", "1280x720"]

@@ -1,0 +1,143 @@
+"""Trials of the study: choices of clicks, and errors that are known because they were put there."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import networks_made
+from courtside.geometry import (
+    control_points,
+    court_adjustment,
+    court_trials,
+    courts,
+    resection,
+    similarity,
+)
+from courtside.records import ties
+from scene import look_at, opencv_projection
+
+COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+SETTINGS = {"click_sigma_px": 0.9, "click_bias_px": 0.5, "click_loss": 4.0}
+SETS = ["all", "eight", "three"]
+
+
+def truth():
+    return networks_made.fixed_cameras(networks_made.make(6, 60))
+
+
+def clicks_of(cameras, xyz=COURT.xyz):
+    return {camera.name: opencv_projection(camera, xyz) for camera in cameras}
+
+
+def record(cameras=None, **changes):
+    made = networks_made.exact_lens_prior(networks_made.make(6, 60))
+    knowledge = control_points.what_ties_say(made, [0, 1])
+    known = court_adjustment.Ties(("side", "back"), (networks_made.SIZE,) * 2, knowledge)
+    moved = similarity.Sim3(0.3, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
+    in_sfm = [moved.camera(camera) for camera in cameras or truth()]
+    nothing = np.zeros((0, 3))
+    made = ties.Record("", "", in_sfm, [60, 60], known, np.zeros(0, str), nothing, nothing, 0.1)
+    return replace(made, **changes)
+
+
+def by_choice(rows):
+    return {(row["method"], row["n_clicks"], row["in_sample"]): row for row in rows}
+
+
+def test_choices_are_whole_sets_and_sets_without_the_scored_points():
+    found = [(n, whole, use.sum()) for n, whole, use in court_trials.choices(COURT, SETS)]
+    assert found == [(18, True, 18), (18, False, 16), (8, True, 8), (8, False, 6), (3, True, 3)]
+    for _, whole, use in court_trials.choices(COURT, SETS):
+        assert use[COURT.indices(["p02", "p03"])].all() == whole
+        assert use[COURT.indices(["p01"])].all()
+
+
+def test_exact_ties_and_clicks_have_no_error():
+    real = truth()
+    found = by_choice(
+        court_trials.of_ties(record(), real, COURT, clicks_of(real), sets=SETS, **SETTINGS)
+    )
+    assert len(found) == 5 + 5 + 1
+    for key, row in found.items():
+        assert row["outcome"] == "", key
+        for name in ("xy_cm", "volume_rms_cm", "camera_position_cm", "focal_percent"):
+            assert row[name] == pytest.approx(0, abs=2e-3), (key, name)
+        assert set(row) <= set(court_trials.COLUMNS)
+        assert ("coverage90" in row) == (key[0] == "sfm")
+
+
+def test_a_fault_and_missing_clicks_are_outcomes_of_their_rows():
+    real = truth()
+    clicks = clicks_of(real)
+    clicks["side"][COURT.indices(["p02"])] = np.nan
+    made = record(fault="court points: no", ties=None)
+    found = by_choice(court_trials.of_ties(made, real, COURT, clicks, sets=SETS, **SETTINGS))
+    for (method, n_clicks, _), row in found.items():
+        failed = method in ("sfm", "paper") or n_clicks == 3
+        assert bool(row["outcome"]) == failed
+        assert ("volume_rms_cm" in row) == (not failed)
+    assert found["sfm", 18, True]["outcome"] == "court points: no"
+    assert "too few clicks of p02" in found["paper", 3, True]["outcome"]
+
+
+def test_known_cameras_have_no_error_and_fail_where_points_are_too_few():
+    matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+    places = {"corner": (-11, -8, 5.0), "back": (3.05, -14.3, 2.1)}
+    real = [
+        replace(
+            truth()[0], name=name, K=matrix, dist=np.zeros(5), cam_from_world=look_at(at, (3, 6, 1))
+        )
+        for name, at in places.items()
+    ]
+    lenses = {camera.name: camera for camera in real}
+    found = by_choice(
+        court_trials.of_known(real, COURT, clicks_of(real), lenses, sets=SETS, click_sigma_px=0.9)
+    )
+    assert len(found) == 5 * 3
+    fewest = {"dlt": 6, "known": 8, "known-board": 4}
+    for (method, n_clicks, whole), row in found.items():
+        enough = (n_clicks if whole else n_clicks - 2) >= fewest[method]
+        assert (row["outcome"] == "") == enough, (method, n_clicks, whole)
+        if enough:
+            assert row["volume_rms_cm"] == pytest.approx(0, abs=0.02), (method, n_clicks)
+    without = court_trials.of_known(
+        real, COURT, clicks_of(real), {}, sets=["all"], click_sigma_px=0.9
+    )
+    assert {row["method"] for row in without} == {"dlt", "known"}
+
+
+def test_cameras_shifted_together_shift_every_point_as_much():
+    real = truth()
+    shift = similarity.Sim3(1.0, np.eye(3), np.array([0.02, 0.01, -0.02]))  # 3 cm
+    found = [shift.camera(camera) for camera in real]
+
+    def covariance(xyz):
+        return np.tile(np.eye(3) * 1e-4, (len(xyz), 1, 1))
+
+    errors = court_trials.score(found, real, COURT, clicks_of(real), covariance)
+    for name in ("xo_cm", "yo_cm", "xy_cm", "volume_rms_cm", "volume_p95_cm", "camera_position_cm"):
+        assert errors[name] == pytest.approx(3, abs=1e-4)
+    assert errors["camera_rotation_deg"] == pytest.approx(0, abs=1e-5)
+    assert errors["predicted_volume_cm"] == pytest.approx(np.sqrt(3))
+    # 3 cm are 9 in squared sigmas: beyond the 95 % limit of chi-square with 3 degrees of freedom, 7.81
+    assert errors["coverage95"] == 0
+
+
+def test_a_linear_matrix_with_skew_is_scored_as_it_is():
+    """A matrix exact in one world, scored in one 2 cm beside it; it is no camera, so poses are not."""
+    real = truth()
+    real = [replace(camera, dist=np.zeros(5)) for camera in real]
+    beside = np.eye(4)
+    beside[0, 3] = -0.02
+    found = {
+        camera.name: resection.Linear(
+            camera.K @ camera.cam_from_world @ beside, None, 0.0, 1.0, False, ""
+        )
+        for camera in real
+    }
+    errors = court_trials.score_linear(found, real, COURT, clicks_of(real))
+    for name in ("xo_cm", "yo_cm", "volume_rms_cm"):
+        assert errors[name] == pytest.approx(2, abs=1e-6)
+    assert "camera_position_cm" not in errors

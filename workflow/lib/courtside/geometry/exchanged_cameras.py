@@ -1,0 +1,53 @@
+"""Camera files under each other's names: the clicks of two fixed cameras fit where the other one stands."""
+
+from itertools import combinations
+
+import numpy as np
+
+from courtside.geometry import alignment
+from courtside.study.errors import InputError
+
+OFF = 0.01  # of the court's length: points nearer than that fit
+NEARER = 5.0  # so many times nearer must they be with the clicks of two cameras exchanged
+
+
+def refuse(court, cameras, clicks):
+    """Raise where the clicks fit the court only after those of two cameras are exchanged.
+
+    Parameters
+    ----------
+    court : courtside.geometry.courts.Court
+    cameras : list of Camera
+        Fixed cameras in one frame, of structure from motion: clicks must not have shaped it.
+    clicks : dict of str to (P, 2) float
+        By camera name, px; NaN where not clicked.
+
+    Raises
+    ------
+    InputError
+        If so: the files of these cameras may be exchanged. Any other fault of the clicks is not looked for.
+    """
+    near_m = OFF * np.max(court.size_m)
+    off_m = _off_m(court, cameras, clicks)
+    if off_m < near_m:
+        return
+    for one, other in combinations([camera.name for camera in cameras], 2):
+        exchanged = {**clicks, one: clicks[other], other: clicks[one]}
+        better_m = _off_m(court, cameras, exchanged)
+        if better_m < min(near_m, off_m / NEARER):
+            found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
+            raise InputError(
+                f"cameras {one} and {other}: expected clicked court points to fit the walk, found them "
+                f"{found}, but {100 * better_m:.0f} cm off with the clicks of the two exchanged: the camera "
+                "files may be exchanged; correct their names in the session, or in the court points"
+            )
+
+
+def _off_m(court, cameras, clicks):
+    """Return how far most reconstructed points are from the court, inf where they cannot be aligned."""
+    xyz = alignment.reconstruct(cameras, clicks)
+    try:
+        world_from_sfm, _ = alignment.align(court, xyz)
+    except InputError:
+        return np.inf
+    return float(np.nanmedian(np.linalg.norm(world_from_sfm.points(xyz) - court.xyz, axis=1)))

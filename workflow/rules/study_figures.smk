@@ -1,0 +1,143 @@
+"""Figures and tables of the calibration study.
+
+Inputs: ties, errors against the truth, courts, cameras. Outputs: results/figures/, results/{session}/figures/.
+Steps: draw_court_points, draw_badminton_fig06, draw_badminton_fig08, draw_coverage, draw_growth, draw_error_map,
+draw_capture, tabulate_calibration.
+"""
+
+
+rule draw_court_points:
+    input:
+        court=CONFIG / "courts" / "{court}.yaml",
+    output:
+        **drawn(
+            "results/figures/court_points.{court}",
+            "court_points",
+            ("calibration", "courts"),
+            {"figure": "court points", "court": "{court}"},
+        ),
+    log:
+        "results/figures/logs/draw_court_points/{court}.log",
+    params:
+        code=code("draw_court_points.py"),
+    script:
+        "../scripts/draw_court_points.py"
+
+
+rule draw_badminton_fig06:
+    input:
+        ties=lambda w: first_of_each_count(
+            session_of(w), "results/{session}/sfm/{variant}/ties.npz"
+        ),
+        summaries=lambda w: first_of_each_count(
+            session_of(w), "results/{session}/sfm/{variant}/summary.json"
+        ),
+        court=lambda w: court_file(session_of(w)),
+    output:
+        **session_figure("badminton_fig06"),
+    log:
+        "results/{session}/logs/draw_badminton_fig06/all.log",
+    params:
+        code=code("draw_badminton_fig06.py"),
+        n_images=lambda w: session_of(w).parameters["sweep"]["n_images"],
+    script:
+        "../scripts/draw_badminton_fig06.py"
+
+
+rule draw_badminton_fig08:
+    input:
+        errors=lambda w: every_error([session_of(w)]),
+    output:
+        **session_figure("badminton_fig08"),
+    log:
+        "results/{session}/logs/draw_badminton_fig08/all.log",
+    params:
+        code=code("draw_badminton_fig08.py"),
+    script:
+        "../scripts/draw_badminton_fig08.py"
+
+
+rule draw_coverage:
+    input:
+        errors=lambda w: every_error([session_of(w)]),
+    output:
+        **session_figure("coverage"),
+    log:
+        "results/{session}/logs/draw_coverage/all.log",
+    params:
+        code=code("draw_coverage.py"),
+    script:
+        "../scripts/draw_coverage.py"
+
+
+rule draw_growth:
+    input:
+        benchmarks=lambda w: [
+            path
+            for step_name in ("map_images", "adjust_network")
+            for path in first_of_each_count(
+                session_of(w), f"results/{{session}}/benchmarks/{step_name}/{{variant}}.tsv"
+            )
+        ],
+    output:
+        **session_figure("growth"),
+    log:
+        "results/{session}/logs/draw_growth/all.log",
+    params:
+        code=code("draw_growth.py"),
+    script:
+        "../scripts/draw_growth.py"
+
+
+rule draw_error_map:
+    input:
+        cameras=f"{FOUND}/cameras.toml",
+        covariance=f"{FOUND}/covariance.npz",
+        court=lambda w: court_file(session_of(w)),
+    output:
+        **drawn(
+            "results/{session}/figures/error_map.{calibration}",
+            "error_map",
+            ("calibration", "{session}"),
+            {"figure": "expected error", "calibration": "{calibration}"},
+        ),
+    log:
+        "results/{session}/logs/draw_error_map/{calibration}.log",
+    params:
+        code=code("draw_error_map.py"),
+        step=step("draw_error_map"),
+    script:
+        "../scripts/draw_error_map.py"
+
+
+rule draw_capture:
+    input:
+        errors=lambda w: every_error(varied(condition_of(w))),
+    output:
+        **drawn(
+            "results/figures/capture_{condition}",
+            "capture",
+            ("calibration", "capture conditions"),
+            {"figure": "{condition}"},
+        ),
+    log:
+        "results/figures/logs/draw_capture/{condition}.log",
+    params:
+        code=code("draw_capture.py"),
+        axes=lambda w: varied_axes(condition_of(w)),
+    script:
+        "../scripts/draw_capture.py"
+
+
+rule tabulate_calibration:
+    input:
+        errors=every_error(tabulated()),
+    output:
+        table="results/figures/calibration.csv",
+    log:
+        "results/figures/logs/tabulate_calibration/all.log",
+    params:
+        code=code("tabulate_calibration.py"),
+        n_reference=40,
+    script:
+        "../scripts/tabulate_calibration.py"
