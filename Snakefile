@@ -26,6 +26,7 @@ report: "workflow/report/study.rst"
 rule all:
     input:
         every_calibration(),
+        every_photo_model(),
         every_evaluation(),
         every_export(),
         every_figure(),

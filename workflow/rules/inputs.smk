@@ -24,6 +24,14 @@ def each_walk(pattern):
     ]
 
 
+def first_of_each_count(pattern):
+    """Return an input function for a file of each number of bridging images, first choice of images."""
+    return lambda wildcards: [
+        pattern.format(session=wildcards.session, variant=f"{wildcards.mapper}-n{count}-o0")
+        for count in session_of(wildcards).parameters["sweep"]["n_images"]
+    ]
+
+
 def background_file(wildcards):
     """Return the empty picture of a camera: of its static recording, or estimated from the take."""
     if session_of(wildcards).cameras[wildcards.camera].static:

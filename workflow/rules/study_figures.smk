@@ -26,17 +26,18 @@ rule draw_court_points:
 
 rule draw_badminton_fig06:
     input:
-        ties=lambda w: first_of_each_count(
-            session_of(w), "results/{session}/sfm/{variant}/ties.npz"
-        ),
-        summaries=lambda w: first_of_each_count(
-            session_of(w), "results/{session}/sfm/{variant}/summary.json"
-        ),
+        ties=first_of_each_count("results/{session}/sfm/{variant}/ties.npz"),
+        summaries=first_of_each_count("results/{session}/sfm/{variant}/summary.json"),
         court=lambda w: court_file(session_of(w)),
     output:
-        **session_figure("badminton_fig06"),
+        **drawn(
+            "results/{session}/figures/badminton_fig06.{mapper}",
+            "badminton_fig06",
+            ("calibration", "{session}"),
+            {"figure": "badminton_fig06", "mapper": "{mapper}"},
+        ),
     log:
-        "results/{session}/logs/draw_badminton_fig06/all.log",
+        "results/{session}/logs/draw_badminton_fig06/{mapper}.log",
     params:
         code=code("draw_badminton_fig06.py"),
         n_images=lambda w: session_of(w).parameters["sweep"]["n_images"],
@@ -72,13 +73,7 @@ rule draw_coverage:
 
 rule draw_growth:
     input:
-        benchmarks=lambda w: [
-            path
-            for step_name in ("map_images", "adjust_network")
-            for path in first_of_each_count(
-                session_of(w), f"results/{{session}}/benchmarks/{step_name}/{{variant}}.tsv"
-            )
-        ],
+        benchmarks=lambda w: timings(session_of(w)),
     output:
         **session_figure("growth"),
     log:

@@ -50,6 +50,16 @@ def every_calibration():
     ]
 
 
+def every_photo_model():
+    """Return the models of sessions of photos only: no fixed camera, no frame but the model's own."""
+    return [
+        f"results/{session.name}/sfm/{variant}/summary.json"
+        for session in STUDY.sessions.values()
+        if session.walks and not session.cameras
+        for variant in session.variants()
+    ]
+
+
 def every_evaluation():
     """Return the errors of every structure from motion of the virtual sessions, and of known points alone."""
     return every_error([session for session in STUDY.sessions.values() if session.virtual])
@@ -64,7 +74,8 @@ def every_study_figure():
         if name.startswith("capture-")
     ]
     for session in swept():
-        names = ["badminton_fig06", "badminton_fig08", "coverage", "growth"]
+        names = ["badminton_fig08", "coverage", "growth"]
+        names += [f"badminton_fig06.{mapper}" for mapper in session.parameters["sweep"]["mappers"]]
         stems += [f"results/{session.name}/figures/{name}" for name in names]
     for session in STUDY.sessions.values():
         ways = [way for way in session.calibrations() if way.startswith("sfm") and session.court]
@@ -106,7 +117,9 @@ def every_error(sessions):
     return [path for session in sessions for path in evaluations(session)] + known
 
 
-def first_of_each_count(session, pattern):
-    """Return a file of each number of bridging images, mapped globally, first choice of images."""
-    counts = session.parameters["sweep"]["n_images"]
-    return [pattern.format(session=session.name, variant=f"global-n{count}-o0") for count in counts]
+def timings(session):
+    """Return the benchmark files of a session's structures from motion."""
+    folder = f"results/{session.name}/benchmarks"
+    once = [f"{folder}/{name}/all.tsv" for name in ("extract_features", "match_images")]
+    swept = ("map_images", "adjust_network")
+    return once + [f"{folder}/{name}/{v}.tsv" for name in swept for v in session.variants()]

@@ -6,6 +6,7 @@ from courtside.devices import walks
 from courtside.records import frame_table
 from courtside.sfm import usable
 from courtside.study import log
+from courtside.study.errors import InputError
 from courtside.study.folders import atomic_folder
 
 
@@ -14,6 +15,11 @@ def main(video_path, folder, table_csv, *, every_s=None, every_frame=None, walk=
         found = walks.frames(video_path, every_s=every_s, every_frame=every_frame)
         table, small = walks.extract(log.progress(found, None, f"{walk}: frames"), beside)
         kept, reason = usable.judge(table, small)
+        if not kept.any():
+            raise InputError(
+                f"{video_path}: expected frames that show the hall, found all {len(table)} "
+                f"{' or '.join(sorted(set(reason)))}; film the walk again, slowly and in light"
+            )
         table = table.assign(kept=kept, reason=reason)
         frame_table.write(table_csv, table)
     for reason, count in table["reason"].value_counts().items():

@@ -155,7 +155,7 @@ def test_the_pseudo_inverse_is_the_spread_of_repeated_networks_up_to_their_frame
     active = np.diag(information) > 0
     span = gauge(true)[active]
     assert np.abs(information[np.ix_(active, active)] @ span).max() < 1e-5 * information.max()
-    rng, n_draws, steps = np.random.default_rng(0), 400, []
+    rng, n_draws, steps = np.random.default_rng(0), 250, []
     for _ in range(n_draws):
         drawn = replace(true, xy=true.xy + 0.1 * rng.normal(size=true.xy.shape))
         found, _ = bundle.adjust(drawn, tolerance=1e-10)
@@ -169,7 +169,7 @@ def test_the_pseudo_inverse_is_the_spread_of_repeated_networks_up_to_their_frame
     known = extent > 1e-8 * extent[-1]
     assert known.sum() == 18 - 7
     white = axes[:, known] / np.sqrt(extent[known])
-    # of 400 draws: an entry scatters by 1 / sqrt(400), on the diagonal by sqrt(2 / 400)
+    # An entry scatters by 1 / sqrt(n_draws), on the diagonal by sqrt(2 / n_draws).
     np.testing.assert_allclose(white.T @ drawn @ white, np.eye(11), atol=4 * np.sqrt(2 / n_draws))
 
 

@@ -142,3 +142,9 @@ def test_a_stated_focal_length_is_used(tmp_path):
     expected = 43 / np.hypot(36, 24) * np.hypot(1296, 1936)
     assert camera.params[0] == pytest.approx(expected, rel=1e-3)
     assert expected == pytest.approx(2394, rel=0.04)
+
+
+def test_a_group_without_images_is_a_fault_of_the_caller(tmp_path):
+    groups = [*sfm_made.wall(tmp_path), features.Group("walk2", ())]
+    with pytest.raises(ValueError, match=r"groups without images: \['walk2'\]"):
+        extract(tmp_path / "f.db", tmp_path, groups)

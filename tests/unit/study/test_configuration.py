@@ -254,3 +254,167 @@ def test_every_missing_key_is_named(folder):
         "mine.yaml: top level: expected the key 'fusions', missing ['fusions']",
         "mine.yaml: filter_motion: expected the key 'order', missing ['order']",
     ]
+
+
+VIRTUAL = {
+    "description": "a virtual hall",
+    "court": "badminton",
+    "cameras": {"side": None, "back": None},
+    "walks": {"walk": {}},
+    "virtual": {
+        "preset": "plain",
+        "layout": "a",
+        "seed": 1,
+        "size_px": [640, 360],
+        "walk_frames": 9,
+    },
+}
+
+
+def test_a_virtual_session_with_variations_becomes_sessions(folder):
+    condition = {"session": "hall", "set": {"walk_frames": 5}, "vary": {"seed": [4, 6]}}
+    condition["override"] = {"sweep": {"n_images": [4]}}
+    study = load(folder, VIRTUAL, variations=["speed"], conditions={"speed": condition})
+    assert list(study.sessions) == ["hall", "speed-0", "speed-1"]
+    varied = study.sessions["speed-1"]
+    assert (varied.virtual["seed"], varied.virtual["walk_frames"]) == (6, 5)
+    assert varied.walks == {"walk": "results/virtual/speed-1/walk.mp4"}
+    assert varied.parameters["sweep"]["n_images"] == [4]
+    assert varied.parameters["sweep"]["mappers"] == study.parameters["sweep"]["mappers"]
+
+
+@pytest.mark.parametrize(
+    ("condition", "parts"),
+    [
+        ({"vary": {"sped_kmh": [1]}}, ["conditions.c.vary", "did you mean 'speed_kmh'?"]),
+        ({"vary": {"speed_kmh": 4}}, ["conditions.c.vary.speed_kmh", "type array, found 4"]),
+        ({"vary": {"speed_kmh": []}}, ["conditions.c.vary.speed_kmh", "at least 1 entries"]),
+        (
+            {"vary": {"speed_kmh": [4, -1]}},
+            ["conditions.c.vary.speed_kmh.1", "more than 0, found -1"],
+        ),
+        ({"vary": {"size_px": [[640, 361]]}}, ["vary.size_px.0.1", "a multiple of 2", "found 361"]),
+        ({"vary": {"layout": ["c"]}}, ["vary.layout.0", "one of ['a', 'b'", "found 'c'"]),
+        ({"vary": {}}, ["conditions.c.vary", "at least 1 entries"]),
+        ({"set": {"boards": 1}}, ["conditions.c.set.boards", "type boolean, found 1"]),
+        ({"set": {"frames": 1}}, ["conditions.c.set", "found 'frames'"]),
+        ({"override": {"swep": {}}}, ["conditions.c.override", "did you mean 'sweep'?"]),
+        ({"override": {"conditions": {}}}, ["conditions.c.override", "found 'conditions'"]),
+        ({"override": {"sweep": {"n_images": [1]}}}, ["override.sweep.n_images.0", "at least 2"]),
+        ({"varied": {}}, ["conditions.c", "found 'varied'"]),
+    ],
+)
+def test_a_fault_of_a_condition_names_key_and_value(folder, condition, parts):
+    condition = {"session": "hall", "vary": {"seed": [1]}, **condition}
+    (line,) = faults(folder, VIRTUAL, variations=["c"], conditions={"c": condition})
+    assert all(part in line for part in ["config/config.yaml: conditions.c", *parts]), line
+
+
+@pytest.mark.parametrize(
+    ("step", "key", "value"),
+    [
+        *[("sweep", "n_images", v) for v in ([1], [5, 5], 5, [2.5])],
+        *[("sweep", "n_offsets", v) for v in (0, 4)],
+        *[("sweep", "offsets_up_to", v) for v in (-1, "all")],
+        *[("sweep", "mappers", v) for v in ([], ["glomap"], ["global", "global"])],
+        *[("extract_static", "frames", v) for v in (0, 201)],
+        *[("extract_static", "max_shift_px", v) for v in (0, "1 px")],
+        *[("extract_static", "max_zoom_percent", v) for v in (0, None)],
+        *[("extract_frames", "every_s", v) for v in (0, -1)],
+        *[("extract_features", "max_features", v) for v in (99, 65537)],
+        *[("extract_features", "first_octave", v) for v in (-2, 3, 0.5)],
+        *[("extract_features", "focal_factor", v) for v in (0.1, 11)],
+        *[("match_images", "max_ratio", v) for v in (0, 1.1)],
+        *[("match_images", "seed", v) for v in (-1, True)],
+        *[("map_images", "rule", v) for v in ("odd", None)],
+        *[("map_images", "seed", v) for v in (-1, 1.0)],
+        *[
+            ("map_images", "colmap", v)
+            for v in ({"global": {}}, {"global": {}, "incremental": {}, "x": {}})
+        ],
+        *[("adjust_network", "min_points", v) for v in (2, "20")],
+        *[("adjust_network", "tie_sigma_px", v) for v in (0, -1)],
+        *[("adjust_network", "tie_loss", v) for v in (0,)],
+        *[("adjust_network", "click_sigma_px", v) for v in (0,)],
+        *[("adjust_network", "click_bias_px", v) for v in (-0.1, "x")],
+        *[("adjust_network", "click_loss", v) for v in (0, float("inf"))],
+        *[("adjust_network", "min_angle_deg", v) for v in (-1, 91)],
+        *[("adjust_network", "max_error_px", v) for v in (0,)],
+        *[("adjust_network", "max_points", v) for v in (19,)],
+        *[("adjust_network", "seed", v) for v in (-1,)],
+        *[("evaluate_calibration", "n_draws", v) for v in (0,)],
+        *[("evaluate_calibration", "seed", v) for v in (-1,)],
+        *[("evaluate_calibration", "sets", v) for v in ([], ["All"], ["all", "all"])],
+        *[("draw_error_map", "heights_m", v) for v in ([], [0, 1, 2, 3, 4], [-1], [11])],
+    ],
+)
+def test_every_number_of_the_calibration_has_its_limits(folder, step, key, value):
+    block = yaml_files.read(CONFIG / "config.yaml")[step]
+    found = faults(folder, **{step: block | {key: value}})
+    assert len(found) == 1 and found[0].startswith(f"config/config.yaml: {step}.{key}")
+    missing = {name: inner for name, inner in block.items() if name != key}
+    (line,) = faults(folder, **{step: missing})
+    assert f"{step}: expected the key '{key}'" in line
+    (line,) = faults(folder, SESSION | {"override": {step: {key: value}}})
+    assert f"hall.yaml: override.{step}.{key}" in line
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "files",
+        "sfm",
+        "sfm-40",
+        "sfm-n0",
+        "known",
+        "dlt-n8",
+        "paper-global",
+        "known8-boards",
+        "dlt8-board",
+    ],
+)
+def test_a_calibration_that_is_none_is_named(folder, name):
+    (line,) = faults(folder, calibrations=[name])
+    assert "calibrations.0: expected text that matches" in line and f"found {name!r}" in line
+
+
+@pytest.mark.parametrize(
+    ("changes", "parts"),
+    [
+        ({"virtual": {"layout": "a"}}, ["virtual: expected the key 'preset'"]),
+        ({"virtual": VIRTUAL["virtual"] | {"size_px": [640]}}, ["virtual.size_px", "at least 2"]),
+        (
+            {"virtual": VIRTUAL["virtual"] | {"walk_frames": 1}},
+            ["virtual.walk_frames", "at least 2"],
+        ),
+        ({"virtual": VIRTUAL["virtual"] | {"speed_kmh": 0}}, ["virtual.speed_kmh", "more than 0"]),
+        ({"virtual": VIRTUAL["virtual"] | {"people": -1}}, ["virtual.people", "at least 0"]),
+        ({"virtual": VIRTUAL["virtual"] | {"baseline_deg": 181}}, ["baseline_deg", "at most 180"]),
+        ({"virtual": VIRTUAL["virtual"] | {"static_frames": 0}}, ["static_frames", "at least 1"]),
+        ({"virtual": VIRTUAL["virtual"] | {"stabilizer": True}}, ["did you mean 'stabiliser'?"]),
+        ({"walks": {"walk": {"vido": "w.mp4"}}}, ["walks.walk", "did you mean 'video'?"]),
+        ({"walks": {"walk": {"video": "w", "images": "i"}}}, ["walks.walk", "found {"]),
+        ({"walks": {"Walk": {}}}, ["walks: expected", "lower-case letters"]),
+        ({"cameras": {"side": {"chessboard": {"images": "b"}}}}, ["chessboard: expected the key"]),
+        (
+            {
+                "cameras": {
+                    "side": {"chessboard": {"images": "b", "inner_corners": [7, 2], "square_m": 1}}
+                }
+            },
+            ["chessboard.inner_corners.1", "at least 3"],
+        ),
+        (
+            {
+                "cameras": {
+                    "side": {"chessboard": {"images": "b", "inner_corners": [7, 4], "square_m": 60}}
+                }
+            },
+            ["chessboard.square_m", "at most 1", "found 60"],
+        ),
+        ({"court_points": ""}, ["court_points"]),
+    ],
+)
+def test_a_fault_of_a_virtual_session_names_key_and_value(folder, changes, parts):
+    found = faults(folder, VIRTUAL | changes)
+    assert any(all(part in line for part in ["hall.yaml: ", *parts]) for line in found), found

@@ -1,4 +1,6 @@
-"""Records of a model; sessions are tested through test_configuration."""
+"""Records of sessions and models, and what a session can do with its recordings."""
+
+import pytest
 
 from courtside.study import sessions
 
@@ -27,30 +29,63 @@ def test_blazepose_needs_no_input():
     assert sessions.model("m", entry).landmarks.outputs is None
 
 
-CONTENT = {
-    "description": "d",
-    "court": "hall",
-    "subjects": {"p1": None, "p2": {"height_m": 1.8}},
-    "cameras": {"a": None, "b": {"crop_px": [1, 2, 3, 4], "name_in_calibration": "B"}},
-    "calibration": {"file": "c.toml"},
-    "takes": {
-        "t1": {"videos": {"a": "1", "b": "2"}, "subjects": ["p2"], "trim_s": [0.5, 2]},
-        "t2": {"videos": {"a": "3", "b": "4"}},
-    },
-    "override": {"step": {"x": 5}},
-}
+WAYS = [
+    *("file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40"),
+    *("known18", "known8", "dlt18", "known18-board"),
+]
+BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
 
 
-def test_a_session_holds_what_its_file_says():
-    parameters = {"step": {"x": 1, "y": 2}, "models": ["m"]}
-    found = sessions.session("s", "s.yaml", CONTENT, parameters)
-    assert found.court == "hall"
-    assert found.subjects["p2"] == sessions.Subject(height_m=1.8)
-    assert found.cameras["b"] == sessions.FixedCamera(None, (1, 2, 3, 4), "B")
-    assert hash(found.cameras["b"]) == hash(sessions.FixedCamera(None, (1, 2, 3, 4), "B"))
-    assert found.cameras["a"].crop_px is None
-    assert found.calibration_camera_names() == {"a": "a", "b": "B"}
-    assert (found.takes["t1"].subjects, found.takes["t1"].trim_s) == (("p2",), (0.5, 2))
-    assert (found.takes["t2"].subjects, found.takes["t2"].trim_s) == (("p1", "p2"), None)
-    assert found.parameters == {"step": {"x": 5, "y": 2}, "models": ["m"]}
-    assert parameters == {"step": {"x": 1, "y": 2}, "models": ["m"]}
+def session(**changes):
+    fields = dict.fromkeys(["court", "calibration_file", "court_points", "virtual"])
+    fields |= {"name": "s", "file": "s.yaml", "description": "d", "condition": {}}
+    fields |= {"subjects": {}, "takes": {}, "walks": {}, "blur_faces": True}
+    fields |= {"cameras": {"a": sessions.FixedCamera(), "b": sessions.FixedCamera()}}
+    return sessions.Session(**{**fields, "parameters": {"calibrations": WAYS}, **changes})
+
+
+@pytest.mark.parametrize(
+    ("recordings", "ways"),
+    [
+        ({"calibration_file": "c.toml"}, ["file"]),
+        ({"walks": {"w": "w.mp4"}}, ["sfm-n40"]),
+        ({"court_points": "p.csv"}, ["known18", "known8", "dlt18"]),
+        (
+            {"court_points": "p.csv", "walks": {"w": "w.mp4"}},
+            [way for way in WAYS if way not in ("file", "known18-board")],
+        ),
+        ({"walks": {"w": "photos"}, "cameras": {}}, []),
+        ({}, []),
+    ],
+)
+def test_each_session_has_the_calibrations_that_its_recordings_allow(recordings, ways):
+    assert session(**recordings).calibrations() == ways
+
+
+def test_calibration_with_boards_needs_those_of_every_camera():
+    every = {name: sessions.FixedCamera(chessboard=BOARD) for name in "ab"}
+    one = {**every, "b": sessions.FixedCamera()}
+    made = {"court_points": "p.csv", "cameras": every}
+    assert session(**made).calibrations()[-1] == "known18-board"
+    assert "known18-board" not in session(**{**made, "cameras": one}).calibrations()
+    assert session(cameras=every).calibrations() == []
+
+
+def test_the_sweep_has_offsets_for_few_images_only():
+    sweep = {"n_images": [5, 40, 75], "n_offsets": 3, "offsets_up_to": 40}
+    parameters = {"sweep": sweep | {"mappers": ["global", "incremental"]}}
+    found = session(parameters=parameters).variants()
+    assert found == [
+        *("global-n5-o0", "global-n5-o1", "global-n5-o2"),
+        *("global-n40-o0", "global-n40-o1", "global-n40-o2", "global-n75-o0"),
+        *("incremental-n5-o0", "incremental-n5-o1", "incremental-n5-o2"),
+        *("incremental-n40-o0", "incremental-n40-o1", "incremental-n40-o2", "incremental-n75-o0"),
+    ]
+
+
+def test_only_virtual_sessions_film_boards():
+    assert session(walks={"w": "w.mp4"}).filmed() == ["a", "b", "w"]
+    assert session(virtual={"boards": True}).films_boards()
+    assert not session(virtual={"boards": False}).films_boards()
+    assert not session(virtual={}).films_boards()
+    assert not session().films_boards()

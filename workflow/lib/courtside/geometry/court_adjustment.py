@@ -148,14 +148,18 @@ def condense_free(network, fixed, sizes, *, tie_sigma_px, tie_loss, **thinning):
         cameras.
     network : courtside.geometry.network.Network
     """
-    network = control_points.transform(
-        network, control_points.free_frame(network, list(fixed.values()))
-    )
+    network = _in_free_frame(network, fixed)
     network = control_points.thin(network, **thinning)
     network = control_points.weigh(network, sigma_px=tie_sigma_px, loss_scale=tie_loss)
     network, _ = bundle.adjust(network, max_iterations=20, tolerance=1e-7)
+    network = _in_free_frame(network, fixed)  # which nothing held in place
     knowledge = control_points.what_ties_say(network, list(fixed.values()))
     return Ties(tuple(fixed), tuple(sizes[name] for name in fixed), knowledge), network
+
+
+def _in_free_frame(network, fixed):
+    frame_from_sfm = control_points.free_frame(network, list(fixed.values()))
+    return control_points.transform(network, frame_from_sfm)
 
 
 def free(ties):

@@ -58,7 +58,12 @@ def extract(path, image_root, groups, *, max_features, first_octave, focal_facto
     ------
     InputError
         If an image cannot be read, or has another size than the others of its camera.
+    ValueError
+        If a group has no images.
     """
+    empty = [group.name for group in groups if not group.images]
+    if empty:
+        raise ValueError(f"groups without images: {empty}")  # COLMAP would take all there are
     reader = pycolmap.ImageReaderOptions(camera_model=MODEL)
     reader.default_focal_length_factor = focal_factor
     extraction = pycolmap.FeatureExtractionOptions(num_threads=threads, use_gpu=False)

@@ -49,7 +49,15 @@ def outcome(network, images, fixed, *, min_points, n_models=1):
 
 
 def n_seen(network, images, image):
-    """Return how many points of a model an image sees, 0 if it is not in it."""
+    """Return how many points of a model an image sees, 0 if it is not in it.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    images : list of str
+        Names of its images.
+    image : str
+    """
     if image not in images:
         return 0
     return int(np.count_nonzero(network.image_idx == images.index(image)))

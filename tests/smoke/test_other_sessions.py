@@ -1,0 +1,117 @@
+"""Sessions that a user writes: photos only, no court, another court. Each is YAML alone."""
+
+import json
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pandas as pd
+import pytest
+import scipy.io
+import yaml
+
+from courtside.geometry import cameras, similarity
+from courtside.records import truth
+from courtside.sfm import model
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+from smoke.snakemake_runs import ROOT
+
+DOOR = REAL / "sfm-door"
+TINY_FEATURES = {"extract_features": {"first_octave": -1}}
+
+
+@pytest.fixture
+def gym(tmp_path):
+    """Return a copy of the repository without results."""
+    for name in ("Snakefile", "workflow", "config", "profiles"):
+        source, target = ROOT / name, tmp_path / name
+        if source.is_dir():
+            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy2(source, target)
+    return tmp_path
+
+
+def study(gym, name, session, **settings):
+    """Run a study of one session; return the folder of its results."""
+    (gym / "config" / "sessions" / f"{name}.yaml").write_text(yaml.safe_dump(session))
+    mine = {"sessions": [name], "variations": [], "calibrations": ["sfm-n12", "known8"]} | settings
+    (gym / "config" / "mine.yaml").write_text(yaml.safe_dump(mine))
+    command = [sys.executable, "-m", "snakemake", "--configfile", "config/mine.yaml"]
+    done = subprocess.run(command, cwd=gym, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return gym / "results" / name
+
+
+@needs_real
+def test_photos_alone_become_a_model(gym):
+    session = {
+        "description": "a door",
+        "court": "none",
+        "cameras": {},
+        "walks": {"door": {"images": str(DOOR / "images")}},
+        "override": {"sweep": {"n_images": [12], "n_offsets": 1}},
+    }
+    results = study(gym, "door", session)
+    summary = json.loads((results / "sfm/global-n12-o0/summary.json").read_text())
+    assert (summary["n_registered"], summary["n_models"]) == (12, 1)
+    network, _, _ = model.read(results / "sfm/global-n12-o0")
+    pose = network.cam_from_world
+    centres = -np.einsum("vji,vj->vi", pose[:, :, :3], pose[:, :, 3])
+    measured = scipy.io.loadmat(DOOR / "data.mat")["P"].ravel()
+    real = np.array([-np.linalg.solve(P[:, :3], P[:, 3]) for P in measured])
+    error = np.linalg.norm(similarity.umeyama(centres, real).points(centres) - real, axis=1)
+    span = np.linalg.norm(real[:, None] - real, axis=-1).max()
+    assert error.max() <= 0.002 * span
+
+
+def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_study):
+    data = gym / "data" / "hall"
+    shutil.copytree(tiny_study / "virtual" / "plain-tiny", data)
+    session = {
+        "description": "no court",
+        "court": "none",
+        "cameras": {name: {"static": f"data/hall/{name}.mp4"} for name in ("side", "back")},
+        "walks": {"walk": {"video": "data/hall/walk.mp4"}},
+        "override": {
+            "sweep": {"n_images": [12], "n_offsets": 1},
+            "extract_frames": {"every_s": 0.05},
+            **TINY_FEATURES,
+        },
+    }
+    results = study(gym, "hall", session)
+    path = results / "calibration/sfm-n12/cameras.toml"
+    with pytest.raises(InputError, match="unscaled"):
+        cameras.read_toml(path)
+    path.write_text(path.read_text().replace('"unscaled"', '"m"'))
+    side, back = cameras.read_toml(path)
+    assert np.linalg.norm(side.centre_in_world - back.centre_in_world) == pytest.approx(1, abs=1e-6)
+    real = truth.read(data / "truth.npz").cameras
+    ours = side.cam_from_world[:, :3] @ back.cam_from_world[:, :3].T
+    true = real[0].cam_from_world[:, :3] @ real[1].cam_from_world[:, :3].T
+    between = np.degrees(np.arccos((np.trace(ours @ true.T) - 1) / 2))
+    assert between < 0.5
+
+
+def test_another_court_is_a_file(gym):
+    session = {
+        "description": "a tennis court",
+        "court": "tennis",
+        "cameras": {"side": None, "back": None},
+        "walks": {"walk": None},
+        "virtual": {
+            "preset": "rich",
+            "layout": "a",
+            "seed": 5,
+            "size_px": [480, 270],
+            "walk_frames": 24,
+        },
+        "override": {"sweep": {"n_images": [12], "n_offsets": 1}, **TINY_FEATURES},
+    }
+    results = study(gym, "tennis-hall", session, calibrations=["sfm-n12"])
+    rows = pd.read_csv(results / "evaluation" / "global-n12-o0.csv")
+    ours = rows[(rows["method"] == "sfm") & rows["in_sample"]]
+    most = ours[ours["n_clicks"] == ours["n_clicks"].max()]
+    assert most["volume_rms_cm"].median() <= 4.0  # a court of more than twice the length

@@ -1,0 +1,198 @@
+"""What a session's file gets wrong beyond its schema, and what conditions do: one line each."""
+
+import pytest
+
+from courtside.study import session_faults
+
+FILE = "gym.yaml"
+RECORDED = {
+    "court": "badminton",
+    "cameras": {"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}},
+    "walks": {"w": {"video": "w.mp4"}},
+    "court_points": "p.csv",
+}
+VIRTUAL = {
+    "court": "badminton",
+    "cameras": {"side": None, "back": None},
+    "walks": {"walk": {}},
+    "virtual": {
+        "preset": "plain",
+        "layout": "b",
+        "seed": 1,
+        "size_px": [640, 360],
+        "walk_frames": 9,
+    },
+}
+
+
+@pytest.fixture
+def root(tmp_path):
+    for name in ("a.mp4", "b.mp4", "w.mp4", "p.csv", "c.toml"):
+        (tmp_path / name).touch()
+    (tmp_path / "courts").mkdir()
+    (tmp_path / "courts" / "badminton.yaml").touch()
+    return tmp_path
+
+
+def find(root, content):
+    found = list(session_faults.find(root, FILE, content, {}, root))
+    assert all("\n" not in line and line.startswith(FILE) for line in found)
+    return found
+
+
+def without(content, *keys):
+    return {key: value for key, value in content.items() if key not in keys}
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        RECORDED,
+        VIRTUAL,
+        without(RECORDED, "court_points") | {"court": "none"},
+        RECORDED | {"walks": {"w": {"video": "w.mp4"}, "v": {"images": "a.mp4"}}},
+        without(RECORDED, "walks") | {"calibration": {"file": "c.toml"}},
+        RECORDED | {"cameras": {"a": {"static": "a.mp4"}}},
+        {"court": "none", "cameras": {}, "walks": {"w": {"images": "w.mp4"}}},
+        VIRTUAL
+        | {"cameras": {"side": {"chessboard": {"images": "results/virtual/g/boards/side"}}}},
+    ],
+)
+def test_good_sessions_have_no_fault(root, content):
+    assert find(root, content) == []
+
+
+@pytest.mark.parametrize(
+    ("content", "parts"),
+    [
+        (
+            RECORDED | {"court": "squash"},
+            ["court: expected 'none' or one of ['badminton']", "'squash'"],
+        ),
+        (
+            RECORDED | {"cameras": {"a": None, "b": {"static": "b.mp4"}}},
+            ["cameras.a: expected `static`"],
+        ),
+        (
+            RECORDED | {"walks": {"w": {}}},
+            ["walks.w: expected `video` or `images`", "found neither"],
+        ),
+        (RECORDED | {"walks": {"w": None}}, ["walks.w: expected `video` or `images`"]),
+        (
+            RECORDED | {"walks": {"w": {"video": "x.mp4"}}},
+            ["walks.w.video: expected a file", "x.mp4"],
+        ),
+        (
+            RECORDED | {"walks": {"a": {"video": "w.mp4"}}},
+            ["walks.a: expected a name that no camera has"],
+        ),
+        (RECORDED | {"court_points": "q.csv"}, ["court_points: expected a file", "q.csv"]),
+        (RECORDED | {"court": "none"}, ["court_points: expected none without a court"]),
+        (
+            without(RECORDED, "court_points"),
+            ["expected `court_points`", "click them or set court: none"],
+        ),
+        (without(RECORDED, "walks"), ["expected `walks` or `calibration`, found neither"]),
+        (
+            RECORDED
+            | {"cameras": {"a": {"static": "a.mp4"}}, "takes": {"t": {"videos": {"a": "a.mp4"}}}},
+            ["cameras: expected two or more, found 1"],
+        ),
+        (
+            RECORDED | {"cameras": {"a": {"static": "a.mp4", "chessboard": {"images": "boards"}}}},
+            ["cameras.a.chessboard.images: expected a file", "boards"],
+        ),
+        (VIRTUAL | {"court": "none"}, ["court: expected a court to build the virtual hall around"]),
+        (VIRTUAL | {"cameras": {}}, ["virtual: expected cameras and a walk"]),
+        (without(VIRTUAL, "walks"), ["virtual: expected cameras and a walk"]),
+        (
+            VIRTUAL | {"court_points": "p.csv"},
+            ["court_points: expected no file of its own", "remove it"],
+        ),
+        (
+            VIRTUAL | {"walks": {"walk": {"video": "w.mp4"}}},
+            ["walks.walk.video: expected no file of its own"],
+        ),
+        (
+            VIRTUAL | {"cameras": {"side": {"static": "a.mp4"}}},
+            ["cameras.side.static: expected no file"],
+        ),
+        (
+            VIRTUAL | {"virtual": VIRTUAL["virtual"] | {"baseline_deg": 30}},
+            ["virtual.baseline_deg: expected it with layout a only, found b; remove it"],
+        ),
+    ],
+)
+def test_a_contradiction_is_one_line(root, content, parts):
+    (line,) = find(root, content)
+    assert [part for part in parts if part not in line] == []
+
+
+def test_files_of_artefacts_must_be_members(root):
+    content = RECORDED | {"court_points": "results/external/pack/points.csv"}
+    (line,) = find(root, content)
+    assert "court_points: expected a member of external.yaml" in line
+
+
+FOUND = {"gym": ("gym.yaml", VIRTUAL), "hall": ("hall.yaml", RECORDED)}
+
+
+def conditions(**content):
+    condition = {"session": "gym", "vary": {"seed": [1, 2]}, **content}
+    config = {"variations": ["speed"], "conditions": {"speed": condition}}
+    return session_faults.conditions("config.yaml", config, FOUND)
+
+
+def test_a_good_condition_has_no_fault():
+    assert conditions() == []
+    assert conditions(vary={"layout": ["a"], "baseline_deg": [30, 60]}) == []
+    assert conditions(set={"layout": "a"}, vary={"baseline_deg": [30, 60]}) == []
+
+
+@pytest.mark.parametrize(
+    ("content", "parts"),
+    [
+        (
+            {"session": "nowhere"},
+            ["speed.session: expected one of ['gym', 'hall'], found 'nowhere'"],
+        ),
+        ({"session": "hall"}, ["speed.session: expected a virtual session, found 'hall'"]),
+        (
+            {"set": {"seed": 3}},
+            ["speed: expected seed in either `set` or `vary`, found it in both"],
+        ),
+        (
+            {"vary": {"baseline_deg": [30]}},
+            ["speed.baseline_deg: expected it with layout a only, found b"],
+        ),
+        (
+            {"vary": {"layout": ["a", "b-mirror"]}, "set": {"baseline_deg": 30}},
+            ["speed.baseline_deg: expected it with layout a only, found b-mirror"],
+        ),
+    ],
+)
+def test_a_fault_of_a_condition_is_one_line(content, parts):
+    (line,) = conditions(**content)
+    assert line.startswith("config.yaml: conditions.speed")
+    assert [part for part in parts if part not in line] == []
+
+
+def test_unknown_variations_are_named():
+    config = {"variations": ["sped"], "conditions": {"speed": {}}}
+    assert session_faults.conditions("config.yaml", config, FOUND) == [
+        "config.yaml: variations: expected one of ['speed'], found 'sped'"
+    ]
+
+
+@pytest.mark.parametrize("name", ["speed", "speed-0", "speed-12"])
+def test_a_session_may_not_have_the_name_of_a_variation(name):
+    condition = {"session": "gym", "vary": {"seed": [1]}}
+    config = {"variations": ["speed"], "conditions": {"speed": condition}}
+    found = FOUND | {name: ("x.yaml", VIRTUAL), "speed-x": ("y.yaml", VIRTUAL)}
+    (line,) = session_faults.conditions("config.yaml", config, found)
+    assert f"expected a name that no session has, found session '{name}'; rename it" in line
+
+
+def test_conditions_that_are_not_run_are_not_checked():
+    config = {"variations": [], "conditions": {"speed": {"session": "nowhere", "vary": {}}}}
+    assert session_faults.conditions("config.yaml", config, FOUND) == []
