@@ -100,6 +100,7 @@ def errors(folder, real, court, marked, parameters):
     options = dict(parameters["adjust_network"])
     options.pop("min_points")
     bias_px = options.pop("click_bias_px")
+    options["tie_sigma_px"] = options.pop("tie_sigma") * control_points.residual_spread(network)
     ties, _ = court_adjustment.condense(network, placed, size_of, marked, court, **options)
     solved = court_adjustment.solve(
         ties,

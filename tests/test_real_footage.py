@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import networks
-from courtside.devices import video
+from courtside.devices import still, video
 from courtside.exports import trc
 from courtside.geometry import calibration_files, cameras, triangulation
 from courtside.motion import fusion
@@ -82,9 +82,7 @@ def detect(name, joints, find, place, study):
     path = FOLDER / "videos" / f"{name}.mp4"
     every_fourth = [image for at, (_, image) in enumerate(video.frames(path)) if at % 4 == 0]
     step = study["detect_pose"]
-    scene = foreground.Foreground(
-        foreground.estimate_background(every_fourth), step["min_difference"]
-    )
+    scene = foreground.Foreground(still.temporal_median(every_fourth), step["min_difference"])
     limits = {"min_presence": step["min_presence"], "redetect": step["redetect"]}
     track = tracking.track_person(video.frames(path), find, place, scene, **limits)
     return keypoints.Keypoints2D(

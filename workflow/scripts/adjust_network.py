@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from courtside.geometry import control_points, court_adjustment, courts
-from courtside.geometry import network as networks
 from courtside.records import clicks, ties
 from courtside.sfm import model, registration
 from courtside.study import log
@@ -27,7 +26,7 @@ def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points,
     if not outcome:
         try:
             known, adjusted = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
-            residual_px = 1.4826 * np.median(np.abs(networks.residuals(adjusted)))
+            residual_px = control_points.residual_spread(adjusted)
         except InputError as error:
             fault = str(error)
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
@@ -36,7 +35,10 @@ def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points,
     ties.write(ties_npz, ties.Record(outcome, fault, found, seen, known, *places, residual_px))
 
 
-def adjust(network, placed, size_of, clicks_csv, court_yaml, *, click_bias_px, **options):
+def adjust(
+    network, placed, size_of, clicks_csv, court_yaml, *, tie_sigma, click_bias_px, **options
+):
+    options["tie_sigma_px"] = tie_sigma * control_points.residual_spread(network)
     if not court_yaml:
         options = {k: v for k, v in options.items() if not k.startswith("click_")}
         return court_adjustment.condense_free(network, placed, size_of, **options)

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from courtside.devices import video
-from courtside.pose import foreground
+from courtside.devices import still, video
 from courtside.study import log
 
 
@@ -14,7 +13,7 @@ def main(source, background_png, *, trim_s, n_frames):
     chosen = set(np.unique(np.linspace(0, count - 1, n_frames).round().astype(int)).tolist())
     frames = video.frames(source, start_s=start_s, stop_s=stop_s)
     images = [image for at, (_, image) in enumerate(frames) if at in chosen]
-    video.write_png(background_png, foreground.estimate_background(images))
+    video.write_png(background_png, still.temporal_median(images))
 
 
 if __name__ == "__main__":

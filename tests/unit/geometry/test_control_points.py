@@ -277,3 +277,11 @@ def test_the_walk_gives_the_unit_where_there_are_not_two_fixed_cameras(fixed):
     made = networks_made.in_random_frame(networks_made.make(6, 20))
     places = centres(control_points.transform(made, control_points.free_frame(made, fixed)))
     assert np.linalg.norm(places[-1] - places[0]) == pytest.approx(1)
+
+
+def test_the_spread_of_residuals_is_that_of_the_noise():
+    made = networks_made.make(8, 200, noise_px=0.4)
+    assert control_points.residual_spread(made) == pytest.approx(0.4, rel=0.05)
+    made.xy[::10] += 50.0
+    assert control_points.residual_spread(made) == pytest.approx(0.4, rel=0.2)
+    assert control_points.residual_spread(networks_made.make()) == control_points.LEAST_PX

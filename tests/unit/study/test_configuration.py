@@ -333,7 +333,7 @@ def test_a_fault_of_a_condition_names_key_and_value(folder, condition, parts):
             for v in ({"global": {}}, {"global": {}, "incremental": {}, "x": {}})
         ],
         *[("adjust_network", "min_points", v) for v in (2, "20")],
-        *[("adjust_network", "tie_sigma_px", v) for v in (0, -1)],
+        *[("adjust_network", "tie_sigma", v) for v in (0, -1)],
         *[("adjust_network", "tie_loss", v) for v in (0,)],
         *[("adjust_network", "click_sigma_px", v) for v in (0,)],
         *[("adjust_network", "click_bias_px", v) for v in (-0.1, "x")],

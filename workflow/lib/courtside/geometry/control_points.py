@@ -9,6 +9,8 @@ from courtside.geometry import network as networks
 from courtside.geometry.cameras import Camera
 from courtside.geometry.similarity import Sim3
 
+LEAST_PX = 0.05  # no feature is placed better
+
 
 def transform(network, b_from_a):
     """Return a network whose frame is moved and scaled by a `similarity.Sim3`."""
@@ -113,6 +115,12 @@ def centres(network):
     """Return the projection centres of all images, (V, 3)."""
     pose = network.cam_from_world
     return -np.einsum("vji,vj->vi", pose[:, :, :3], pose[:, :, 3])
+
+
+def residual_spread(network):
+    """Return the robust standard deviation of all residuals per axis, px; at least `LEAST_PX`."""
+    residual = networks.residuals(network)
+    return max(1.4826 * float(np.nanmedian(np.abs(residual))), LEAST_PX)
 
 
 def weigh(network, *, sigma_px, loss_scale):

@@ -8,23 +8,6 @@ OPEN_PX, CLOSE_PX = 3, 25  # at that size: specks removed, body parts joined
 MIN_SHARE = 5e-4  # of the picture's area; smaller changes are noise
 
 
-def estimate_background(images):
-    """Return the per-pixel median of pictures of one fixed camera.
-
-    Parameters
-    ----------
-    images : list of (H, W, 3) uint8
-        Spread over the recording; a person must leave each place in more than half of them.
-
-    Returns
-    -------
-    background : (H, W, 3) uint8
-    """
-    stack = np.stack(images)
-    rows = [np.median(stack[:, at : at + 64], axis=0) for at in range(0, stack.shape[1], 64)]
-    return np.concatenate(rows).astype(np.uint8)
-
-
 class Foreground:
     """Changed regions against the background of one fixed camera.
 
