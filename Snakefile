@@ -28,6 +28,7 @@ rule all:
         every_calibration(),
         every_photo_model(),
         every_evaluation(),
+        every_check(),
         every_export(),
         every_figure(),
         every_study_figure(),

@@ -1,8 +1,8 @@
 """Pictures of the fixed cameras without people, and the frames of walks.
 
-Inputs: videos of a session. Outputs: results/{session}/static/, frames/, takes/{take}/background/.
-Steps: extract_static (of a camera's `static` recording), extract_frames (of a walk), estimate_background (of a take
-whose camera has no static recording).
+Inputs: videos of a session. Outputs: results/{session}/static/, frames/, takes/{take}/movement/, background/.
+Steps: extract_static (of a camera's `static` recording), extract_frames (of a walk), check_movement (of a camera between
+its static recording and a take), estimate_background (of a take whose camera has no static recording).
 """
 
 
@@ -37,6 +37,21 @@ rule extract_frames:
         step=lambda w: {"every_frame": 1} if session_of(w).virtual else step("extract_frames")(w),
     script:
         "../scripts/extract_frames.py"
+
+
+rule check_movement:
+    input:
+        static="results/{session}/static/{camera}.png",
+        video=lambda w: take_of(w).videos[w.camera],
+    output:
+        movement="results/{session}/takes/{take}/movement/{camera}.csv",
+    log:
+        "results/{session}/logs/check_movement/{take}.{camera}.log",
+    params:
+        code=code("check_movement.py"),
+        step=step("extract_static"),
+    script:
+        "../scripts/check_movement.py"
 
 
 rule estimate_background:

@@ -23,6 +23,17 @@ def each_take(pattern, **choices):
     ]
 
 
+def every_check():
+    """Return the checks that cameras with a static recording stood still until each take."""
+    return [
+        f"results/{session.name}/takes/{take.name}/movement/{camera}.csv"
+        for session in STUDY.sessions.values()
+        for take in session.takes.values()
+        for camera in take.videos
+        if session.cameras[camera].static
+    ]
+
+
 def every_export():
     """Return the files for other programs that the study makes."""
     return each_take(

@@ -1,15 +1,15 @@
 """Draw how a condition of filming changes the error: evaluations of its sessions -> figure, CSV."""
 
-from courtside.figures import capture, style, trials
+from courtside.figures import conditions, style, trials
 from courtside.study import log
 
 
 def main(errors_csv, pdf, png, csv, *, x, group, n_bridging):
     rows = trials.read(errors_csv)
-    numbers = capture.table(rows, x, group, n_bridging)
+    numbers = conditions.table(rows, x, group, n_bridging)
     about = [f"{rows['preset'].iloc[0]} hall, layout {rows['layout'].iloc[0]}"]
     about += [] if n_bridging is None else [f"N = {n_bridging}"]
-    style.save(capture.draw(numbers, x, group, ", ".join(about)), numbers, pdf, png, csv)
+    style.save(conditions.draw(numbers, x, group, ", ".join(about)), numbers, pdf, png, csv)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 import trials_made
-from courtside.figures import capture, trials
+from courtside.figures import conditions, trials
 
 OUT, SFM, PAPER = ("sfm", 18, False), ("sfm", 18, True), ("paper", 3, True)
 
@@ -28,7 +28,7 @@ def rows():
 
 @pytest.fixture(scope="module")
 def numbers():
-    return capture.table(rows(), "speed_kmh", "stabiliser", 20)
+    return conditions.table(rows(), "speed_kmh", "stabiliser", 20)
 
 
 def at(numbers, way, speed, stabiliser):
@@ -36,7 +36,7 @@ def at(numbers, way, speed, stabiliser):
 
 
 def test_the_scored_points_are_left_out_where_they_can_be(numbers):
-    ours, paper = capture.METHODS
+    ours, paper = conditions.METHODS
     assert at(numbers, ours, 4, True)["median"] == 5.0
     assert not at(numbers, ours, 4, True)["in_sample"]
     assert at(numbers, paper, 1, False)["median"] == 9.0
@@ -44,16 +44,16 @@ def test_the_scored_points_are_left_out_where_they_can_be(numbers):
 
 
 def test_failures_are_counted_and_said(numbers):
-    paper = list(capture.METHODS)[1]
+    paper = list(conditions.METHODS)[1]
     lost = at(numbers, paper, 4, False)
     assert (lost["n"], lost["n_failed"]) == (0, 2)
-    drawing = capture.draw(numbers, "speed_kmh", "stabiliser")
+    drawing = conditions.draw(numbers, "speed_kmh", "stabiliser")
     said = [text.get_text() for axis in drawing.axes for text in axis.texts]
     assert said == ["2 of 2 failed"]
 
 
 def test_every_second_setting_has_a_line(numbers):
-    axis = capture.draw(numbers, "speed_kmh", "stabiliser").axes[0]
+    axis = conditions.draw(numbers, "speed_kmh", "stabiliser").axes[0]
     assert axis.get_legend_handles_labels()[1] == ["stabiliser off", "stabiliser on"]
     assert [text.get_text() for text in axis.get_xticklabels()] == ["1", "4"]
 
@@ -63,7 +63,7 @@ def test_sizes_are_ordered_by_their_width():
         trials_made.structure({OUT: [1.0], PAPER: [2.0]}, session=f"s{n}", size_px=size)
         for n, size in enumerate(("1280x720", "640x360", "960x540"))
     ]
-    numbers = capture.table(trials.tidy(pd.concat(parts)), "size_px")
-    axis = capture.draw(numbers, "size_px").axes[0]
+    numbers = conditions.table(trials.tidy(pd.concat(parts)), "size_px")
+    axis = conditions.draw(numbers, "size_px").axes[0]
     ticks = [text.get_text() for text in axis.get_xticklabels()]
     assert ticks == ["640x360", "960x540", "1280x720"]

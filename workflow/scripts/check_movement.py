@@ -1,0 +1,28 @@
+"""Check that a fixed camera did not move or zoom before a take: static picture, video -> what it moved."""
+
+import cv2
+import pandas as pd
+
+from courtside.devices import still, walks
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(static_png, video_path, movement_csv, *, camera, frames, **limits):
+    now = still.temporal_median(walks.spread(video_path, frames))
+    found = still.check_still(camera, cv2.imread(str(static_png)), now, **limits)
+    row = {"camera": camera, **found.row()}
+    log.logger.info("%s", row)
+    with atomic(movement_csv) as temporary:
+        pd.DataFrame([row]).to_csv(temporary, index=False)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.static,
+        snakemake.input.video,
+        snakemake.output.movement,
+        camera=snakemake.wildcards.camera,
+        **snakemake.params.step,
+    )
