@@ -2,14 +2,12 @@
 
     python benchmarks/structure_from_motion.py results SESSION [--images 75] [--json OUT]
 
-SESSION is a virtual session that the study has rendered and extracted (static pictures, frames of the
-walk, clicks,
-truth). Both sides get the same pictures, lens model, one lens per physical camera, and all cores; this
-project matches
-the pairs of its list and maps globally, COLMAP matches all pairs and maps incrementally, with its own default
-options. Errors are those of the playing volume, from the session's own clicks, after the alignment that
-each side
-stops at (a similarity to all court points) and after this project's adjustment of either model.
+SESSION is a virtual session that the study has rendered and extracted (static pictures, frames of the walk,
+clicks, truth). Both sides get the same pictures, lens model, one lens per physical camera, and all cores;
+this project matches the pairs of its list and maps globally, COLMAP matches all pairs and maps incrementally,
+with its own default options. Errors are those of the playing volume, from the session's own clicks, after the
+alignment that each side stops at (a similarity to all court points) and after this project's adjustment of
+either model.
 """
 
 import argparse
@@ -26,7 +24,7 @@ import pycolmap
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.geometry import alignment, control_points, court_adjustment, court_errors, courts
-from courtside.records import clicks, truth
+from courtside.records import clicks, image_names, truth
 from courtside.sfm import database, features, grid, mapping, matching, model
 from courtside.study import yaml_files
 
@@ -92,10 +90,9 @@ def colmap(root, groups, folder):
 def errors(folder, real, court, marked, parameters):
     """Return registered images, and the volume error (cm) after a similarity and after adjustment."""
     network, images, sizes = model.read(folder)
-    placed = {c.name: images.index(f"static/{c.name}.png") for c in real.cameras}
+    placed = {c.name: images.index(image_names.static(c.name)) for c in real.cameras}
     size_of = {name: sizes[network.lens_of_image[at]] for name, at in placed.items()}
-    alone = control_points.alone(network, list(placed.values()))
-    sfm = control_points.cameras(alone, list(placed), list(size_of.values()))
+    sfm = control_points.fixed_cameras(network, placed, size_of)
     world_from_sfm, _ = alignment.align(court, alignment.reconstruct(sfm, marked))
     options = dict(parameters["adjust_network"])
     options.pop("min_points")
@@ -132,11 +129,11 @@ def main():
     names = [camera.name for camera in real.cameras]
     marked = clicks.read(virtual / "court_points.csv", names, list(court.points))
     parameters = yaml_files.read(ROOT / "config" / "config.yaml")
-    whole = grid.read({"walk": root / "frames" / "walk.csv"}, {"walk": "frames/walk"})
+    whole = grid.read({"walk": root / "frames" / "walk.csv"})
     taken = np.array(whole.choose(chosen.images, 0, "even"))
     everything = np.ones(len(taken), dtype=bool)
     walked = grid.Grid(np.full(len(taken), "walk"), taken, everything, everything * 1.0)
-    fixed = [f"static/{name}.png" for name in names]
+    fixed = [image_names.static(name) for name in names]
     groups = [features.Group(n, (f,)) for n, f in zip(names, fixed, strict=True)]
     groups.append(features.Group("walk", tuple(taken.tolist())))
     rows = {}

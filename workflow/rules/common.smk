@@ -5,6 +5,7 @@ calibration are in inputs.smk, lists of what the study makes in targets.smk.
 """
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -48,7 +49,6 @@ wildcard_constraints:
     n_images="[1-9][0-9]*",
     offset="[0-2]",
     court=NAME,
-    condition="[a-z_]+",
 
 
 def code(script):

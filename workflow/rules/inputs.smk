@@ -54,12 +54,11 @@ def click_parameters(wildcards):
 
 def ties_file(wildcards):
     """Return the ties that a calibration rests on; only the paper's own row is mapped incrementally."""
-    name, n_images, *offset = wildcards.calibration.rsplit(
-        "-", 1 + wildcards.calibration.count("-o")
-    )
+    name, n_images, offset = re.fullmatch(
+        r"(.+?)-(n\d+)(?:-(o\d+))?", wildcards.calibration
+    ).groups()
     mapper = "incremental" if name == "paper" else "global"
-    offset = offset[0] if offset else "o0"
-    return f"results/{wildcards.session}/sfm/{mapper}-{n_images}-{offset}/ties.npz"
+    return f"results/{wildcards.session}/sfm/{mapper}-{n_images}-{offset or 'o0'}/ties.npz"
 
 
 def board_source(wildcards):
@@ -106,9 +105,14 @@ def evaluation_parameters(wildcards, labels, keys):
     }
 
 
-def condition_of(wildcards):
-    """Return the name of the condition that a figure shows: figures have _ where conditions have -."""
-    return f"capture-{wildcards.condition.replace('_', '-')}"
+def drawn_conditions():
+    """Return the conditions that have a figure of their own: those that vary more than seeds, by its name."""
+    conditions = STUDY.parameters["conditions"]
+    return {
+        name.replace("-", "_"): name
+        for name in STUDY.parameters["variations"]
+        if not all(key.endswith("seed") for key in conditions[name]["vary"])
+    }
 
 
 def varied_axes(name):

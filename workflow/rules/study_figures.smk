@@ -107,19 +107,21 @@ rule draw_error_map:
 
 rule draw_capture:
     input:
-        errors=lambda w: every_error(varied(condition_of(w))),
+        errors=lambda w: every_error(varied(drawn_conditions()[w.condition])),
     output:
         **drawn(
-            "results/figures/capture_{condition}",
+            "results/figures/{condition}",
             "capture",
             ("calibration", "capture conditions"),
             {"figure": "{condition}"},
         ),
     log:
         "results/figures/logs/draw_capture/{condition}.log",
+    wildcard_constraints:
+        condition="|".join(drawn_conditions()) or NAME,
     params:
         code=code("draw_capture.py"),
-        axes=lambda w: varied_axes(condition_of(w)),
+        axes=lambda w: varied_axes(drawn_conditions()[w.condition]),
     script:
         "../scripts/draw_capture.py"
 

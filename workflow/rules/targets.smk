@@ -79,11 +79,7 @@ def every_evaluation():
 def every_study_figure():
     """Return the figures and tables of the calibration study."""
     stems = [f"results/figures/court_points.{court}" for court in courts_used()]
-    stems += [
-        f"results/figures/{name.replace('-', '_')}"
-        for name in STUDY.parameters["variations"]
-        if name.startswith("capture-")
-    ]
+    stems += [f"results/figures/{figure}" for figure in drawn_conditions()]
     for session in swept():
         names = ["badminton_fig08", "coverage", "growth"]
         names += [f"badminton_fig06.{mapper}" for mapper in session.parameters["sweep"]["mappers"]]
@@ -106,9 +102,9 @@ def swept():
 
 
 def tabulated():
-    """Return the virtual sessions of the table: all but those that vary how the walk is filmed."""
+    """Return the virtual sessions of the table: all but those of conditions with a figure of their own."""
     sessions = [s for s in STUDY.sessions.values() if s.virtual]
-    return [s for s in sessions if not s.condition.get("condition", "").startswith("capture-")]
+    return [s for s in sessions if s.condition.get("condition") not in drawn_conditions().values()]
 
 
 def varied(condition):

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from courtside.geometry import control_points, court_adjustment, courts
-from courtside.records import clicks, ties
+from courtside.records import clicks, image_names, ties
 from courtside.sfm import model, registration
 from courtside.study import log
 from courtside.study.errors import InputError
@@ -15,13 +15,12 @@ from courtside.study.errors import InputError
 def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options):
     network, images, sizes = model.read(Path(summary_json).parent)
     summary = json.loads(Path(summary_json).read_text())
-    fixed = {camera: f"static/{camera}.png" for camera in cameras}
+    fixed = {camera: image_names.static(camera) for camera in cameras}
     least = {"min_points": min_points, "n_models": summary["n_models"]}
     outcome = registration.outcome(network, images, fixed, **least)
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
-    alone = control_points.alone(network, list(placed.values()))
-    found = control_points.cameras(alone, list(placed), list(size_of.values()))
+    found = control_points.fixed_cameras(network, placed, size_of)
     known, fault, adjusted, residual_px = None, "", network, np.nan
     if not outcome:
         try:

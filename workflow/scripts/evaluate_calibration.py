@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.geometry import court_trials, courts, walk_path
-from courtside.records import ties, truth
+from courtside.records import image_names, ties, truth
 from courtside.study import log
 from courtside.study.files import atomic
 from courtside.virtual import clicking
@@ -29,8 +29,8 @@ def main(
         rows += [{"draw": draw, **row} for row in found]
     angles = [np.nan]
     if record.ties:
-        point = [*court.size_m / 2, CENTRE_HEIGHT_M]
-        angles = walk_path.path_angles_deg(record.images, record.centres, point)
+        fixed, point = image_names.are_static(record.images), [*court.size_m / 2, CENTRE_HEIGHT_M]
+        angles = walk_path.path_angles_deg(fixed, record.centres, point)
     about = {
         **labels,
         "n_registered": summary["n_registered"],

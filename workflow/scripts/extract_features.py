@@ -11,7 +11,7 @@ from courtside.study.files import atomic
 
 def main(static_png, frames_csv, features_db, table_csv, *, threads, **options):
     root = Path(features_db).parents[1]
-    walks = grid.read(frames_csv, {walk: f"frames/{walk}" for walk in frames_csv})
+    walks = grid.read(frames_csv)
     groups = [
         features.Group(camera, (str(Path(path).relative_to(root)),))
         for camera, path in static_png.items()

@@ -7,7 +7,7 @@ from courtside.records import frame_table
 from courtside.sfm import usable
 from courtside.study import log
 from courtside.study.errors import InputError
-from courtside.study.folders import atomic_folder
+from courtside.study.files import atomic_folder
 
 
 def main(video_path, folder, table_csv, *, every_s=None, every_frame=None, walk="walk"):

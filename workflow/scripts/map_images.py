@@ -12,7 +12,7 @@ from courtside.study.files import write_json
 def main(
     matches_db, features_csv, frames_csv, folder, summary_json, *, n_images, offset, rule, **options
 ):
-    walks = grid.read(frames_csv, {walk: f"frames/{walk}" for walk in frames_csv})
+    walks = grid.read(frames_csv)
     images = pd.read_csv(features_csv)
     fixed = images["name"][~images["source"].isin(list(frames_csv))].tolist()
     chosen = walks.choose(n_images, offset, rule)

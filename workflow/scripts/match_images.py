@@ -8,7 +8,7 @@ from courtside.study.files import atomic
 
 
 def main(features_db, features_csv, frames_csv, matches_db, table_csv, *, threads, **options):
-    walks = grid.read(frames_csv, {walk: f"frames/{walk}" for walk in frames_csv})
+    walks = grid.read(frames_csv)
     images = pd.read_csv(features_csv)
     fixed = images["name"][~images["source"].isin(list(frames_csv))].tolist()
     found = matching.match(features_db, matches_db, walks.pairs(fixed), threads=threads, **options)

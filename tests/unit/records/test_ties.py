@@ -96,7 +96,7 @@ def test_a_failure_is_a_record_too(tmp_path):
 
 def test_a_bare_network_holds_poses_and_lenses_only():
     made = control_points.alone(networks_made.make(2, 8), [0, 1])
-    found = ties.bare(made.cam_from_world, made.lens, SIZES)
+    found = networks.bare(made.cam_from_world, made.lens, [height for _, height in SIZES])
     assert networks.residuals(found).size == 0
     np.testing.assert_array_equal(found.height_px, [720, 540])
     rebuilt = control_points.cameras(found, NAMES, SIZES)

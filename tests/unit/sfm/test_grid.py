@@ -26,14 +26,12 @@ def table(path, count, dropped=()):
 
 
 def one_walk(tmp_path, count=40, dropped=()):
-    return grid.read(
-        {"walk": table(tmp_path / "walk.csv", count, dropped)}, {"walk": "frames/walk"}
-    )
+    return grid.read({"walk": table(tmp_path / "walk.csv", count, dropped)})
 
 
 def test_walks_follow_each_other_in_the_order_given(tmp_path):
     tables = {"zig": table(tmp_path / "z.csv", 3, [1]), "ant": table(tmp_path / "a.csv", 2)}
-    found = grid.read(tables, {"ant": "frames/ant", "zig": "frames/zig"})
+    found = grid.read(tables)
     zig = [f"frames/zig/{at:06d}.png" for at in range(3)]
     ant = [f"frames/ant/{at:06d}.png" for at in range(2)]
     assert found.names.tolist() == zig + ant
@@ -80,7 +78,7 @@ def test_the_published_rule_takes_every_so_many_usable_frames(tmp_path):
 
 def test_too_few_frames_name_the_walks(tmp_path):
     tables = {"one": table(tmp_path / "1.csv", 3), "two": table(tmp_path / "2.csv", 3, [0])}
-    found = grid.read(tables, {"one": "frames/one", "two": "frames/two"})
+    found = grid.read(tables)
     with pytest.raises(
         InputError, match=r"^one, two: expected at least 8 usable frames, found 5 of 6"
     ):
@@ -88,7 +86,7 @@ def test_too_few_frames_name_the_walks(tmp_path):
 
 
 def test_without_walks_only_the_fixed_cameras_are_matched():
-    found = grid.read({}, {})
+    found = grid.read({})
     assert found.pairs(["a.png", "b.png", "c.png"]) == [
         ("a.png", "b.png"),
         ("a.png", "c.png"),
@@ -102,4 +100,4 @@ def test_a_missing_or_broken_table_is_named(tmp_path):
         if content:
             path.write_text(content)
         with pytest.raises(InputError, match=r"walk\.csv: expected a frame table"):
-            grid.read({"walk": path}, {"walk": "frames/walk"})
+            grid.read({"walk": path})

@@ -15,7 +15,7 @@ from courtside.study.errors import InputError
 
 PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")
 UNREADABLE = (".heic", ".heif", ".avif", ".dng", ".raw", ".cr2", ".cr3", ".nef", ".arw", ".orf")
-SMALL_PX = 320  # width of the pictures that `courtside.sfm.bridging.judge` compares
+SMALL_PX = 320  # width of the pictures that `courtside.sfm.usable.judge` compares
 
 
 def frames(source, *, every_s=None, every_frame=None):

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from courtside.figures import court_plan, style
+from courtside.records import image_names
 
-FIXED = "static/"  # how the names of the fixed cameras' images begin
 COLUMNS = 4
 FAR_M = 60.0  # from the court's centre: what lies beyond does not widen the panels
 SHOWN = 3  # percentile of the points that tie: the panels reach from there to its counterpart
@@ -36,7 +36,7 @@ def table(records):
             parts.append(pd.DataFrame({"n_bridging": count, **rows}))
             continue
         names, centres = in_order(record)
-        kind = np.where(np.char.startswith(names, FIXED), "fixed", "bridging")
+        kind = np.where(image_names.are_static(names), "fixed", "bridging")
         parts.append(_rows(count, kind, names, centres))
         parts.append(_rows(count, "tie", "", record.xyz))
     columns = ["n_bridging", "kind", "order", "name", "x_m", "y_m", "z_m"]
@@ -46,7 +46,7 @@ def table(records):
 def in_order(record):
     """Return names (V,) and places (V, 3) of registered images: bridging ones by frame, then fixed ones."""
     names = np.asarray(record.images, dtype=str)
-    order = np.lexsort([names, np.char.startswith(names, FIXED)])
+    order = np.lexsort([names, image_names.are_static(names)])
     return names[order], record.centres[order]
 
 

@@ -7,8 +7,7 @@ from matplotlib.ticker import MaxNLocator
 
 from courtside.figures import court_plan, style
 from courtside.geometry import cameras as camera_models
-from courtside.geometry import uncertainty
-from courtside.records import ties
+from courtside.geometry import control_points, court_errors, uncertainty
 
 COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
 LEVELS = 14  # of colour, about
@@ -39,26 +38,14 @@ def table(cameras, covariance, court, heights_m):
     """
     if list(covariance.cameras) != [camera.name for camera in cameras]:
         raise ValueError(f"covariance of {covariance.cameras}, cameras {[c.name for c in cameras]}")
-    x, y = (np.linspace(0, court.size_m[at], count) for at, count in enumerate((COLUMNS, ROWS)))
-    z, y, x = np.meshgrid(np.asarray(heights_m, dtype=float), y, x, indexing="ij")
-    xyz = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-    network = ties.bare(
-        np.stack([camera.cam_from_world for camera in cameras]),
-        np.array([lens(camera) for camera in cameras]),
-        [camera.size for camera in cameras],
-    )
+    xyz = court_errors.volume(court, heights_m, COLUMNS, ROWS)
+    network = control_points.of_cameras(cameras)
     sigma = np.full(len(xyz), np.nan)
     seen = np.all([_sees(camera, xyz) for camera in cameras], axis=0)
     if seen.any():
         spread = uncertainty.point_covariance(network, covariance.of_columns(), xyz[seen])
         sigma[seen] = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
     return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
-
-
-def lens(camera):
-    """Return a camera's lens (8,) in the order of `courtside.geometry.network.LENS`."""
-    (fx, _, cx), (_, fy, cy), _ = camera.K
-    return np.array([fy, fx / fy, cx, cy, *camera.dist[:4]])
 
 
 def _sees(camera, xyz):

@@ -165,8 +165,7 @@ def check(court, xyz_in_sfm, cameras=()):
     """
     world_from_sfm, _ = align(court, xyz_in_sfm)
     _check_size(court, xyz_in_sfm)
-    residual = world_from_sfm.points(xyz_in_sfm) - court.xyz
-    off_m = float(np.nanmedian(np.linalg.norm(residual, axis=1)))
+    off_m = misfit_m(court, world_from_sfm, xyz_in_sfm)
     if off_m > HOPELESS * np.max(court.size_m):
         short_m, long_m = court.size_m
         raise InputError(
@@ -182,6 +181,20 @@ def check(court, xyz_in_sfm, cameras=()):
             "the flip of the videos"
         )
     return _weak(court, np.isfinite(np.asarray(xyz_in_sfm)).all(axis=1))
+
+
+def misfit_m(court, world_from_sfm, xyz_in_sfm):
+    """Return how far most reconstructed points are from the court after an alignment, m.
+
+    Parameters
+    ----------
+    court : courtside.geometry.courts.Court
+    world_from_sfm : courtside.geometry.similarity.Sim3
+    xyz_in_sfm : (P, 3) float
+        NaN where missing.
+    """
+    residual = world_from_sfm.points(xyz_in_sfm) - court.xyz
+    return float(np.nanmedian(np.linalg.norm(residual, axis=1)))
 
 
 def _weak(court, known):

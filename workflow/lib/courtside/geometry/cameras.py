@@ -115,10 +115,7 @@ def projection_jacobian(camera, xyz_in_world):
         d(x, y) / d(x, y, z), px per metre; NaN where `project` gives NaN.
     """
     normalised, depth = _normalise(camera, xyz_in_world)
-    pinhole = np.zeros((*normalised.shape, 3))
-    pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
-    pinhole[..., 2] = -normalised
-    in_cam = distortion.jacobian(camera.dist, normalised) @ pinhole / depth[..., np.newaxis]
+    in_cam = distortion.jacobian_by_place(camera.dist, normalised, depth)
     return _focal(camera)[:, np.newaxis] * (in_cam @ camera.cam_from_world[:, :3])
 
 

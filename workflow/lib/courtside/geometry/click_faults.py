@@ -203,7 +203,7 @@ def _small_similarity(xyz):
     return np.concatenate([shifted, turned, xyz[..., None]], axis=2)
 
 
-def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None):
+def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None, table=None):
     """Check clicked court points as far as the fixed cameras allow.
 
     Parameters
@@ -218,6 +218,8 @@ def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None):
     inwards : (float, float), optional
         Shift of all clicks towards line centres and its sigma, from `line_centres.shift`; without it,
         `line_centre_pattern`.
+    table : LeaveOneOut, optional
+        Of these cameras and clicks, where it is known already.
 
     Returns
     -------
@@ -233,7 +235,7 @@ def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None):
     xyz = alignment.reconstruct(cameras, clicks)
     warnings = alignment.check(court, xyz, cameras)
     try:
-        table = leave_one_out(cameras, clicks, court)
+        table = table or leave_one_out(cameras, clicks, court)
     except InputError:
         return warnings  # too few points to leave one out, which `check` has said
     warnings += [str(click) for click in find_wrong_clicks(table, sigma_px=sigma_px)]

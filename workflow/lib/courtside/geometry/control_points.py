@@ -190,25 +190,8 @@ def alone(network, images):
         Each with a lens of its own.
     """
     images = np.asarray(images, dtype=int)
-    lenses = network.lens_of_image[images]
-    empty = {name: getattr(network, name)[:0] for name in ("xyz", "xyz_mean", "xyz_sigma")}
-    unseen = {
-        name: getattr(network, name)[:0]
-        for name in ("image_idx", "point_idx", "xy", "sigma_px", "loss_scale")
-    }
-    return replace(
-        network,
-        cam_from_world=network.cam_from_world[images],
-        flex=np.zeros((len(images), 5)),
-        flex_sigma=np.zeros((len(images), 5)),
-        lens=network.lens[lenses],
-        lens_of_image=np.arange(len(images)),
-        height_px=network.height_px[images],
-        lens_mean=network.lens[lenses],
-        lens_sigma=np.full((len(images), len(networks.LENS)), np.inf),
-        **empty,
-        **unseen,
-    )
+    lens = network.lens[network.lens_of_image[images]]
+    return networks.bare(network.cam_from_world[images], lens, network.height_px[images])
 
 
 def what_ties_say(network, images):
@@ -266,3 +249,32 @@ def cameras(network, names, sizes):
         K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
         found.append(Camera(name, size, K, [*dist, 0.0], network.cam_from_world[v]))
     return found
+
+
+def of_cameras(known):
+    """Return the network of cameras (list of Camera) without points: `cameras` the other way round."""
+    lenses = []
+    for camera in known:
+        (fx, _, cx), (_, fy, cy), _ = camera.K
+        lenses.append([fy, fx / fy, cx, cy, *camera.dist[:4]])
+    return networks.bare(
+        np.array([camera.cam_from_world for camera in known]).reshape(-1, 3, 4),
+        np.array(lenses).reshape(-1, len(networks.LENS)),
+        [camera.size[1] for camera in known],
+    )
+
+
+def fixed_cameras(network, fixed, sizes):
+    """Return the fixed cameras of a network, in its frame.
+
+    Parameters
+    ----------
+    network : courtside.geometry.network.Network
+    fixed : dict of str to int
+        Index of each fixed camera's image.
+    sizes : dict of str to (int, int)
+        Of their pictures, px.
+    """
+    return cameras(
+        alone(network, list(fixed.values())), list(fixed), [sizes[name] for name in fixed]
+    )

@@ -105,12 +105,11 @@ def condense(
         If the clicks cannot give a frame.
     """
     names = tuple(fixed)
-    cameras = _cameras(network, fixed, sizes)
+    cameras = control_points.fixed_cameras(network, fixed, sizes)
     exchanged_cameras.refuse(court, cameras, clicks)
     world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
     network = control_points.transform(network, world_from_sfm)
-    network = control_points.thin(network, **thinning)
-    network = control_points.weigh(network, sigma_px=tie_sigma_px, loss_scale=tie_loss)
+    network = _ties_of(network, tie_sigma_px, tie_loss, thinning)
     n_ties, n_seen = len(network.xyz), len(network.xy)
     both = control_points.add(
         network,
@@ -129,8 +128,7 @@ def condense(
     tied = control_points.select(
         both, np.arange(len(both.xyz)) < n_ties, np.arange(len(both.xy)) < n_seen
     )
-    knowledge = control_points.what_ties_say(tied, list(fixed.values()))
-    return Ties(names, tuple(sizes[name] for name in names), knowledge), tied
+    return _condensed(tied, fixed, sizes), tied
 
 
 def condense_free(network, fixed, sizes, *, tie_sigma_px, tie_loss, **thinning):
@@ -148,13 +146,20 @@ def condense_free(network, fixed, sizes, *, tie_sigma_px, tie_loss, **thinning):
         cameras.
     network : courtside.geometry.network.Network
     """
-    network = _in_free_frame(network, fixed)
-    network = control_points.thin(network, **thinning)
-    network = control_points.weigh(network, sigma_px=tie_sigma_px, loss_scale=tie_loss)
+    network = _ties_of(_in_free_frame(network, fixed), tie_sigma_px, tie_loss, thinning)
     network, _ = bundle.adjust(network, max_iterations=20, tolerance=1e-7)
     network = _in_free_frame(network, fixed)  # which nothing held in place
+    return _condensed(network, fixed, sizes), network
+
+
+def _ties_of(network, sigma_px, loss_scale, thinning):
+    network = control_points.thin(network, **thinning)
+    return control_points.weigh(network, sigma_px=sigma_px, loss_scale=loss_scale)
+
+
+def _condensed(network, fixed, sizes):
     knowledge = control_points.what_ties_say(network, list(fixed.values()))
-    return Ties(tuple(fixed), tuple(sizes[name] for name in fixed), knowledge), network
+    return Ties(tuple(fixed), tuple(sizes[name] for name in fixed), knowledge)
 
 
 def _in_free_frame(network, fixed):
@@ -258,8 +263,3 @@ def _check_placed(ties, normal):
             f"camera {lost[0]}: expected matches with other images or clicked court points, found neither; "
             "click points in it, or film the walk closer to it"
         )
-
-
-def _cameras(network, fixed, sizes):
-    alone = control_points.alone(network, list(fixed.values()))
-    return control_points.cameras(alone, list(fixed), [sizes[name] for name in fixed])

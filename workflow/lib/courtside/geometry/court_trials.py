@@ -3,6 +3,7 @@
 import numpy as np
 
 from courtside.geometry import alignment, court_adjustment, court_errors, known_points
+from courtside.geometry.cameras import project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
 
@@ -166,7 +167,7 @@ def score_linear(found, truth, court, clicks):
         return triangulate(np.nan_to_num(xy), weight, matrices)
 
     grid = court_errors.volume(court)
-    seen = {camera.name: court_errors.project(camera, grid) for camera in truth}
+    seen = {camera.name: project(camera, grid) for camera in truth}
     errors = court_errors.court_points(court, place(clicks))
     errors |= court_errors.over_volume(place(seen) - grid)
     if all(result.camera for result in found.values()):

@@ -37,6 +37,23 @@ def jacobian(dist, normalised):
     return np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*x.shape, 2, 2)
 
 
+def jacobian_by_place(dist, normalised, depth):
+    """Return the derivative (..., 2, 3) of distorted points by the places that the camera sees them at.
+
+    Parameters
+    ----------
+    dist : (5,) float
+    normalised : (..., 2) float
+        On the z = 1 plane.
+    depth : (..., 1) float
+        Along the camera's axis; the derivative is per unit of it.
+    """
+    pinhole = np.zeros((*normalised.shape, 3))
+    pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
+    pinhole[..., 2] = -normalised
+    return jacobian(dist, normalised) @ pinhole / depth[..., np.newaxis]
+
+
 def fold_radius(dist):
     """Return the radius at which the radial part turns back, inf if it never does.
 

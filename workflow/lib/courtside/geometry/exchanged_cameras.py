@@ -50,4 +50,4 @@ def _off_m(court, cameras, clicks):
         world_from_sfm, _ = alignment.align(court, xyz)
     except InputError:
         return np.inf
-    return float(np.nanmedian(np.linalg.norm(world_from_sfm.points(xyz) - court.xyz, axis=1)))
+    return alignment.misfit_m(court, world_from_sfm, xyz)

@@ -129,6 +129,36 @@ class Network:
         return np.concatenate([images.ravel(), (self.lens - reference.lens).ravel()])
 
 
+def bare(cam_from_world, lens, height_px):
+    """Return a network of images with a lens each, without points or prior knowledge.
+
+    Parameters
+    ----------
+    cam_from_world : (V, 3, 4) float
+    lens : (V, 8) float
+    height_px : (V,) float
+    """
+    n_images, nothing = len(cam_from_world), np.zeros(0)
+    return Network(
+        cam_from_world=cam_from_world,
+        flex=np.zeros((n_images, len(FLEX))),
+        lens=lens,
+        xyz=np.zeros((0, 3)),
+        lens_of_image=np.arange(n_images),
+        height_px=np.asarray(height_px, dtype=float),
+        image_idx=nothing.astype(int),
+        point_idx=nothing.astype(int),
+        xy=np.zeros((0, 2)),
+        sigma_px=nothing,
+        loss_scale=nothing,
+        flex_sigma=np.zeros((n_images, len(FLEX))),
+        lens_mean=lens,
+        lens_sigma=np.full(np.shape(lens), np.inf),
+        xyz_mean=np.zeros((0, 3)),
+        xyz_sigma=nothing,
+    )
+
+
 def residuals(network):
     """Return predicted minus observed, (M, 2) px; NaN where a point lies behind its image."""
     *_, distorted = _see(network)
@@ -154,13 +184,10 @@ def jacobians(network):
     still, in_cam, normalised, distorted = _see(network)
     lens = network.lens[network.lens_of_image[network.image_idx]]
     focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
-    pinhole = np.zeros((len(in_cam), 2, 3))
-    pinhole[:, 0, 0] = pinhole[:, 1, 1] = 1.0
-    pinhole[:, :, 2] = -normalised
-    bend = distortion.jacobian(_coefficients(lens), normalised)
-    by_place = (
-        focal[:, :, None] * (bend @ pinhole) / in_cam[:, 2, None, None]
-    )  # of the point in the camera's frame
+    # Of the point in the camera's frame.
+    by_place = focal[:, :, None] * distortion.jacobian_by_place(
+        _coefficients(lens), normalised, in_cam[:, 2:]
+    )
     # Before the shutter's turn: r @ (I + [spin]) = r + r x spin.
     by_still = by_place + np.cross(by_place, _spin(network)[:, None, :])
     rotation = network.cam_from_world[network.image_idx, :, :3]

@@ -144,11 +144,8 @@ def residuals(state, clicks):
     normalised = in_cam[:, :2] / depth[:, None]
     focal = state.K[[0, 1], [0, 1]]
     off = distortion.distort(state.dist, normalised) * focal + state.K[:2, 2] - clicks.xy
-    pinhole = np.zeros((len(depth), 2, 3))
-    pinhole[:, 0, 0] = pinhole[:, 1, 1] = 1.0
-    pinhole[:, :, 2] = -normalised
-    bend = distortion.jacobian(state.dist, normalised)
-    return off, focal[:, None] * (bend @ pinhole) / depth[:, None, None], depth
+    by_point = distortion.jacobian_by_place(state.dist, normalised, depth[:, None])
+    return off, focal[:, None] * by_point, depth
 
 
 def whitened(state, clicks):

@@ -30,10 +30,9 @@ def of_court(
     Returns
     -------
     quality : dict
-        For a JSON file: `warnings`; `left_out`, by point: how far it is from its place (cm) and from
-        each click
-        (px) in a similarity fitted to the other points; `expected_volume_rms_cm` where the covariance is
-        known.
+        For a JSON file: `warnings`; `left_out`, by point: how far it is from its place (cm) and from each
+        click (px) in a similarity fitted to the other points; `expected_volume_rms_cm` where the covariance
+        is known.
 
     Raises
     ------
@@ -41,32 +40,33 @@ def of_court(
         If the points cannot be this court.
     """
     try:
+        table = click_faults.leave_one_out(cameras, clicks, court)
+        left_out = _by_point(table)
+    except InputError as error:
+        table, left_out = None, str(error)
+    try:
         warnings = click_faults.find(
-            court, cameras, clicks, sigma_px=click_sigma_px, inwards=inwards
+            court, cameras, clicks, sigma_px=click_sigma_px, inwards=inwards, table=table
         )
     except InputError as error:
         if strict:
             raise
         warnings = [str(error)]
-    quality = {"warnings": warnings}
-    try:
-        table = click_faults.leave_one_out(cameras, clicks, court)
-    except InputError as error:
-        quality["left_out"] = str(error)
-    else:
-        quality["left_out"] = {
-            point: {
-                "error_cm": _number(table.error_cm[at]),
-                "error_px": {
-                    c: _number(table.error_px[v, at]) for v, c in enumerate(table.cameras)
-                },
-            }
-            for at, point in enumerate(table.points)
-        }
+    quality = {"warnings": warnings, "left_out": left_out}
     if point_covariance is not None:
         covariance = point_covariance(court_errors.volume(court))
         quality["expected_volume_rms_cm"] = _number(court_errors.expected_rms_cm(covariance))
     return quality
+
+
+def _by_point(table):
+    return {
+        point: {
+            "error_cm": _number(table.error_cm[at]),
+            "error_px": {c: _number(table.error_px[v, at]) for v, c in enumerate(table.cameras)},
+        }
+        for at, point in enumerate(table.points)
+    }
 
 
 def _number(value):

@@ -47,15 +47,15 @@ def path_order(centres, fixed):
     return np.array(order, dtype=int)
 
 
-def path_angles_deg(images, centres, point):
+def path_angles_deg(fixed, centres, point):
     """Return `neighbour_angles_deg` of registered images, fixed cameras put where the walk passes them.
 
     Parameters
     ----------
-    images : (V,) str
-        Names; those of fixed cameras begin with `static/`.
+    fixed : (V,) bool
+        Which of the images are of fixed cameras.
     centres : (V, 3) float
     point : (3,) float
     """
-    order = path_order(centres, np.char.startswith(images, "static/"))
+    order = path_order(centres, fixed)
     return neighbour_angles_deg(centres[order], point)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.geometry import bundle, control_points, court_adjustment
-from courtside.geometry.network import LENS, Network
+from courtside.geometry import network as networks
+from courtside.geometry.network import LENS
 from courtside.records import npz
 
 FORM = "courtside ties 1"
@@ -67,7 +68,7 @@ class Record:
 
 def write(path, record):
     """Write a `Record` to an npz file."""
-    sfm = [_lens(camera) for camera in record.sfm_cameras]
+    sfm = control_points.of_cameras(record.sfm_cameras)
     reference = record.ties.knowledge.reference if record.ties else None
     knowledge = record.ties.knowledge if record.ties else None
     arrays = {
@@ -76,8 +77,8 @@ def write(path, record):
         "camera": np.array([camera.name for camera in record.sfm_cameras], dtype=str),
         "size": np.array([camera.size for camera in record.sfm_cameras], dtype=int).reshape(-1, 2),
         "n_points_seen": np.asarray(record.n_points_seen, dtype=int),
-        "cam_from_sfm": _stack([c.cam_from_world for c in record.sfm_cameras], (3, 4)),
-        "lens_sfm": _stack(sfm, (len(LENS),)),
+        "cam_from_sfm": sfm.cam_from_world,
+        "lens_sfm": sfm.lens,
         "cam_from_world": _stack(reference.cam_from_world if reference else [], (3, 4)),
         "lens": _stack(reference.lens if reference else [], (len(LENS),)),
         "information": knowledge.information if knowledge else np.zeros((0, 0)),
@@ -94,13 +95,13 @@ def read(path):
     """Read a `Record`; an `InputError` says what is wrong with a file that is none."""
     found = npz.read(path, FORM, SPEC)
     sizes = [tuple(map(int, size)) for size in found["size"]]
-    names = tuple(map(str, found["camera"]))
+    names, heights_px = tuple(map(str, found["camera"])), found["size"][:, 1]
     sfm = control_points.cameras(
-        bare(found["cam_from_sfm"], found["lens_sfm"], sizes), names, sizes
+        networks.bare(found["cam_from_sfm"], found["lens_sfm"], heights_px), names, sizes
     )
     ties = None
     if len(found["information"]):
-        reference = bare(found["cam_from_world"], found["lens"], sizes)
+        reference = networks.bare(found["cam_from_world"], found["lens"], heights_px)
         knowledge = bundle.Quadratic(reference, found["information"], found["gradient"])
         ties = court_adjustment.Ties(names, tuple(sizes), knowledge)
     return Record(
@@ -114,43 +115,6 @@ def read(path):
         found["xyz"],
         float(found["residual_px"]),
     )
-
-
-def bare(cam_from_world, lens, sizes):
-    """Return a network of images with a lens each, without points.
-
-    Parameters
-    ----------
-    cam_from_world : (C, 3, 4) float
-    lens : (C, 8) float
-        In the order of `courtside.geometry.network.LENS`.
-    sizes : list of (int, int)
-    """
-    n_images, nothing = len(cam_from_world), np.zeros(0)
-    return Network(
-        cam_from_world=cam_from_world,
-        flex=np.zeros((n_images, 5)),
-        lens=lens,
-        xyz=np.zeros((0, 3)),
-        lens_of_image=np.arange(n_images),
-        height_px=np.array([height for _, height in sizes], dtype=float),
-        image_idx=nothing.astype(int),
-        point_idx=nothing.astype(int),
-        xy=np.zeros((0, 2)),
-        sigma_px=nothing,
-        loss_scale=nothing,
-        flex_sigma=np.zeros((n_images, 5)),
-        lens_mean=lens,
-        lens_sigma=np.full(np.shape(lens), np.inf),
-        xyz_mean=np.zeros((0, 3)),
-        xyz_sigma=nothing,
-    )
-
-
-def _lens(camera):
-    k1, k2, p1, p2, _ = camera.dist
-    K = camera.K
-    return [K[1, 1], K[0, 0] / K[1, 1], K[0, 2], K[1, 2], k1, k2, p1, p2]
 
 
 def _stack(values, shape):

@@ -91,10 +91,9 @@ def _check_imported(path, image_root, group):
     missing = [name for name in group.images if name not in there]
     if missing:
         raise InputError(
-            f"{image_root}/{missing[0]}: expected a picture of the size of the others of {group.name}, found "
-            f"{len(missing)} of {len(group.images)} that differ or cannot be read; film or export "
-            "them again, "
-            "or declare pictures of another size as a walk of their own"
+            f"{image_root}/{missing[0]}: expected a picture of the size of the others of {group.name}, "
+            f"found {len(missing)} of {len(group.images)} that differ or cannot be read; film or export them "
+            "again, or declare pictures of another size as a walk of their own"
         )
 
 

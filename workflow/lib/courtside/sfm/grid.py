@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from courtside.records import frame_table
+from courtside.records import frame_table, image_names
 from courtside.sfm import bridging, pairs
 
 
@@ -64,15 +64,13 @@ class Grid:
         return near + among + [(a, b) for a in fixed for b in usable]
 
 
-def read(tables, folders):
+def read(tables):
     """Read the frame tables of the walks.
 
     Parameters
     ----------
     tables : dict of str to path
         CSV by walk, as `extract_frames` writes it.
-    folders : dict of str to str
-        Where the frames of each walk lie, from the image root.
 
     Returns
     -------
@@ -86,7 +84,9 @@ def read(tables, folders):
     parts = []
     for walk, path in tables.items():
         table = frame_table.read(path)
-        parts.append(table.assign(walk=walk, path=f"{folders[walk]}/" + table["name"]))
+        parts.append(
+            table.assign(walk=walk, path=[image_names.frame(walk, name) for name in table["name"]])
+        )
     whole = (
         pd.concat(parts) if parts else pd.DataFrame(columns=["walk", "path", "kept", "sharpness"])
     )

@@ -7,8 +7,6 @@ import pycolmap
 
 from courtside.sfm import database
 
-MAPPERS = ("global", "incremental")
-
 
 def map_images(matches_db, images, folder, *, mapper, seed, options=None):
     """Map images and write the largest model found.

@@ -3,13 +3,11 @@
 import numpy as np
 
 BLOCKS = (9, 16)  # rows and columns of blocks in which two pictures are compared
-FLAT, RICH = (
-    25,
-    50,
-)  # percentiles: blocks with less texture show the noise, those with more the motion
+# Percentiles: blocks with less texture than the first show the noise, with more than the second the motion.
+FLAT, RICH = 25, 50
 BLACK_LEVEL, BLACK_SHARE = 20, 0.8  # dark: so much of the picture is below that
 MIN_TEXTURE = (
-    1.0  # squared grey levels per pixel; less in most blocks: nothing can be said of motion
+    1.0  # squared grey levels per pixel; with less in most blocks nothing is said of motion
 )
 
 
