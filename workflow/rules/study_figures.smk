@@ -118,7 +118,7 @@ rule draw_capture:
     log:
         "results/figures/logs/draw_capture/{condition}.log",
     wildcard_constraints:
-        condition="|".join(drawn_conditions()) or NAME,
+        condition="|".join(drawn_conditions()) or "(?!)",  # without conditions, no figure
     params:
         code=code("draw_capture.py"),
         axes=lambda w: varied_axes(drawn_conditions()[w.condition]),
