@@ -137,7 +137,7 @@ def triangulate_robust(
     have no weight. Accepted are the views within the limit, and where these are fewer than `min_views`,
     the closest ones within twice the limit.
     """
-    _check(cameras, xy, score, min_views)
+    check(cameras, xy, score, min_views)
     sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
     pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
     limits = {
@@ -155,7 +155,8 @@ def triangulate_robust(
     )
 
 
-def _check(cameras, xy, score, min_views):
+def check(cameras, xy, score, min_views):
+    """Raise `ValueError` where the inputs of a triangulation contradict each other."""
     if xy.shape != (len(cameras), *score.shape[1:], 2) or score.ndim != 2:
         raise ValueError(
             f"expected xy (C, N, 2) and score (C, N) with C = {len(cameras)} cameras, "
@@ -168,7 +169,7 @@ def _check(cameras, xy, score, min_views):
 def _solve(cameras, xy, score, sigma_px, *, fade_px, max_error_px, min_views, min_score):
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
     usable = seen & (score >= min_score) & (score > 0)
-    views = _Views(cameras, xy, np.where(usable, score, 0.0))
+    views = Views(cameras, xy, np.where(usable, score, 0.0))
     enough = usable.sum(axis=0) >= min_views
     xyz = np.full((xy.shape[1], 3), np.nan)
     accepted = np.zeros_like(usable)
@@ -177,12 +178,12 @@ def _solve(cameras, xy, score, sigma_px, *, fade_px, max_error_px, min_views, mi
         xyz[at], accepted[:, at] = _select_and_refine(
             views.of(at), max_error_px, fade_px, min_views
         )
-    error_px = _error_px(cameras, xy, xyz)
-    covariance = _covariance(views, xyz, accepted, sigma_px)
+    error_px = reprojection_px(cameras, xy, xyz)
+    covariance = noise_covariance(views, xyz, accepted, sigma_px)
     return Triangulated(xyz, covariance, accepted, error_px)
 
 
-class _Views:
+class Views:
     """Keypoints of C cameras on the normalised plane, with weights in px^-2 relative to score 1."""
 
     def __init__(self, cameras, xy, weight):
@@ -196,7 +197,7 @@ class _Views:
 
     def of(self, at):
         """Return the same views of some of the points only."""
-        part = object.__new__(_Views)
+        part = object.__new__(Views)
         part.xy, part.weight = self.xy[:, at], self.weight[:, at]
         part.matrix, part.focal_px = self.matrix, self.focal_px
         return part
@@ -279,12 +280,14 @@ def _in_front(views, xyz, accepted):
     return ((in_cam[..., 2] > 0) | ~accepted).all(axis=0)
 
 
-def _covariance(views, xyz, accepted, sigma_px):
+def noise_covariance(views, xyz, accepted, sigma_px):
+    """Return the covariance (N, 3, 3) of points from the noise of the views that they rest on, m2."""
     _, in_cam = views.residuals(np.nan_to_num(xyz))
     square, _ = views.normal(in_cam, views.weight * accepted)
     return inverse_3x3(square) * (sigma_px**2)[:, None, None]
 
 
-def _error_px(cameras, xy, xyz):
+def reprojection_px(cameras, xy, xyz):
+    """Return the distance (C, N) of keypoints (C, N, 2) to projected points (N, 3), px."""
     projected = np.stack([camera_models.project(camera, xyz) for camera in cameras])
     return np.linalg.norm(projected - xy, axis=-1)

@@ -41,6 +41,16 @@ class CameraCovariance:
         whole[np.ix_(at, at)] = self.covariance
         return whole
 
+    def of(self, cameras):
+        """Return that of some of the cameras, in their order; `ValueError` names one that is not there."""
+        for name in cameras:
+            if name not in self.cameras:
+                raise ValueError(f"expected a camera of {self.cameras}, found {name!r}")
+        at = [self.cameras.index(name) for name in cameras]
+        size = len(PARAMETERS)
+        rows = np.concatenate([size * k + np.arange(size) for k in at])
+        return CameraCovariance(list(cameras), self.covariance[np.ix_(rows, rows)])
+
 
 def columns(n_cameras):
     """Return where the parameters of cameras stand in the columns of their network, (14 C,) int."""

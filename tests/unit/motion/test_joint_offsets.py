@@ -1,0 +1,134 @@
+"""Joint offsets: known shares of known vectors are found, and taken off other bodies in other poses."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import walker
+from courtside.motion import joint_offsets
+from courtside.study.errors import InputError
+
+JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in joint_offsets.JOINTS]
+SHARES = {"up": 0.05, "out": -0.03, "forward": 0.02}
+ALONG_THIGH = 0.1
+
+
+def bodies(n, seed, size=1.0):
+    """Return (n, 12, 3): a standing body with limbs in random directions, turned about at random."""
+    rng = np.random.default_rng(seed)
+    found = np.zeros((n, 12, 3))
+    for at, sign in ((0, 1.0), (6, -1.0)):
+        found[:, at] = [0, 0.2 * sign, 1.4]
+        found[:, at + 3] = [0, 0.12 * sign, 0.9]
+        for start, stop, length in ((0, 1, 0.3), (1, 2, 0.25), (3, 4, 0.42), (4, 5, 0.4)):
+            way = rng.normal([0, 0, -1.0], 1.0, (n, 3))
+            way /= np.linalg.norm(way, axis=1, keepdims=True)
+            found[:, at + stop] = found[:, at + start] + length * way
+    turn = Rotation.random(n, rng=rng).as_matrix()
+    return size * np.einsum("nij,nkj->nki", turn, found)
+
+
+def displaced(true):
+    """Return the bodies with every hip moved by SHARES of the trunk and along its thigh."""
+    moved = true.copy()
+    trunk = (true[:, 0] + true[:, 6] - true[:, 3] - true[:, 9]) / 2
+    size = np.linalg.norm(trunk, axis=1, keepdims=True)
+    up = trunk / size
+    left = true[:, 0] - true[:, 6]
+    left = left - (left * up).sum(axis=1, keepdims=True) * up
+    left /= np.linalg.norm(left, axis=1, keepdims=True)
+    forward = np.cross(left, up)
+    for at, sign in ((3, 1), (9, -1)):
+        moved[:, at] += size * (
+            SHARES["up"] * up + SHARES["out"] * sign * left + SHARES["forward"] * forward
+        )
+        moved[:, at] += ALONG_THIGH * (true[:, at + 1] - true[:, at])
+    return moved
+
+
+def record(xyz):
+    """Return a Keypoints3D that holds the bodies as one person."""
+    points = walker.points(len(xyz), n_cameras=2)
+    full = np.full((1, len(xyz), walker.N_JOINTS, 3), 7.0)
+    full[0][:, [list(points.joints).index(name) for name in JOINTS]] = xyz
+    return replace(points, xyz=full, covariance_2d=np.zeros((*full.shape, 3)))
+
+
+def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
+    """A body that stands upright with its left side at +y looks along -x: left cross up."""
+    standing = bodies(1, seed=0)
+    standing[0, :, :] = 0
+    standing[0, [0, 6, 3, 9]] = [[0, 0.2, 1.4], [0, -0.2, 1.4], [0, 0.12, 0.9], [0, -0.12, 0.9]]
+    left = joint_offsets.vectors(standing, JOINTS, "left", "hip")
+    right = joint_offsets.vectors(standing, JOINTS, "right", "hip")
+    np.testing.assert_allclose(left["up"][0], [0, 0, 0.5], atol=1e-12)
+    np.testing.assert_allclose(left["forward"][0], [0.5, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(left["out"][0], [0, 0.5, 0], atol=1e-12)
+    np.testing.assert_allclose(right["out"][0], [0, -0.5, 0], atol=1e-12)
+
+
+def test_shares_are_found_and_hold_for_bodies_of_another_size():
+    """The trunk is measured on the displaced body, so what is found is not SHARES but removes them."""
+    true = bodies(400, seed=1)
+    table = joint_offsets.estimate([(displaced(true), true)], JOINTS)
+    hips = table[table["joint"] == "hip"]
+    assert len(table) == 4 * 4 + 5 * 2 and (hips["n"] == 800).all()
+    elsewhere = bodies(50, seed=2, size=0.8)
+    corrected = joint_offsets.correct(record(displaced(elsewhere)), table)
+    at = [list(corrected.joints).index(name) for name in JOINTS]
+    before = np.linalg.norm(displaced(elsewhere) - elsewhere, axis=-1)
+    after = np.linalg.norm(corrected.xyz[0][:, at] - elsewhere, axis=-1)
+    assert before[:, [3, 9]].mean() > 0.03
+    assert after[:, [3, 9]].mean() < 0.05 * before[:, [3, 9]].mean()
+    assert after[:, [0, 1, 2, 6, 7, 8]].max() < 2e-3
+    others = [k for k in range(walker.N_JOINTS) if k not in at]
+    assert (corrected.xyz[0][:, others] == 7).all()
+
+
+def test_what_remains_is_its_standard_deviation_and_joins_the_covariance():
+    rng = np.random.default_rng(3)
+    true = bodies(2000, seed=4)
+    noisy = true.copy()
+    noisy[:, [2, 8]] += rng.normal(0, 0.01, (2000, 2, 3))
+    table = joint_offsets.estimate([(noisy, true)], JOINTS)
+    sigma_m = table.groupby("joint")["sigma_m"].first()
+    assert sigma_m["wrist"] == pytest.approx(0.01, rel=0.05)
+    assert sigma_m["hip"] < 1e-3
+    corrected = joint_offsets.correct(record(true[:8]), table)
+    at = list(corrected.joints).index("left_wrist")
+    np.testing.assert_allclose(
+        corrected.covariance_2d[0, 0, at], sigma_m["wrist"] ** 2 * np.eye(3), atol=1e-12
+    )
+
+
+def test_a_joint_whose_trunk_is_missing_keeps_its_place():
+    true = bodies(20, seed=5)
+    table = joint_offsets.estimate([(displaced(true), true)], JOINTS)
+    points = record(displaced(true))
+    points.xyz[0, 3, list(points.joints).index("left_shoulder")] = np.nan
+    corrected = joint_offsets.correct(points, table)
+    at = list(points.joints).index("right_hip")
+    np.testing.assert_array_equal(corrected.xyz[0, 3, at], points.xyz[0, 3, at])
+    assert not np.array_equal(corrected.xyz[0, 4, at], points.xyz[0, 4, at])
+
+
+def test_a_joint_seen_in_no_clip_is_a_fault():
+    true = bodies(3, seed=6)
+    blind = true.copy()
+    blind[:, [5, 11]] = np.nan
+    with pytest.raises(ValueError, match="expected knee in a clip"):
+        joint_offsets.estimate([(blind, true)], JOINTS)
+
+
+def test_a_table_is_read_back_and_other_files_are_refused(tmp_path):
+    table = joint_offsets.estimate([(displaced(bodies(50, 7)), bodies(50, 7))], JOINTS)
+    path = tmp_path / "offsets.csv"
+    path.write_text("# made by a rule\n" + table.to_csv(index=False))
+    assert joint_offsets.read(path)["share"].to_numpy() == pytest.approx(table["share"])
+    path.write_text("joint,vector\nnose,up\n")
+    with pytest.raises(InputError, match=r"expected columns .* found columns"):
+        joint_offsets.read(path)
+    with pytest.raises(InputError, match="expected a table of joint offsets"):
+        joint_offsets.read(tmp_path / "none.csv")

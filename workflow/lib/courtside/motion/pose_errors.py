@@ -1,0 +1,159 @@
+"""How far measured skeletons are from the truth of a virtual take, in the world, nothing aligned."""
+
+from itertools import chain
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import CubicSpline
+from scipy.stats import chi2
+
+LEVELS = (0.5, 0.9, 0.95)  # of the ellipsoids whose coverage is counted
+SETS = {  # joints taken together, by what their names begin with
+    "limbs": ("left_", "right_"),
+    "left half": ("left_",),
+    "right half": ("right_",),
+}
+LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+COLUMNS = ["person", "joint", "n", "missing_percent", "median_mm", "p95_mm", "mean_mm", "rms_mm"]
+COLUMNS += ["bias_x_mm", "bias_y_mm", "bias_z_mm", "sigma_mm"]
+COLUMNS += [f"coverage_{100 * level:.0f}_percent" for level in LEVELS]
+
+
+def at_times(time_s, xyz, wanted_s):
+    """Return true places at other times, by a cubic spline.
+
+    Parameters
+    ----------
+    time_s : (T,) float
+        Times of the truth on the reference clock.
+    xyz : (P, T, J, 3) float
+    wanted_s : (U,) float
+
+    Returns
+    -------
+    xyz : (P, U, J, 3) float
+        NaN outside the span of `time_s`.
+    """
+    found = CubicSpline(time_s, xyz, axis=1, extrapolate=False)(wanted_s)
+    return np.asarray(found)
+
+
+def errors(points, joints, true_xyz):
+    """Return what separates a record from the truth, joint by joint.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    joints : sequence of str
+        Names of the joints of the truth; those of both are compared.
+    true_xyz : (P, T, K, 3) float
+        At the record's times, persons in the record's order.
+
+    Returns
+    -------
+    names : list of str, length M
+        Joints of both.
+    error : (P, T, M, 3) float
+        Measured minus true, metres; NaN where missing.
+    covariance : (P, T, M, 3, 3) float
+        What the record says of it, square metres: of keypoints and of cameras where known.
+    """
+    names = [name for name in points.joints.tolist() if name in set(joints)]
+    own = [points.joints.tolist().index(name) for name in names]
+    other = [list(joints).index(name) for name in names]
+    error = points.xyz[:, :, own] - true_xyz[:, :, other]
+    covariance = points.covariance_2d[:, :, own]
+    return names, error, covariance + np.nan_to_num(points.covariance_camera[:, :, own])
+
+
+def table(person_id, names, error, covariance):
+    """Summarise errors: one row for each person and joint, and for sets of the limb joints.
+
+    Parameters
+    ----------
+    person_id : sequence of str, length P
+    names, error, covariance
+        As `errors` returns them.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        `COLUMNS`. missing_percent is over the frames with truth; bias is the mean error; sigma_mm the root
+        of the mean trace of the stated covariance; coverage the share of the errors that lie in their
+        stated ellipsoid, in percent, empty where no covariance is stated.
+    """
+    limbs = [f"{side}{limb}" for side in ("left_", "right_") for limb in LIMBS]
+    groups = {name: [names.index(name)] for name in names}
+    for label, sides in SETS.items():
+        groups[label] = [
+            names.index(name) for name in limbs if name in names and name.startswith(sides)
+        ]
+    persons = {str(name): [at] for at, name in enumerate(person_id)}
+    if len(persons) > 1:
+        persons["all"] = list(chain.from_iterable(persons.values()))
+    rows = [
+        {
+            "person": person,
+            "joint": label,
+            **_summary(error[people][:, :, at], covariance[people][:, :, at]),
+        }
+        for person, people in persons.items()
+        for label, at in groups.items()
+        if at
+    ]
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _summary(error, covariance):
+    error, covariance = error.reshape(-1, 3), covariance.reshape(-1, 3, 3)
+    known = np.isfinite(error).all(axis=1)
+    row = {"n": int(known.sum()), "missing_percent": 100 * (1 - known.mean())}
+    if not known.any():
+        return row
+    error, covariance = error[known], covariance[known]
+    distance_mm = 1000 * np.linalg.norm(error, axis=1)
+    row |= {
+        "median_mm": np.median(distance_mm),
+        "p95_mm": np.percentile(distance_mm, 95),
+        "mean_mm": distance_mm.mean(),
+        "rms_mm": np.sqrt(np.mean(distance_mm**2)),
+    }
+    row |= {f"bias_{axis}_mm": 1000 * error[:, k].mean() for k, axis in enumerate("xyz")}
+    stated = np.isfinite(covariance).all(axis=(1, 2))
+    if stated.any():
+        trace = np.trace(covariance[stated], axis1=1, axis2=2)
+        row["sigma_mm"] = 1000 * np.sqrt(trace.mean())
+        solved = np.linalg.solve(covariance[stated], error[stated][..., None])[..., 0]
+        distance = np.einsum("ni,ni->n", error[stated], solved)
+        for level in LEVELS:
+            inside = distance <= chi2.ppf(level, df=3)
+            row[f"coverage_{100 * level:.0f}_percent"] = 100 * inside.mean()
+    return row
+
+
+def identity_percent(points, joints, true_xyz):
+    """Return in how many frames each person is who the record says.
+
+    Parameters
+    ----------
+    points, joints, true_xyz
+        As for `errors`.
+
+    Returns
+    -------
+    percent : (P,) float
+        Of the frames in which a person is placed: those in which no other true person is nearer, by the
+        mean distance over the joints; NaN for a person who is never placed.
+    """
+    names = [name for name in points.joints.tolist() if name in set(joints)]
+    own = [points.joints.tolist().index(name) for name in names]
+    other = [list(joints).index(name) for name in names]
+    found, true = points.xyz[:, None, :, own], true_xyz[None, :, :, other]
+    apart = np.linalg.norm(found - true, axis=-1)  # (P measured, P true, T, M)
+    seen = np.isfinite(apart)
+    mean = np.where(seen, apart, 0).sum(axis=-1) / np.maximum(seen.sum(axis=-1), 1)
+    placed = seen.any(axis=-1).all(axis=1)
+    right = mean.argmin(axis=1) == np.arange(len(found))[:, None]
+    return np.array(
+        [100 * r[p].mean() if p.any() else np.nan for r, p in zip(right, placed, strict=True)]
+    )
