@@ -6,7 +6,6 @@ Inputs: the checked configuration. Outputs: none. Steps: lists of files, by subj
 
 def each_take(pattern, **choices):
     """Return `pattern` for every take of every session and every method of the study."""
-    methods = {key: STUDY.parameters[f"{key}s"] for key in ("fusion", "model")}
     return [
         path
         for session in STUDY.sessions.values()
@@ -16,9 +15,12 @@ def each_take(pattern, **choices):
             session=session.name,
             take=take.name,
             person=take.subjects,
-            calibration=session.calibrations(),
-            **methods,
-            **choices,
+            **{
+                "calibration": session.take_calibrations(),
+                "fusion": session.fusions(),
+                "model": STUDY.parameters["models"],
+                **choices,
+            },
         )
     ]
 

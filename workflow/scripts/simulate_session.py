@@ -9,10 +9,11 @@ from courtside.virtual import capture, layouts
 
 
 def main(court_yaml, folder, *, settings, names, threads):
-    expected = [*layouts.LAYOUTS[settings["layout"]], capture.WALK]
+    walks = [capture.WALK] if settings["walk_frames"] else []
+    expected = [*layouts.LAYOUTS[settings["layout"]], *walks]
     if sorted(names) != sorted(expected):
         raise InputError(
-            f"session {Path(folder).name}: expected the cameras and the walk of layout {settings['layout']}, "
+            f"session {Path(folder).name}: expected the cameras (and walk) of layout {settings['layout']}, "
             f"{expected}, found {names}; rename them"
         )
     capture.simulate(capture.Settings(**settings), courts.read(court_yaml), folder, threads=threads)

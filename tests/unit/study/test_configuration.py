@@ -385,7 +385,7 @@ def test_a_calibration_that_is_none_is_named(folder, name):
         ({"virtual": VIRTUAL["virtual"] | {"size_px": [640]}}, ["virtual.size_px", "at least 2"]),
         (
             {"virtual": VIRTUAL["virtual"] | {"walk_frames": 1}},
-            ["virtual.walk_frames", "at least 2"],
+            ["virtual.walk_frames", "two or more"],
         ),
         ({"virtual": VIRTUAL["virtual"] | {"speed_kmh": 0}}, ["virtual.speed_kmh", "more than 0"]),
         ({"virtual": VIRTUAL["virtual"] | {"people": -1}}, ["virtual.people", "at least 0"]),

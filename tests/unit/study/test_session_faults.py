@@ -44,11 +44,19 @@ def without(content, *keys):
     return {key: value for key, value in content.items() if key not in keys}
 
 
+FILMED = {"virtual": {"motion": "shot", "seconds": 2, "seed": 1, "bodies": {"p1": "m1"}}}
+PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
+
+
 @pytest.mark.parametrize(
     "content",
     [
         RECORDED,
         VIRTUAL,
+        PLAYERS | {"views": {"two": ["side", "back"]}},
+        without(PLAYERS, "walks")
+        | {"virtual": PLAYERS["virtual"] | {"walk_frames": 0}}
+        | {"calibration": {"file": "results/gym/calibration/sfm-n40/cameras.toml"}},
         without(RECORDED, "court_points") | {"court": "none"},
         RECORDED | {"walks": {"w": {"video": "w.mp4"}, "v": {"images": "a.mp4"}}},
         without(RECORDED, "walks") | {"calibration": {"file": "c.toml"}},
@@ -92,10 +100,14 @@ def test_good_sessions_have_no_fault(root, content):
             without(RECORDED, "court_points"),
             ["expected `court_points`", "click them or set court: none"],
         ),
-        (without(RECORDED, "walks"), ["expected `walks` or `calibration`, found neither"]),
+        (
+            without(without(RECORDED, "walks"), "court_points"),
+            ["expected `walks`, `court_points` or `calibration`, found none"],
+        ),
         (
             RECORDED
-            | {"cameras": {"a": {"static": "a.mp4"}}, "takes": {"t": {"videos": {"a": "a.mp4"}}}},
+            | {"cameras": {"a": {"static": "a.mp4"}}, "takes": {"t": {"videos": {"a": "a.mp4"}}}}
+            | {"subjects": {"p1": None}},
             ["cameras: expected two or more, found 1"],
         ),
         (
@@ -103,8 +115,29 @@ def test_good_sessions_have_no_fault(root, content):
             ["cameras.a.chessboard.images: expected a file", "boards"],
         ),
         (VIRTUAL | {"court": "none"}, ["court: expected a court to build the virtual hall around"]),
-        (VIRTUAL | {"cameras": {}}, ["virtual: expected cameras and a walk"]),
-        (without(VIRTUAL, "walks"), ["virtual: expected cameras and a walk"]),
+        (VIRTUAL | {"cameras": {}}, ["virtual: expected cameras"]),
+        (without(VIRTUAL, "walks"), ["virtual.walk_frames: expected two or more with a walk"]),
+        (
+            VIRTUAL | {"takes": {"t": FILMED}},
+            ["takes.t: expected `subjects`", "name the persons of the take"],
+        ),
+        (
+            PLAYERS | {"takes": {"t": None}},
+            ["takes.t: expected the key 'virtual' and not 'videos' in a virtual session, found []"],
+        ),
+        (
+            PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | {"bodies": {"p2": "m1"}}}}},
+            ["takes.t.virtual.bodies: expected a body for each of ['p1'], found ['p2']"],
+        ),
+        (
+            PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | {"clocks": {"up": {}}}}}},
+            ["takes.t.virtual.clocks: expected one of", "found 'up'"],
+        ),
+        (PLAYERS | {"views": {"two": ["side", "up"]}}, ["views.two: expected one of", "'up'"]),
+        (
+            RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},
+            ["takes.t: expected the key 'videos' and not 'virtual' in a recorded session"],
+        ),
         (
             VIRTUAL | {"court_points": "p.csv"},
             ["court_points: expected no file of its own", "remove it"],

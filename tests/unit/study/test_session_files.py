@@ -126,3 +126,29 @@ def test_an_override_of_a_variation_starts_from_that_of_its_session():
 
 def test_boards_can_be_asked_for_in_a_variation():
     assert variations(vary={"seed": [7]}, set={"boards": True})["speed-0"].films_boards()
+
+
+def test_a_virtual_take_gets_the_videos_of_all_cameras():
+    filmed = {"motion": "shot", "seconds": 2, "seed": 1, "bodies": {"p1": "m1"}}
+    takes = {"t1": {"virtual": filmed, "synchronised": True}}
+    content = {
+        **VIRTUAL,
+        "subjects": {"p1": None},
+        "takes": takes,
+        "views": {"two": ["side", "back"]},
+    }
+    found = session_files.session("gym", "gym.yaml", content, PARAMETERS)
+    folder = "results/virtual/gym/takes/t1"
+    videos = {"side": f"{folder}/side.mp4", "back": f"{folder}/back.mp4"}
+    assert found.takes["t1"] == sessions.Take("t1", videos, ("p1",), None, True, filmed)
+    assert found.views == {"two": ("side", "back")}
+    varied = session_files.variations(found, "speed", {"vary": {"seed": [3]}})["speed-0"]
+    assert varied.takes == {}
+
+
+def test_a_session_may_override_lists_of_methods():
+    content = {**CONTENT, "override": {"fusions": ["two-dlt"]}}
+    found = session_files.session(
+        "s", "s.yaml", content, {"fusions": ["all-robust"], "models": ["m"]}
+    )
+    assert found.parameters == {"fusions": ["two-dlt"], "models": ["m"]}

@@ -39,7 +39,14 @@ BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
 def session(**changes):
     fields = dict.fromkeys(["court", "calibration_file", "court_points", "virtual"])
     fields |= {"name": "s", "file": "s.yaml", "description": "d", "condition": {}}
-    fields |= {"subjects": {}, "takes": {}, "walks": {}, "blur_faces": True}
+    fields |= {
+        "subjects": {},
+        "takes": {},
+        "walks": {},
+        "blur_faces": True,
+        "views": {},
+        "halfbody": None,
+    }
     fields |= {"cameras": {"a": sessions.FixedCamera(), "b": sessions.FixedCamera()}}
     return sessions.Session(**{**fields, "parameters": {"calibrations": WAYS}, **changes})
 
@@ -89,3 +96,23 @@ def test_only_virtual_sessions_film_boards():
     assert not session(virtual={"boards": False}).films_boards()
     assert not session(virtual={}).films_boards()
     assert not session().films_boards()
+
+
+def test_ways_to_fuse_views_are_those_whose_cameras_a_session_names():
+    names = ["all-robust", "two-dlt", "three-dlt", "halfbody"]
+    parameters = {"fusions": names[:1], "compared_fusions": names[1:]}
+    plain = session(parameters=parameters)
+    assert plain.fusions() == ["all-robust"]
+    assert plain.fused_cameras("all-robust") == ("a", "b")
+    assert plain.fusions("compared_fusions") == []
+    halves = {"centre": "b", "left": "a", "right": "c"}
+    named = session(parameters=parameters, views={"two": ("b", "a")}, halfbody=halves)
+    assert named.fusions("compared_fusions") == ["two-dlt", "halfbody"]
+    assert named.fused_cameras("two-dlt") == ("b", "a")
+    assert named.fused_cameras("halfbody") == ("b", "a", "c")
+
+
+def test_takes_are_measured_with_those_calibrations_that_the_study_names():
+    parameters = {"calibrations": WAYS, "take_calibrations": ["known8", "file", "known18"]}
+    found = session(court_points="p.csv", parameters=parameters)
+    assert found.take_calibrations() == ["known18", "known8"]

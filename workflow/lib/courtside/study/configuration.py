@@ -174,12 +174,14 @@ def schema_faults(content, schema, file):
 
 
 def _overridable(steps):
-    """Return the schema of `override`: the step blocks, with no key required."""
+    """Return the schema of `override`: the step blocks, with no key required, and some of the lists."""
     blocks = {
         key: {name: value for name, value in block.items() if name != "required"}
         for key, block in steps["properties"].items()
         if block.get("type") == "object" and key != "conditions"
     }
+    lists = ("calibrations", "take_calibrations", "fusions", "compared_fusions")
+    blocks |= {key: steps["properties"][key] for key in lists}
     return {"type": "object", "additionalProperties": False, "properties": blocks}
 
 

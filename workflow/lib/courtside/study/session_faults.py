@@ -5,6 +5,7 @@ import re
 from courtside.study.session_files import VIRTUAL
 
 EXTERNAL = "results/external/"
+CALIBRATED = r"results/[^/]+/calibration/[^/]+/cameras\.toml"  # by the workflow, in another session
 
 
 def find(folder, file, content, known, root):
@@ -33,17 +34,45 @@ def find(folder, file, content, known, root):
         there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
         yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
     yield from _source_faults(file, content)
+    for key, views in content.get("views", {}).items():
+        yield from unknown(f"{file}: views.{key}", views, cameras)
+    yield from unknown(f"{file}: halfbody", content.get("halfbody", {}).values(), cameras)
     paths = dict(_paths(content))
     for name, take in content.get("takes", {}).items():
-        where = f"{file}: takes.{name}"
-        yield from unknown(f"{where}.videos", take["videos"], cameras)
-        yield from unknown(f"{where}.subjects", take.get("subjects", []), subjects)
-        start_s, stop_s = take.get("trim_s", (0, 1))
-        if start_s >= stop_s:
-            yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
-        paths |= {f"takes.{name}.videos.{camera}": path for camera, path in take["videos"].items()}
+        take = take or {}
+        yield from _take_faults(
+            f"{file}: takes.{name}", take, cameras, subjects, "virtual" in content
+        )
+        videos = take.get("videos", {})
+        paths |= {f"takes.{name}.videos.{camera}": path for camera, path in videos.items()}
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _take_faults(where, take, cameras, subjects, virtual):
+    expected, other = ("virtual", "videos") if virtual else ("videos", "virtual")
+    if expected not in take or other in take:
+        yield (
+            f"{where}: expected the key '{expected}' and not '{other}' in a "
+            f"{'virtual' if virtual else 'recorded'} session, found {sorted(take)}; correct the take"
+        )
+    if not subjects:
+        yield f"{where}: expected `subjects` in the session, found none; name the persons of the take"
+        return
+    there = take.get("subjects", subjects)
+    yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
+    yield from unknown(f"{where}.subjects", there, subjects)
+    filmed = take.get("virtual", {})
+    for key in ("clocks", "shake"):
+        yield from unknown(f"{where}.virtual.{key}", filmed.get(key, {}), cameras)
+    if virtual and filmed and set(filmed["bodies"]) != set(there):
+        yield (
+            f"{where}.virtual.bodies: expected a body for each of {sorted(there)}, found "
+            f"{sorted(filmed['bodies'])}; correct one of them"
+        )
+    start_s, stop_s = take.get("trim_s", (0, 1))
+    if start_s >= stop_s:
+        yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
 
 
 def _paths(content):
@@ -74,9 +103,16 @@ def _source_faults(file, content):
 
 
 def _virtual_faults(file, content):
-    if not content.get("walks") or not content["cameras"]:
-        yield f"{file}: virtual: expected cameras and a walk that it films, found none; name them"
-    named = [key for key, _ in _paths(content) if not key.endswith("chessboard.images")]
+    virtual, walks = content["virtual"], content.get("walks", {})
+    if not content["cameras"]:
+        yield f"{file}: virtual: expected cameras that it films with, found none; name them"
+    if bool(walks) != (virtual["walk_frames"] >= 2):
+        yield (
+            f"{file}: virtual.walk_frames: expected two or more with a walk and 0 without, found "
+            f"{virtual['walk_frames']} and walks {sorted(walks)}; correct one of them"
+        )
+    made = ("chessboard.images", "calibration.file")
+    named = [key for key, _ in _paths(content) if not key.endswith(made)]
     if named:
         yield (
             f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes its own; "
@@ -89,8 +125,11 @@ def _virtual_faults(file, content):
 
 def _recorded_faults(file, content):
     cameras, walks = content["cameras"], content.get("walks", {})
-    if not walks and "calibration" not in content:
-        yield f"{file}: expected `walks` or `calibration`, found neither; say how the cameras are to be found"
+    if not walks and "calibration" not in content and "court_points" not in content:
+        yield (
+            f"{file}: expected `walks`, `court_points` or `calibration`, found none; say how the cameras are "
+            "to be found"
+        )
     if len(cameras) < 2 and ("calibration" in content or content.get("takes")):
         yield f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
     for name in (name for name, walk in walks.items() if not walk):
@@ -185,7 +224,7 @@ def unknown(where, names, known):
 
 
 def _path_faults(where, path, known, root):
-    if path.startswith(f"{VIRTUAL}/"):
+    if path.startswith(f"{VIRTUAL}/") or re.fullmatch(CALIBRATED, path):
         return
     if not path.startswith(EXTERNAL):
         if not (root / path).exists():

@@ -20,16 +20,11 @@ def session(name, file, content, parameters):
         The study's configuration, whose steps `override` in `content` changes.
     """
     subjects = {key: Subject(**(value or {})) for key, value in content.get("subjects", {}).items()}
+    recordings = {} if content.get("virtual") is None else _virtual(name, content)
     takes = {
-        key: Take(
-            name=key,
-            videos=dict(value["videos"]),
-            subjects=tuple(value.get("subjects", subjects)),
-            trim_s=tuple(value["trim_s"]) if "trim_s" in value else None,
-        )
+        key: _take(key, value or {}, recordings.get("takes", {}).get(key), subjects)
         for key, value in content.get("takes", {}).items()
     }
-    recordings = {} if content.get("virtual") is None else _virtual(name, content)
     cameras = {key: _camera(value or {}) for key, value in content["cameras"].items()}
     for key, path in recordings.get("static", {}).items():
         cameras[key] = replace(cameras[key], static=path)
@@ -47,6 +42,8 @@ def session(name, file, content, parameters):
         virtual=content.get("virtual"),
         condition={},
         blur_faces=content.get("blur_faces", True),
+        views={key: tuple(cameras) for key, cameras in content.get("views", {}).items()},
+        halfbody=content.get("halfbody"),
         parameters=_merged(parameters, content.get("override", {})),
     )
 
@@ -81,6 +78,7 @@ def variations(base, name, content):
                 c: replace(v, static=files["static"][c], chessboard=None)
                 for c, v in base.cameras.items()
             },
+            takes={},
             walks=files["walks"],
             court_points=files["court_points"],
             virtual={**base.virtual, "boards": False, **content.get("set", {}), **varied},
@@ -93,9 +91,22 @@ def variations(base, name, content):
 
 def _merged(parameters, override):
     return {
-        key: {**value, **override.get(key, {})} if isinstance(value, dict) else value
+        key: {**value, **override.get(key, {})}
+        if isinstance(value, dict)
+        else override.get(key, value)
         for key, value in parameters.items()
     }
+
+
+def _take(name, content, filmed, subjects):
+    return Take(
+        name=name,
+        videos=filmed or dict(content["videos"]),
+        subjects=tuple(content.get("subjects", subjects)),
+        trim_s=tuple(content["trim_s"]) if "trim_s" in content else None,
+        synchronised=content.get("synchronised", False),
+        virtual=content.get("virtual"),
+    )
 
 
 def _walks(content):
@@ -107,8 +118,12 @@ def _virtual(name, content):
     folder = f"{VIRTUAL}/{name}"
     return {
         "static": {camera: f"{folder}/{camera}.mp4" for camera in content["cameras"]},
-        "walks": {walk: f"{folder}/{walk}.mp4" for walk in content["walks"]},
+        "walks": {walk: f"{folder}/{walk}.mp4" for walk in content.get("walks", {})},
         "court_points": f"{folder}/court_points.csv",
+        "takes": {
+            take: {camera: f"{folder}/takes/{take}/{camera}.mp4" for camera in content["cameras"]}
+            for take in content.get("takes", {})
+        },
     }
 
 

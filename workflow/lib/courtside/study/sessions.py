@@ -48,12 +48,18 @@ class Take:
         Persons in it.
     trim_s : tuple of float or None
         (start, stop) on each camera's own clock.
+    synchronised : bool
+        Whether the cameras share one clock; otherwise it is found from the videos.
+    virtual : dict or None
+        What a take of a virtual session is made from.
     """
 
     name: str
     videos: dict
     subjects: tuple
     trim_s: tuple | None = None
+    synchronised: bool = False
+    virtual: dict | None = None
 
 
 @dataclass(frozen=True)
@@ -78,6 +84,10 @@ class Session:
     condition : dict
         What makes this session differ from the one it is a variation of.
     blur_faces : bool
+    views : dict of str to tuple of str
+        Named sets of cameras.
+    halfbody : dict or None
+        The cameras that play `centre`, `left` and `right` in the paper's rule for three cameras.
     parameters : dict
         The steps' parameters of the study, with this session's overrides.
     """
@@ -95,6 +105,8 @@ class Session:
     virtual: dict | None
     condition: dict
     blur_faces: bool
+    views: dict
+    halfbody: dict | None
     parameters: dict
 
     def calibration_camera_names(self):
@@ -119,6 +131,21 @@ class Session:
             if next(there for kind, there in possible.items() if way.startswith(kind))
             and (boards or not way.endswith("-board"))
         ]
+
+    def take_calibrations(self):
+        """Return those of the session's calibrations that its takes are measured with."""
+        wanted = self.parameters["take_calibrations"]
+        return [way for way in self.calibrations() if way in wanted]
+
+    def fusions(self, key="fusions"):
+        """Return those of the study's ways to fuse views for which this session names cameras."""
+        return [name for name in self.parameters[key] if self.fused_cameras(name)]
+
+    def fused_cameras(self, fusion):
+        """Return the cameras that a way to fuse views rests on; empty where the session names none."""
+        if fusion == "halfbody":
+            return tuple((self.halfbody or {}).values())
+        return {"all": tuple(self.cameras), **self.views}.get(fusion.rpartition("-")[0], ())
 
     def variants(self):
         """Return the names of all structures from motion of the sweep: `{mapper}-n{N}-o{offset}`."""

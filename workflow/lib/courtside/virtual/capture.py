@@ -40,7 +40,8 @@ class Settings:
     size_px : (int, int)
         Width and height of every video, even numbers.
     walk_frames : int
-        Frames that the walk's video has, at least two: no more is filmed than the study's grid needs.
+        Frames that the walk's video has, at least two: no more is filmed than the study's grid needs; 0 for
+        a session without a walk.
     walk_seed : int
         Of the walk, its camera, its noise, and the people.
     speed_kmh : float
@@ -75,9 +76,9 @@ class Settings:
         if self.preset not in presets.PRESETS:
             expected = sorted(presets.PRESETS)
             raise ValueError(f"expected a preset of {expected}, found {self.preset!r}")
-        if self.walk_frames < 2 or self.static_frames < 1:
+        if self.walk_frames == 1 or self.walk_frames < 0 or self.static_frames < 1:
             found = f"{self.walk_frames} and {self.static_frames}"
-            raise ValueError(f"expected walk_frames >= 2 and static_frames >= 1, found {found}")
+            raise ValueError(f"expected walk_frames 0 or >= 2, static_frames >= 1, found {found}")
 
 
 class Studio:
@@ -162,8 +163,8 @@ def simulate(settings, court, folder, *, threads=1):
     settings : Settings
     court : courtside.geometry.courts.Court
     folder : str or Path
-        Gets `{camera}.mp4` for each camera of the layout, `walk.mp4`, `court_points.csv`, `truth.npz`, and
-        `boards/{camera}/*.png` where asked for; each file appears under its name only when whole.
+        Gets `{camera}.mp4` for each camera of the layout, `court_points.csv`, `truth.npz`, and `walk.mp4`
+        and `boards/{camera}/*.png` where asked for; each file appears under its name only when whole.
     threads : int
         Processes that render; the files do not depend on it.
 
@@ -179,8 +180,9 @@ def simulate(settings, court, folder, *, threads=1):
         empty = list(call("empty_hall", [(at,) for at in range(len(fixed))]))
         for at, (camera, picture) in enumerate(zip(fixed, empty, strict=True)):
             _film_fixed(settings, folder, at, camera, picture)
-        frames = call("walk_picture", [(at,) for at in range(settings.walk_frames)])
-        _film_walk(settings, folder, walked, frames)
+        if settings.walk_frames:
+            frames = call("walk_picture", [(at,) for at in range(settings.walk_frames)])
+            _film_walk(settings, folder, walked, frames)
     preset = presets.PRESETS[settings.preset]
     marked = clicking.simulate(
         fixed,
@@ -190,7 +192,7 @@ def simulate(settings, court, folder, *, threads=1):
         rng=_rng(settings.seed, CLICKS),
     )
     click_records.write(folder / "court_points.csv", marked, court.points)
-    walks = {WALK: _true_walk(walked, settings.walk_frames)}
+    walks = {WALK: _true_walk(walked, settings.walk_frames)} if settings.walk_frames else {}
     truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz)
 
 
