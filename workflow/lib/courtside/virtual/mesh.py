@@ -1,0 +1,102 @@
+"""A mesh of plain-coloured triangles: what an athlete and a racket hand to the renderer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles of one colour each.
+
+    Attributes
+    ----------
+    vertices : (V, 3) float32
+        Metres.
+    triangles : (F, 3) int32
+        Corners, counter-clockwise seen from outside.
+    colours : (F, 3) uint8
+        BGR.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    colours: np.ndarray
+
+    def __post_init__(self):
+        vertices = np.ascontiguousarray(self.vertices, dtype=np.float32)
+        triangles = np.ascontiguousarray(self.triangles, dtype=np.int32)
+        if vertices.ndim != 2 or vertices.shape[1] != 3:
+            raise ValueError(f"expected vertices (V, 3), found {vertices.shape}")
+        if triangles.ndim != 2 or triangles.shape[1] != 3:
+            raise ValueError(f"expected triangles (F, 3), found {triangles.shape}")
+        if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(vertices):
+            raise ValueError(f"expected corners among {len(vertices)} vertices, found others")
+        if self.colours.shape != triangles.shape or self.colours.dtype != np.uint8:
+            found = f"{self.colours.dtype} {self.colours.shape}"
+            raise ValueError(f"expected colours {triangles.shape} of uint8, found {found}")
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "triangles", triangles)
+
+
+def join(meshes):
+    """Put meshes into one.
+
+    Parameters
+    ----------
+    meshes : list of Mesh
+        At least one.
+
+    Returns
+    -------
+    mesh : Mesh
+        Their vertices and triangles in that order.
+    """
+    counts = [len(mesh.vertices) for mesh in meshes]
+    starts = np.cumsum([0, *counts[:-1]])
+    return Mesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([m.triangles + start for m, start in zip(meshes, starts, strict=True)]),
+        np.concatenate([mesh.colours for mesh in meshes]),
+    )
+
+
+def normals(vertices, triangles):
+    """Return the outward unit normal of each vertex, the mean over its triangles by area.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (F, 3) int
+
+    Returns
+    -------
+    normals : (V, 3) float
+        Zero where a vertex has no triangle.
+    """
+    corners = np.asarray(vertices, dtype=float)[triangles]
+    faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    corner = np.asarray(triangles).ravel()
+    summed = np.stack(
+        [np.bincount(corner, np.repeat(faces[:, i], 3), len(vertices)) for i in range(3)], axis=1
+    )
+    length = np.linalg.norm(summed, axis=1, keepdims=True)
+    return summed / np.where(length > 0, length, 1)
+
+
+def volume(vertices, triangles):
+    """Return the volume of a closed mesh, m3; small holes count as if closed towards its middle.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+    triangles : (F, 3) int
+
+    Returns
+    -------
+    volume_m3 : float
+        The sum of signed tetrahedra (divergence theorem); positive if triangles face outwards.
+    """
+    vertices = np.asarray(vertices, dtype=float)
+    first, second, third = np.moveaxis(vertices[triangles] - vertices.mean(axis=0), 1, 0)
+    return float(np.einsum("ij,ij->", first, np.cross(second, third)) / 6)
