@@ -1,0 +1,242 @@
+"""One trial of measuring a racket: two cameras calibrated in several ways, and the length that each gives."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from courtside.geometry import alignment, court_adjustment, court_errors, known_points
+from courtside.geometry.cameras import project
+from courtside.geometry.triangulation import triangulate
+from courtside.study.errors import InputError
+
+THREE, EIGHT, ALL = "three", "eight", "all"  # sets of court points
+REWEIGHTED = 3  # times; each divides the remaining effect of unequal depths by about a thousand
+ERRORS = ("mean_abs_mm", "bias_mm", "std_below_mm", "std_above_mm")
+COLUMNS = ("method", "n_clicks", "outcome", "volume_rms_cm", "n_frames", *ERRORS)
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """Cameras calibrated in one way.
+
+    Attributes
+    ----------
+    method : str
+        `dlt` and `known`: from court points alone, linear and by least squares; `paper`: structure from
+        motion in the published frame; `sfm`: structure from motion adjusted with court points;
+        `perfect`: as the cameras are.
+    n_clicks : int
+        Court points that were to be clicked in each picture.
+    outcome : str
+        Empty, or in one line why there is no calibration.
+    place : callable or None
+        Points (N, 3) m from pixels: dict of str to (N, 2), by camera; NaN where missing.
+    volume_rms_cm : float
+        How wrong points in the playing volume are placed from exact pixels; NaN without calibration.
+    """
+
+    method: str
+    n_clicks: int
+    outcome: str
+    place: object
+    volume_rms_cm: float
+
+
+def calibrate(record, truth, court, clicks, *, click_sigma_px, click_bias_px, click_loss):
+    """Calibrate cameras in every way, from the same clicks.
+
+    Parameters
+    ----------
+    record : courtside.records.ties.Record
+        Its fixed cameras include those of `truth`.
+    truth : list of Camera
+        The cameras that see the racket, as they are.
+    court : courtside.geometry.courts.Court
+        With the sets "three" and "eight".
+    clicks : dict of str to (P, 2) float
+        By camera, px; NaN where not clicked.
+    click_sigma_px, click_bias_px, click_loss : float
+        As for `court_adjustment.solve`.
+
+    Returns
+    -------
+    ways : list of Way
+    """
+    eight, points = court.indices(EIGHT), court.indices(ALL)
+    known = {"court": court, "clicks": clicks, "sigma_px": click_sigma_px, "truth": truth}
+    tied = {"click_sigma_px": click_sigma_px, "click_bias_px": click_bias_px}
+    tied |= {"click_loss": click_loss, "clicks": clicks, "court": court, "truth": truth}
+    made = [
+        ("dlt", eight, partial(_by_points, points=eight, linear=True, **known)),
+        ("known", eight, partial(_by_points, points=eight, linear=False, **known)),
+        ("paper", court.indices(THREE), partial(_by_paper, record, court, clicks, truth)),
+        ("sfm", eight, partial(_by_ties, record, points=eight, **tied)),
+        ("sfm", points, partial(_by_ties, record, points=points, **tied)),
+        ("perfect", (), partial(partial, alignment.reconstruct, truth)),
+    ]
+    grid = court_errors.volume(court)
+    seen = {camera.name: project(camera, grid) for camera in truth}
+    return [_way(name, len(used), find, grid, seen) for name, used, find in made]
+
+
+def _way(method, n_clicks, find, grid, seen):
+    try:
+        place = find()
+    except InputError as error:
+        return Way(method, n_clicks, str(error), None, np.nan)
+    error = court_errors.over_volume(place(seen) - grid)
+    return Way(method, n_clicks, "", place, error["volume_rms_cm"])
+
+
+def _by_points(court, clicks, sigma_px, truth, *, points, linear):
+    sizes = {camera.name: camera.size for camera in truth}
+    way = known_points.Method(linear, False, points)
+    found = known_points.calibrate(way, court, clicks, sizes, {}, click_sigma_px=sigma_px)
+    if linear:
+        return partial(place_linearly, {name: each.matrix for name, each in found.items()})
+    return partial(alignment.reconstruct, known_points.cameras(found))
+
+
+def _by_paper(record, court, clicks, truth):
+    if record.outcome:
+        raise InputError(record.outcome)
+    sfm = record.sfm_cameras
+    frame = alignment.paper_frame(court, alignment.reconstruct(sfm, clicks)).nearest
+    return _cameras([frame.camera(camera) for camera in sfm], truth)
+
+
+def _by_ties(record, clicks, court, truth, *, points, **settings):
+    if record.ties is None:
+        raise InputError(record.outcome or record.fault)
+    use = np.isin(np.arange(len(court.points)), points)
+    solved = court_adjustment.solve(record.ties, clicks, court, points=use, **settings)
+    return _cameras(solved.cameras, truth)
+
+
+def _cameras(found, truth):
+    """Return how to place points by those of the cameras that see the racket."""
+    by_name = {camera.name: camera for camera in found}
+    return partial(alignment.reconstruct, [by_name[camera.name] for camera in truth])
+
+
+def place_linearly(matrices, seen):
+    """Triangulate from projection matrices as DLT gives them, skew and all.
+
+    Parameters
+    ----------
+    matrices : dict of str to (3, 4) float
+        From homogeneous world points (m) to homogeneous pixels, by camera.
+    seen : dict of str to (N, 2) float
+        Px; NaN where missing.
+
+    Returns
+    -------
+    xyz : (N, 3) float
+        Metres; NaN where fewer than two cameras see the point.
+
+    Notes
+    -----
+    A row of the linear system is off by the error in px times the depth. Solved again with weights of one
+    over the depth, so that errors in px are minimised as by least squares (Hartley & Sturm 1997, iterative
+    linear method).
+    """
+    stacked = np.stack(list(matrices.values()))
+    xy = np.stack([np.asarray(seen[name], dtype=float) for name in matrices])
+    known = np.isfinite(xy).all(axis=-1)
+    weight = known.astype(float)
+    for _ in range(REWEIGHTED):
+        xyz = triangulate(np.nan_to_num(xy), weight, stacked)
+        depth = np.abs(np.einsum("cj,nj->cn", stacked[:, 2, :3], xyz) + stacked[:, 2, 3:])
+        weight = np.where(known & np.isfinite(depth), 1 / np.maximum(depth, 1e-9), 0.0)
+    return xyz
+
+
+def measure(way, seen):
+    """Return the length of a racket in every frame, (F,) m.
+
+    Parameters
+    ----------
+    way : Way
+        With a calibration.
+    seen : dict of str to (2 F, 2) float
+        Clicks of top and butt, frame after frame, px; NaN where missing.
+
+    Returns
+    -------
+    length_m : (F,) float
+        NaN where an end was not clicked in two views.
+    """
+    ends = way.place(seen).reshape(-1, 2, 3)
+    return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+
+
+def score(length_m, true_m, below):
+    """Return how wrong measured lengths are, by the names of `ERRORS`.
+
+    Parameters
+    ----------
+    length_m : (F,) float
+        NaN where missing.
+    true_m : float
+    below : (F,) bool
+        Frames in which the racket is below the net's height.
+
+    Returns
+    -------
+    errors : dict of str to float
+        Mean absolute error, mean error, standard deviations below and above, mm; `n_frames`.
+
+    Notes
+    -----
+    # ASSUME: the published standard deviations divide by n - 1, which the paper does not say.
+    """
+    there = np.isfinite(length_m)
+    off_mm = 1000 * (length_m - true_m)
+    return {
+        "n_frames": int(there.sum()),
+        "mean_abs_mm": _mean(np.abs(off_mm[there])),
+        "bias_mm": _mean(off_mm[there]),
+        "std_below_mm": _std(off_mm[there & below]),
+        "std_above_mm": _std(off_mm[there & ~below]),
+    }
+
+
+def _mean(values):
+    return float(np.mean(values)) if len(values) else np.nan
+
+
+def _std(values):
+    return float(np.std(values, ddof=1)) if len(values) > 1 else np.nan
+
+
+def rows(ways, seen, true_m, below):
+    """Return one row for each way: what it measured from the same clicks of a racket.
+
+    Parameters
+    ----------
+    ways : list of Way
+    seen : dict of str to (2 F, 2) float
+        As for `measure`.
+    true_m : float
+    below : (F,) bool
+
+    Returns
+    -------
+    found : list of dict
+        With the keys `COLUMNS` and `length_columns`.
+    """
+    found = []
+    for way in ways:
+        row = {"method": way.method, "n_clicks": way.n_clicks, "outcome": way.outcome}
+        if way.place is not None:
+            length_m = measure(way, seen)
+            row |= {"volume_rms_cm": way.volume_rms_cm, **score(length_m, true_m, below)}
+            row |= dict(zip(length_columns(len(below)), 1000 * length_m, strict=True))
+        found.append(row)
+    return found
+
+
+def length_columns(n_frames):
+    """Return the names of the columns with each frame's length in mm."""
+    return [f"length_{frame:02}_mm" for frame in range(1, n_frames + 1)]

@@ -1,0 +1,19 @@
+"""Draw the length of a racket by several calibrations: evaluations of sessions -> figure, CSV."""
+
+from courtside.figures import badminton_fig12, racket_numbers, style
+from courtside.study import log
+
+
+def main(lengths_csv, pdf, png, csv):
+    numbers = racket_numbers.table(racket_numbers.read(lengths_csv))
+    style.save(badminton_fig12.draw(numbers), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.lengths,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

@@ -1,0 +1,49 @@
+"""Measure a racket by cameras calibrated in several ways: ties, truth -> lengths and errors of every run."""
+
+from itertools import product
+
+import pandas as pd
+
+from courtside.geometry import courts, racket_trials
+from courtside.records import ties, truth
+from courtside.study import log
+from courtside.study.files import atomic
+from courtside.virtual import clicking, racket_swings
+
+VIEWS = 2  # the paper's: the first two fixed cameras of a layout
+
+
+def main(
+    ties_npz, truth_npz, court_yaml, lengths_csv, *, labels, clicks, length_m, tips_px, **options
+):
+    court, real = courts.read(court_yaml), truth.read(truth_npz)
+    views, records = real.cameras[:VIEWS], [ties.read(path) for path in ties_npz]
+    rows = []
+    for run, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
+        offset = run % len(records)
+        ways = racket_trials.calibrate(records[offset], views, court, marked, **options)
+        of_run = {"seed": clicks["seed"], "run": run}
+        ends = racket_swings.draw(court, length_m, **of_run)
+        below = ends[..., 2].mean(axis=1) < court.net["mid_height_m"]
+        for sigma_px, again in product(tips_px, (False, True)):
+            tip = {"sigma_px_at_3840": sigma_px, "again": again}
+            seen = racket_swings.click(views, ends, **tip, **of_run)
+            about = {"offset": offset, "draw": run, "tip_sigma_px": sigma_px, "again": again}
+            found = racket_trials.rows(ways, seen, length_m, below)
+            rows += [{**labels, **about, **row} for row in found]
+    lengths = racket_trials.length_columns(racket_swings.FRAMES)
+    columns = [*labels, *about, *racket_trials.COLUMNS, *lengths]
+    with atomic(lengths_csv) as temporary:
+        table = pd.DataFrame(rows).reindex(columns=columns)
+        table.to_csv(temporary, index=False, float_format="%.6g")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.ties,
+        snakemake.input.truth,
+        snakemake.input.court,
+        snakemake.output.lengths,
+        **snakemake.params.settings,
+    )
