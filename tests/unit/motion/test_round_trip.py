@@ -1,0 +1,150 @@
+"""Table 1: the identity, rounding against the variance of a rounded number, true errors put in by hand."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import scene
+import walker
+from courtside.geometry.cameras import Camera
+from courtside.motion import round_trip
+from courtside.study.errors import InputError
+
+PUBLISHED = Path(__file__).parents[3] / "config" / "published" / "badminton_tab01.csv"
+DIST = (-0.12, 0.05, 0.001, -0.0005, 0.0)
+
+
+def symmetric_pair(distance_m=12.0, focal_px=1500.0):
+    """Return two cameras at right angles that look at the origin."""
+    matrix = np.array([[focal_px, 0, 960.0], [0, focal_px, 540.0], [0, 0, 1]])
+    centres = [(distance_m, 0, 0), (0, distance_m, 0)]
+    return [
+        Camera(f"c{at}", (1920, 1080), matrix, np.zeros(5), scene.look_at(centre, (0, 0, 0)))
+        for at, centre in enumerate(centres)
+    ]
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_the_exact_round_trip_is_an_identity_whatever_the_cameras(count):
+    cameras = scene.ring(count, dist=DIST)[:count]
+    moved = [
+        Camera(c.name, c.size, c.K, c.dist * at, c.cam_from_world) for at, c in enumerate(cameras)
+    ]
+    for used in (cameras, moved):
+        distance = round_trip.distance_after(used, scene.points(500))
+        assert np.isfinite(distance).all()
+        assert distance.max() < 1e-6
+        assert round_trip.round_trips(used, scene.points(50), 3840)["exact"][1].max() < 1e-6
+
+
+def test_a_trip_that_is_no_identity_is_refused(monkeypatch):
+    cameras = scene.ring(3)
+    there = round_trip.camera_models.project
+    monkeypatch.setattr(round_trip.camera_models, "project", lambda c, x: there(c, x) + 1e-3)
+    with pytest.raises(ValueError, match=r"cameras c0\+c1\+c2: expected .* inverse"):
+        round_trip.round_trips(cameras, scene.points(5), 3840)
+
+
+@pytest.mark.parametrize(("step_px", "share"), [(1.0, 1.0), (0.5, 0.5)])
+def test_rounding_moves_points_as_a_rounded_number_scatters(step_px, share):
+    """At right angles x and y come from one view each, z from the mean of two: variance 2.5 / 12 px2.
+
+    The cube is large enough for the two views to round a point's height independently.
+    """
+    distance_m, focal_px = 12.0, 1500.0
+    rng = np.random.default_rng(0)
+    xyz = rng.uniform(-0.6, 0.6, (40000, 3))
+    cameras = symmetric_pair(distance_m, focal_px)
+    moved = round_trip.distance_after(cameras, xyz, [step_px, step_px])
+    expected_mm = 1000 * share * distance_m / focal_px * np.sqrt(2.5 / 12)
+    assert np.sqrt(np.mean(moved**2)) == pytest.approx(expected_mm, rel=0.015)
+
+
+def test_the_grid_of_twice_the_width_has_two_cells_in_each_pixel():
+    xy = np.array([[0.1, 0.3], [7.24, -0.3], [7.6, 100.9]])
+    np.testing.assert_allclose(round_trip.round_to_grid(xy, 1.0), np.rint(xy))
+    np.testing.assert_allclose(
+        round_trip.round_to_grid(xy, 0.5), [[0.25, 0.25], [7.25, -0.25], [7.75, 100.75]]
+    )
+
+
+def test_the_published_table_has_its_stated_means():
+    published = pd.read_csv(PUBLISHED)
+    assert len(published) == 14
+    assert published["joint"].is_unique
+    assert published["mean_mm"].mean() == pytest.approx(2.72, abs=0.005)
+    assert published["sd_mm"].mean() == pytest.approx(0.81, abs=0.005)
+
+
+def make(n_frames=40):
+    """Return a take of two persons on a ring of three cameras."""
+    points = walker.points(n_persons=2, n_frames=n_frames)
+    return points, scene.ring(4)
+
+
+def test_the_frames_are_in_the_middle_or_where_asked():
+    points, _ = make()
+    chosen = round_trip.span(points, 17)
+    assert (chosen.frames.start, chosen.frames.stop) == (11, 28)
+    assert round_trip.span(points, None).frames == slice(0, 40)
+    start = round_trip.span(points, 5, points.time_s[8]).frames
+    assert (start.start, start.stop) == (8, 13)
+    with pytest.raises(InputError, match="found 2 up to"):
+        round_trip.span(points, 5, points.time_s[-2])
+
+
+def truth_of(points, shift_m):
+    """Return a truth 100 times a second of which the points are `shift_m` off, moving at constant speed."""
+    time_s = np.arange(points.time_s[0] - 0.1, points.time_s[-1] + 0.1, 0.01)
+    speed = np.array([0.5, -0.2, 0.1])
+    base = np.arange(len(points.joints))[:, None] * [0.01, 0.02, 0.03]
+    real = base + speed * time_s[:, None, None]
+    at_points = base + speed * points.time_s[:, None, None] + shift_m
+    return (
+        SimpleNamespace(
+            joints=points.joints[::-1],
+            person_id=points.person_id[::-1],
+            time_s=time_s,
+            xyz=np.stack([real[:, ::-1] + 7.0, real[:, ::-1]]),
+        ),
+        at_points,
+    )
+
+
+def test_rows_say_mean_deviation_count_and_over_what():
+    points, cameras = make()
+    real, moving = truth_of(points, [0.03, 0.0, 0.04])
+    points.xyz[0] = moving
+    points.xyz[0, 20, 3] = np.nan
+    joints = [points.joints[3], points.joints[5], "no_such_joint"]
+    rows = round_trip.table(points, cameras, joints, round_trip.span(points, 17), truth=real)
+    first = rows[rows["person"] == points.person_id[0]].set_index(["row", "joint"])
+    true = first.loc[("truth", joints[1])]
+    np.testing.assert_allclose([true["mean"], true["sd"]], [50.0, 0.0], atol=1e-9)
+    assert (true["n"], true["unit"]) == (17, "mm")
+    assert first.loc[("truth", joints[0]), "n"] == 16
+    assert first.loc[("exact", joints[1]), "mean"] < 1e-6
+    seen = first.loc[("reprojection", joints[1])]
+    error = points.reproj_error_px[0, 11:28, 5]
+    np.testing.assert_allclose([seen["mean"], seen["sd"]], [error.mean(), error.std(ddof=1)])
+    assert seen["n"] == 17 * 3
+    assert seen["over"].startswith("17 frames from")
+    assert seen["over"].endswith("x 3 cameras")
+    of_all = first.loc[("rounded", "all")]
+    assert of_all["n"] == 2
+    assert of_all["mean"] == pytest.approx(first.loc["rounded"]["mean"].iloc[:2].mean())
+    assert set(rows["n_cameras"]) == {3}
+
+
+def test_a_truth_of_other_persons_and_a_camera_without_calibration_are_refused():
+    points, cameras = make()
+    real, _ = truth_of(points, 0.0)
+    real.person_id = np.array(["x", "y"])
+    chosen = round_trip.span(points, 5)
+    with pytest.raises(InputError, match=r"found \['x', 'y'\]"):
+        round_trip.table(points, cameras, points.joints[:2], chosen, truth=real)
+    with pytest.raises(InputError, match="camera c2: expected one of"):
+        round_trip.table(points, cameras[:2], points.joints[:2], chosen)

@@ -1,0 +1,123 @@
+"""Changes over sessions: false alarms as rare as said, real ones found, mixtures refused or marked."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from courtside.motion import measure_tables, session_changes
+from courtside.study.errors import InputError
+
+
+def rows(sessions, measure="neck_distance", subject="p1"):
+    """Return long rows; `sessions`: list of (name, date, values, other labels)."""
+    tables = []
+    for name, date, values, labels in sessions:
+        for at, value in enumerate(values):
+            take = pd.DataFrame(
+                {"person": [subject], "measure": [measure], "value": [value], "unit": ["m"]}
+            )
+            label = {"session": name, "date": date, "take": f"t{at}", "model": "net"}
+            label |= {"calibration": "sfm-n40", **labels}
+            tables.append(measure_tables.labelled(take, label))
+    return pd.concat(tables, ignore_index=True)
+
+
+def compared(table, detectable=None, **options):
+    own = session_changes.of_subject(table, "p1", **options)
+    values = session_changes.over_sessions(own)
+    errors = session_changes.errors_of_measurement(own, detectable)
+    return values, session_changes.changes(values, errors)
+
+
+def test_changes_are_of_means_in_the_order_of_dates():
+    table = rows(
+        [
+            ("later", "2025-03-01", [12.0, 14.0], {}),
+            ("first", "2024-03-01", [10.0, 11.0, 9.0], {}),
+        ]
+    )
+    values, changes = compared(table)
+    assert values["session"].tolist() == ["first", "later"]
+    assert values["value"].tolist() == [10.0, 13.0]
+    assert values["n_takes"].tolist() == [3, 2]
+    row = changes.iloc[0]
+    assert (row["session"], row["against"], row["change"]) == ("later", "first", 3.0)
+    sem = np.sqrt((2 * 1.0 + 1 * 2.0) / 3)  # pooled over both sessions
+    assert row["freedom"] == 3
+    assert row["detectable"] == pytest.approx(3.182446 * sem * np.sqrt(1 / 3 + 1 / 2))
+    assert row["verdict"] == "within"
+
+
+def test_without_dates_sessions_stay_as_they_come():
+    table = rows([("b", "", [1.0, 2.0], {}), ("a", "", [1.0, 2.0], {})])
+    assert compared(table)[0]["session"].tolist() == ["b", "a"]
+
+
+def test_nobody_changed_and_one_in_twenty_is_said_to():
+    rng = np.random.default_rng(0)
+    table = rows([("a", "", np.zeros(3), {}), ("b", "", np.zeros(4), {})])
+    table = pd.concat([table.assign(measure=f"m{at}") for at in range(1500)], ignore_index=True)
+    table["value"] = rng.normal(8.0, 0.3, len(table))
+    alarms = compared(table)[1]["verdict"] == "real"
+    assert len(alarms) == 1500
+    assert 0.035 < alarms.mean() < 0.065
+
+
+def test_a_large_change_is_real_and_one_take_each_tells_nothing():
+    steady = [("a", "", [8.0, 8.1, 7.9], {}), ("b", "", [9.0, 9.1], {})]
+    assert compared(rows(steady))[1]["verdict"].tolist() == ["real"]
+    single = rows([("a", "", [8.0], {}), ("b", "", [9.0], {})])
+    row = compared(single)[1].iloc[0]
+    assert row["verdict"] == "untold"
+    assert np.isnan(row["detectable"])
+
+
+def test_a_study_of_repeats_stands_in_for_missing_ones():
+    single = rows([("a", "", [8.0], {}), ("b", "", [9.0], {})])
+    sem = 0.3
+    known = pd.DataFrame(
+        {
+            "measure": ["neck_distance"],
+            "detectable": [1.959964 * np.sqrt(2) * sem],
+            "n": [100003],
+            "n_subjects": [3],
+        }
+    )
+    row = compared(single, known)[1].iloc[0]
+    assert row["detectable"] == pytest.approx(1.96 * np.sqrt(2) * sem, rel=1e-3)
+    assert row["verdict"] == "real"
+
+
+@pytest.mark.parametrize(
+    ("label", "found"),
+    [
+        ({"model": "cpm14"}, "expected one model over all sessions, found cpm14 in b; net in a"),
+        (
+            {"calibration": "known18"},
+            "expected one calibration over all sessions, found known18 in b",
+        ),
+        (
+            {"definition": "trained"},
+            r"expected one definition of neck_distance, found \['', 'trained'\]",
+        ),
+    ],
+)
+def test_mixtures_are_refused_or_marked(label, found):
+    table = rows([("a", "", [8.0, 8.1, 7.9], {}), ("b", "", [9.0, 9.1], {})])
+    for name, value in label.items():
+        table.loc[table["session"] == "b", name] = value
+    with pytest.raises(InputError, match=found):
+        compared(table)
+    row = compared(table, allow_mixed=True)[1].iloc[0]
+    assert row["verdict"] == "mixed"
+    assert row["mixed"].startswith(next(iter(label)))
+
+
+def test_unknown_subjects_and_measures_are_named():
+    table = rows([("a", "", [8.0], {})])
+    with pytest.raises(InputError, match=r"subject p9: expected one of \['p1'\]"):
+        session_changes.of_subject(table, "p9")
+    with pytest.raises(
+        InputError, match=r"expected values of \['mass_speed'\], found \['neck_dist"
+    ):
+        session_changes.of_subject(table, "p1", ["mass_speed"])

@@ -1,0 +1,209 @@
+"""Past and present: the measures of one subject over sessions, and which changes are real."""
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+from courtside.study.errors import InputError
+
+CONDITIONS = (
+    "model",
+    "calibration",
+)  # what must not change unsaid; definition is checked beside them
+LEVEL = 0.95
+FACTOR = stats.norm.ppf(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
+REAL, WITHIN, UNTOLD, MIXED = "real", "within", "untold", "mixed"
+VALUES = [
+    "measure", "unit", "session", "date", "order", "model", "calibration", "definition", "n_takes", "value",
+    "sd_takes",
+]  # fmt: skip
+CHANGES = [
+    "measure", "unit", "session", "date", "order", "against", "change", "detectable", "freedom", "verdict",
+    "mixed",
+]  # fmt: skip
+
+
+def of_subject(rows, subject, measures=None, *, allow_mixed=False):
+    """Return the rows of one subject, in order of sessions.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `courtside.motion.measure_tables.read`.
+    subject : str
+    measures : sequence of str, optional
+        Those wanted; all by default.
+    allow_mixed : bool
+        Whether values of different networks or kinds of calibration, or of one measure defined differently,
+        may stand in one table: `changes` marks them.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+
+    Raises
+    ------
+    InputError
+        If there is no such subject or measure, or values are mixed and may not be.
+    """
+    known = sorted(rows["subject"].unique())
+    if subject not in known:
+        raise InputError(
+            f"subject {subject}: expected one of {known}, found none of that name; correct the name"
+        )
+    rows = rows[rows["subject"] == subject]
+    missing = [name for name in measures or [] if name not in set(rows["measure"])]
+    if missing:
+        raise InputError(
+            f"subject {subject}: expected values of {missing}, found {sorted(rows['measure'].unique())}; "
+            "choose some of these"
+        )
+    if measures:
+        rows = rows[rows["measure"].isin(measures)]
+    if not allow_mixed:
+        _refuse_mixed(rows, subject)
+    return rows
+
+
+def _refuse_mixed(rows, subject):
+    for name in CONDITIONS:
+        if rows[name].nunique() > 1:
+            found = rows.groupby(name, sort=True)["session"].unique()
+            words = "; ".join(f"{value} in {', '.join(found[value])}" for value in found.index)
+            raise InputError(
+                f"subject {subject}: expected one {name} over all sessions, found {words}; measure all with "
+                "one, or set allow_mixed to have them marked"
+            )
+    defined = rows.groupby("measure")["definition"].nunique()
+    if (defined > 1).any():
+        measure = defined.index[defined > 1][0]
+        found = sorted(rows.loc[rows["measure"] == measure, "definition"].unique())
+        raise InputError(
+            f"subject {subject}: expected one definition of {measure}, found {found}; measure all sessions "
+            "alike, or set allow_mixed to have them marked"
+        )
+
+
+def over_sessions(rows):
+    """Average the takes of each session.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `of_subject`.
+
+    Returns
+    -------
+    values : pandas.DataFrame
+        `VALUES`, one row per measure, session and way of measuring: mean over the takes and their standard
+        deviation. `order` counts sessions by date where all have one, and else as they come.
+    """
+    rows = rows.dropna(subset=["value"])
+    order = _order(rows)
+    keys = ["measure", "unit", "session", "date", *CONDITIONS, "definition"]
+    groups = rows.groupby(keys, sort=False)["value"]
+    found = groups.agg(n_takes="count", value="mean", sd_takes="std").reset_index()
+    found["order"] = found["session"].map(order)
+    names = list(dict.fromkeys(rows["measure"]))
+    found["place"] = found["measure"].map(names.index)
+    return found.sort_values(["place", "order"], kind="stable")[VALUES].reset_index(drop=True)
+
+
+def _order(rows):
+    sessions = rows[["session", "date"]].drop_duplicates()
+    if (sessions["date"] != "").all():
+        sessions = sessions.sort_values("date", kind="stable")
+    return {session: at for at, session in enumerate(dict.fromkeys(sessions["session"]))}
+
+
+def errors_of_measurement(rows, detectable=None):
+    """Return each measure's standard error of measurement.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `of_subject`.
+    detectable : pandas.DataFrame, optional
+        measure, detectable: smallest detectable changes of single takes from a study of repeats, with as many
+        degrees of freedom as n less n_subjects says.
+
+    Returns
+    -------
+    errors : pandas.DataFrame, index measure
+        sem, freedom. From `detectable` where it has the measure, and else from the takes within one session:
+        NaN where there are none.
+    """
+    keys = ["measure", "session", "date", *CONDITIONS, "definition"]
+    own = rows.dropna(subset=["value"]).groupby(keys, sort=False)["value"]
+    spread = own.agg(["count", "var"]).reset_index()
+    spread["squares"] = (spread["var"] * (spread["count"] - 1)).fillna(0.0)
+    spread["freedom"] = spread["count"] - 1
+    pooled = spread.groupby("measure", sort=False)[["squares", "freedom"]].sum()
+    with np.errstate(invalid="ignore"):
+        found = pd.DataFrame({"sem": np.sqrt(pooled["squares"] / pooled["freedom"])})
+    found["freedom"] = pooled["freedom"].astype(int)
+    if detectable is not None:
+        known = detectable.dropna(subset=["detectable"]).set_index("measure")
+        for measure in found.index.intersection(known.index):
+            row = known.loc[measure]
+            sem = row["detectable"] / (FACTOR * np.sqrt(2))
+            found.loc[measure] = [sem, int(row["n"] - row["n_subjects"])]
+    return found
+
+
+def changes(values, errors):
+    """Compare every session with the first one.
+
+    Parameters
+    ----------
+    values : pandas.DataFrame
+        Of `over_sessions`.
+    errors : pandas.DataFrame
+        Of `errors_of_measurement`.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        `CHANGES`, one row per measure and later value. `detectable` is the smallest detectable change of
+        means over so many takes, t SEM sqrt(1/n + 1/n'), with Student's t (1.96 for many degrees of freedom):
+        5 % of those who did not change exceed it. `verdict`: `real` beyond it, `within` it, `untold` without
+        repeats, `mixed` where the way of measuring changed, as `mixed` says: such a change may be the
+        network's or the calibration's.
+
+    Notes
+    -----
+    Repeats within a session know nothing of what only differs between sessions (a new calibration, another
+    hall): the smallest detectable change is a lower bound then.
+    """
+    rows = []
+    for measure, part in values.groupby("measure", sort=False):
+        sem, freedom = errors.loc[measure, ["sem", "freedom"]]
+        factor = stats.t.ppf(0.5 + LEVEL / 2, freedom) if freedom > 0 else np.nan
+        first = part.iloc[0]
+        for _, row in part.iloc[1:].iterrows():
+            change = row["value"] - first["value"]
+            detectable = factor * sem * np.sqrt(1 / first["n_takes"] + 1 / row["n_takes"])
+            mixed = "; ".join(
+                f"{name}: {first[name]} -> {row[name]}"
+                for name in (*CONDITIONS, "definition")
+                if first[name] != row[name]
+            )
+            where = (
+                measure,
+                row["unit"],
+                row["session"],
+                row["date"],
+                row["order"],
+                first["session"],
+            )
+            verdict = _verdict(change, detectable, mixed)
+            rows.append((*where, change, detectable, int(freedom), verdict, mixed))
+    return pd.DataFrame(rows, columns=CHANGES)
+
+
+def _verdict(change, detectable, mixed):
+    if mixed:
+        return MIXED
+    if not np.isfinite(detectable):
+        return UNTOLD
+    return REAL if abs(change) > detectable else WITHIN

@@ -1,0 +1,30 @@
+"""Compare the sessions of one subject: measures of many takes -> values, changes, figure."""
+
+import pandas as pd
+
+from courtside.figures import archive, style
+from courtside.motion import measure_tables, session_changes
+from courtside.study import log
+
+
+def main(measures_csv, agreement_csv, pdf, png, csv, *, labels, subject, measures, allow_mixed):
+    rows = measure_tables.read(measures_csv, labels)
+    rows = session_changes.of_subject(rows, subject, measures, allow_mixed=allow_mixed)
+    known = pd.read_csv(agreement_csv) if agreement_csv else None
+    values = session_changes.over_sessions(rows)
+    changes = session_changes.changes(values, session_changes.errors_of_measurement(rows, known))
+    log.logger.info("%s: %s", subject, changes["verdict"].value_counts().to_dict())
+    numbers = archive.table(values, changes)
+    style.save(archive.draw(numbers, subject), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.measures,
+        snakemake.input.get("agreement"),
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        **snakemake.params.settings,
+    )

@@ -1,0 +1,24 @@
+"""Draw table 1: rows per joint of a take, published values -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.figures import badminton_tab01, style
+from courtside.study import log
+
+
+def main(rows_csv, published_csv, pdf, png, csv, *, title):
+    rows = pd.read_csv(rows_csv, dtype={"person": str}, keep_default_na=True)
+    numbers = badminton_tab01.table(rows, pd.read_csv(published_csv))
+    style.save(badminton_tab01.draw(numbers, title), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.rows,
+        snakemake.input.published,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        title=snakemake.params.title,
+    )

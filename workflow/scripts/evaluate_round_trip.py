@@ -1,0 +1,55 @@
+"""Evaluate the round trip of table 1: 3D keypoints of several sets of cameras, truth -> rows per joint."""
+
+import pandas as pd
+
+from courtside.geometry import cameras
+from courtside.motion import joint_errors, round_trip
+from courtside.records import derived, keypoints, skeleton, sync, take_truth
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(
+    pose3d_npz, cameras_toml, tables_yaml, rows_csv, *, pose2d_npz, sync_json, truth_npz, **step
+):
+    known = cameras.read_toml(cameras_toml)
+    names = skeleton.read(tables_yaml[0]).name
+    table = derived.read(tables_yaml[1])
+    views = {view.camera: view for view in map(keypoints.read_2d, pose2d_npz)}
+    clocks = sync.read(sync_json)[1] if sync_json else {}
+    truth = None
+    if truth_npz:
+        truth = take_truth.read(truth_npz)
+        truth = joint_errors.derive_truth(truth, table, names, step["derived_joints"])
+    rows = []
+    for path in pose3d_npz:
+        points = derived.append(keypoints.read_3d(path), table, names, step["derived_joints"])
+        others = [
+            (camera, views[camera.name], clocks.get(camera.name))
+            for camera in known
+            if camera.name in views and camera.name not in points.cameras
+        ]
+        rows.append(rows_of(points, known, others, truth, **step))
+    with atomic(rows_csv) as temporary:
+        table = pd.concat(rows, ignore_index=True)
+        table.to_csv(temporary, index=False, float_format="%.6g", lineterminator="\n")
+
+
+def rows_of(points, known, others, truth, *, joints, derived_joints, n_frames, start_s, **options):
+    chosen = round_trip.span(points, n_frames, start_s)
+    joints = [*derived_joints, *joints]
+    return round_trip.table(points, known, joints, chosen, truth=truth, others=others, **options)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.pose3d,
+        snakemake.input.cameras,
+        (snakemake.input.skeleton, snakemake.input.derived),
+        snakemake.output.rows,
+        pose2d_npz=snakemake.input.get("pose2d", []),
+        sync_json=snakemake.input.get("sync"),
+        truth_npz=snakemake.input.get("truth"),
+        **snakemake.params.step,
+    )
