@@ -54,13 +54,14 @@ def _pchip(time_s, line, holes):
 def _short_gaps(missing, most):
     """Return (T,) bool: missing frames in runs of at most `most`, not touching an end."""
     chosen = np.zeros_like(missing)
-    for start, stop in _runs(missing):
+    for start, stop in runs(missing):
         if stop - start <= most and start > 0 and stop < len(missing):
             chosen[start:stop] = True
     return chosen
 
 
-def _runs(flags):
+def runs(flags):
+    """Return the (start, stop) of every run of True in (T,) bool, in order."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
     return list(zip(edges[::2], edges[1::2], strict=True))
 
@@ -108,7 +109,7 @@ def smooth(points, cutoff_hz, order):
     -------
     smoothed : Keypoints3D
         The same values missing. `covariance_2d` is scaled by the share of white noise that the filter
-        lets pass.
+        lets pass; noise that stays alike from frame to frame passes more (`motion.noise_gain`).
 
     Raises
     ------
@@ -125,27 +126,75 @@ def smooth(points, cutoff_hz, order):
             f"found {np.max(cutoff_hz):g} Hz; lower it for this session"
         )
     xyz, covariance = points.xyz.copy(), points.covariance_2d.copy()
-    for joint, cutoff in enumerate(cutoff_hz):
-        sections = _sections(cutoff, points.rate_hz, order // 2)
-        covariance[:, :, joint] *= _noise_passed(sections)
-        pad = round(PAD_PERIODS * points.rate_hz / cutoff)
+    for cutoff in np.unique(cutoff_hz):
+        joints = np.flatnonzero(np.asarray(cutoff_hz) == cutoff)
+        covariance[:, :, joints] *= _noise_passed(_sections(cutoff, points.rate_hz, order // 2))
         for person in range(len(xyz)):
-            _smooth_runs(xyz[person, :, joint], sections, pad)
+            xyz[person][:, joints] = zero_lag_points(
+                xyz[person][:, joints], points.rate_hz, cutoff, order
+            )
     return replace(points, xyz=xyz, covariance_2d=covariance)
+
+
+def zero_lag_points(xyz, rate_hz, cutoff_hz, order):
+    """Filter several points, those that are known in the same frames at once.
+
+    Parameters
+    ----------
+    xyz : (T, n, 3) float
+    rate_hz, cutoff_hz, order
+        As for `zero_lag`.
+
+    Returns
+    -------
+    filtered : (T, n, 3) float
+    """
+    known = np.isfinite(xyz).all(axis=2)
+    _, alike = np.unique(known, axis=1, return_inverse=True)
+    filtered = np.empty(xyz.shape)
+    for at in range(alike.max() + 1 if alike.size else 0):
+        lines = xyz[:, alike == at].reshape(len(xyz), -1)
+        done = zero_lag(lines, rate_hz, cutoff_hz, order)
+        filtered[:, alike == at] = done.reshape(len(xyz), -1, 3)
+    return filtered
+
+
+def zero_lag(lines, rate_hz, cutoff_hz, order):
+    """Filter lines forwards and backwards, each run of known values by itself.
+
+    Parameters
+    ----------
+    lines : (T, n) float
+        A frame is filtered where all its values are finite.
+    rate_hz, cutoff_hz : float
+        Frames per second; -3 dB frequency of the whole filter.
+    order : int
+        Effective order of the whole filter: twice that of each pass.
+
+    Returns
+    -------
+    filtered : (T, n) float
+        Runs of one or two frames stay as they are; NaN where a value of the frame is.
+
+    Notes
+    -----
+    At its ends a run is continued by its reflection in the end point, over one period of the cut-off.
+    """
+    sections = _sections(cutoff_hz, rate_hz, order // 2)
+    pad = round(PAD_PERIODS * rate_hz / cutoff_hz)
+    filtered = np.full(np.shape(lines), np.nan)
+    for start, stop in runs(np.isfinite(lines).all(axis=1)):
+        run = filtered[start:stop] = lines[start:stop]
+        if stop - start > 2:
+            filtered[start:stop] = signal.sosfiltfilt(
+                sections, run, axis=0, padtype="odd", padlen=min(pad, len(run) - 1)
+            )
+    return filtered
 
 
 def _sections(cutoff_hz, rate_hz, order):
     one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order)
     return signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")
-
-
-def _smooth_runs(line, sections, pad):
-    for start, stop in _runs(np.isfinite(line).all(axis=1)):
-        run = line[start:stop]
-        if stop - start > 2:
-            line[start:stop] = signal.sosfiltfilt(
-                sections, run, axis=0, padtype="odd", padlen=min(pad, len(run) - 1)
-            )
 
 
 def _noise_passed(sections):

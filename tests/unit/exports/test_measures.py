@@ -1,0 +1,111 @@
+"""The tables of kinematics: their columns are described, their numbers those of the measures."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import footwork
+import walker
+from courtside.exports import measures
+from courtside.motion import cutoffs, joint_angles, kinematics
+from courtside.records import derived, reasons
+
+TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+
+
+@pytest.fixture(scope="module")
+def people():
+    time_s, neck = footwork.neck(30, 6, seed=1)
+    xyz, _ = footwork.body(neck, time_s)
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    record.xyz[0, 50:80, 11], record.reason[0, 50:80, 11] = np.nan, reasons.REJECTED
+    record.covariance_2d[0, 50:80, 11] = np.nan
+    how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
+    return kinematics.measure(record, TABLE, "blazepose33", how, {"p1": "f"})
+
+
+def test_every_column_is_described(people):
+    described = set(measures.FRAME_DICTIONARY)
+    for column in measures.frames(people).columns:
+        plain = column.replace("left_", "").replace("right_", "")
+        for point in people[0].points:
+            plain = plain.replace(f"{point}_", "POINT_", 1) if plain.startswith(point) else plain
+        for angle in sorted(joint_angles.DICTIONARY, key=len, reverse=True):
+            plain = plain.replace(f"{angle}_", "ANGLE_", 1) if plain.startswith(angle) else plain
+        plain = plain.replace("POINT_y_m", "POINT_x_m").replace("POINT_z_m", "POINT_x_m")
+        assert plain in described, column
+    assert measures.summary(people).columns.tolist() == list(measures.SUMMARY_DICTIONARY)
+
+
+def test_a_row_for_every_frame(people):
+    rows = measures.frames(people)
+    neck = people[0].points["neck"]
+    assert len(rows) == 181
+    np.testing.assert_allclose(rows[["neck_x_m", "neck_y_m", "neck_z_m"]], neck.position, atol=1e-5)
+    np.testing.assert_allclose(
+        rows.neck_speed_m_s, np.linalg.norm(neck.velocity, axis=1), atol=1e-4
+    )
+    np.testing.assert_allclose(
+        rows.neck_ground_speed_m_s, np.hypot(*neck.velocity[:, :2].T), atol=1e-4
+    )
+    assert rows.neck_reason.iloc[60] == "rejected"
+    assert np.isnan(rows.neck_speed_m_s.iloc[60])
+    assert rows.neck_reason.iloc[10] == "ok"
+
+
+def test_the_summary_is_that_of_the_frames(people):
+    rows = measures.summary(people).set_index("measure")
+    frames = measures.frames(people)
+    assert rows.loc["neck_speed_max", "value"] == pytest.approx(
+        frames.neck_speed_m_s.max(), abs=1e-4
+    )
+    knee = frames.left_knee_flexion_deg
+    assert rows.loc["left_knee_flexion_max", "value"] == pytest.approx(knee.max(), abs=0.01)
+    assert rows.loc["left_knee_flexion_min", "value"] == pytest.approx(knee.min(), abs=0.01)
+    assert rows.loc["neck_distance", "n"] == 181 - 30
+    found = rows.loc["mass_distance"]
+    measured = rows.loc["mass_distance_measured", "value"]
+    assert found.value == pytest.approx(measured - rows.loc["mass_distance_noise_bias", "value"])
+    seconds = people[0].points["mass"].distance.seconds
+    assert rows.loc["mass_speed_mean", "value"] == pytest.approx(found.value / seconds)
+    assert rows.loc["mass_speed_mean", "sigma"] == pytest.approx(found.sigma / seconds)
+    assert "women" in found.definition
+    assert not rows.index.duplicated().any()
+
+
+def test_the_calibration_bounds_a_distance_by_its_share_of_the_extent(people):
+    rows = measures.summary(people).set_index("measure")
+    neck = people[0].points["neck"]
+    known = neck.position[np.isfinite(neck.position).all(axis=1)]
+    extent = np.linalg.norm(known.max(axis=0) - known.min(axis=0))
+    sigma = np.sqrt(3e-4)  # of every joint, in the made-up record
+    assert rows.loc["neck_distance", "sigma_camera"] == pytest.approx(
+        rows.loc["neck_distance", "value"] * np.sqrt(2) * sigma / extent, rel=1e-6
+    )
+
+
+def test_cutoffs_say_how_they_were_chosen(tmp_path):
+    stated = cutoffs.Choice(6.0, np.zeros(0), np.zeros(0), float("nan"))
+    found = cutoffs.Choice(4.5, np.array([4.0, 5.0]), np.array([0.011, 0.009]), 0.01)
+    path = tmp_path / "cutoffs.csv"
+    measures.write(path, measures.cutoffs({"head": stated, "trunk": found}))
+    rows = pd.read_csv(path)
+    assert rows.group.tolist() == ["head", "trunk", "trunk"]
+    assert rows.cutoff_hz.tolist() == [6.0, 4.5, 4.5]
+    assert np.isnan(rows.residual_mm.iloc[0])
+    assert rows.residual_mm.iloc[1] == pytest.approx(11.0)
+
+
+def test_nobody_seen_is_a_table_of_missing_values():
+    time_s, neck = footwork.neck(30, 2)
+    xyz, _ = footwork.body(neck, time_s)
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    record.xyz[:], record.covariance_2d[:], record.reason[:] = np.nan, np.nan, reasons.UNSEEN
+    how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
+    people = kinematics.measure(record, TABLE, "blazepose33", how)
+    rows = measures.summary(people).set_index("measure")
+    assert np.isnan(rows.loc["neck_speed_max", "value"])
+    assert rows.loc["neck_distance", "n"] == 0
+    assert measures.frames(people).neck_speed_m_s.isna().all()

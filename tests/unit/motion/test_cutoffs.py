@@ -1,0 +1,83 @@
+"""The cut-off that residual analysis chooses, against the one that is best by the truth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import footwork
+import walker
+from courtside.motion import cutoffs, filtering
+from courtside.study.errors import InputError
+
+
+def player(rate_hz, sigma_m, seed=1):
+    _, path = footwork.neck(rate_hz, 24, seed)
+    noise = np.random.default_rng(seed).normal(0, sigma_m, path.shape)
+    return path, path + noise
+
+
+@pytest.mark.parametrize("rate_hz", [30.0, 60.0])
+@pytest.mark.parametrize("sigma_m", [0.005, 0.015, 0.025])
+def test_white_noise_and_a_cutoff_near_the_best_are_found(rate_hz, sigma_m):
+    path, noisy = player(rate_hz, sigma_m)
+    choice = cutoffs.choose_cutoff(noisy, rate_hz)
+    assert choice.noise_m == pytest.approx(sigma_m, rel=0.06)
+
+    def error(cutoff_hz):
+        return np.sqrt(np.mean((filtering.zero_lag(noisy, rate_hz, cutoff_hz, 4) - path) ** 2))
+
+    best = min(error(cutoff) for cutoff in np.arange(1.0, 8.0, 0.25))
+    assert error(choice.cutoff_hz) < 1.15 * best
+
+
+def test_more_noise_means_a_lower_cutoff():
+    chosen = [cutoffs.choose_cutoff(player(60.0, s)[1], 60.0).cutoff_hz for s in (0.003, 0.03)]
+    assert chosen[0] > 1.3 * chosen[1]
+
+
+def test_the_residual_is_what_the_filter_takes_away():
+    _, noisy = player(30.0, 0.01)
+    choice = cutoffs.choose_cutoff(noisy, 30.0, np.array([2.0, 5.0, 9.0]))
+    expected = np.sqrt(np.mean((noisy - filtering.zero_lag(noisy, 30.0, 5.0, 4)) ** 2))
+    assert choice.residual_m[1] == pytest.approx(expected, rel=1e-12)
+    assert (np.diff(choice.residual_m) < 0).all()
+
+
+def test_slow_noise_raises_the_cutoff_as_the_docstring_says():
+    path, noisy = player(60.0, 0.02)
+    slow = path + footwork.noise(len(path), 60.0, 0.02, 0.1, np.random.default_rng(0))
+    ours, theirs = (cutoffs.choose_cutoff(xyz, 60.0).cutoff_hz for xyz in (noisy, slow))
+    assert theirs > 1.5 * ours
+
+
+def test_gaps_are_left_out():
+    _, noisy = player(30.0, 0.015)
+    whole = cutoffs.choose_cutoff(noisy, 30.0)
+    noisy[200:260] = np.nan
+    holed = cutoffs.choose_cutoff(noisy, 30.0)
+    assert holed.cutoff_hz == pytest.approx(whole.cutoff_hz, rel=0.2)
+
+
+def test_nothing_but_noise_gets_the_lowest_and_too_little_is_refused():
+    noise = np.random.default_rng(0).normal(0, 0.01, (600, 3))
+    assert cutoffs.choose_cutoff(noise, 30.0).cutoff_hz == 1.0
+    with pytest.raises(InputError, match=r"expected 30 frames or more.*found 20; state a number"):
+        cutoffs.choose_cutoff(noise[:20], 30.0)
+
+
+def test_a_group_is_chosen_for_or_has_its_number():
+    time_s, neck = footwork.neck(30, 10)
+    record = footwork.record(
+        footwork.body(neck, time_s)[0], time_s, 0.01, 0.0, np.random.default_rng(0)
+    )
+    wanted = {"head": 6, "trunk": "residual", "arms": 10.0, "legs": "residual"}
+    found = cutoffs.by_group(record, walker.SKELETON, wanted)
+    assert (found["head"].cutoff_hz, found["arms"].cutoff_hz) == (6.0, 10.0)
+    assert len(found["head"].candidates_hz) == 0
+    assert found["trunk"].noise_m == pytest.approx(0.01, rel=0.1)
+    legs = [walker.SKELETON.index(joint) for joint in walker.SKELETON.groups["legs"]]
+    still = record.xyz.copy()
+    still[:, :, legs] += 1.0
+    moved = cutoffs.by_group(replace(record, xyz=still), walker.SKELETON, wanted)
+    assert moved["legs"].cutoff_hz == pytest.approx(found["legs"].cutoff_hz, rel=1e-3)

@@ -1,0 +1,183 @@
+"""Speeds, accelerations and distances of people whose movement is a formula, and what their sigmas hold."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import footwork
+import walker
+from courtside.motion import filtering, kinematics
+from courtside.motion.noise_gain import Noise
+from courtside.records import derived, reasons
+
+TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+CUTOFFS_HZ = np.array(walker.SKELETON.by_group({"head": 6, "trunk": 6, "arms": 10, "legs": 8}))
+TINY_M = 1e-7
+
+
+def circling(rate_hz=60.0, seconds=12.0, radius_m=2.0, turn_s=4.0):
+    """Return times and a player (T, 33, 3) whose body is carried round a circle without turning."""
+    time_s = np.arange(round(seconds * rate_hz) + 1) / rate_hz
+    angle = 2 * np.pi * time_s / turn_s
+    round_trip = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1) * radius_m
+    body, _ = footwork.body(np.array([[3.0, 3.0, 1.45]]), np.zeros(1))
+    return time_s, body + round_trip[:, None]
+
+
+def measured(record, how=None, sex="m"):
+    how = how or kinematics.Filter(CUTOFFS_HZ)
+    return kinematics.measure(record, TABLE, "blazepose33", how, {"p1": sex})[0]
+
+
+def test_a_circle_has_its_speed_acceleration_and_length():
+    time_s, xyz = circling()
+    record = footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(0))
+    person = measured(record)
+    speed = 2 * np.pi * 2.0 / 4.0
+    middle = slice(60, -60)
+    assert set(person.points) == {"neck", "centre", "mass"}
+    for point in person.points.values():
+        found, _ = kinematics.size(point.velocity, point.covariance[1])
+        np.testing.assert_allclose(found[middle], speed, rtol=2e-3)
+        found, _ = kinematics.size(point.acceleration, point.covariance[2])
+        np.testing.assert_allclose(found[middle], speed**2 / 2.0, rtol=1e-2)
+        assert point.distance.corrected_m == pytest.approx(speed * 12, rel=2e-3)
+        assert point.ground_distance.corrected_m == pytest.approx(speed * 12, rel=2e-3)
+
+
+def test_points_are_where_they_are_defined():
+    time_s, xyz = circling(seconds=2)
+    record = footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(0))
+    points = measured(record).points
+    neck = (
+        xyz[:, walker.SKELETON.index("left_shoulder")]
+        + xyz[:, walker.SKELETON.index("right_shoulder")]
+    ) / 2
+    eyes = (
+        xyz[:, walker.SKELETON.index("left_eye")] + xyz[:, walker.SKELETON.index("right_eye")]
+    ) / 2
+    limbs = [xyz[:, walker.SKELETON.index(joint)] for joint in walker.SKELETON.groups["limbs"]]
+    np.testing.assert_allclose(points["neck"].position[30:-30], neck[30:-30], atol=2e-3)
+    centre = (neck + eyes + np.sum(limbs, axis=0)) / 14
+    np.testing.assert_allclose(points["centre"].position[30:-30], centre[30:-30], atol=2e-3)
+    assert points["mass"].definition == "de Leva 1996, men, head (mid-ears)"
+    assert measured(record, sex=None).points["mass"].definition.startswith("de Leva 1996, mean of")
+
+
+@pytest.mark.parametrize("memory_s", [0.0, 0.08])
+@pytest.mark.parametrize("told", [True, False], ids=["told", "found"])
+def test_sigmas_hold_ninety_percent(memory_s, told):
+    time_s, xyz = circling(rate_hz=30.0, seconds=20.0)
+    how = kinematics.Filter(CUTOFFS_HZ, noise=Noise(memory_s) if told else None)
+    clean = measured(footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(9)), how)
+    inside = {"speed": [], "acceleration": [], "position": [], "angle": []}
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        record = footwork.record(xyz, time_s, [0.012, 0.02, 0.015], memory_s, rng)
+        person = measured(record, how)
+        for name, point in person.points.items():
+            truth = clean.points[name]
+            speed, sigma = kinematics.size(point.velocity, point.covariance[1])
+            ideal, _ = kinematics.size(truth.velocity, truth.covariance[1])
+            inside["speed"].append(np.abs(speed - ideal) < 1.645 * sigma)
+            sigma = np.sqrt(point.covariance[2][:, 0, 0])
+            off = point.acceleration[:, 0] - truth.acceleration[:, 0]
+            inside["acceleration"].append(np.abs(off) < 1.645 * sigma)
+            sigma = np.sqrt(point.covariance[0][:, 2, 2])
+            off = point.position[:, 2] - truth.position[:, 2]
+            inside["position"].append(np.abs(off) < 1.645 * sigma)
+        for name, angle in person.angles.items():
+            off = angle.degrees - clean.angles[name].degrees
+            inside["angle"].append(np.abs(off) < 1.645 * angle.sigma_deg)
+    shares = {name: np.mean(values) for name, values in inside.items()}
+    assert all(0.85 < share < 0.95 for share in shares.values()), shares
+
+
+def test_the_speed_of_a_player_is_right_to_a_stated_error():
+    rate_hz = 30.0
+    time_s, neck = footwork.neck(rate_hz, 24, seed=21)
+    fine_s, fine = footwork.neck(1500, 24, seed=21)
+    truth = np.linalg.norm(np.gradient(fine, fine_s, axis=0), axis=1)[::50]
+    xyz, _ = footwork.body(neck, time_s)
+    # 20 mm per shoulder: 14 mm for the neck between them.
+    record = footwork.record(xyz, time_s, 0.020, 0.08, np.random.default_rng(1))
+    errors = {}
+    for cutoff_hz in (4.0, 6.0):
+        how = kinematics.Filter(np.full(33, cutoff_hz))
+        point = measured(record, how).points["neck"]
+        speed, _ = kinematics.size(point.velocity, point.covariance[1])
+        errors[cutoff_hz] = np.sqrt(np.mean((speed - truth) ** 2))
+    assert errors[4.0] < 0.17
+    assert errors[6.0] < 0.24
+    assert point.distance.corrected_m == pytest.approx(
+        np.linalg.norm(np.diff(fine, axis=0), axis=1).sum(), rel=0.01
+    )
+
+
+def test_gaps_are_missing_with_their_reason_and_not_differentiated_across():
+    time_s, xyz = circling(seconds=4)
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    at = walker.SKELETON.index("left_shoulder")
+    for frames, reason in ((slice(100, 130), reasons.ONE_VIEW), (slice(200, 203), reasons.UNSEEN)):
+        record.xyz[0, frames, at], record.reason[0, frames, at] = np.nan, reason
+        record.covariance_2d[0, frames, at] = np.nan
+    person = measured(filtering.fill_gaps(record, 0.1))
+    neck = person.points["neck"]
+    assert np.isnan(neck.position[100:130]).all()
+    assert (neck.reason[100:130] == reasons.ONE_VIEW).all()
+    assert (neck.reason[200:203] == reasons.INTERPOLATED).all()
+    others = np.delete(np.arange(len(time_s)), np.arange(100, 130))
+    for values in (neck.position, neck.velocity, neck.acceleration, *neck.covariance):
+        assert np.isfinite(values[others]).all()
+    assert np.linalg.norm(neck.velocity[others], axis=1).max() < 4.5
+    assert np.isfinite(person.angles["left_knee_flexion"].degrees).all()
+    assert np.isnan(person.angles["left_elbow_flexion"].degrees[100:130]).all()
+
+
+def test_the_calibration_counts_once_for_all_frames():
+    time_s, xyz = circling(seconds=2)
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    point = measured(record).points["mass"]
+    np.testing.assert_allclose(point.camera_sigma_m, np.sqrt(3e-4))
+    larger = replace(record, covariance_camera=100 * record.covariance_camera)
+    np.testing.assert_array_equal(
+        measured(larger).points["mass"].covariance[1], point.covariance[1]
+    )
+
+
+def test_a_take_of_a_few_frames_and_one_without_anybody():
+    time_s, xyz = circling(seconds=0.15)
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    neck = measured(record).points["neck"]
+    assert np.isfinite(neck.velocity).all()
+    assert neck.distance.seconds == pytest.approx(0.15)
+    empty = replace(
+        record,
+        xyz=np.full_like(record.xyz, np.nan),
+        covariance_2d=np.full_like(record.covariance_2d, np.nan),
+        reason=np.full_like(record.reason, reasons.UNSEEN),
+    )
+    person = measured(empty)
+    assert np.isnan(person.points["mass"].velocity).all()
+    assert (person.points["mass"].reason == reasons.UNSEEN).all()
+    assert person.points["mass"].distance.seconds == 0
+
+
+def test_two_people_are_measured_as_each_alone():
+    time_s, xyz = circling(seconds=3)
+    one = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    other = footwork.record(xyz + 1.0, time_s, 0.01, 0.05, np.random.default_rng(1))
+    names = [f for f in vars(one) if f not in ("cameras", "model", "joints", "person_id", "time_s")]
+    both = replace(
+        one,
+        person_id=np.array(["p1", "p2"]),
+        **{name: np.concatenate([getattr(one, name), getattr(other, name)]) for name in names},
+    )
+    how = kinematics.Filter(CUTOFFS_HZ)
+    people = kinematics.measure(both, TABLE, "blazepose33", how, {"p1": "m", "p2": "m"})
+    assert [person.person for person in people] == ["p1", "p2"]
+    np.testing.assert_allclose(
+        people[1].points["mass"].velocity, measured(other).points["mass"].velocity, atol=1e-9
+    )

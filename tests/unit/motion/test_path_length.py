@@ -1,0 +1,119 @@
+"""Lengths of known paths, the bias that noise gives them, and how sure the corrected length is."""
+
+import numpy as np
+import pytest
+
+import footwork
+from courtside.motion import filtering, noise_gain, path_length
+from courtside.motion.noise_gain import Noise
+
+SECONDS = 24
+
+
+def covariance(n_frames, sigma_m):
+    return np.broadcast_to(np.eye(3) * sigma_m**2, (n_frames, 3, 3))
+
+
+def arc(xyz):
+    return np.linalg.norm(np.diff(xyz, axis=0), axis=1).sum()
+
+
+def test_the_mean_length_of_random_vectors():
+    rng = np.random.default_rng(0)
+    mean = np.array([[0.0, 0, 0], [0.1, 0, 0], [1.0, 2.0, -1.0], [5.0, 0, 0], [0.3, 0.3, 0]])
+    roots = rng.normal(0, 0.4, (5, 3, 3))
+    roots[4, 2] = 0  # flat
+    spread = roots @ roots.transpose(0, 2, 1)
+    draws = mean[:, None] + np.einsum("nij,nkj->nki", roots, rng.normal(size=(5, 400_000, 3)))
+    simulated = np.linalg.norm(draws, axis=-1).mean(axis=1)
+    np.testing.assert_allclose(path_length.mean_norm(mean, spread), simulated, rtol=3e-3)
+
+
+def test_the_mean_length_in_closed_form():
+    for dimensions, factor in ((2, np.sqrt(np.pi / 2)), (3, np.sqrt(8 / np.pi))):
+        found = path_length.mean_norm(np.zeros((1, dimensions)), 0.04 * np.eye(dimensions)[None])
+        assert found[0] == pytest.approx(0.2 * factor, rel=1e-6)
+    straight = path_length.mean_norm(np.array([[3.0, 4.0, 0]]), np.zeros((1, 3, 3)))
+    assert straight[0] == pytest.approx(5.0, rel=1e-6)
+
+
+def test_a_circle_without_noise():
+    t = np.arange(0, 20, 1 / 60)
+    xyz = np.stack([2 * np.cos(t), 2 * np.sin(t), 1 + 0 * t], axis=1)
+    for axes in (path_length.SPACE, path_length.GROUND):
+        found = path_length.measure(xyz, covariance(len(t), 1e-6), 60.0, Noise(0.0), 6.0, 4, axes)
+        assert found.measured_m == pytest.approx(2 * t[-1], rel=1e-3)
+        assert found.corrected_m == pytest.approx(2 * t[-1], rel=1e-3)
+        assert found.seconds == pytest.approx(t[-1])
+
+
+@pytest.mark.parametrize("rate_hz", [30.0, 60.0])
+@pytest.mark.parametrize("sigma_m", [0.015, 0.025])
+@pytest.mark.parametrize("memory_s", [0.0, 0.05, 0.15, "mixed"])
+def test_a_player_goes_the_true_distance_within_one_percent(rate_hz, sigma_m, memory_s):
+    truth = arc(footwork.neck(1000, SECONDS, seed=11)[1])
+    _, path = footwork.neck(rate_hz, SECONDS, seed=11)
+    rng = np.random.default_rng(2)
+    if memory_s == "mixed":
+        parts = [
+            footwork.noise(len(path), rate_hz, sigma_m / np.sqrt(2), m, rng) for m in (0, 0.25)
+        ]
+        noisy = path + sum(parts)
+    else:
+        noisy = path + footwork.noise(len(path), rate_hz, sigma_m, memory_s, rng)
+    stated = covariance(len(path), sigma_m)
+    noise = noise_gain.estimate(noisy, stated, rate_hz)
+    found = path_length.measure(noisy, stated, rate_hz, noise, 6.0, 4)
+    assert found.corrected_m == pytest.approx(truth, rel=0.01)
+    # The filtered path without noise is what the bias is counted from.
+    clean = path_length.measure(path, stated, rate_hz, noise, 6.0, 4).measured_m
+    assert found.measured_m - clean < found.bias_most_m + 3 * found.sigma_m
+    assert found.bias_m <= found.bias_most_m + 1e-9
+    assert abs(found.corrected_m - clean) < 3 * found.sigma_m
+
+
+def test_the_sigma_is_the_scatter_of_the_length():
+    rate_hz, sigma_m, noise = 30.0, 0.02, Noise(0.1)
+    _, path = footwork.neck(rate_hz, SECONDS, seed=3)
+    stated = covariance(len(path), sigma_m)
+    found = [
+        path_length.measure(
+            path + footwork.noise(len(path), rate_hz, sigma_m, 0.1, np.random.default_rng(seed)),
+            stated, rate_hz, noise, 6.0, 4,
+        )
+        for seed in range(60)
+    ]  # fmt: skip
+    own = [np.sqrt(f.sigma_m**2 - (path_length.BIAS_SHARE * f.bias_m) ** 2) for f in found]
+    scatter = np.std([f.measured_m for f in found], ddof=1)
+    assert np.mean(own) == pytest.approx(scatter, rel=0.3)
+
+
+def test_a_person_at_rest_goes_nearly_nowhere():
+    sigma_m = 0.02
+    noisy = np.random.default_rng(0).normal(0, sigma_m, (900, 3))
+    found = path_length.measure(noisy, covariance(900, sigma_m), 30.0, Noise(0.0), 6.0, 4)
+    assert found.measured_m > 8
+    assert abs(found.corrected_m) < 0.25 * found.measured_m
+    assert abs(found.corrected_m) < 3 * found.sigma_m
+
+
+def test_open_gaps_are_in_neither_distance_nor_time():
+    t = np.arange(301) / 30
+    xyz = np.stack([2 * t, 0 * t, 0 * t], axis=1)
+    xyz[100:150] = np.nan
+    found = path_length.measure(xyz, covariance(301, 1e-4), 30.0, Noise(0.0), 6.0, 4)
+    seconds = 99 / 30 + 150 / 30
+    assert found.seconds == pytest.approx(seconds)
+    assert found.measured_m == pytest.approx(2 * seconds, rel=1e-3)
+
+
+def test_without_a_covariance_the_length_is_given_and_its_bias_unknown():
+    _, path = footwork.neck(30, 5)
+    unknown = np.full((len(path), 3, 3), np.nan)
+    found = path_length.measure(path, unknown, 30.0, Noise(0.0), 6.0, 4)
+    smooth = filtering.zero_lag(path, 30.0, 6.0, 4)
+    assert found.measured_m == pytest.approx(arc(smooth), rel=0.005)
+    assert np.isnan([found.bias_m, found.corrected_m, found.sigma_m]).all()
+    none = path_length.measure(np.full((50, 3), np.nan), unknown[:50], 30.0, Noise(0.0), 6.0, 4)
+    assert (none.measured_m, none.seconds) == (0.0, 0.0)
+    assert np.isnan(none.corrected_m)

@@ -1,0 +1,209 @@
+"""CSV of kinematics: one row per frame and person, one row per measure, and how the filter was chosen."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.motion import kinematics, path_length
+from courtside.records import reasons
+from courtside.study.files import atomic
+
+LEAST_EXTENT_M = 1.0
+# column: (unit, meaning, meaning of an empty cell); POINT is neck, centre or mass, ANGLE one of joint_angles
+FRAME_DICTIONARY = {
+    "frame_idx": ("", "frame, from 0", "never empty"),
+    "time_s": ("s", "time on the reference clock", "never empty"),
+    "person": ("", "the person's pseudonym", "never empty"),
+    "POINT_x_m": ("m", "filtered position in the world frame; also y, z", "missing, see reason"),
+    "POINT_sd_mm": (
+        "mm",
+        "standard deviation of the position from the keypoints' noise, root of the sum over the axes",
+        "missing or unknown",
+    ),
+    "POINT_speed_m_s": ("m/s", "speed in space", "missing"),
+    "POINT_speed_sd_m_s": ("m/s", "its standard deviation", "missing or unknown"),
+    "POINT_ground_speed_m_s": ("m/s", "speed of the projection on the floor", "missing"),
+    "POINT_ground_speed_sd_m_s": ("m/s", "its standard deviation", "missing or unknown"),
+    "POINT_acceleration_m_s2": ("m/s2", "length of the acceleration, without gravity", "missing"),
+    "POINT_acceleration_sd_m_s2": ("m/s2", "its standard deviation", "missing or unknown"),
+    "POINT_reason": ("", f"one of {', '.join(reasons.WORDS.values())}", "never empty"),
+    "ANGLE_deg": ("degrees", "see courtside.motion.joint_angles", "a joint is missing"),
+    "ANGLE_sd_deg": ("degrees", "its standard deviation", "missing or unknown"),
+}
+SUMMARY_DICTIONARY = {
+    "person": ("", "the person's pseudonym", "never empty"),
+    "measure": ("", "what was measured", "never empty"),
+    "value": ("see unit", "", "missing"),
+    "sigma": ("see unit", "standard deviation from the keypoints' noise", "unknown"),
+    "sigma_camera": (
+        "see unit",
+        "upper bound of the standard deviation from the calibration, which all frames share",
+        "unknown, or not estimated",
+    ),
+    "unit": ("", "of the three before", "a ratio"),
+    "n": ("", "frames that it rests on", "never empty"),
+    "definition": ("", "values compare without a mark only where this is the same", "never empty"),
+}
+
+
+def frames(people):
+    """Return the measures of every frame.
+
+    Parameters
+    ----------
+    people : list of courtside.motion.kinematics.Person
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        Columns of `FRAME_DICTIONARY`; T rows for each person.
+    """
+    return pd.concat([_frames_of(person) for person in people], ignore_index=True)
+
+
+def _frames_of(person):
+    columns = {
+        "frame_idx": np.arange(len(person.time_s)),
+        "time_s": person.time_s.round(6),
+        "person": person.person,
+    }
+    for name, point in person.points.items():
+        columns |= {f"{name}_{key}": value for key, value in _columns(point).items()}
+    for name, angle in person.angles.items():
+        columns[f"{name}_deg"] = angle.degrees.round(2)
+        columns[f"{name}_sd_deg"] = angle.sigma_deg.round(2)
+    return pd.DataFrame(columns)
+
+
+def _columns(point):
+    position, velocity, acceleration = point.covariance
+    speed, speed_sd = kinematics.size(point.velocity, velocity)
+    ground, ground_sd = kinematics.size(point.velocity, velocity, path_length.GROUND)
+    change, change_sd = kinematics.size(point.acceleration, acceleration)
+    return {
+        **{f"{axis}_m": point.position[:, at].round(5) for at, axis in enumerate("xyz")},
+        "sd_mm": (1000 * np.sqrt(np.trace(position, axis1=1, axis2=2))).round(2),
+        "speed_m_s": speed.round(4),
+        "speed_sd_m_s": speed_sd.round(4),
+        "ground_speed_m_s": ground.round(4),
+        "ground_speed_sd_m_s": ground_sd.round(4),
+        "acceleration_m_s2": change.round(3),
+        "acceleration_sd_m_s2": change_sd.round(3),
+        "reason": pd.Series(point.reason).map(reasons.WORDS).to_numpy(),
+    }
+
+
+def summary(people):
+    """Return the measures of the whole take.
+
+    Parameters
+    ----------
+    people : list of courtside.motion.kinematics.Person
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        Columns of `SUMMARY_DICTIONARY`. Largest values are those of one frame, with its sigma: of many noisy
+        frames the largest lies above the true one, by one to three sigma.
+    """
+    rows = []
+    for person in people:
+        for name, point in person.points.items():
+            found = [*_distances(point), *_extremes(point), *_noise(point)]
+            rows += [
+                (person.person, f"{name}_{row[0]}", *row[1:], point.definition) for row in found
+            ]
+        for name, angle in person.angles.items():
+            rows += [(person.person, *row) for row in _angle_rows(name, angle)]
+    return pd.DataFrame(rows, columns=list(SUMMARY_DICTIONARY))
+
+
+def _camera_share(point):
+    """Return the largest relative error of lengths from the calibration, one standard deviation.
+
+    The errors at both ends of the path are taken as independent; those of near places are alike, and errors
+    that all places share change no length.
+    """
+    known = point.position[np.isfinite(point.position).all(axis=1)]
+    camera = point.camera_sigma_m[np.isfinite(point.camera_sigma_m)]
+    if not len(known) or not len(camera):
+        return float("nan")
+    extent = max(float(np.linalg.norm(np.ptp(known, axis=0))), LEAST_EXTENT_M)
+    return float(np.sqrt(2 * np.mean(camera**2)) / extent)
+
+
+def _distances(point):
+    n_frames = int(np.isfinite(point.velocity).all(axis=1).sum())
+    share, unknown = _camera_share(point), float("nan")
+    for prefix, found in (("", point.distance), ("ground_", point.ground_distance)):
+        value, sigma, bias = found.corrected_m, found.sigma_m, found.bias_m
+        seconds = found.seconds if found.seconds > 0 else unknown
+        yield f"{prefix}distance", value, sigma, share * value, "m", n_frames
+        yield f"{prefix}distance_measured", found.measured_m, unknown, unknown, "m", n_frames
+        own = path_length.BIAS_SHARE * bias
+        yield f"{prefix}distance_noise_bias", bias, own, unknown, "m", n_frames
+        most = found.bias_most_m
+        yield f"{prefix}distance_noise_bias_most", most, unknown, unknown, "m", n_frames
+        mean = value / seconds
+        yield f"{prefix}speed_mean", mean, sigma / seconds, share * mean, "m/s", n_frames
+
+
+def _extremes(point):
+    share = _camera_share(point)
+    for name, vectors, covariance, unit in (
+        ("speed_max", point.velocity, point.covariance[1], "m/s"),
+        ("acceleration_max", point.acceleration, point.covariance[2], "m/s2"),
+    ):
+        value, sigma = kinematics.size(vectors, covariance)
+        at, n_frames = _largest(value)
+        yield name, value[at], sigma[at], share * value[at], unit, n_frames
+
+
+def _largest(values):
+    """Return the index of the largest known value, 0 where none is known, and how many are."""
+    known = np.isfinite(values)
+    return (int(np.nanargmax(values)) if known.any() else 0), int(known.sum())
+
+
+def _noise(point):
+    n_frames, unknown = int(np.isfinite(point.position).all(axis=1).sum()), float("nan")
+    yield "noise_memory", point.noise.memory_s, unknown, unknown, "s", n_frames
+    yield "noise_white_share", point.noise.white, unknown, unknown, "", n_frames
+    yield "noise_scale", point.noise.scale, unknown, unknown, "", n_frames
+
+
+def _angle_rows(name, angle):
+    unknown, words = float("nan"), "angle between lines from joint to joint"
+    for what, sign in (("max", 1), ("min", -1)):
+        at, n_frames = _largest(sign * angle.degrees)
+        value, sigma = angle.degrees[at], angle.sigma_deg[at]
+        yield f"{name}_{what}", value, sigma, unknown, "degrees", n_frames, words
+
+
+def cutoffs(choices):
+    """Return how the cut-offs were chosen.
+
+    Parameters
+    ----------
+    choices : dict of str to courtside.motion.cutoffs.Choice
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        group, cutoff_hz, noise_mm (found by the analysis, per axis), candidate_hz, residual_mm; one row with
+        the last three empty where a number was stated.
+    """
+    rows = []
+    for group, choice in choices.items():
+        pairs = list(zip(choice.candidates_hz, choice.residual_m, strict=True))
+        for candidate, residual in pairs or [(float("nan"), float("nan"))]:
+            rows.append(
+                (group, choice.cutoff_hz, 1000 * choice.noise_m, candidate, 1000 * residual)
+            )
+    names = ["group", "cutoff_hz", "noise_mm", "candidate_hz", "residual_mm"]
+    return pd.DataFrame(rows, columns=names).round(4)
+
+
+def write(path, rows):
+    """Write a table as CSV, floats to 6 significant digits."""
+    with atomic(path) as temporary:
+        rows.to_csv(temporary, index=False, lineterminator="\n", float_format="%.6g")

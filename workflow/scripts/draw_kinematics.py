@@ -1,0 +1,26 @@
+"""Draw the kinematics of one take: tables of frames and measures, court -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.figures import speeds, style
+from courtside.geometry import courts
+from courtside.study import log
+
+
+def main(frames_csv, summary_csv, court_yaml, pdf, png, csv):
+    frames, summary = pd.read_csv(frames_csv), pd.read_csv(summary_csv)
+    court = courts.read(court_yaml) if court_yaml else None
+    drawing = speeds.draw(frames, summary, court)
+    style.save(drawing, speeds.table(frames), pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.frames,
+        snakemake.input.summary,
+        snakemake.input.get("court"),
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

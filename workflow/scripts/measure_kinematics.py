@@ -1,0 +1,33 @@
+"""Measure one take: raw 3D keypoints -> speeds, distances, accelerations and angles with uncertainty."""
+
+from courtside.exports import measures
+from courtside.motion import cutoffs, filtering, kinematics
+from courtside.records import derived, keypoints, skeleton
+from courtside.study import log
+
+
+def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_csv, **step):
+    points = filtering.fill_gaps(keypoints.read_3d(raw_npz), step["max_gap_s"])
+    shape = skeleton.read(skeleton_yaml)
+    choices = cutoffs.by_group(points, shape, step["cutoff_hz"], step["order"])
+    chosen = {group: choice.cutoff_hz for group, choice in choices.items()}
+    how = kinematics.Filter(shape.by_group(chosen), step["order"], step["distance_cutoff_hz"])
+    table = derived.read(derived_yaml)
+    people = kinematics.measure(points, table, shape.name, how, step["sex_of"])
+    measures.write(frames_csv, measures.frames(people))
+    measures.write(summary_csv, measures.summary(people))
+    measures.write(cutoffs_csv, measures.cutoffs(choices))
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.pose3d,
+        snakemake.input.skeleton,
+        snakemake.input.derived,
+        snakemake.output.frames,
+        snakemake.output.summary,
+        snakemake.output.cutoffs,
+        **snakemake.params.step,
+        sex_of=snakemake.params.sex_of,
+    )
