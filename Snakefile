@@ -7,7 +7,9 @@ min_version("9.27.1")
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/inputs.smk"
+include: "workflow/rules/take_inputs.smk"
 include: "workflow/rules/targets.smk"
+include: "workflow/rules/take_targets.smk"
 include: "workflow/rules/artefacts.smk"
 include: "workflow/rules/simulation.smk"
 include: "workflow/rules/frames.smk"
@@ -16,8 +18,10 @@ include: "workflow/rules/cameras.smk"
 include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/pose.smk"
 include: "workflow/rules/motion.smk"
+include: "workflow/rules/take_evaluation.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/study_figures.smk"
+include: "workflow/rules/racket.smk"
 
 
 report: "workflow/report/study.rst"
@@ -31,4 +35,6 @@ rule all:
         every_check(),
         every_export(),
         every_figure(),
+        every_kinematics(),
+        every_take_evaluation(),
         every_study_figure(),

@@ -25,8 +25,7 @@ configfile: str(REPOSITORY / "config" / "config.yaml")
 
 NAME = "[a-z0-9][a-z0-9_-]*"
 MODEL_PARTS = ["cameras", "images", "points3D", "rigs", "frames"]  # files of a COLMAP model
-STAGES = ["pose3d", "pose3d_filtered"]
-FIGURES = ["overlay", "skeletons", "reprojection", "visibility"]
+STAGES = ["pose3d", "pose3d_filtered", "pose3d_corrected"]
 FORMATS = ["pdf", "png", "csv"]
 
 try:

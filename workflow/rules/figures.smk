@@ -1,7 +1,7 @@
 """Figures of a take: what was seen, what was made of it, and how far to trust it.
 
 Inputs: 2D and 3D keypoints, cameras, videos. Outputs: results/{session}/takes/{take}/figures/.
-Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility.
+Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics.
 """
 
 
@@ -65,3 +65,18 @@ rule draw_visibility:
         code=code("draw_visibility.py"),
     script:
         "../scripts/draw_visibility.py"
+
+
+rule draw_kinematics:
+    input:
+        frames=f"{TAKE}/kinematics/{FUSED}.frames.csv",
+        summary=f"{TAKE}/kinematics/{FUSED}.summary.csv",
+        court=lambda w: court_file(session_of(w)) or [],
+    output:
+        **figure("kinematics"),
+    log:
+        f"results/{{session}}/logs/draw_kinematics/{OF_FUSED}.log",
+    params:
+        code=code("draw_kinematics.py"),
+    script:
+        "../scripts/draw_kinematics.py"

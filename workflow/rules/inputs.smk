@@ -32,13 +32,6 @@ def first_of_each_count(pattern):
     ]
 
 
-def background_file(wildcards):
-    """Return the empty picture of a camera: of its static recording, or estimated from the take."""
-    if session_of(wildcards).cameras[wildcards.camera].static:
-        return f"results/{wildcards.session}/static/{wildcards.camera}.png"
-    return f"results/{wildcards.session}/takes/{wildcards.take}/background/{wildcards.camera}.png"
-
-
 def map_parameters(wildcards):
     """Return the parameters of one mapping: those of its mapper among COLMAP's."""
     chosen = dict(step("map_images")(wildcards))
@@ -103,6 +96,29 @@ def evaluation_parameters(wildcards, labels, keys):
         "sets": draws["sets"],
         **{key: adjusting[key] for key in keys},
     }
+
+
+def racket_models(name):
+    """Return the structures from motion, several choices of as many images, that a racket is measured with."""
+    count = STUDY.parameters["evaluate_racket"]["n_images"]
+    variants = STUDY.sessions[name].variants()
+    return [variant for variant in variants if variant.startswith(f"global-n{count}-")]
+
+
+def racket_sessions():
+    """Return the names of the virtual sessions in which a racket is measured: those with such models."""
+    wanted = STUDY.parameters["evaluate_racket"]["sessions"]
+    return [name for name in wanted if name in STUDY.sessions and racket_models(name)]
+
+
+def racket_parameters(wildcards):
+    """Return what is known of the clicks of court and racket."""
+    keys = ["click_sigma_px", "click_bias_px", "click_loss"]
+    settings = evaluation_parameters(wildcards, labels={}, keys=keys)
+    step = STUDY.parameters["evaluate_racket"]
+    clicks = {**settings["clicks"], "n_draws": step["n_runs"]}
+    del settings["sets"]
+    return {**settings, "clicks": clicks, "length_m": step["length_m"], "tips_px": step["tips_px"]}
 
 
 def drawn_conditions():

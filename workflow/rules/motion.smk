@@ -1,39 +1,85 @@
 """Metric skeletons and the files that other programs open.
 
-Inputs: 2D keypoints, cameras. Outputs: results/{session}/takes/{take}/pose3d/, pose3d_filtered/.
-Steps: triangulate (raw, always kept), filter_motion, export_take.
+Inputs: 2D keypoints, cameras. Outputs: results/{session}/takes/{take}/ sync, people, pose3d, pose3d_filtered,
+pose3d_corrected, kinematics.
+Steps: synchronise_cameras, associate_people, triangulate (raw, always kept), filter_motion, correct_joints,
+export_take, measure_kinematics.
 """
+
+TAKE = "results/{session}/takes/{take}"
+FUSED = "{calibration}/{fusion}/{model}"
+OF_FUSED = "{take}.{calibration}.{fusion}.{model}"
+
+
+rule synchronise_cameras:
+    input:
+        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+    output:
+        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+    log:
+        "results/{session}/logs/synchronise_cameras/{take}.{calibration}.{model}.log",
+    benchmark:
+        "results/{session}/benchmarks/synchronise_cameras/{take}.{calibration}.{model}.tsv"
+    params:
+        code=code("synchronise_cameras.py"),
+        step=step("synchronise_cameras"),
+        synchronised=lambda w: take_of(w).synchronised,
+    script:
+        "../scripts/synchronise_cameras.py"
+
+
+rule associate_people:
+    input:
+        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+        skeleton=skeleton_file,
+        court=lambda w: court_file(session_of(w)) or [],
+    output:
+        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
+    log:
+        "results/{session}/logs/associate_people/{take}.{calibration}.{model}.log",
+    benchmark:
+        "results/{session}/benchmarks/associate_people/{take}.{calibration}.{model}.tsv"
+    params:
+        code=code("associate_people.py"),
+        persons=lambda w: list(take_of(w).subjects),
+    script:
+        "../scripts/associate_people.py"
 
 
 rule triangulate:
     input:
         cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        pose2d=each_camera("results/{session}/takes/{take}/pose2d/{model}/{camera}.npz"),
+        covariance=camera_covariance_file,
+        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
         skeleton=skeleton_file,
     output:
-        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
     log:
-        "results/{session}/logs/triangulate/{take}.{calibration}.{fusion}.{model}.log",
+        f"results/{{session}}/logs/triangulate/{OF_FUSED}.log",
     benchmark:
-        "results/{session}/benchmarks/triangulate/{take}.{calibration}.{fusion}.{model}.tsv"
-    wildcard_constraints:
-        fusion="all-robust",
+        f"results/{{session}}/benchmarks/triangulate/{OF_FUSED}.tsv"
     params:
         code=code("triangulate.py"),
         step=step("triangulate"),
-        persons=lambda w: take_of(w).subjects,
+        persons=lambda w: list(take_of(w).subjects),
+        fusion=fusion_options,
     script:
         "../scripts/triangulate.py"
 
 
 rule filter_motion:
     input:
-        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
         skeleton=skeleton_file,
     output:
-        pose3d="results/{session}/takes/{take}/pose3d_filtered/{calibration}/{fusion}/{model}.npz",
+        pose3d=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
     log:
-        "results/{session}/logs/filter_motion/{take}.{calibration}.{fusion}.{model}.log",
+        f"results/{{session}}/logs/filter_motion/{OF_FUSED}.log",
     params:
         code=code("filter_motion.py"),
         step=step("filter_motion"),
@@ -41,16 +87,51 @@ rule filter_motion:
         "../scripts/filter_motion.py"
 
 
+rule correct_joints:
+    input:
+        pose3d=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
+        offsets=lambda w: CONFIG / "joint_offsets" / f"{w.model}.csv",
+    output:
+        pose3d=f"{TAKE}/pose3d_corrected/{FUSED}.npz",
+    log:
+        f"results/{{session}}/logs/correct_joints/{OF_FUSED}.log",
+    params:
+        code=code("correct_joints.py"),
+    script:
+        "../scripts/correct_joints.py"
+
+
 rule export_take:
     input:
-        pose3d="results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.npz",
+        pose3d=f"{TAKE}/{{stage}}/{FUSED}.npz",
     output:
-        trc="results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.{person}.trc",
-        c3d="results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.{person}.c3d",
-        csv="results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.{person}.csv",
+        trc=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.trc",
+        c3d=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.c3d",
+        csv=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.csv",
     log:
         "results/{session}/logs/export_take/{take}.{stage}.{calibration}.{fusion}.{model}.{person}.log",
     params:
         code=code("export_take.py"),
     script:
         "../scripts/export_take.py"
+
+
+rule measure_kinematics:
+    input:
+        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
+        skeleton=skeleton_file,
+        derived=CONFIG / "derived_joints.yaml",
+    output:
+        frames=f"{TAKE}/kinematics/{FUSED}.frames.csv",
+        summary=f"{TAKE}/kinematics/{FUSED}.summary.csv",
+        cutoffs=f"{TAKE}/kinematics/{FUSED}.cutoffs.csv",
+    log:
+        f"results/{{session}}/logs/measure_kinematics/{OF_FUSED}.log",
+    benchmark:
+        f"results/{{session}}/benchmarks/measure_kinematics/{OF_FUSED}.tsv"
+    params:
+        code=code("measure_kinematics.py"),
+        step=step("measure_kinematics"),
+        sex_of=lambda w: {name: sex_of(w, name) for name in take_of(w).subjects},
+    script:
+        "../scripts/measure_kinematics.py"

@@ -21,7 +21,9 @@ rule detect_pose:
     params:
         code=code("detect_pose.py"),
         step=step("detect_pose"),
+        redetect=lambda w: not STUDY.models[w.model].tracking,
         decoder=lambda w: STUDY.models[w.model].decoder_options(),
         trim_s=lambda w: take_of(w).trim_s,
+        max_people=lambda w: len(take_of(w).subjects),
     script:
         "../scripts/detect_pose.py"

@@ -1,7 +1,8 @@
 """Virtual sessions: recordings with exact truth.
 
-Inputs: a session's `virtual` settings, its court. Outputs: results/virtual/{session}/.
-Steps: simulate_session (one rule per session, named after it, for its files bear its cameras' names).
+Inputs: a session's `virtual` settings, its court, the virtual body. Outputs: results/virtual/{session}/.
+Steps: simulate_session (one rule per session, named after it, for its files bear its cameras' names),
+simulate_take (likewise, one per take).
 """
 
 for session in STUDY.sessions.values():
@@ -35,3 +36,29 @@ for session in STUDY.sessions.values():
             names=session.filmed(),
         script:
             "../scripts/simulate_session.py"
+
+    for take in session.takes.values():
+
+        rule:
+            name:
+                f"simulate_{session.name}_{take.name}".replace("-", "_")
+            input:
+                court=court_file(session),
+                body=body_files,
+            output:
+                videos=list(take.videos.values()),
+                racket=f"results/virtual/{session.name}/takes/{take.name}/racket.csv",
+                truth=f"results/virtual/{session.name}/takes/{take.name}/truth.npz",
+            log:
+                f"results/virtual/logs/simulate_take/{session.name}.{take.name}.log",
+            benchmark:
+                f"results/virtual/benchmarks/simulate_take/{session.name}.{take.name}.tsv"
+            threads: 2 if take.virtual["seconds"] > 4 else 1
+            resources:
+                mem_mb=2500,
+            params:
+                code=code("simulate_take.py"),
+                settings=session.virtual,
+                take=take.virtual,
+            script:
+                "../scripts/simulate_take.py"

@@ -4,56 +4,6 @@ Inputs: the checked configuration. Outputs: none. Steps: lists of files, by subj
 """
 
 
-def each_take(pattern, **choices):
-    """Return `pattern` for every take of every session and every method of the study."""
-    return [
-        path
-        for session in STUDY.sessions.values()
-        for take in session.takes.values()
-        for path in expand(
-            pattern,
-            session=session.name,
-            take=take.name,
-            person=take.subjects,
-            **{
-                "calibration": session.take_calibrations(),
-                "fusion": session.fusions(),
-                "model": STUDY.parameters["models"],
-                **choices,
-            },
-        )
-    ]
-
-
-def every_check():
-    """Return the checks that cameras with a static recording stood still until each take."""
-    return [
-        f"results/{session.name}/takes/{take.name}/movement/{camera}.csv"
-        for session in STUDY.sessions.values()
-        for take in session.takes.values()
-        for camera in take.videos
-        if session.cameras[camera].static
-    ]
-
-
-def every_export():
-    """Return the files for other programs that the study makes."""
-    return each_take(
-        "results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.{person}.{suffix}",
-        stage=STAGES,
-        suffix=["trc", "c3d", "csv"],
-    )
-
-
-def every_figure():
-    """Return the figures of all takes."""
-    return each_take(
-        "results/{session}/takes/{take}/figures/{figure}.{calibration}.{fusion}.{model}.{suffix}",
-        figure=FIGURES,
-        suffix=FORMATS,
-    )
-
-
 def every_calibration():
     """Return the cameras of every session, found in every way that the study names."""
     return [
@@ -89,6 +39,7 @@ def every_study_figure():
     for session in STUDY.sessions.values():
         ways = [way for way in session.calibrations() if way.startswith("sfm") and session.court]
         stems += [f"results/{session.name}/figures/error_map.{way}" for way in ways]
+    stems += ["results/figures/badminton_fig12"] if racket_sessions() else []
     tables = ["results/figures/calibration.csv"] if swept() else []
     return [f"{stem}.{suffix}" for stem in stems for suffix in FORMATS] + tables
 

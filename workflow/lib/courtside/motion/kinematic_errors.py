@@ -1,0 +1,118 @@
+"""How far the kinematics of a take are from the truth of a virtual one."""
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import CubicSpline
+
+from courtside.motion import kinematics
+
+RIG = "rig"  # the truth's skeleton in the table of derived joints
+FINE = 10  # true points per frame, for the length of the true path
+WITHIN = 1.645  # standard deviations: 90 % of normal errors
+COLUMNS = [
+    "person",
+    "point",
+    "n",
+    "seconds",
+    "distance_m",
+    "true_distance_m",
+    "distance_error_percent",
+]
+COLUMNS += ["distance_sigma_percent", "position_median_mm", "position_p95_mm", "speed_rmse_m_s"]
+COLUMNS += ["ground_speed_rmse_m_s", "speed_bias_m_s", "speed_within_90_percent"]
+
+
+def table(frames, truth, derived, sex_of):
+    """Compare measured paths and speeds with the true ones, over the frames that were measured.
+
+    Parameters
+    ----------
+    frames : pandas.DataFrame
+        As `courtside.exports.measures.frames` writes them.
+    truth
+        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3) m.
+    derived : courtside.records.derived.DerivedJoints
+    sex_of : dict of str to {"m", "f", None}
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        person, point (neck, centre, mass), n frames, seconds; position errors of the filtered path; errors of
+        speed in space and on the ground, and the share of frames in which the speed lies within its stated
+        90 %; the distances are for `distances`.
+    """
+    rows = []
+    for person, part in frames.groupby("person", sort=False):
+        of = truth.person_id.tolist().index(person)
+        weights, _ = kinematics.definitions(derived, RIG, truth.joints, sex_of.get(person))
+        time_s = part["time_s"].to_numpy()
+        inside = (time_s >= truth.time_s[0]) & (time_s <= truth.time_s[-1])
+        for point, shares in weights.items():
+            path = CubicSpline(truth.time_s, np.einsum("j,tjk->tk", shares, truth.xyz[of]))
+            rows.append({"person": person, "point": point, **_errors(part[inside], point, path)})
+    return pd.DataFrame(rows).reindex(columns=COLUMNS)
+
+
+def distances(rows, frames, summary, truth, derived, sex_of):
+    """Fill in the distances: measured over all frames of a person, true over the same span.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        As `table` returns them.
+    frames, summary : pandas.DataFrame
+        As `courtside.exports.measures` writes them.
+    truth, derived, sex_of
+        As for `table`.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        Distances are in space. They stay empty where the truth does not cover the measured frames, or some
+        between the first and the last are missing: the paths would not be of the same span.
+    """
+    rows, measured = rows.copy(), summary.set_index(["person", "measure"])
+    for at, row in rows.iterrows():
+        part = frames[frames["person"] == row["person"]]
+        known = np.flatnonzero(part[f"{row['point']}_x_m"].notna())
+        time_s = part["time_s"].to_numpy()[known]
+        whole = len(known) > 1 and np.ptp(known) == len(known) - 1
+        if not whole or time_s[0] < truth.time_s[0] or time_s[-1] > truth.time_s[-1]:
+            continue
+        of = truth.person_id.tolist().index(row["person"])
+        weights, _ = kinematics.definitions(derived, RIG, truth.joints, sex_of.get(row["person"]))
+        path = np.einsum("j,tjk->tk", weights[row["point"]], truth.xyz[of])
+        fine_s = np.linspace(time_s[0], time_s[-1], FINE * len(time_s))
+        steps = np.diff(CubicSpline(truth.time_s, path)(fine_s), axis=0)
+        true_m = np.linalg.norm(steps, axis=1).sum()
+        found = measured.loc[(row["person"], f"{row['point']}_distance")]
+        rows.loc[at, "distance_m"], rows.loc[at, "true_distance_m"] = found["value"], true_m
+        rows.loc[at, "distance_error_percent"] = 100 * (found["value"] / true_m - 1)
+        rows.loc[at, "distance_sigma_percent"] = 100 * found["sigma"] / true_m
+    return rows
+
+
+def _errors(part, point, path):
+    time_s = part["time_s"].to_numpy()
+    place = part[[f"{point}_{axis}_m" for axis in "xyz"]].to_numpy()
+    apart_mm = 1000 * np.linalg.norm(place - path(time_s), axis=1)
+    known = np.isfinite(apart_mm)
+    row = {"n": int(known.sum()), "seconds": float(np.ptp(time_s)) if len(time_s) else 0.0}
+    if not known.any():
+        return row
+    velocity = path(time_s, 1)
+    speed = part[f"{point}_speed_m_s"].to_numpy() - np.linalg.norm(velocity, axis=1)
+    ground = part[f"{point}_ground_speed_m_s"].to_numpy()
+    ground = ground - np.linalg.norm(velocity[:, :2], axis=1)
+    sigma = part[f"{point}_speed_sd_m_s"].to_numpy()
+    stated = np.isfinite(sigma) & np.isfinite(speed)
+    inside = np.abs(speed[stated]) <= WITHIN * sigma[stated]
+    return {
+        **row,
+        "position_median_mm": np.nanmedian(apart_mm),
+        "position_p95_mm": np.nanpercentile(apart_mm, 95),
+        "speed_rmse_m_s": np.sqrt(np.nanmean(speed**2)),
+        "ground_speed_rmse_m_s": np.sqrt(np.nanmean(ground**2)),
+        "speed_bias_m_s": np.nanmean(speed),
+        "speed_within_90_percent": 100 * inside.mean() if stated.any() else np.nan,
+    }

@@ -1,0 +1,16 @@
+"""Take the network's joint offsets off one take: filtered 3D keypoints, offsets -> corrected ones."""
+
+from courtside.motion import joint_offsets
+from courtside.records import keypoints
+from courtside.study import log
+
+
+def main(filtered_npz, offsets_csv, corrected_npz):
+    table = joint_offsets.read(offsets_csv)
+    corrected = joint_offsets.correct(keypoints.read_3d(filtered_npz), table)
+    keypoints.write_3d(corrected_npz, corrected)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(snakemake.input.pose3d, snakemake.input.offsets, snakemake.output.pose3d)

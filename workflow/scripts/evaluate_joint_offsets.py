@@ -1,0 +1,38 @@
+"""Estimate joint offsets on development bodies: filtered 3D keypoints, truth of takes -> offsets."""
+
+from pathlib import Path
+
+import numpy as np
+
+from courtside.motion import joint_offsets, pose_errors
+from courtside.records import keypoints, take_truth
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(pose3d_npz, truth_npz, offsets_csv, *, about):
+    pairs, joints = [], None
+    for found_npz, true_npz in zip(pose3d_npz, truth_npz, strict=True):
+        points, truth = keypoints.read_3d(found_npz), take_truth.read(true_npz)
+        joints = [name for name in points.joints.tolist() if name in set(truth.joints.tolist())]
+        own = [points.joints.tolist().index(name) for name in joints]
+        other = [truth.joints.tolist().index(name) for name in joints]
+        true = pose_errors.at_times(truth.time_s, truth.xyz, points.time_s)
+        for at, person in enumerate(points.person_id.tolist()):
+            body = truth.person_id.tolist().index(person)
+            pairs.append((points.xyz[at][:, own], true[body][:, other]))
+    table = joint_offsets.estimate(pairs, joints)
+    log.logger.info("frames: %d", np.sum([len(found) for found, _ in pairs]))
+    with atomic(offsets_csv) as temporary, Path(temporary).open("w", encoding="utf-8") as file:
+        file.write(f"# {about}\n")
+        table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.pose3d,
+        snakemake.input.truth,
+        snakemake.output.offsets,
+        about=snakemake.params.about,
+    )

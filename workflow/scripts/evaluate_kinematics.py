@@ -1,0 +1,29 @@
+"""Evaluate the kinematics of a take against its truth: measures, truth -> errors per point."""
+
+import pandas as pd
+
+from courtside.motion import kinematic_errors
+from courtside.records import derived, take_truth
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(paths, errors_csv, *, labels, sex_of):
+    frames, summary = pd.read_csv(paths.frames), pd.read_csv(paths.summary)
+    known = take_truth.read(paths.truth), derived.read(paths.derived), sex_of
+    rows = kinematic_errors.table(frames, *known)
+    rows = kinematic_errors.distances(rows, frames, summary, *known)
+    with atomic(errors_csv) as temporary:
+        rows.assign(**labels)[[*labels, *rows.columns]].to_csv(
+            temporary, index=False, float_format="%.6g"
+        )
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.errors,
+        labels=snakemake.params.labels,
+        sex_of=snakemake.params.sex_of,
+    )
