@@ -1,27 +1,27 @@
-"""Detect one person in one camera during one take: video -> 2D keypoints."""
+"""Detect the people in one camera during one take: video -> 2D keypoints."""
 
 import cv2
 import numpy as np
 
 from courtside.devices import video
-from courtside.pose import decoders, foreground, tracking
+from courtside.pose import decoders, foreground, tracklets
 from courtside.records import keypoints, skeleton
 from courtside.study import log
 
 
-def main(paths, pose2d_npz, names, *, decoder, trim_s, min_presence, min_difference, redetect):
+def main(paths, pose2d_npz, names, *, decoder, trim_s, max_people, min_difference, **options):
     cv2.setNumThreads(1)
     joints = skeleton.read(paths.skeleton).joints
     start_s, stop_s = trim_s or (None, None)
     info = video.probe(paths.video, stop_s=stop_s)
     frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
-    track = tracking.track_person(
+    track = tracklets.track_people(
         log.progress(frames, info.n_frames if not trim_s else None, f"{names.camera}: frames"),
         decoders.person_detector(paths.detector),
         decoders.landmark_network(paths.landmarks, joints, **decoder),
         foreground.Foreground(cv2.imread(paths.background), min_difference),
-        min_presence=min_presence,
-        redetect=redetect,
+        max_people=max_people,
+        **options,
     )
     found = keypoints.Keypoints2D(
         camera=names.camera,
@@ -29,10 +29,10 @@ def main(paths, pose2d_npz, names, *, decoder, trim_s, min_presence, min_differe
         joints=np.array(joints),
         size=np.array(info.size),
         time_s=track.time_s,
-        xy=track.xy[None],
-        score=track.score[None],
-        reason=track.reason[None],
-        xyz_in_body=track.xyz_in_body[None],
+        xy=track.xy,
+        score=track.score,
+        reason=track.reason,
+        xyz_in_body=track.xyz_in_body,
     )
     keypoints.write_2d(pose2d_npz, found)
 
@@ -45,5 +45,7 @@ if __name__ == "__main__":
         snakemake.wildcards,
         decoder=snakemake.params.decoder,
         trim_s=snakemake.params.trim_s,
+        max_people=snakemake.params.max_people,
+        redetect=snakemake.params.redetect,
         **snakemake.params.step,
     )

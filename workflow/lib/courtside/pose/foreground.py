@@ -22,10 +22,16 @@ class Foreground:
         self.background = _shrink(background).astype(np.int16)
         self.min_difference = min_difference
 
-    def boxes(self, image):
-        """Return boxes (x, y, width, height) in px around what changed, largest area first."""
+    def boxes(self, image, without=()):
+        """Return boxes (x, y, width, height) in px around what changed, largest area first.
+
+        What changed inside the boxes `without`, in the same form, is left out.
+        """
         difference = np.abs(_shrink(image).astype(np.int16) - self.background).max(axis=2)
         mask = (difference > self.min_difference).astype(np.uint8)
+        for box in without:
+            x, y, width, height = (round(v / SHRINK) for v in box)
+            mask[max(0, y) : max(0, y + height), max(0, x) : max(0, x + width)] = 0
         mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((OPEN_PX, OPEN_PX), np.uint8))
         # Without a margin, closing would stretch what lies near the picture's edge up to the edge.
         mask = np.pad(mask, CLOSE_PX)

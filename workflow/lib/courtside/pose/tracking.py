@@ -68,7 +68,7 @@ def track_person(frames, detector, landmarks, foreground, *, min_presence, redet
         found = pose is not None and pose.presence >= min_presence
         region = pose.region if found else None
         times.append(time_s)
-        rows.append(_row(pose if found else None, landmarks.n_joints, image.shape))
+        rows.append(as_row(pose if found else None, landmarks.n_joints, image.shape))
     xy, score, reason, xyz = (np.stack(column) for column in zip(*rows, strict=True))
     return Track(np.array(times), xy, score, reason, xyz)
 
@@ -119,18 +119,48 @@ def detect_near(image, box, detector):
     region : Region
         The detector's best answer; the box itself, upright, where it finds nobody.
     """
+    return regions_near(image, box, detector)[0]
+
+
+def regions_near(image, box, detector):
+    """Return the regions of all persons in or near a foreground box, best first.
+
+    Parameters
+    ----------
+    image, box, detector
+        As for `detect_near`.
+
+    Returns
+    -------
+    regions : list of Region
+        One at least: the box itself, upright, where the detector finds nobody.
+    """
     x, y, width, height = box
     half = SEARCH_MARGIN * max(width, height) / 2
     centre_x, centre_y = x + width / 2, y + height / 2
     left, top = max(0, int(centre_x - half)), max(0, int(centre_y - half))
     found = detector.detect(image[top : int(centre_y + half), left : int(centre_x + half)])
     if not found:
-        return Region(centre_x, centre_y, SEARCH_MARGIN * max(width, height))
-    best = found[0]
-    return Region(best.x + left, best.y + top, best.side, best.angle_rad)
+        return [Region(centre_x, centre_y, SEARCH_MARGIN * max(width, height))]
+    return [Region(one.x + left, one.y + top, one.side, one.angle_rad) for one in found]
 
 
-def _row(pose, n_joints, shape):
+def as_row(pose, n_joints, shape):
+    """Return what a `Track` holds of one frame.
+
+    Parameters
+    ----------
+    pose : Pose or None
+        None where nobody was found.
+    n_joints : int
+    shape : (height, width, ...) of int
+        Of the picture, px; not looked at without a pose.
+
+    Returns
+    -------
+    xy, score, reason, xyz_in_body : (J, 2), (J,), (J,), (J, 3)
+        Joints outside the picture are NaN with that reason.
+    """
     if pose is None:
         xy, xyz = np.full((n_joints, 2), np.nan), np.full((n_joints, 3), np.nan)
         return xy, np.full(n_joints, np.nan), np.full(n_joints, reasons.UNSEEN, np.uint8), xyz

@@ -1,0 +1,150 @@
+"""Candidates over time: exact places with gaps, crossings, and exchanged pieces."""
+
+import numpy as np
+
+from courtside.motion import candidates, linking
+from courtside.motion.candidates import Candidates
+
+STEP_S = 0.1
+
+
+def candidates_of(paths, owners=None, missing=()):
+    """Return candidates, pieces and times of people on paths (P, N, 3), seen in two views by row = person.
+
+    `missing` holds (person, instant) pairs; `owners` (P, N) the piece of each in both views.
+    """
+    count, n = paths.shape[:2]
+    at = [(t, p) for t in range(n) for p in range(count) if (p, t) not in missing]
+    instant, person = (np.array(column) for column in zip(*at, strict=True))
+    owners = np.repeat(np.arange(count)[:, None], n, 1) if owners is None else owners
+    row = np.stack([person, person], axis=1)
+    found = Candidates(
+        instant=instant,
+        xyz=paths[person, instant],
+        direction=np.zeros((len(instant), 3)),
+        row=row,
+        sigma_m=np.full(len(instant), 0.03),
+        view_cost=np.full(row.shape, -3.0),
+    )
+    piece = np.stack([owners[person, instant]] * 2, axis=1)
+    return found, piece, np.arange(n) * STEP_S, person
+
+
+def lines(n, *ends):
+    share = np.linspace(0, 1, n)[:, None]
+    return np.stack([(1 - share) * a + share * b for a, b in np.array(ends, float)])
+
+
+def persons_of(paths, person):
+    """Return which person each followed path shows, as sets."""
+    return [set(person[c[c >= 0]]) for c in paths.chosen if (c >= 0).any()]
+
+
+def test_two_who_walk_apart_are_two_paths():
+    found, piece, time_s, person = candidates_of(
+        lines(30, ([0, 0, 1], [2, 0, 1]), ([0, 3, 1], [2, 3, 1]))
+    )
+    paths = linking.link(found, piece, time_s, 4)
+    assert sorted(map(sorted, persons_of(paths, person))) == [[0], [1]]
+    assert (paths.chosen >= 0).sum() >= 56  # a person is believed in after some instants
+
+
+def test_motion_carries_identity_through_a_gap_of_both():
+    paths = lines(40, ([-3, 0, 1], [3, 0.2, 1]), ([3, 0.6, 1], [-3, 0.4, 1]))
+    missing = {(p, t) for p in range(2) for t in (18, 19, 20)}
+    own = np.arange(80).reshape(2, 40) + 10  # each instant a new piece: nothing but motion helps
+    found, piece, time_s, person = candidates_of(paths, own, missing)
+    result = linking.link(found, piece, time_s, 2)
+    assert sorted(map(sorted, persons_of(result, person))) == [[0], [1]]
+
+
+def test_an_uncut_piece_carries_identity_where_motion_would_not():
+    # They exchange places while unseen: motion alone says that they stayed.
+    one, other = [-1.0, 0, 1], [1.0, 0.3, 1]
+    paths = np.repeat(np.array([[one, other], [other, one]]), 20, axis=1)
+    missing = {(p, t) for p in range(2) for t in range(15, 25)}
+    found, piece, time_s, person = candidates_of(paths, missing=missing)
+    result = linking.link(found, piece, time_s, 2)
+    assert sorted(map(sorted, persons_of(result, person))) == [[0], [1]]
+    cut = np.where(np.arange(40) < 20, [[0], [1]], [[2], [3]])
+    found, piece, time_s, person = candidates_of(paths, cut, missing)
+    result = linking.link(found, piece, time_s, 2)
+    assert sorted(map(sorted, persons_of(result, person))) == [[0, 1], [0, 1]]
+
+
+def test_a_lost_person_is_found_again_rather_than_born_again():
+    paths = lines(60, ([0, 0, 1], [1, 0, 1]))
+    missing = {(0, t) for t in range(20, 40)}
+    own = np.where(np.arange(60) < 30, 0, 1)[None]
+    found, piece, time_s, person = candidates_of(paths, own, missing)
+    result = linking.link(found, piece, time_s, 3)
+    assert persons_of(result, person) == [{0}]
+    assert (result.chosen >= 0).sum() >= 38
+
+
+def test_a_row_is_not_counted_for_two():
+    paths = lines(10, ([0, 0, 1], [0, 0, 1]), ([2, 0, 1], [2, 0, 1]))
+    found, piece, time_s, person = candidates_of(paths)
+    ghost = Candidates(
+        np.arange(10),
+        np.tile([1.0, 1.0, 1.0], (10, 1)),
+        np.zeros((10, 3)),
+        np.tile([0, 1], (10, 1)),
+        np.full(10, 0.03),
+        np.full((10, 2), -2.9),
+    )
+    order = np.argsort(np.concatenate([found.instant, ghost.instant]), kind="stable")
+    both = candidates.together([found, ghost])
+    piece = np.concatenate([piece, ghost.row])[order]
+    owner = np.concatenate([person, np.full(10, 9)])[order]
+    result = linking.link(both, piece, time_s, 4)
+    assert sorted(map(sorted, persons_of(result, owner))) == [[0], [1]]
+
+
+def test_nothing_to_link_gives_empty_paths():
+    found, _, _, _ = candidates_of(lines(5, ([0, 0, 1], [1, 0, 1])))
+    none = found.of(np.zeros(5, bool))
+    result = linking.link(none, np.zeros((0, 2), int), np.arange(5) * STEP_S, 2)
+    assert result.chosen.shape == (2, 5)
+    assert (result.chosen == -1).all()
+
+
+def test_players_rather_stay_in_their_half():
+    # Both vanish before the net for a second, standing as far from one another as from themselves.
+    before = np.tile([[[0.0, 6.2, 1]], [[0.0, 7.2, 1]]], (1, 10, 1))
+    after = np.tile([[[0.72, 6.5, 1]], [[0.72, 6.9, 1]]], (1, 10, 1))
+    nothing = np.zeros((2, 10, 3))
+    paths = np.concatenate([before, nothing, after], axis=1)
+    missing = {(p, t) for p in range(2) for t in range(10, 20)}
+    own = np.arange(60).reshape(2, 30) + 10
+    found, piece, time_s, person = candidates_of(paths, own, missing)
+    result = linking.link(found, piece, time_s, 2, net_y_m=6.7)
+    assert sorted(map(sorted, persons_of(result, person))) == [[0], [1]]
+
+
+def test_a_ray_of_one_view_carries_a_person_through_a_turn():
+    # Person 0 turns back while only one view sees it, and meets where person 1 was hidden all the time.
+    n, camera = 40, np.array([0.0, -20.0, 1.0])
+    x = np.concatenate([np.linspace(-2, 0, 20), np.linspace(0, -2, 20)])
+    paths = np.stack([np.stack([x, 0 * x, 0 * x + 1], axis=1), np.tile([2.0, 0, 1], (n, 1))])
+    unseen = range(14, 30)
+    own = np.arange(2 * n).reshape(2, n) + 10
+    found, piece, time_s, person = candidates_of(
+        paths, own, {(p, t) for p in range(2) for t in unseen}
+    )
+    toward = np.array([paths[0, t] - camera for t in unseen])
+    rays = Candidates(
+        instant=np.array(unseen),
+        xyz=np.tile(camera, (len(toward), 1)),
+        direction=toward / np.linalg.norm(toward, axis=1, keepdims=True),
+        row=np.tile([0, -1], (len(toward), 1)),
+        sigma_m=np.full(len(toward), 0.002),
+        view_cost=np.tile([-1.0, 0.0], (len(toward), 1)),
+    )
+    order = np.argsort(np.concatenate([found.instant, rays.instant]), kind="stable")
+    pieces = np.concatenate([piece, np.stack([own[0, 14:30], np.full(16, -1)], axis=1)])[order]
+    owner = np.concatenate([person, np.zeros(16, int)])[order]
+    result = linking.link(candidates.together([found, rays]), pieces, time_s, 2)
+    assert sorted(map(sorted, persons_of(result, owner))) == [[0], [1]]
+    on_rays = [(c[14:30] >= 0).sum() for c in result.chosen]
+    assert sorted(on_rays) == [0, 16]

@@ -1,0 +1,80 @@
+"""The table of who is which tracklet: round trip, and keypoints by person."""
+
+import numpy as np
+import pytest
+
+from courtside.records import people, reasons
+from courtside.records.keypoints import Keypoints2D
+from courtside.study.errors import InputError
+
+
+def view(rows=3, frames=5, joints=2):
+    at = np.arange(rows * frames * joints, dtype=float).reshape(rows, frames, joints)
+    return Keypoints2D(
+        camera="left",
+        model="m",
+        joints=np.array(["a", "b"]),
+        size=np.array([64, 48]),
+        time_s=np.arange(frames) / 30,
+        xy=np.stack([at, -at], axis=-1),
+        score=at / 100,
+        reason=np.full((rows, frames, joints), reasons.OUT_OF_IMAGE, np.uint8),
+        xyz_in_body=np.stack([at, at, at], axis=-1),
+    )
+
+
+def table():
+    index = {"left": np.array([[0, 0, 2, 2, -1], [1, -1, 0, 0, 0]]), "right": np.zeros((2, 3), int)}
+    return people.People("m", np.array(["p1", "p2"]), np.array([0.9, 0.5]), index)
+
+
+def test_cameras_with_different_numbers_of_frames_come_back(tmp_path):
+    people.write(tmp_path / "people.npz", table())
+    found = people.read(tmp_path / "people.npz")
+    assert found.model == "m"
+    assert found.person_id.tolist() == ["p1", "p2"]
+    assert found.placed.tolist() == [0.9, 0.5]
+    assert list(found.index) == ["left", "right"]
+    for camera, index in table().index.items():
+        np.testing.assert_array_equal(found.index[camera], index)
+
+
+def test_a_table_that_was_cut_is_refused(tmp_path):
+    path = tmp_path / "people.npz"
+    people.write(path, table())
+    with np.load(path) as stored:
+        arrays = dict(stored)
+    np.savez(path, **{**arrays, "index": arrays["index"][:, :-1]})
+    with pytest.raises(InputError, match=r"people\.npz: index: expected 8 frames .* found 7"):
+        people.read(path)
+
+
+def test_each_person_gets_the_row_of_each_frame():
+    found = table().assigned(view())
+    np.testing.assert_array_equal(found.xy[0, :2], view().xy[0, :2])
+    np.testing.assert_array_equal(found.xy[0, 2:4], view().xy[2, 2:4])
+    np.testing.assert_array_equal(found.xyz_in_body[1, 2:], view().xyz_in_body[0, 2:])
+    assert found.reason.dtype == np.uint8
+    for person, frame in ((0, 4), (1, 1)):
+        assert np.isnan(found.xy[person, frame]).all()
+        assert np.isnan(found.score[person, frame]).all()
+        assert (found.reason[person, frame] == reasons.UNSEEN).all()
+    assert (found.reason[0, :4] == reasons.OUT_OF_IMAGE).all()
+
+
+def test_row_0_throughout_changes_nothing():
+    one = view(rows=1)
+    found = people.assigned(one, np.zeros((1, 5), int))
+    for name in ("xy", "score", "reason", "xyz_in_body"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(one, name))
+
+
+@pytest.mark.parametrize("index", [np.zeros((1, 4), int), np.full((1, 5), 3)])
+def test_a_table_of_other_keypoints_is_refused(index):
+    with pytest.raises(InputError, match="left: expected people in 5 frames of 3 tracklets"):
+        people.assigned(view(), index)
+
+
+def test_a_camera_without_people_is_named():
+    with pytest.raises(InputError, match="other: expected people of the cameras left, right"):
+        table().assigned(Keypoints2D(**{**vars(view()), "camera": "other"}))

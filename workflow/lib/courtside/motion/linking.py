@@ -1,0 +1,256 @@
+"""Candidates of all instants linked to persons: several histories are kept until the views decide."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+HISTORIES = 60  # kept after each instant
+HOPELESS = 20.0  # histories that cost so much more than the best are dropped
+PLACE_M = 0.07  # standard deviation of a body about its prediction one instant later
+ACCELERATION_MS2 = 6.0  # of a player, for predictions over gaps
+LARGEST_M = 4.0  # a person lost for long may come back this far away
+COAST_S = 0.3  # a lost person is expected to go on for so long
+BIRTH = 20.0  # cost of another person: more than that of finding a lost one again
+MISSED, MISSED_S = 2.0, 1.0  # cost of an instant without a candidate, for a person seen so lately
+SHARED = 0.7  # cost of a row that shows somebody else, who may hide this person
+EXCHANGE = 10.0  # cost of an uncut piece that changes its owner
+NET_CROSSED = 3.0  # cost of a player who changes the half of the court
+ONE_VIEW = 0.9  # cosine between rays that are as good as one view
+GAIN = 0.5  # of the velocity's update
+MOST = 16  # candidates looked at in one instant
+
+
+@dataclass(frozen=True)
+class Paths:
+    """Where S persons were at N instants.
+
+    Attributes
+    ----------
+    chosen : (S, N) int
+        Index of the candidate, a place or a ray; -1 where none.
+    """
+
+    chosen: np.ndarray
+
+
+class _Histories:
+    """H histories of S persons each; arrays lead with H."""
+
+    def __init__(self, slots, n_cameras):
+        self.cost = np.zeros(1)
+        self.alive = np.zeros((1, slots), bool)
+        self.place = np.zeros((1, slots, 3))
+        self.velocity = np.zeros((1, slots, 3))
+        self.time_s = np.zeros((1, slots))  # of the last candidate
+        self.placed_s = np.zeros((1, slots))  # of the last place
+        self.ray = np.zeros((1, slots, 3))  # direction of the rays since then
+        self.owned = np.full((1, slots, n_cameras), -1)
+
+    def keep(self, parent):
+        """Reorder to the given parents."""
+        for name, value in vars(self).items():
+            setattr(self, name, value[parent])
+
+
+def link(candidates, piece, time_s, slots, net_y_m=None):
+    """Link candidates over time.
+
+    Parameters
+    ----------
+    candidates : courtside.motion.candidates.Candidates
+    piece : (M, C) int
+        Uncut piece of each candidate's row in each camera, -1 without one.
+    time_s : (N,) float
+        Of the instants.
+    slots : int
+        Persons followed at most.
+    net_y_m : float, optional
+        Where the net stands: crossing it costs a little.
+
+    Returns
+    -------
+    paths : Paths
+
+    Notes
+    -----
+    A search through the assignments of candidates to persons, instant by instant, that keeps the best
+    histories (a multi-hypothesis tracker: Reid 1979). A history costs what its candidates cost, plus the
+    distance to a constant-velocity prediction, plus a price for each uncut tracklet piece that changes its
+    owner: a view without a crossing carries identities through one in another view. While two views do not
+    agree on a person, rays of one view carry it on, with its place along them open. Of two people behind
+    one another both may rest on the row that shows one of them; it counts once.
+    """
+    state = _Histories(slots, piece.shape[1])
+    first = np.searchsorted(candidates.instant, np.arange(len(time_s) + 1))
+    parents, choices = [], []
+    for at, now_s in enumerate(time_s):
+        here = np.arange(first[at], first[at + 1])
+        if len(here) > MOST:
+            total = candidates.view_cost[here].sum(axis=1) + 99 * candidates.is_ray[here]
+            here = np.sort(here[np.argsort(total, kind="stable")[:MOST]])
+        if len(here):
+            parent, choice = _advance(state, candidates.of(here), piece[here], now_s, net_y_m)
+        else:
+            parent = np.arange(len(state.cost))
+            choice = np.full((len(parent), slots), -1)
+        parents.append(parent)
+        choices.append(np.where(choice >= 0, here[choice] if len(here) else -1, -1))
+    return Paths(_trace(state, parents, choices, slots))
+
+
+def _advance(state, offered, piece, now_s, net_y_m):
+    """Take one instant into the histories; return their parents and choices."""
+    parent, choice, cost = _assign(state, _own_cost(state, offered, now_s, net_y_m), offered, now_s)
+    state.keep(parent)
+    pieces = np.where((choice >= 0)[..., None], piece[choice], -1)
+    shared = _shared(pieces)
+    state.cost = cost + EXCHANGE * _exchanged(state.owned, pieces, shared)
+    order = np.argsort(state.cost, kind="stable")
+    state.keep(order)
+    parent, choice = parent[order], choice[order]
+    _move(state, choice, offered, now_s)
+    _own(state, pieces[order], shared[order])
+    different = _different(state, choice)
+    state.keep(different)
+    state.cost = state.cost - state.cost.min()
+    return parent[different], choice[different]
+
+
+def _shared(pieces):
+    """Return (H, S, C) bool: another person of the same history rests on the same piece."""
+    same = (pieces[:, :, None] == pieces[:, None]) & (pieces[:, :, None] >= 0)
+    return same.sum(axis=2) > 1
+
+
+def _exchanged(owned, pieces, shared):
+    """Return (H,) how many pieces go over from one person to another."""
+    owner = (owned[:, :, None] == pieces[:, None]) & (pieces[:, None] >= 0)
+    other = owner & ~np.eye(pieces.shape[1], dtype=bool)[:, :, None]
+    return (other.any(axis=1) & ~shared).sum(axis=(1, 2))
+
+
+def _own_cost(state, offered, now_s, net_y_m):
+    """Return (H, S, n) costs of giving each candidate to each person."""
+    move = _move_cost(state, offered, now_s)
+    if net_y_m is not None:
+        sides = (state.place[..., 1:2] > net_y_m) != (offered.xyz[:, 1] > net_y_m)
+        move = move + NET_CROSSED * (sides & ~offered.is_ray)
+    # A person is born only after all before: otherwise the same history comes in many orders.
+    unborn = ~state.alive
+    unborn[:, 1:] &= state.alive[:, :-1]
+    birth = np.where(unborn[..., None] & ~offered.is_ray, BIRTH, np.inf)
+    return np.where(state.alive[..., None], move, birth) + offered.view_cost.sum(axis=1)
+
+
+def _move_cost(state, offered, now_s):
+    """Return (H, S, n) negative log-likelihoods of candidates about the predicted places.
+
+    A person whom only one view saw of late is uncertain along its ray, more than across.
+    """
+    gone_s = np.maximum(now_s - state.time_s, 0.0)[..., None]
+    ahead = state.place + state.velocity * np.minimum(gone_s, COAST_S)
+    off, sigma_m = _apart(ahead[:, :, None], offered.xyz, offered.direction, offered.sigma_m)
+    along = (off * state.ray[:, :, None]).sum(axis=-1) ** 2
+    across = np.maximum((off**2).sum(axis=-1) - along, 0.0)
+    variance = _spread_m(gone_s) ** 2 + sigma_m**2
+    blind = _spread_m(np.maximum(now_s - state.placed_s, 0.0)[..., None]) ** 2 + sigma_m**2
+    blind = np.where(state.ray.any(axis=-1)[..., None], blind, variance)
+    cosine = (state.ray @ offered.direction.T) ** 2
+    # A ray does not measure what lies along it.
+    volume = 2 * np.log(variance / PLACE_M**2) + np.log(blind / PLACE_M**2)
+    unmeasured = cosine * np.log(blind / PLACE_M**2) + (1 - cosine) * np.log(variance / PLACE_M**2)
+    volume = volume - np.where(offered.is_ray, unmeasured, 0.0)
+    return 0.5 * (across / variance + along / blind + volume)
+
+
+def _apart(ahead, xyz, direction, sigma_m):
+    """Return the shortest ways (..., 3) from predictions to places or rays, and standard deviations there."""
+    off = xyz - ahead
+    back = (off * direction).sum(axis=-1)
+    off = off - back[..., None] * direction
+    return off, np.where(direction.any(axis=-1), np.abs(back), 1.0) * sigma_m
+
+
+def _spread_m(gone_s):
+    return np.minimum(PLACE_M + 0.5 * ACCELERATION_MS2 * gone_s**2, LARGEST_M)
+
+
+def _assign(state, own, offered, now_s):
+    """Return parents (H',), choices (H', S) and costs (H',) of the best assignments."""
+    count, slots, n = own.shape
+    parent, cost = np.arange(count), state.cost
+    choice = np.full((count, slots), -1)
+    taken_rows = np.zeros((count, n, offered.row.shape[1]), bool)
+    same = (offered.row[:, None] == offered.row[None]) & (offered.row[:, None] >= 0)
+    views = (offered.row >= 0).sum(axis=1)
+    missed = MISSED * (state.alive & (now_s - state.time_s < MISSED_S))
+    for slot in range(slots):
+        # A row that shows somebody else already says nothing for this person, who may be hidden behind.
+        lost = np.where(taken_rows, SHARED - offered.view_cost, 0.0).sum(axis=2)
+        lost = np.where(taken_rows.sum(axis=2) < views, lost, np.inf)
+        every = np.concatenate([missed[parent, slot, None], own[parent, slot] + lost], axis=1)
+        every += cost[:, None]
+        best = _lowest(every.ravel(), 3 * HISTORIES)
+        source, taken = np.divmod(best, n + 1)
+        parent, cost, choice = parent[source], every.ravel()[best], choice[source]
+        choice[:, slot] = taken - 1
+        taken_rows = taken_rows[source] | np.where(
+            (taken > 0)[:, None, None], same[taken - 1], False
+        )
+    return parent, choice, cost
+
+
+def _lowest(values, most):
+    near = np.flatnonzero(values <= values.min() + HOPELESS)
+    return near[np.argsort(values[near], kind="stable")[:most]]
+
+
+def _move(state, choice, offered, now_s):
+    history, slot = np.nonzero(choice >= 0)
+    taken = choice[history, slot]
+    born = ~state.alive[history, slot][:, None]
+    gone_s = np.maximum(now_s - state.time_s[history, slot], 1e-6)[:, None]
+    old, direction = state.velocity[history, slot], offered.direction[taken]
+    ahead = state.place[history, slot] + old * np.minimum(gone_s, COAST_S)
+    off, sigma_m = _apart(ahead, offered.xyz[taken], direction, offered.sigma_m[taken])
+    spread = 2 * _spread_m(gone_s)
+    new = ahead + np.where(born, 1.0, spread**2 / (spread**2 + sigma_m[:, None] ** 2)) * off
+    speed = (new - state.place[history, slot]) / gone_s
+    velocity = np.where(gone_s > COAST_S, 0.5 * speed, old + GAIN * (speed - old))
+    state.velocity[history, slot] = np.where(born, 0.0, velocity)
+    state.place[history, slot], state.time_s[history, slot] = new, now_s
+    state.alive[history, slot] = True
+    # Rays of one view leave the place along them open; a second view closes it.
+    before, ray = state.ray[history, slot], direction.any(axis=1)
+    open_ = ray & (~before.any(axis=1) | (np.abs((before * direction).sum(axis=1)) > ONE_VIEW))
+    state.placed_s[history, slot] = np.where(open_, state.placed_s[history, slot], now_s)
+    state.ray[history, slot] = direction
+
+
+def _own(state, pieces, shared):
+    """Make those who alone rest on a piece its owners."""
+    gained = (pieces >= 0) & ~shared
+    lost = (state.owned[:, :, None] == np.where(gained, pieces, -2)[:, None]).any(axis=2)
+    state.owned = np.where(gained, pieces, np.where(lost, -1, state.owned))
+
+
+def _different(state, choice):
+    """Return the best histories, of those that agree on the present only the best one."""
+    seen, kept = set(), []
+    for at in range(len(choice)):  # the cheapest comes first
+        key = choice[at].tobytes() + state.owned[at].tobytes() + state.time_s[at].tobytes()
+        if key not in seen:
+            seen.add(key)
+            kept.append(at)
+            if len(kept) == HISTORIES:
+                break
+    return np.array(kept)
+
+
+def _trace(state, parents, choices, slots):
+    chosen = np.full((slots, len(parents)), -1)
+    at = int(np.argmin(state.cost))
+    for instant in range(len(parents) - 1, -1, -1):
+        chosen[:, instant] = choices[instant][at]
+        at = parents[instant][at]
+    return chosen

@@ -1,0 +1,244 @@
+"""Several people followed at once through the pictures of one fixed camera, as tracklets.
+
+A tracklet is what certainly is one body: it ends where its tracker may have changed to another one.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from courtside.pose import tracking
+from courtside.pose.tracking import Track
+
+SEARCH_EVERY = 5  # frames between two searches for people who are not followed yet
+REST_S = 0.1  # a row stays empty for so long between two tracklets
+JUMP = 0.25  # of a body's size: a body that is further from its prediction is another one
+TWINS = (
+    0.12  # of a body's size: poses closer than this, on the average of their joints, are one body
+)
+MEETING = (
+    0.35  # of a body's size: bodies with middles closer than this may be taken for one another
+)
+STEADY = 0.5  # share of the old velocity in the new one
+BODY_MARGIN = 0.15  # of a body's size: foreground this close to its joints is explained by it
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """One body that is followed: its row, its last pose, and its motion in px per frame."""
+
+    row: int
+    pose: object
+    velocity: np.ndarray
+
+    @property
+    def ahead(self):
+        return middle(self.pose) + self.velocity
+
+    @property
+    def region(self):
+        x, y = self.velocity
+        return replace(self.pose.region, x=self.pose.region.x + x, y=self.pose.region.y + y)
+
+
+def middle(pose):
+    """Return where a pose is, (2,) px: the median of its joints."""
+    return np.median(pose.xy, axis=0)
+
+
+def size_px(pose):
+    """Return the longer side of the box around a pose's joints."""
+    return float(np.ptp(pose.xy, axis=0).max())
+
+
+def track_people(
+    frames, detector, landmarks, foreground, *, max_people, min_presence, redetect=False
+):
+    """Follow several people through a video.
+
+    Parameters
+    ----------
+    frames, detector, landmarks, foreground, min_presence, redetect
+        As for `tracking.track_person`.
+    max_people : int
+        People followed at once, 1 or more. With 1, the result is that of `track_person`.
+
+    Returns
+    -------
+    track : Track
+        Arrays have a leading axis of P rows. A row holds tracklets one after another, at least 0.1 s
+        apart: P stays a few more than `max_people`, however often tracklets end; a gap may change the
+        person.
+
+    Notes
+    -----
+    A body is lost where the network doubts it, where it leaves the foreground or jumps off its course.
+    Of two tracks on one body, the one further off its course is dropped. Where two bodies come close and
+    where they part, both tracklets end: which of them is whom is left to the other views.
+    """
+    if max_people == 1:
+        track = tracking.track_person(
+            frames, detector, landmarks, foreground, min_presence=min_presence, redetect=redetect
+        )
+        arrays = {name: value[None] for name, value in vars(track).items()}
+        return Track(**{**arrays, "time_s": track.time_s})
+    crowd = _Crowd(detector, landmarks, foreground, max_people, min_presence)
+    times, found = [], []
+    for count, (time_s, image) in enumerate(frames):
+        crowd.now_s = time_s
+        if redetect:
+            crowd.match(crowd.search(image, []))
+        else:
+            crowd.follow(image)
+            if len(crowd.bodies) < max_people and count % SEARCH_EVERY == 0:
+                crowd.match(crowd.search(image, [body.pose for body in crowd.bodies]), keep=True)
+        crowd.part()
+        times.append(time_s)
+        found.append(
+            {b.row: tracking.as_row(b.pose, landmarks.n_joints, image.shape) for b in crowd.bodies}
+        )
+    return _stacked(np.array(times), found, landmarks.n_joints)
+
+
+def _stacked(time_s, found, n_joints):
+    n_rows = max((row + 1 for rows in found for row in rows), default=1)
+    empty = tracking.as_row(None, n_joints, None)
+    arrays = [np.repeat(np.repeat(v[None, None], len(time_s), 1), n_rows, 0) for v in empty]
+    for at, rows in enumerate(found):
+        for row, values in rows.items():
+            for array, value in zip(arrays, values, strict=True):
+                array[row, at] = value
+    return Track(time_s, *arrays)
+
+
+class _Crowd:
+    """The bodies that are followed in one camera."""
+
+    def __init__(self, detector, landmarks, foreground, max_people, min_presence):
+        self.detector, self.landmarks, self.foreground = detector, landmarks, foreground
+        self.max_people, self.min_presence = max_people, min_presence
+        self.bodies, self.now_s = [], 0.0
+        self.ended_s = {}  # by row: when its last tracklet ended
+        self.meeting = set()
+
+    def follow(self, image):
+        """Find the same bodies in the next picture."""
+        boxes = self.foreground.boxes(image) if self.bodies else []
+        kept = []
+        for body in self.bodies:
+            pose = self.landmarks.estimate(image, body.region)
+            if pose.presence >= self.min_presence and not tracking.strayed(pose.xy, boxes):
+                kept.append((body, pose))
+        self._end(set(self.bodies) - {body for body, _ in kept})
+        self.bodies = []
+        for body, pose in self._without_twins(kept):
+            step = middle(pose) - middle(body.pose)
+            velocity = STEADY * body.velocity + (1 - STEADY) * step
+            followed = replace(body, pose=pose, velocity=velocity)
+            if np.linalg.norm(middle(pose) - body.ahead) > JUMP * size_px(pose):
+                followed = self._renewed(followed)
+            self.bodies.append(followed)
+
+    def _without_twins(self, pairs):
+        """Drop, of two bodies with one pose, the one further from its prediction; end both tracklets."""
+        off = [np.linalg.norm(middle(pose) - body.ahead) for body, pose in pairs]
+        order = np.argsort(off, kind="stable")
+        kept = []
+        for at in order:
+            body, pose = pairs[at]
+            twin = next((k for k in kept if are_twins(k[1], pose)), None)
+            if twin is None:
+                kept.append((body, pose))
+                continue
+            self._end([body])
+            kept[kept.index(twin)] = (self._renewed(twin[0]), twin[1])
+        return kept
+
+    def search(self, image, known):
+        """Return the poses of people who are not known, largest foreground first."""
+        poses = []
+        for box in self.foreground.boxes(image, [around(pose) for pose in known]):
+            for region in tracking.regions_near(image, box, self.detector):
+                if any(_inside(region, pose) for pose in known + poses):
+                    continue
+                pose = self.landmarks.estimate(image, region)
+                if pose.presence < self.min_presence:
+                    continue
+                if not any(are_twins(pose, other) for other in known + poses):
+                    poses.append(pose)
+        return poses[: self.max_people - len(known)]
+
+    def match(self, poses, keep=False):
+        """Give poses to the bodies they continue, and start new bodies with the rest."""
+        old, new = ([], self.bodies) if keep else (self.bodies, [])
+        bodies = list(new)
+        cost = np.array(
+            [[np.linalg.norm(middle(p) - b.ahead) / size_px(p) for p in poses] for b in old]
+        )
+        taken = set()
+        for at, to in zip(*linear_sum_assignment(cost.reshape(len(old), len(poses))), strict=True):
+            if cost[at, to] <= JUMP:
+                step = middle(poses[to]) - middle(old[at].pose)
+                velocity = STEADY * old[at].velocity + (1 - STEADY) * step
+                bodies.append(replace(old[at], pose=poses[to], velocity=velocity))
+                taken.add(to)
+        rows = {body.row for body in bodies}
+        self._end([body for body in old if body.row not in rows])
+        self.bodies = bodies
+        for to, pose in enumerate(poses):
+            if to not in taken:
+                self.bodies.append(_Body(self._free_row(), pose, np.zeros(2)))
+
+    def part(self):
+        """End the tracklets of bodies that begin or cease to be close."""
+        close = set()
+        for at, one in enumerate(self.bodies):
+            for other in self.bodies[at + 1 :]:
+                apart = np.linalg.norm(middle(one.pose) - middle(other.pose))
+                if apart < MEETING * max(size_px(one.pose), size_px(other.pose)):
+                    close |= {one.row, other.row}
+        changed = close ^ {row for row in self.meeting if row in {b.row for b in self.bodies}}
+        self.meeting = close - changed
+        for at, body in enumerate(self.bodies):
+            if body.row in changed:
+                self.bodies[at] = self._renewed(body)
+                self.meeting |= {self.bodies[at].row} if body.row in close else set()
+
+    def _renewed(self, body):
+        """Return the body with a new tracklet."""
+        row = self._free_row()
+        self._end([body])
+        self.meeting |= {row} if body.row in self.meeting else set()
+        return replace(body, row=row)
+
+    def _end(self, bodies):
+        for body in bodies:
+            self.ended_s[body.row] = self.now_s
+
+    def _free_row(self):
+        used = {body.row for body in self.bodies}
+        row = 0
+        while row in used or self.now_s - self.ended_s.get(row, -np.inf) < REST_S:
+            row += 1
+        self.ended_s[row] = np.inf  # not free until it ends
+        return row
+
+
+def are_twins(one, other):
+    """Say whether two poses are of one body."""
+    apart = np.linalg.norm(one.xy - other.xy, axis=1).mean()
+    return bool(apart < TWINS * max(size_px(one), size_px(other)))
+
+
+def around(pose):
+    """Return the box (x, y, width, height) of what a pose explains, px."""
+    margin = BODY_MARGIN * size_px(pose)
+    low, high = pose.xy.min(axis=0) - margin, pose.xy.max(axis=0) + margin
+    return (*low, *(high - low))
+
+
+def _inside(region, pose):
+    """Say whether a region shows the body of a pose."""
+    apart = np.hypot(region.x - pose.region.x, region.y - pose.region.y)
+    return apart < MEETING * size_px(pose) / 2

@@ -1,0 +1,117 @@
+"""Which tracklet of which camera is which person: the file between detection and triangulation."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from courtside.records import npz, reasons
+from courtside.study.errors import InputError
+
+FORM = "courtside people 1"
+# Cameras have different numbers of frames: their tables lie behind one another.
+SPEC = {
+    "model": ("str", ()),
+    "person_id": ("str", ("P",)),
+    "placed": ("float", ("P",)),
+    "cameras": ("str", ("C",)),
+    "n_frames": ("int", ("C",)),
+    "index": ("int", ("P", "N")),
+}
+
+
+@dataclass(frozen=True)
+class People:
+    """The persons of one take in the tracklets of its cameras.
+
+    Attributes
+    ----------
+    model : str
+        Network that saw the tracklets.
+    person_id : (P,) str
+        Persons as the session names them.
+    placed : (P,) float
+        Share of the take in which two views or more met in the person.
+    index : dict of str to (P, T) int
+        By camera: which tracklet row shows the person in each of its T frames, -1 for none.
+    """
+
+    model: str
+    person_id: np.ndarray
+    placed: np.ndarray
+    index: dict
+
+    def assigned(self, view):
+        """Return a `Keypoints2D` by person instead of by tracklet; see the function of this name."""
+        if view.camera not in self.index:
+            raise InputError(
+                f"{view.camera}: expected people of the cameras {', '.join(self.index)}, found none of "
+                "this camera; associate them again"
+            )
+        return assigned(view, self.index[view.camera])
+
+
+def write(path, people):
+    """Write a `People` to an npz file."""
+    arrays = {
+        "model": people.model,
+        "person_id": people.person_id,
+        "placed": people.placed,
+        "cameras": np.array(list(people.index), dtype=str),
+        "n_frames": np.array([table.shape[1] for table in people.index.values()], dtype=int),
+        "index": np.concatenate(list(people.index.values()), axis=1),
+    }
+    npz.write(path, FORM, SPEC, arrays)
+
+
+def read(path):
+    """Read a `People` from an npz file; raise `InputError` if it is not one."""
+    found = npz.read(path, FORM, SPEC)
+    if found["n_frames"].sum() != found["index"].shape[1] or (found["n_frames"] < 0).any():
+        raise InputError(
+            f"{path}: index: expected {found['n_frames'].sum()} frames of all cameras together, "
+            f"found {found['index'].shape[1]}; make it again"
+        )
+    tables = np.split(found["index"], np.cumsum(found["n_frames"])[:-1], axis=1)
+    index = dict(zip(map(str, found["cameras"]), tables, strict=True))
+    return People(str(found["model"]), found["person_id"], found["placed"], index)
+
+
+def assigned(view, index):
+    """Return the keypoints of one camera by person instead of by tracklet.
+
+    Parameters
+    ----------
+    view : Keypoints2D
+        With tracklet rows.
+    index : (P, T) int
+        Row of each person in each frame, -1 for none.
+
+    Returns
+    -------
+    by_person : Keypoints2D
+        P persons; where a person has no row, NaN with the reason UNSEEN.
+
+    Raises
+    ------
+    InputError
+        If the index is of other frames or rows than the keypoints.
+    """
+    index, frames = np.asarray(index), len(view.time_s)
+    if index.shape[1:] != (frames,) or index.max(initial=-1) >= len(view.xy):
+        raise InputError(
+            f"{view.camera}: expected people in {frames} frames of {len(view.xy)} tracklets, found "
+            f"{index.shape[1]} frames and tracklet {index.max(initial=-1)}; associate them again"
+        )
+    known, row, at = index >= 0, np.maximum(index, 0), np.arange(frames)
+
+    def pick(values, missing):
+        empty = ~known.reshape(*known.shape, *(1,) * (values.ndim - 2))
+        return np.where(empty, missing, values[row, at]).astype(values.dtype)
+
+    return replace(
+        view,
+        xy=pick(view.xy, np.nan),
+        score=pick(view.score, np.nan),
+        reason=pick(view.reason, np.uint8(reasons.UNSEEN)),
+        xyz_in_body=pick(view.xyz_in_body, np.nan),
+    )

@@ -1,0 +1,47 @@
+"""Associate the tracklets of all cameras of a take: 2D keypoints, cameras, clocks -> who is who."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.geometry import cameras, courts
+from courtside.motion import association, resampling
+from courtside.records import keypoints, people, skeleton, sync
+from courtside.study import log
+from courtside.study.errors import InputError
+
+
+def main(paths, people_npz, *, persons):
+    views = [keypoints.read_2d(path) for path in paths.pose2d]
+    known = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
+    _, by_camera = sync.read(paths.sync)
+    clocks = [by_camera[view.camera] for view in views]
+    fault = sync.fault_line(paths.sync, by_camera)
+    if fault and len(persons) > 1:
+        raise InputError(fault)
+    joints = skeleton.read(paths.skeleton)
+    names = joints.groups["limbs"]
+    chosen = [joints.index(name) for name in names]
+    limbs = [replace(v, xy=v.xy[:, :, chosen], score=v.score[:, :, chosen]) for v in views]
+    time_s = resampling.common_times(views, clocks)
+    found = association.associate(
+        [known[view.camera] for view in views],
+        [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)],
+        time_s,
+        len(persons),
+        trunk=[at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))],
+        mirror=[chosen.index(joints.mirror()[joint]) for joint in chosen],
+        court=courts.read(paths.court) if paths.get("court") else None,
+    )
+    frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
+    index = {
+        view.camera: association.on_frames(rows, time_s, frame_s)
+        for view, rows, frame_s in zip(views, found.index, frames_s, strict=True)
+    }
+    log.logger.info("%s", found.line(persons))
+    people.write(people_npz, people.People(views[0].model, np.array(persons), found.placed, index))
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(snakemake.input, snakemake.output.people, persons=snakemake.params.persons)
