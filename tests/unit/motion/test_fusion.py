@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.motion import fusion
+from courtside.motion import fusion, resampling
 from courtside.records import reasons, skeleton
 from courtside.records.keypoints import Keypoints2D
+from courtside.records.sync import Clock
 
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
 OPTIONS = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True}
@@ -55,28 +56,23 @@ def test_cameras_of_other_rates_meet_on_common_times():
 def test_equal_clocks_pass_through_unchanged():
     cameras = scene.ring(2)
     time_s = np.arange(30) / 60
-    xy, _ = fusion.resample(
-        view(cameras[0], time_s), fusion.common_times([view(c, time_s) for c in cameras])
+    xy, _ = resampling.resample(
+        view(cameras[0], time_s), resampling.common_times([view(c, time_s) for c in cameras])
     )
     np.testing.assert_array_equal(xy, view(cameras[0], time_s).xy)
 
 
-def test_gaps_in_2d_are_not_bridged():
-    camera = scene.ring(1)[0]
-    keypoints = view(camera, np.arange(10) / 60)
-    keypoints.xy[0, 5] = np.nan
-    xy, score = fusion.resample(keypoints, np.arange(20) / 120)
-    assert np.isnan(xy[0, 9:12]).all()
-    assert np.isnan(score[0, 9:12]).all()
-    assert np.isfinite(xy[0, :9]).all()
-
-
-def test_a_dropped_frame_is_a_gap():
-    camera = scene.ring(1)[0]
-    time_s = np.delete(np.arange(10) / 60, [4, 5])
-    xy, _ = fusion.resample(view(camera, time_s), np.arange(10) / 60)
-    assert np.isnan(xy[0, 4:6]).all()
-    assert np.isfinite(np.delete(xy[0], [4, 5], axis=0)).all()
+def test_clocks_of_their_own_are_brought_together():
+    cameras = scene.ring(3)
+    clocks = [Clock(), Clock(0.7, 150.0), Clock(-0.3, -90.0)]
+    own = np.arange(300) / 60
+    views = [
+        view(c, clock.to_reference(own), own) for c, clock in zip(cameras, clocks, strict=True)
+    ]
+    points, _ = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], **OPTIONS, clocks=clocks)
+    seen = np.isfinite(points.xyz[0, :, 0, 0])
+    assert seen.mean() > 0.95
+    np.testing.assert_allclose(points.xyz[0, seen], body(points.time_s[seen]), atol=2e-3)
 
 
 def test_every_missing_point_says_why():

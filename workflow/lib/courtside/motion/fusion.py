@@ -4,79 +4,27 @@ from dataclasses import replace
 
 import numpy as np
 
-from courtside.geometry import sides, triangulation
+from courtside.geometry import plain_dlt, sides, triangulation
+from courtside.motion import resampling
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
-
-RATE_TOLERANCE = 1e-3  # frame times closer than this share of a frame are the same moment
-# frames further apart than this many frame intervals have a dropped frame between
-LONGEST_STEP = 1.5
-
-
-def common_times(views, offset_s=None):
-    """Return the uniform times of a take.
-
-    Parameters
-    ----------
-    views : list of Keypoints2D, length C
-    offset_s : list of float, length C, optional
-        Start of each camera's clock on the reference clock; zero by default.
-
-    Returns
-    -------
-    time_s : (T,) float
-        The median frame interval of the first camera, over the span that two cameras share at least.
-    """
-    offset_s = offset_s or [0.0] * len(views)
-    first = sorted(v.time_s[0] + at for v, at in zip(views, offset_s, strict=True))
-    last = sorted((v.time_s[-1] + at for v, at in zip(views, offset_s, strict=True)), reverse=True)
-    second = min(1, len(views) - 1)
-    start, stop = first[second], last[second]
-    step_s = float(np.median(np.diff(views[0].time_s))) if len(views[0].time_s) > 1 else 1.0
-    return start + step_s * np.arange(int(np.floor((stop - start) / step_s + RATE_TOLERANCE)) + 1)
-
-
-def resample(view, time_s, offset_s=0.0):
-    """Interpolate one camera's keypoints at other times, linearly between neighbouring frames.
-
-    Parameters
-    ----------
-    view : Keypoints2D
-    time_s : (T,) float
-        Times on the reference clock.
-    offset_s : float
-        Start of the camera's clock on the reference clock.
-
-    Returns
-    -------
-    xy, score : (P, T, J, 2) float, (P, T, J) float
-        NaN where a neighbouring frame is missing: gaps are not bridged. The score is the lower one.
-    """
-    own, known = np.asarray(time_s) - offset_s, view.time_s
-    step_s = float(np.median(np.diff(known))) if len(known) > 1 else 1.0
-    left = np.clip(np.searchsorted(known, own, side="right") - 1, 0, len(known) - 1)
-    right = np.minimum(left + 1, len(known) - 1)
-    span = known[right] - known[left]
-    share = np.where(span > 0, (own - known[left]) / np.where(span > 0, span, 1.0), 0.0)
-    on_left = np.abs(own - known[left]) <= RATE_TOLERANCE * step_s
-    on_right = np.abs(own - known[right]) <= RATE_TOLERANCE * step_s
-    left = np.where(on_right, right, left)
-    exact = on_left | on_right
-    right = np.where(exact, left, right)
-    unknown = (own < known[0]) | (own > known[-1]) | (span > LONGEST_STEP * step_s)
-    share = np.where(exact, 0.0, np.where(unknown, np.nan, share))
-    xy = _blend(view.xy, left, right, share[:, None, None])
-    score = np.minimum(view.score[:, left], view.score[:, right])
-    return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
-
-
-def _blend(values, left, right, share):
-    before, after = values[:, left], values[:, right]
-    return before + share * (after - before)
+from courtside.records.sync import Clock
 
 
 def triangulate_take(
-    cameras, views, skeleton, person_id, *, min_score, min_views, max_error_px, fade_px, fix_sides
+    cameras,
+    views,
+    skeleton,
+    person_id,
+    *,
+    min_score,
+    min_views,
+    max_error_px,
+    fade_px,
+    fix_sides,
+    clocks=None,
+    time_s=None,
+    rule="robust",
 ):
     """Triangulate the persons of one take.
 
@@ -94,6 +42,13 @@ def triangulate_take(
         As for `triangulation.triangulate_robust`.
     fix_sides : bool
         Whether to exchange left and right in views that contradict the others.
+    clocks : list of Clock, length C, optional
+        Of the cameras, in the order of `views`; clocks that agree by default.
+    time_s : (T,) float, optional
+        Of the result, on the reference clock; `resampling.common_times` of the views by default.
+    rule : str
+        "robust" weighs and leaves out views (`triangulation.triangulate_robust`); "dlt" takes all as they are
+        (`plain_dlt.triangulate_plain`).
 
     Returns
     -------
@@ -108,19 +63,22 @@ def triangulate_take(
     holds what the views disagree on; an error that all views share (a network that places every hip too
     low) is not in it.
     """
-    # ASSUME: the cameras' clocks start together; a take states otherwise when it is synchronised.
-    time_s = common_times(views)
-    resampled = [resample(view, time_s) for view in views]
+    clocks = clocks or [Clock()] * len(views)
+    time_s = resampling.common_times(views, clocks) if time_s is None else time_s
+    resampled = [
+        resampling.resample(view, time_s, clock) for view, clock in zip(views, clocks, strict=True)
+    ]
     xy, score = (np.stack(part) for part in zip(*resampled, strict=True))
     swapped = np.zeros(score.shape, dtype=bool)
-    if fix_sides:
+    if fix_sides and rule == "robust":
         xy, score, swapped = _fix_sides(cameras, xy, score, skeleton, max_error_px)
     flat = score.reshape(len(cameras), -1)
-    options = {"min_views": min_views, "min_score": min_score}
-    options |= {"max_error_px": max_error_px, "fade_px": fade_px}
-    found = triangulation.triangulate_robust(
-        cameras, xy.reshape(len(cameras), -1, 2), flat, sigma_px=1.0, **options
-    )
+    options = {"min_views": min_views, "min_score": min_score, "sigma_px": 1.0}
+    solve = plain_dlt.triangulate_plain
+    if rule == "robust":
+        solve = triangulation.triangulate_robust
+        options |= {"max_error_px": max_error_px, "fade_px": fade_px}
+    found = solve(cameras, xy.reshape(len(cameras), -1, 2), flat, **options)
     points = _record(cameras, views[0], person_id, time_s, found, score.shape[1:])
     reason = why_missing(flat, found.xyz, min_score, min_views).reshape(points.xyz.shape[:-1])
     variance = keypoint_variance(points, score)

@@ -1,0 +1,72 @@
+"""Keypoints of cameras with clocks of their own -> keypoints at common, uniform times."""
+
+import numpy as np
+
+from courtside.records.sync import Clock
+
+RATE_TOLERANCE = 1e-3  # frame times closer than this share of a frame are the same moment
+# frames further apart than this many frame intervals have a dropped frame between
+LONGEST_STEP = 1.5
+
+
+def common_times(views, clocks=None):
+    """Return the uniform times of a take on the reference clock.
+
+    Parameters
+    ----------
+    views : list of Keypoints2D, length C
+    clocks : list of Clock, length C, optional
+        One common clock by default.
+
+    Returns
+    -------
+    time_s : (T,) float
+        The median frame interval of the first camera, over the span that two cameras share at least.
+    """
+    clocks = clocks or [Clock()] * len(views)
+    on_reference = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
+    first = sorted(time_s[0] for time_s in on_reference)
+    last = sorted((time_s[-1] for time_s in on_reference), reverse=True)
+    second = min(1, len(views) - 1)
+    start, stop = first[second], last[second]
+    step_s = float(np.median(np.diff(on_reference[0]))) if len(on_reference[0]) > 1 else 1.0
+    return start + step_s * np.arange(int(np.floor((stop - start) / step_s + RATE_TOLERANCE)) + 1)
+
+
+def resample(view, time_s, clock=None):
+    """Interpolate one camera's keypoints at other times, linearly between neighbouring frames.
+
+    Parameters
+    ----------
+    view : Keypoints2D
+    time_s : (T,) float
+        Times on the reference clock.
+    clock : Clock, optional
+        The camera's; the reference clock itself by default.
+
+    Returns
+    -------
+    xy, score : (P, T, J, 2) float, (P, T, J) float
+        NaN where a neighbouring frame is missing: gaps are not bridged. The score is the lower one.
+    """
+    own, known = (clock or Clock()).from_reference(time_s), view.time_s
+    step_s = float(np.median(np.diff(known))) if len(known) > 1 else 1.0
+    left = np.clip(np.searchsorted(known, own, side="right") - 1, 0, len(known) - 1)
+    right = np.minimum(left + 1, len(known) - 1)
+    span = known[right] - known[left]
+    share = np.where(span > 0, (own - known[left]) / np.where(span > 0, span, 1.0), 0.0)
+    on_left = np.abs(own - known[left]) <= RATE_TOLERANCE * step_s
+    on_right = np.abs(own - known[right]) <= RATE_TOLERANCE * step_s
+    left = np.where(on_right, right, left)
+    exact = on_left | on_right
+    right = np.where(exact, left, right)
+    unknown = (own < known[0]) | (own > known[-1]) | (span > LONGEST_STEP * step_s)
+    share = np.where(exact, 0.0, np.where(unknown, np.nan, share))
+    xy = _blend(view.xy, left, right, share[:, None, None])
+    score = np.minimum(view.score[:, left], view.score[:, right])
+    return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
+
+
+def _blend(values, left, right, share):
+    before, after = values[:, left], values[:, right]
+    return before + share * (after - before)

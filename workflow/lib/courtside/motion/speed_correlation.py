@@ -1,0 +1,107 @@
+"""What cameras of unknown place say about their clocks: joints are fast at the same moments everywhere."""
+
+from itertools import combinations
+
+import numpy as np
+
+from courtside.motion import smooth_tracks
+
+SCAN_TIMES = 450  # moments of a camera that are compared at every offset
+SCAN_STEP_S = 1 / 30
+CLIP = 3.0  # speeds count up to this many times their usual size
+
+
+class Speeds:
+    """Loss of pairs of cameras from products of the speeds of all joints, persons summed.
+
+    Parameters
+    ----------
+    tracks : list of Track, length C
+        Pixels, smoothed alike.
+    """
+
+    scan_step_s = SCAN_STEP_S
+
+    def __init__(self, tracks):
+        self.tracks = [_features(track) for track in tracks]
+        self.count = len(tracks)
+        self.pairs = []
+
+    def scan(self, a, b, lags_s):
+        """Return the loss (N, L) of camera b against a at N times of a, for offsets of b against a."""
+        track_a, track_b = self.tracks[a], self.tracks[b]
+        first = track_a.values[0].reshape(track_a.values.shape[1], -1)
+        at = np.arange(0, len(first), max(1, len(first) // SCAN_TIMES))
+        own_b = track_a.start_s + track_a.step_s * at[:, None] + lags_s
+        index = np.rint((own_b - track_b.start_s) / track_b.step_s).astype(int)
+        inside = (index >= 0) & (index < track_b.values.shape[1])
+        second = track_b.values[0].reshape(track_b.values.shape[1], -1)
+        seen_a = np.isfinite(first).any(axis=1)[at]
+        seen_b = np.isfinite(second).any(axis=1)
+        first, second = np.nan_to_num(first[at]), np.nan_to_num(second)
+        product = _products(first, second, np.where(inside, index, -1))
+        known = inside & seen_a[:, None] & seen_b[np.where(inside, index, 0)]
+        return np.where(known, -product / first.shape[1], np.nan)
+
+    def match(self, own, used):
+        """Return all pairs of the cameras `used`: the speeds of all persons are summed."""
+        self.pairs = list(combinations(sorted(used), 2))
+        return self.pairs
+
+    def terms(self, own):
+        """Return what each pair says, as `clock_adjustment.adjust` asks for."""
+        sampled = [
+            [np.nan_to_num(part[0]) for part in smooth_tracks.sample(track, time_s)]
+            for track, time_s in zip(self.tracks, own, strict=True)
+        ]
+        return {(a, b): _product_terms(sampled[a], sampled[b]) for a, b in self.pairs}
+
+
+def _products(first, second, index):
+    """Return the products (N, L) of first (N, K) with the rows of second (T, K) that `index` names."""
+    result = np.zeros(index.shape)
+    for row, (values, places) in enumerate(zip(first, index, strict=True)):
+        asked = places[places >= 0]
+        if len(asked):
+            low = asked.min()
+            piece = second[low : asked.max() + 1] @ values
+            result[row] = piece[np.maximum(places - low, 0)]
+    return result
+
+
+def _product_terms(first, second):
+    """Return slope, curvature and steepness (T,) of minus the product, by the offset of the second."""
+    (value_a, slope_a, bend_a), (value_b, slope_b, bend_b) = first, second
+    slope = -0.5 * (value_a * slope_b - slope_a * value_b)
+    curvature = -0.25 * (value_a * bend_b - 2 * slope_a * slope_b + bend_a * value_b)
+    # With equal values on both sides the curvature is that of the values' own change.
+    steep = 0.25 * (slope_a**2 + slope_b**2) * 2
+    return tuple(part.sum(axis=(1, 2)) for part in (slope, curvature, steep))
+
+
+def _features(track):
+    """Return a track (1, T, J, 2) of vertical and total speed per size of the person, persons summed.
+
+    Speeds downwards count as negative; of the total speed its mean is taken off. Neither changes when a
+    camera stands elsewhere on the floor, the first hardly at all.
+    """
+    values = track.values
+    velocity = (values[:, 2:] - values[:, :-2]) / (2 * track.step_s)
+    velocity = np.pad(velocity, ((0, 0), (1, 1), (0, 0), (0, 0)), constant_values=np.nan)
+    velocity /= _size(values)
+    speed = np.linalg.norm(velocity, axis=-1)
+    speed -= np.nanmean(speed, axis=1, keepdims=True) if np.isfinite(speed).any() else 0.0
+    features = np.stack([velocity[..., 1], speed], axis=-1)
+    known = np.isfinite(features).all(axis=-1).any(axis=(0, 2))
+    usual = np.nanmedian(np.abs(features), axis=(0, 1, 2)) + 1e-9 if known.any() else 1.0
+    squeezed = np.tanh(features / (CLIP * usual))
+    summed = np.nansum(squeezed, axis=0, keepdims=True)
+    summed[:, ~known] = np.nan
+    return smooth_tracks.Track(track.start_s, track.step_s, summed)
+
+
+def _size(values):
+    """Return the spread of each person's joints, (P, T, 1, 1) px, the median over the take."""
+    centre = np.nanmedian(values, axis=2, keepdims=True)
+    spread = np.nanmedian(np.linalg.norm(values - centre, axis=-1), axis=(1, 2))
+    return np.maximum(spread, 1.0)[:, None, None, None]

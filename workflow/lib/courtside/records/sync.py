@@ -1,0 +1,182 @@
+"""Clocks of the cameras of a take against the first camera's: JSON with what is known of each."""
+
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from courtside.study.errors import InputError
+from courtside.study.files import write_json
+
+FORM = "courtside sync 1"
+USABLE = ("reference", "found", "assumed")
+STATUSES = (*USABLE, "ambiguous", "unknown")
+NUMBERS = ("offset_s", "drift_ppm", "uncertainty_s", "drift_uncertainty_ppm")
+NOT_USED = "give its offset_s in the session file, or film a clap that all cameras see"
+
+
+@dataclass(frozen=True)
+class Clock:
+    """A clock that shows `t_own = t_ref * (1 + drift_ppm * 1e-6) + offset_s`.
+
+    Attributes
+    ----------
+    offset_s : float
+        What it shows when the reference clock shows zero, seconds.
+    drift_ppm : float
+        How much faster it runs, millionths.
+    uncertainty_s : float
+        Standard deviation of its time against the reference, where in the take this is largest,
+        seconds; NaN where nothing is known. 90 % of errors should lie within 1.645 of it.
+    drift_uncertainty_ppm : float
+        Standard deviation of the drift, millionths.
+    status : str
+        `reference`, `found`, `assumed` (somebody said so), `ambiguous` (several offsets explain the
+        recording), `unknown` (none is explained well enough).
+    note : str
+        One line on how it was found, or why it was not.
+    candidates_s : tuple of float
+        Other offsets that explain the recording about as well, best first.
+    """
+
+    offset_s: float = 0.0
+    drift_ppm: float = 0.0
+    uncertainty_s: float = 0.0
+    drift_uncertainty_ppm: float = 0.0
+    status: str = "assumed"
+    note: str = ""
+    candidates_s: tuple = ()
+
+    def __post_init__(self):
+        if self.status not in STATUSES:
+            raise ValueError(f"expected a status of {STATUSES}, found {self.status!r}")
+        if not (math.isfinite(self.offset_s) and abs(self.drift_ppm) < 1e6):
+            raise ValueError(f"expected a finite offset and drift, found {self}")
+
+    @property
+    def usable(self):
+        """Whether triangulation may rest on it."""
+        return self.status in USABLE
+
+    def from_reference(self, time_s):
+        """Return what this clock shows at times of the reference clock."""
+        return np.asarray(time_s) * (1 + self.drift_ppm * 1e-6) + self.offset_s
+
+    def to_reference(self, time_s):
+        """Return the times of the reference clock at which this clock shows `time_s`."""
+        return (np.asarray(time_s) - self.offset_s) / (1 + self.drift_ppm * 1e-6)
+
+
+def one_clock(cameras):
+    """Return the clocks of cameras that are known to share one, the first being the reference."""
+    first, *others = cameras
+    said = Clock(note="the session says that the cameras share a clock")
+    return {first: Clock(status="reference"), **dict.fromkeys(others, said)}
+
+
+def usable(clocks):
+    """Whether every clock of a dict of camera -> Clock may be used."""
+    return all(clock.usable for clock in clocks.values())
+
+
+def fault_line(where, clocks):
+    """Return one line that names the first camera whose clock may not be used, empty if all may.
+
+    Parameters
+    ----------
+    where : str
+        File or take, to begin the line with.
+    clocks : dict of str to Clock
+    """
+    for camera, clock in clocks.items():
+        if not clock.usable:
+            others = ", ".join(f"{at:.3f}" for at in clock.candidates_s)
+            found = f"{clock.status} ({clock.note})" if clock.note else clock.status
+            found += f", possible offsets {others} s" if others else ""
+            return (
+                f"{where}: camera {camera}: expected a clock that the recording determines, "
+                f"found {found}; {NOT_USED}"
+            )
+    return ""
+
+
+def wrist_error_mm(uncertainty_s, speed_m_s):
+    """Return how far a point moves within a time: the price of a clock's uncertainty, mm.
+
+    Parameters
+    ----------
+    uncertainty_s : float
+        Seconds.
+    speed_m_s : float
+        Speed of the point, such as a wrist in a smash, metres per second.
+    """
+    return 1e3 * uncertainty_s * speed_m_s
+
+
+def write(path, reference, clocks):
+    """Write the clocks of a take.
+
+    Parameters
+    ----------
+    path : str or Path
+    reference : str
+        The camera whose clock is the take's.
+    clocks : dict of str to Clock
+    """
+    if reference not in clocks:
+        raise ValueError(f"expected the reference among {list(clocks)}, found {reference!r}")
+    tables = {}
+    for camera, clock in clocks.items():
+        table = asdict(clock)
+        table |= {key: _json_number(table[key]) for key in NUMBERS}
+        tables[camera] = table | {"candidates_s": [float(at) for at in clock.candidates_s]}
+    write_json(path, {"form": FORM, "reference": reference, "cameras": tables})
+
+
+def _json_number(value):
+    return float(value) if math.isfinite(value) else None
+
+
+def read(path):
+    """Read the clocks of a take.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    reference : str
+    clocks : dict of str to Clock
+
+    Raises
+    ------
+    InputError
+        If the file is not one of `write`, or a number is impossible.
+    """
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise InputError(f"{path}: expected JSON, found: {error}; make it again") from None
+    if not isinstance(content, dict) or content.get("form") != FORM:
+        found = content.get("form") if isinstance(content, dict) else type(content).__name__
+        raise InputError(f"{path}: expected form {FORM!r}, found {found!r}; make it again")
+    try:
+        clocks = {camera: _clock(table) for camera, table in content["cameras"].items()}
+        reference = content["reference"]
+        clocks[reference]
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            f"{path}: expected a reference and its clock among cameras, found: {error!r}; make it again"
+        ) from None
+    return reference, clocks
+
+
+def _clock(table):
+    numbers = {key: math.nan if table[key] is None else float(table[key]) for key in NUMBERS}
+    candidates = tuple(float(at) for at in table["candidates_s"])
+    return Clock(
+        **numbers, status=table["status"], note=str(table["note"]), candidates_s=candidates
+    )

@@ -1,0 +1,50 @@
+"""Find the cameras' clocks of one take: 2D keypoints of every camera -> offset and drift of each."""
+
+from courtside.geometry import cameras
+from courtside.motion import camera_sync
+from courtside.records import keypoints, sync
+from courtside.study import log
+
+WRIST_M_S = 12.0  # of a smash: what the uncertainty is worth in space
+
+
+def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, **options):
+    views = [keypoints.read_2d(path) for path in pose2d_npz]
+    used = None
+    if cameras_toml:
+        known = {camera.name: camera for camera in cameras.read_toml(cameras_toml)}
+        used = [known[view.camera] for view in views]
+        for camera, view, path in zip(used, views, pose2d_npz, strict=True):
+            cameras.check_size(camera, tuple(map(int, view.size)), path)
+    if synchronised:
+        clocks = sync.one_clock([view.camera for view in views])
+    else:
+        clocks = camera_sync.synchronise(views, used, **options)
+    report(clocks)
+    sync.write(sync_json, views[0].camera, clocks)
+
+
+def report(clocks):
+    for camera, clock in clocks.items():
+        log.logger.info(
+            "%s: %s, offset %.1f ms, drift %.0f ppm, uncertain by %.1f ms = %.0f mm of a %.0f m/s wrist; %s",
+            camera,
+            clock.status,
+            1e3 * clock.offset_s,
+            clock.drift_ppm,
+            1e3 * clock.uncertainty_s,
+            sync.wrist_error_mm(clock.uncertainty_s, WRIST_M_S),
+            WRIST_M_S,
+            clock.note,
+        )
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.get("cameras"),
+        snakemake.input.pose2d,
+        snakemake.output.sync,
+        synchronised=snakemake.params.synchronised,
+        **snakemake.params.step,
+    )
