@@ -116,3 +116,10 @@ def test_other_layouts_are_refused():
         cameras("b", baseline_deg=30)
     with pytest.raises(ValueError, match="baseline_deg"):
         cameras("a", baseline_deg=0)
+
+
+def test_zoom_enlarges_the_picture_about_its_middle_and_moves_no_camera():
+    for wide, near in zip(cameras("b"), cameras("b", zoom=1.7), strict=True):
+        np.testing.assert_array_equal(near.cam_from_world, wide.cam_from_world)
+        np.testing.assert_allclose(near.K[[0, 1], [0, 1]], 1.7 * wide.K[[0, 1], [0, 1]])
+        np.testing.assert_array_equal(near.K[:2, 2], wide.K[:2, 2])

@@ -1,6 +1,6 @@
 """The two tables of keypoints that rules hand to each other: 2D of one camera, 3D of one take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -119,6 +119,13 @@ class Keypoints3D:
         if len(self.time_s) < 2:
             return float("nan")
         return float((len(self.time_s) - 1) / (self.time_s[-1] - self.time_s[0]))
+
+    def between(self, start_s, stop_s):
+        """Return the frames from one time to another, both included."""
+        at = (self.time_s >= start_s) & (self.time_s <= stop_s)
+        per_frame = [key for key, (_, shape) in SPEC_3D.items() if shape[:2] == ("P", "T")]
+        cut = {key: getattr(self, key)[:, at] for key in per_frame}
+        return replace(self, time_s=self.time_s[at], **cut)
 
 
 def write_2d(path, keypoints):

@@ -1,10 +1,6 @@
 """Film one virtual session: videos of the fixed cameras and of a walk, clicks, and the truth."""
 
-import multiprocessing
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import cv2
@@ -14,7 +10,17 @@ from courtside.devices import video_writer
 from courtside.records import clicks as click_records
 from courtside.records import truth
 from courtside.study import log
-from courtside.virtual import boards, clicking, hall, layouts, people, presets, walk
+from courtside.virtual import (
+    backdrop,
+    boards,
+    clicking,
+    crews,
+    hall,
+    layouts,
+    people,
+    presets,
+    walk,
+)
 from courtside.virtual.renderer import Renderer
 
 WALK = "walk"
@@ -52,6 +58,8 @@ class Settings:
         Frames of each fixed camera's video.
     baseline_deg : float or None
         Angle between the fixed cameras of layout "a", if not 90.
+    zoom : float
+        Of the fixed cameras' lenses; the walked camera has none.
     boards : bool
         Whether each fixed camera also takes pictures of a chessboard.
     people : int or None
@@ -68,6 +76,7 @@ class Settings:
     stabiliser: bool = True
     static_frames: int = 9
     baseline_deg: float | None = None
+    zoom: float = 1.0
     boards: bool = False
     people: int | None = None
 
@@ -100,8 +109,8 @@ class Studio:
         self.settings, self.preset = settings, presets.PRESETS[settings.preset]
         self.fixed, self.walk = plan(settings, court)
         count = self.preset.n_people if settings.people is None else settings.people
-        self.people = people.plan(count, court, _rng(settings.walk_seed, PEOPLE))
-        self._renderer = Renderer(hall.build(self.preset, court, _stream(settings.seed, HALL)))
+        self.people = people.plan(count, court, crews.generator(settings.walk_seed, PEOPLE))
+        self._renderer = Renderer(hall.build(self.preset, court, crews.stream(settings.seed, HALL)))
 
     def court_xyz(self):
         """Return where the court's points really are, (P, 3) m."""
@@ -110,6 +119,10 @@ class Studio:
     def empty_hall(self, index):
         """Return what fixed camera `index` sees, without people and without noise."""
         return self._renderer.render(self.fixed[index])
+
+    def backdrop(self, index, margin_px=0):
+        """Return what fixed camera `index` sees without people, and how far away that is."""
+        return backdrop.look(self._renderer, self.fixed[index], margin_px)
 
     def walk_picture(self, index):
         """Return frame `index` of the walk."""
@@ -122,7 +135,7 @@ class Studio:
             exposure_s=preset.exposure_s,
             extra=people.quads(self.people, time_s),
             noise=preset.noise_sigma,
-            rng=_rng(settings.walk_seed, GRAIN, index),
+            rng=crews.generator(settings.walk_seed, GRAIN, index),
         )
 
 
@@ -140,15 +153,16 @@ def plan(settings, court):
         court,
         settings.size_px,
         preset,
-        _rng(settings.seed, LENSES),
+        crews.generator(settings.seed, LENSES),
         baseline_deg=settings.baseline_deg,
+        zoom=settings.zoom,
     )
     walked = walk.plan(
         fixed,
         court,
         settings.size_px,
         preset,
-        _rng(settings.walk_seed, PATH),
+        crews.generator(settings.walk_seed, PATH),
         speed_kmh=settings.speed_kmh,
         stabiliser=settings.stabiliser,
     )
@@ -175,7 +189,7 @@ def simulate(settings, court, folder, *, threads=1):
     """
     folder = Path(folder)
     fixed, walked = plan(settings, court)
-    with _crew(settings, court, threads) as call:
+    with crews.crew(Studio, (settings, court), threads) as call:
         court_xyz = next(call("court_xyz", [()]))
         empty = list(call("empty_hall", [(at,) for at in range(len(fixed))]))
         for at, (camera, picture) in enumerate(zip(fixed, empty, strict=True)):
@@ -189,7 +203,7 @@ def simulate(settings, court, folder, *, threads=1):
         court_xyz,
         sigma_px_at_3840=preset.click_sigma_px_at_3840,
         bias_px_at_3840=preset.click_bias_px_at_3840,
-        rng=_rng(settings.seed, CLICKS),
+        rng=crews.generator(settings.seed, CLICKS),
     )
     click_records.write(folder / "court_points.csv", marked, court.points)
     walks = {WALK: _true_walk(walked, settings.walk_frames)} if settings.walk_frames else {}
@@ -199,12 +213,12 @@ def simulate(settings, court, folder, *, threads=1):
 def _film_fixed(settings, folder, at, camera, picture):
     """Write the recording of a fixed camera, and its pictures of a chessboard."""
     preset = presets.PRESETS[settings.preset]
-    rng = _rng(settings.seed, STATIC, at)
+    rng = crews.generator(settings.seed, STATIC, at)
     count = range(settings.static_frames)
     frames = (_trembled(picture, preset.noise_sigma, rng) for _ in count)
     video_writer.write_video(folder / f"{camera.name}.mp4", frames, STATIC_HZ, crf=preset.crf)
     if settings.boards:
-        rng = _rng(settings.seed, BOARDS, at)
+        rng = crews.generator(settings.seed, BOARDS, at)
         place = folder / "boards" / camera.name
         boards.simulate(camera, place, picture, rng, noise=preset.noise_sigma)
 
@@ -238,40 +252,3 @@ def _true_walk(walked, n_frames):
         cam_from_world=np.array([walked.pose(time) for time in time_s]),
         principal_point_px=np.array([walked.principal_point_px(time) for time in time_s]),
     )
-
-
-def _stream(seed, *key):
-    return np.random.SeedSequence(seed, spawn_key=key)
-
-
-def _rng(seed, *key):
-    return np.random.default_rng(_stream(seed, *key))
-
-
-@contextmanager
-def _crew(settings, court, threads):
-    """Give a function that calls a method of a `Studio` for each of some arguments, in order."""
-    if threads == 1:
-        studio = Studio(settings, court)
-        yield lambda method, arguments: (getattr(studio, method)(*each) for each in arguments)
-        return
-    # Spawned: the libraries that render have threads of their own, which a fork would lose.
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(threads, context, _open_studio, (settings, court))
-    try:
-        yield lambda method, arguments: pool.map(partial(_in_studio, method), arguments)
-    finally:
-        pool.shutdown(cancel_futures=True)  # after an error, no picture more than those begun
-
-
-_studio = None  # of a rendering process
-
-
-def _open_studio(settings, court):
-    global _studio
-    cv2.setNumThreads(1)
-    _studio = Studio(settings, court)
-
-
-def _in_studio(method, arguments):
-    return getattr(_studio, method)(*arguments)

@@ -82,7 +82,7 @@ class Exposure:
         colour = self.eye.colour(index, direction, time_s)
         hidden = np.zeros(len(index), bool)
         if self.scene.net is not None:
-            crossed, share = _cross(self.scene.net, origin, direction)
+            crossed, share = cross(self.scene.net, origin, direction)
             far = self.eye.distance(
                 index[crossed], direction[:, crossed], None if time_s is None else time_s[crossed]
             )
@@ -174,7 +174,7 @@ class _Eye:
         return result
 
 
-def _cross(net, origin, direction):
+def cross(net, origin, direction):
     """Return which rays cross the net's mesh, and after how many times their direction, each (m,)."""
     start, end = net.feet
     along = end - start

@@ -21,7 +21,7 @@ LAYOUTS = {  # in the order in which a walk passes them
 }
 
 
-def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None):
+def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoom=1.0):
     """Set up the fixed cameras of a layout.
 
     Parameters
@@ -39,6 +39,8 @@ def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None):
     baseline_deg : float or None
         For layout "a" only: the angle between the cameras, seen from the court's centre, instead of 90;
         `back` stays where it is.
+    zoom : float
+        Focal length over that with which the court fills about half of the picture.
 
     Returns
     -------
@@ -60,6 +62,7 @@ def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None):
     made = []
     for name in LAYOUTS[layout]:
         matrix, dist = lens(size_px, preset, rng)
+        matrix[[0, 1], [0, 1]] *= zoom
         place = centre + np.array([*places[name], HEIGHTS_M[name]])
         roll_deg = rng.uniform(-ROLL_DEG, ROLL_DEG)
         pose = look_at(place, centre + np.array([0, 0, AIM_M]), roll_deg)

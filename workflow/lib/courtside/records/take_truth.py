@@ -1,0 +1,140 @@
+"""The truth of one virtual take: where joints and rackets really were, and how cameras kept time and still.
+
+Only what evaluates a result may read it.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from courtside.records import npz
+
+FORM = "courtside take truth 1"
+SPEC = {
+    "time_s": ("float", ("T",)),
+    "joints": ("str", ("J",)),
+    "person_id": ("str", ("P",)),
+    "xyz": ("float", ("P", "T", "J", "3")),
+    "racket": ("float", ("P", "T", "2", "3")),
+    "camera": ("str", ("C",)),
+    "offset_s": ("float", ("C",)),
+    "drift_ppm": ("float", ("C",)),
+    "event_person": ("str", ("E",)),
+    "event": ("str", ("E",)),
+    "event_s": ("float", ("E",)),
+    "shaken_camera": ("str", ("S",)),
+    "cam_from_world": ("float", ("S", "F", "3", "4")),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class TakeTruth:
+    """What really happened in a take.
+
+    Attributes
+    ----------
+    time_s : (T,) float
+        Of each frame of the first camera, whose clock is the reference: mid-exposure of the middle row.
+    joints : (J,) str
+        Names of the virtual body's joints.
+    person_id : (P,) str
+    xyz : (P, T, J, 3) float
+        World, metres.
+    racket : (P, T, 2, 3) float
+        Top and butt; NaN of who has none.
+    offset_s, drift_ppm : dict of str to float
+        Of each camera, reference first: t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
+    events : dict of str to dict of str to float
+        For each person when what happened, by the reference clock, s.
+    shaken : dict of str to (F, 3, 4) float
+        Of cameras that did not stand still: cam_from_world at each of their frames, mid-exposure of the
+        middle row.
+    """
+
+    time_s: np.ndarray
+    joints: np.ndarray
+    person_id: np.ndarray
+    xyz: np.ndarray
+    racket: np.ndarray
+    offset_s: dict
+    drift_ppm: dict
+    events: dict = field(default_factory=dict)
+    shaken: dict = field(default_factory=dict)
+
+
+def write(path, truth):
+    """Write the truth of a take to an npz file.
+
+    Parameters
+    ----------
+    path : str or Path
+    truth : TakeTruth
+
+    Raises
+    ------
+    ValueError
+        If shapes disagree, the clocks are not of the same cameras, or events are of nobody in it.
+    """
+    people, cameras = [str(person) for person in truth.person_id], list(truth.offset_s)
+    if cameras != list(truth.drift_ppm) or not set(truth.events) <= set(people):
+        found = f"{cameras} and {list(truth.drift_ppm)}, {list(truth.events)} of {people}"
+        raise ValueError(
+            f"{path}: expected clocks of the same cameras, events of people, found {found}"
+        )
+    happened = [
+        (person, name, time_s)
+        for person, events in truth.events.items()
+        for name, time_s in events.items()
+    ]
+    who, what, when = zip(*happened, strict=True) if happened else ((), (), ())
+    poses = np.array(list(truth.shaken.values()), dtype=float)
+    arrays = {key: getattr(truth, key) for key in ("time_s", "xyz", "racket")}
+    arrays |= {
+        "joints": _names(truth.joints),
+        "person_id": _names(people),
+        "camera": _names(cameras),
+        "offset_s": np.array(list(truth.offset_s.values()), dtype=float),
+        "drift_ppm": np.array(list(truth.drift_ppm.values()), dtype=float),
+        "event_person": _names(who),
+        "event": _names(what),
+        "event_s": np.array(when, dtype=float),
+        "shaken_camera": _names(truth.shaken),
+        "cam_from_world": poses if len(poses) else np.zeros((0, 0, 3, 4)),
+    }
+    npz.write(path, FORM, SPEC, arrays)
+
+
+def read(path):
+    """Read the truth of a take.
+
+    Parameters
+    ----------
+    path : str or Path
+        As `write` wrote it.
+
+    Returns
+    -------
+    truth : TakeTruth
+
+    Raises
+    ------
+    InputError
+        If the file is none of this form.
+    """
+    arrays = npz.read(path, FORM, SPEC)
+    cameras, people = arrays["camera"].tolist(), arrays["person_id"].tolist()
+    events = {person: {} for person in people}
+    happened = (arrays[key].tolist() for key in ("event_person", "event", "event_s"))
+    for person, name, time_s in zip(*happened, strict=True):
+        events.setdefault(person, {})[name] = time_s
+    return TakeTruth(
+        **{key: arrays[key] for key in ("time_s", "joints", "person_id", "xyz", "racket")},
+        offset_s=dict(zip(cameras, arrays["offset_s"].tolist(), strict=True)),
+        drift_ppm=dict(zip(cameras, arrays["drift_ppm"].tolist(), strict=True)),
+        events=events,
+        shaken=dict(zip(arrays["shaken_camera"].tolist(), arrays["cam_from_world"], strict=True)),
+    )
+
+
+def _names(values):
+    return np.array(list(map(str, values)), dtype=str)

@@ -1,0 +1,115 @@
+"""Soft shadows that athletes cast on the floor, under the many lamps of a hall."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+CELL_M = 0.05
+MOST_TRIANGLES = 20000  # of larger meshes only some cast shadows, each for its neighbours too
+LAMPS = np.array(  # direction (x, y) per metre of height, and share of the floor's light
+    [
+        [0.0, 0.0, 0.24],
+        [0.5, 0.35, 0.09],
+        [-0.5, 0.3, 0.09],
+        [0.45, -0.4, 0.09],
+        [-0.4, -0.45, 0.09],
+    ]
+)
+LAYERS_M = 0.0, 0.12, 0.35, 0.8, 1.5  # heights whose shadows are equally soft
+SOFT_M = 0.05  # of the lowest; standard deviation
+SOFTER = 0.11  # per metre of height: the size of a lamp as the floor sees it
+BEYOND_M = 0.4, 0.6  # of the surface a shadow reaches so far; and more per metre of height
+
+
+@dataclass(frozen=True, eq=False)
+class Shadow:
+    """Light on a part of the floor.
+
+    Attributes
+    ----------
+    corner_m : (2,) float
+        World x and y of the middle of the first cell.
+    light : (rows along y, columns along x) float32
+        Share of the light that is left.
+    """
+
+    corner_m: np.ndarray
+    light: np.ndarray
+
+    def outline(self):
+        """Return points round the part of the floor, (4, 3) m."""
+        rows, columns = self.light.shape
+        x, y = self.corner_m[:, None] + np.array([[0, 0], [columns, rows]]).T * CELL_M
+        return np.array([[x[i], y[j], 0.0] for i in (0, 1) for j in (0, 1)])
+
+    def seen(self, eye, direction):
+        """Return the light (H, W) float32 where rays meet the floor.
+
+        Parameters
+        ----------
+        eye : (3,) float
+        direction : (3, H, W) float32
+            World; rays that do not go down see light everywhere.
+        """
+        down = np.minimum(direction[2], np.float32(-1e-6))
+        places = [
+            (
+                np.float32(eye[axis] - self.corner_m[axis])
+                - np.float32(eye[2]) * direction[axis] / down
+            )
+            * np.float32(1 / CELL_M)
+            for axis in (0, 1)
+        ]
+        return cv2.remap(
+            self.light, *places, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=1.0
+        )
+
+
+def cast(vertices, triangles):
+    """Work out the shadow of a closed surface.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+        World, metres.
+    triangles : (F, 3) int
+
+    Returns
+    -------
+    shadow : Shadow
+
+    Notes
+    -----
+    A lamp sees nothing of the floor that two layers of the surface cover, front and back, blurred by the size
+    of the lamps.
+    """
+    every = -(-len(triangles) // MOST_TRIANGLES)
+    corners = vertices[triangles[::every]]
+    middle = corners.mean(axis=1)
+    spread = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) * (every / 2)
+    beyond_m = BEYOND_M[0] + BEYOND_M[1] * max(middle[:, 2].max(), 0)
+    low = middle[:, :2].min(axis=0) - beyond_m
+    shape = np.ceil((middle[:, :2].max(axis=0) + beyond_m - low) / CELL_M).astype(int)
+    light = np.full(shape[::-1], 1 - LAMPS[:, 2].sum(), np.float32)
+    layer = np.digitize(middle[:, 2], LAYERS_M[1:])
+    for x, y, share in LAMPS:
+        towards = np.array([x, y, 1.0])
+        cover = np.abs(spread @ towards) / CELL_M**2
+        place = np.floor((middle[:, :2] - middle[:, 2:] * towards[:2] - low) / CELL_M).astype(int)
+        light += np.float32(share) * np.maximum(1 - _covered(place, layer, cover, shape) / 2, 0)
+    return Shadow(low + CELL_M / 2, light)
+
+
+def _covered(place, layer, cover, shape):
+    """Return by how many layers of surface cells are covered (rows, columns), the higher the softer."""
+    inside = ((place >= 0) & (place < shape)).all(axis=1)
+    size = shape[0] * shape[1]
+    cell = layer[inside] * size + place[inside, 1] * shape[0] + place[inside, 0]
+    counted = np.bincount(cell, cover[inside], minlength=size * len(LAYERS_M)).astype(np.float32)
+    total = np.zeros(shape[::-1], np.float32)
+    heights = [*LAYERS_M, 2 * LAYERS_M[-1] - LAYERS_M[-2]]
+    for number, part in enumerate(counted.reshape(len(LAYERS_M), *shape[::-1])):
+        sigma_m = SOFT_M + SOFTER * (heights[number] + heights[number + 1]) / 2
+        total += cv2.GaussianBlur(part, (0, 0), sigma_m / CELL_M, borderType=cv2.BORDER_CONSTANT)
+    return total

@@ -1,0 +1,35 @@
+"""Film one take of a virtual session: settings, a court and the virtual body -> videos, clicks, truth."""
+
+from pathlib import Path
+
+from courtside.geometry import courts
+from courtside.study import log
+from courtside.virtual import capture, makehuman, takes
+
+
+def body_folder(files):
+    """Return the folder of an artefact, of which these are the files of a body."""
+    return next(above for above in Path(files[0]).parents if (above / makehuman.MESH).is_file())
+
+
+def main(court_yaml, body_folder, folder, *, settings, take, threads):
+    takes.simulate_take(
+        capture.Settings(**settings),
+        takes.TakeSettings(**take),
+        courts.read(court_yaml),
+        body_folder,
+        folder,
+        threads=threads,
+    )
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.court,
+        body_folder(snakemake.input.body),
+        Path(snakemake.output.truth).parent,
+        settings=snakemake.params.settings,
+        take=snakemake.params.take,
+        threads=snakemake.threads,
+    )
