@@ -155,3 +155,31 @@ def test_the_door_is_mapped_twice_the_same(door, tmp_path):
     assert first[0] == second[0] == list(names[:5])
     for ours, theirs in zip(first[1:], second[1:], strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-9)
+
+
+def test_a_failure_is_tried_again_and_the_best_model_kept(synthetic, tmp_path, monkeypatch):
+    """The mapper is made to find nothing, then all images badly placed, then all images."""
+    path, truth = synthetic
+    names, own, seeds = sorted(sfm_made.centres(truth)), mapping._map, []
+
+    def unlucky(matches_db, images, mapper, seed, options):
+        found = own(matches_db, images, mapper, seed, options)
+        seeds.append(seed)
+        if len(seeds) == 1:
+            return found._replace(model=pycolmap.Reconstruction(), n_models=0)
+        if len(seeds) == 2:
+            for point in found.model.points3D.values():
+                point.xyz = point.xyz + np.array([1.0, 0, 0])
+            found.model.update_point_3d_errors()
+        return found
+
+    monkeypatch.setattr(mapping, "_map", unlucky)
+    options = {"mapper": "global", "seed": 7}
+    summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=5)
+    assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8, 9], 9, 6)
+    seeds.clear()
+    summary = mapping.map_images(path, names, tmp_path / "b", **options, attempts=2)
+    assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8], 8, 6)
+    assert summary["reprojection_px"] > mapping.SOUND_PX
+    seeds.clear()
+    assert mapping.map_images(path, names, tmp_path / "c", **options)["n_models"] == 0

@@ -2,14 +2,17 @@
 
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 import pycolmap
 
 from courtside.sfm import database
 
+SOUND_PX = 2.0  # a model with a larger mean reprojection error has folded or lost its lenses
 
-def map_images(matches_db, images, folder, *, mapper, seed, options=None):
-    """Map images and write the largest model found.
+
+def map_images(matches_db, images, folder, *, mapper, seed, options=None, attempts=1):
+    """Map images and write the best model found.
 
     Parameters
     ----------
@@ -23,31 +26,62 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None):
     seed : int
     options : dict, optional
         Options of COLMAP's pipeline by dotted name, such as `mapper.ba_num_iterations`.
+    attempts : int
+        How often to try at most, each time with the next seed, as long as images are missing from the model
+        or it does not fit: the global mapper starts from random places, and now and then its adjustment
+        diverges. The model with most images is kept, of equals that which fits best.
 
     Returns
     -------
     summary : dict
-        Of the model: pycolmap's version, n_models, n_images, n_registered, n_points3d, reprojection_px,
-        track_length.
+        Of the model: pycolmap's version, the seed that gave it, n_models, n_images, n_registered, n_points3d,
+        reprojection_px, track_length.
     """
+    best = None
+    for at in range(max(attempts, 1)):
+        found = _map(matches_db, images, mapper, seed + at, options)
+        if best is None or _rank(found) > _rank(best):
+            best = found
+        if best.model.num_reg_images() == len(images) and _error_px(best) <= SOUND_PX:
+            break
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    best.model.write_binary(str(folder))
+    return {
+        "mapper": mapper,
+        "seed": best.seed,
+        "pycolmap": pycolmap.__version__,
+        "n_images": len(images),
+        "n_models": best.n_models,
+        "n_registered": best.model.num_reg_images(),
+        "n_points3d": best.model.num_points3D(),
+        "reprojection_px": _error_px(best),
+        "track_length": best.model.compute_mean_track_length(),
+    }
+
+
+class _Attempt(NamedTuple):
+    """The largest model of one run of a mapper."""
+
+    model: pycolmap.Reconstruction
+    n_models: int
+    seed: int
+
+
+def _map(matches_db, images, mapper, seed, options):
     with database.working_copy(matches_db) as copy, tempfile.TemporaryDirectory() as temporary:
         arguments = (copy, temporary, temporary, _options(mapper, images, seed, options))
         run = {"global": pycolmap.global_mapping, "incremental": pycolmap.incremental_mapping}
         models = run[mapper](*arguments)
-    best = max(models.values(), key=_size, default=pycolmap.Reconstruction())
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    best.write_binary(str(folder))
-    return {
-        "mapper": mapper,
-        "seed": seed,
-        "pycolmap": pycolmap.__version__,
-        "n_images": len(images),
-        "n_models": len(models),
-        "n_registered": best.num_reg_images(),
-        "n_points3d": best.num_points3D(),
-        "reprojection_px": best.compute_mean_reprojection_error(),
-        "track_length": best.compute_mean_track_length(),
-    }
+    largest = max(models.values(), key=_size, default=pycolmap.Reconstruction())
+    return _Attempt(largest, len(models), seed)
+
+
+def _rank(attempt):
+    return attempt.model.num_reg_images(), _error_px(attempt) <= SOUND_PX, -_error_px(attempt)
+
+
+def _error_px(attempt):
+    return attempt.model.compute_mean_reprojection_error()
 
 
 def _size(model):
