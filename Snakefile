@@ -19,6 +19,7 @@ include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/pose.smk"
 include: "workflow/rules/motion.smk"
 include: "workflow/rules/take_evaluation.smk"
+include: "workflow/rules/players.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/study_figures.smk"
 include: "workflow/rules/racket.smk"
@@ -37,4 +38,5 @@ rule all:
         every_figure(),
         every_kinematics(),
         every_take_evaluation(),
+        every_players_figure(),
         every_study_figure(),

@@ -83,7 +83,7 @@ def detect(name, joints, find, place, study):
     every_fourth = [image for at, (_, image) in enumerate(video.frames(path)) if at % 4 == 0]
     step = study["detect_pose"]
     scene = foreground.Foreground(still.temporal_median(every_fourth), step["min_difference"])
-    limits = {"min_presence": step["min_presence"], "redetect": step["redetect"]}
+    limits = {"min_presence": step["min_presence"], "redetect": False}
     track = tracking.track_person(video.frames(path), find, place, scene, **limits)
     return keypoints.Keypoints2D(
         camera=name,

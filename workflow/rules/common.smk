@@ -7,6 +7,7 @@ calibration are in inputs.smk, lists of what the study makes in targets.smk.
 import os
 import re
 import sys
+from itertools import product
 from pathlib import Path
 
 REPOSITORY = Path(str(workflow.current_basedir)).parents[1]

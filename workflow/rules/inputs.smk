@@ -35,8 +35,8 @@ def first_of_each_count(pattern):
 def map_parameters(wildcards):
     """Return the parameters of one mapping: those of its mapper among COLMAP's."""
     chosen = dict(step("map_images")(wildcards))
-    colmap = chosen.pop("colmap")
-    return {**chosen, "options": colmap[wildcards.mapper]}
+    per_mapper = {"options": chosen.pop("colmap"), "attempts": chosen.pop("attempts")}
+    return {**chosen, **{key: value[wildcards.mapper] for key, value in per_mapper.items()}}
 
 
 def click_parameters(wildcards):

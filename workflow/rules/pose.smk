@@ -24,6 +24,6 @@ rule detect_pose:
         redetect=lambda w: not STUDY.models[w.model].tracking,
         decoder=lambda w: STUDY.models[w.model].decoder_options(),
         trim_s=lambda w: take_of(w).trim_s,
-        max_people=lambda w: len(take_of(w).subjects),
+        max_people=lambda w: followed(take_of(w).subjects),
     script:
         "../scripts/detect_pose.py"

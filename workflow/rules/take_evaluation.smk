@@ -1,7 +1,7 @@
 """Takes of virtual sessions against their truth: with evaluation.smk and racket.smk, the only rules that read it.
 
 Inputs: 3D keypoints, clocks, truth of takes. Outputs: results/{session}/evaluation/takes/.
-Steps: evaluate_take, evaluate_clocks, evaluate_joint_offsets (of development sessions, asked for by name).
+Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_joint_offsets (of development sessions, asked for by name).
 """
 
 TRUE_TAKE = "results/virtual/{session}/takes/{take}/truth.npz"
@@ -9,15 +9,20 @@ TRUE_TAKE = "results/virtual/{session}/takes/{take}/truth.npz"
 
 rule evaluate_take:
     input:
-        pose3d=f"{TAKE}/{{stage}}/{FUSED}.npz",
+        pose3d=lambda w: [
+            f"results/{w.session}/takes/{w.take}/{stage}/{w.calibration}/{fusion}/{w.model}.npz"
+            for stage, fusion in evaluated(w)
+        ],
         truth=TRUE_TAKE,
     output:
-        errors=f"results/{{session}}/evaluation/takes/{{take}}/{{stage}}/{FUSED}.csv",
+        errors="results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv",
     log:
-        "results/{session}/logs/evaluate_take/{take}.{stage}.{calibration}.{fusion}.{model}.log",
+        "results/{session}/logs/evaluate_take/{take}.{calibration}.{model}.log",
     params:
         code=code("evaluate_take.py"),
-        labels=lambda w: dict(w.items()),
+        labels=lambda w: [
+            {**dict(w.items()), "stage": stage, "fusion": fusion} for stage, fusion in evaluated(w)
+        ],
     script:
         "../scripts/evaluate_take.py"
 
@@ -35,6 +40,24 @@ rule evaluate_clocks:
         labels=lambda w: dict(w.items()),
     script:
         "../scripts/evaluate_clocks.py"
+
+
+rule evaluate_kinematics:
+    input:
+        frames=f"{TAKE}/kinematics/{FUSED}.frames.csv",
+        summary=f"{TAKE}/kinematics/{FUSED}.summary.csv",
+        derived=CONFIG / "derived_joints.yaml",
+        truth=TRUE_TAKE,
+    output:
+        errors=f"results/{{session}}/evaluation/takes/{{take}}/kinematics/{FUSED}.csv",
+    log:
+        "results/{session}/logs/evaluate_kinematics/{take}.{calibration}.{fusion}.{model}.log",
+    params:
+        code=code("evaluate_kinematics.py"),
+        labels=lambda w: dict(w.items()),
+        sex_of=lambda w: {name: sex_of(w, name) for name in take_of(w).subjects},
+    script:
+        "../scripts/evaluate_kinematics.py"
 
 
 rule evaluate_joint_offsets:

@@ -41,3 +41,88 @@ def every_take_file(wildcards, pattern):
         f"results/{wildcards.session}/takes/{take}/{pattern.format(**dict(wildcards.items()))}"
         for take in session_of(wildcards).takes
     ]
+
+
+def followed(subjects):
+    """Return how many people are followed in a camera: of several, one more, so that a bystander takes no place."""
+    return 1 if len(subjects) == 1 else len(subjects) + 1
+
+
+def evaluated(wildcards):
+    """Return (stage, fusion) of the skeletons of a take that are compared with the truth."""
+    session = session_of(wildcards)
+    stages = [
+        stage for stage in STAGES if stage != "pose3d_corrected" or has_offsets(wildcards.model)
+    ]
+    return list(product(stages, session.fusions() + session.fusions("compared_fusions")))
+
+
+def has_offsets(model):
+    """Say whether anybody has estimated how a network's joints are offset."""
+    return (CONFIG / "joint_offsets" / f"{model}.csv").is_file()
+
+
+def true_take_file(wildcards):
+    """Return the truth of a take where there is one."""
+    if not session_of(wildcards).virtual:
+        return []
+    return f"results/virtual/{wildcards.session}/takes/{wildcards.take}/truth.npz"
+
+
+def round_trip_fusions(wildcards):
+    """Return the sets of cameras of table 1 that a session names."""
+    wanted = STUDY.parameters["evaluate_round_trip"]["fusions"]
+    return [name for name in wanted if session_of(wildcards).fused_cameras(name)]
+
+
+def round_trip_parameters(wildcards):
+    """Return which joints and frames table 1 is of."""
+    step = STUDY.parameters["evaluate_round_trip"]
+    keys = ("joints", "derived_joints", "n_frames", "published_width")
+    start_s = step["takes"][f"{wildcards.session}/{wildcards.take}"]
+    return {**{key: step[key] for key in keys}, "start_s": start_s}
+
+
+def tabled_takes():
+    """Return (session, take) of those of table 1 that the study has."""
+    pairs = [name.split("/") for name in STUDY.parameters["evaluate_round_trip"]["takes"]]
+    return [(s, t) for s, t in pairs if s in STUDY.sessions and t in STUDY.sessions[s].takes]
+
+
+def takes_of(sessions, models):
+    """Return one row per take and network: its files, and labels for tables."""
+    rows = []
+    for session in (STUDY.sessions[name] for name in sessions if name in STUDY.sessions):
+        for take, calibration in product(session.takes, session.take_calibrations()):
+            for model in models:
+                stem = f"{calibration}/{session.fusions()[0]}/{model}"
+                folder = f"results/{session.name}/takes/{take}"
+                labels = {"session": session.name, "take": take, "calibration": calibration}
+                rows.append(
+                    {
+                        "summary": f"{folder}/kinematics/{stem}.summary.csv",
+                        "pose3d": f"{folder}/pose3d_filtered/{stem}.npz",
+                        "joint_labels": labels,
+                        "labels": {**labels, "model": model},
+                    }
+                )
+    return rows
+
+
+def compared_takes():
+    """Return `takes_of` the sessions in which two networks are compared."""
+    step = STUDY.parameters["compare_networks"]
+    return takes_of(step["sessions"], step["networks"])
+
+
+def archived_takes():
+    """Return `takes_of` the sessions of a subject that are compared, the takes named first."""
+    step = STUDY.parameters["compare_sessions"]
+    rows = takes_of(step["sessions"], [STUDY.parameters["models"][0]])
+    return [row for row in rows if archived(row["labels"], step)]
+
+
+def archived(labels, step):
+    """Say whether a take is one of those in which the subject does what is compared over sessions."""
+    take = STUDY.sessions[labels["session"]].takes[labels["take"]]
+    return step["subject"] in take.subjects and labels["take"].startswith(tuple(step["takes"]))

@@ -54,11 +54,10 @@ def every_export():
 
 def with_offsets(paths):
     """Return the paths without those of corrected joints of networks whose offsets nobody has estimated."""
-    known = {path.stem for path in (CONFIG / "joint_offsets").glob("*.csv")}
     return [
         path
         for path in paths
-        if "/pose3d_corrected/" not in path or Path(path).name.split(".")[0] in known
+        if "/pose3d_corrected/" not in path or has_offsets(Path(path).name.split(".")[0])
     ]
 
 
@@ -79,21 +78,31 @@ def every_kinematics():
 
 
 def every_take_evaluation():
-    """Return the errors of all takes of virtual sessions: by stage, views and rule; and of their clocks."""
-    virtual = [session for session in STUDY.sessions.values() if session.virtual]
+    """Return the errors of all takes of virtual sessions, of their kinematics and of their clocks."""
     found = []
-    for session in virtual:
-        fusions = session.fusions() + session.fusions("compared_fusions")
+    for session in (s for s in STUDY.sessions.values() if s.virtual):
         for take in session.takes.values():
-            names = {
-                "session": session.name,
-                "take": take.name,
-                "calibration": session.take_calibrations(),
-                "model": session.parameters["models"],
-            }
-            folder = "results/{session}/evaluation/takes/{take}"
-            fused = folder + "/{stage}/{calibration}/{fusion}/{model}.csv"
-            found += expand(fused, stage=STAGES, fusion=fusions, **names)
-            if not take.synchronised:
-                found += expand(folder + "/clocks/{calibration}.{model}.csv", **names)
-    return with_offsets(found)
+            folder = f"results/{session.name}/evaluation/takes/{take.name}"
+            ways = product(session.take_calibrations(), session.parameters["models"])
+            for way, model in ways:
+                found.append(f"{folder}/errors/{way}.{model}.csv")
+                found += [
+                    f"{folder}/kinematics/{way}/{fusion}/{model}.csv"
+                    for fusion in session.fusions()
+                ]
+                if not take.synchronised:
+                    found.append(f"{folder}/clocks/{way}.{model}.csv")
+    return found
+
+
+def every_players_figure():
+    """Return the figures that takes are drawn in together."""
+    stems = []
+    for session, take in tabled_takes():
+        stem = f"results/{session}/takes/{take}/figures/badminton_tab01"
+        models = STUDY.sessions[session].parameters["models"]
+        ways = STUDY.sessions[session].take_calibrations()
+        stems += [f"{stem}.{way}.{model}" for way, model in product(ways, models)]
+    stems += ["results/figures/agreement"] if compared_takes() else []
+    stems += ["results/figures/archive"] if archived_takes() else []
+    return [f"{stem}.{suffix}" for stem in stems for suffix in FORMATS]

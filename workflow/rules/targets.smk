@@ -25,7 +25,7 @@ def every_photo_model():
 
 def every_evaluation():
     """Return the errors of every structure from motion of the virtual sessions, and of known points alone."""
-    return every_error([session for session in STUDY.sessions.values() if session.virtual])
+    return every_error(filmed_for_calibration())
 
 
 def every_study_figure():
@@ -49,15 +49,20 @@ def courts_used():
     return sorted({session.court for session in STUDY.sessions.values() if session.court})
 
 
+def filmed_for_calibration():
+    """Return the virtual sessions of the calibration study: those with a walk and without takes."""
+    return [s for s in STUDY.sessions.values() if s.virtual and s.walks and not s.takes]
+
+
 def swept():
-    """Return the virtual sessions that are no variation of another."""
-    return [s for s in STUDY.sessions.values() if s.virtual and not s.condition]
+    """Return those of the calibration study that are no variation of another."""
+    return [session for session in filmed_for_calibration() if not session.condition]
 
 
 def tabulated():
     """Return the virtual sessions of the table: all but those of conditions with a figure of their own."""
-    sessions = [s for s in STUDY.sessions.values() if s.virtual]
-    return [s for s in sessions if s.condition.get("condition") not in drawn_conditions().values()]
+    drawn = drawn_conditions().values()
+    return [s for s in filmed_for_calibration() if s.condition.get("condition") not in drawn]
 
 
 def varied(condition):

@@ -11,17 +11,14 @@ from courtside.study.files import atomic
 
 
 def main(pose3d_npz, truth_npz, offsets_csv, *, about):
-    pairs, joints = [], None
+    pairs = []
     for found_npz, true_npz in zip(pose3d_npz, truth_npz, strict=True):
         points, truth = keypoints.read_3d(found_npz), take_truth.read(true_npz)
-        joints = [name for name in points.joints.tolist() if name in set(truth.joints.tolist())]
-        own = [points.joints.tolist().index(name) for name in joints]
-        other = [truth.joints.tolist().index(name) for name in joints]
         true = pose_errors.at_times(truth.time_s, truth.xyz, points.time_s)
         for at, person in enumerate(points.person_id.tolist()):
             body = truth.person_id.tolist().index(person)
-            pairs.append((points.xyz[at][:, own], true[body][:, other]))
-    table = joint_offsets.estimate(pairs, joints)
+            pairs.append((points.xyz[at], true[body]))
+    table = joint_offsets.estimate(pairs, points.joints, truth.joints)
     log.logger.info("frames: %d", np.sum([len(found) for found, _ in pairs]))
     with atomic(offsets_csv) as temporary, Path(temporary).open("w", encoding="utf-8") as file:
         file.write(f"# {about}\n")

@@ -1,4 +1,6 @@
-"""Evaluate the skeletons of a take against its truth: 3D keypoints, truth -> errors per joint."""
+"""Evaluate the skeletons of a take against its truth: 3D keypoints of every stage and fusion -> errors."""
+
+import pandas as pd
 
 from courtside.motion import pose_errors
 from courtside.records import keypoints, take_truth
@@ -7,19 +9,25 @@ from courtside.study.files import atomic
 
 
 def main(pose3d_npz, truth_npz, errors_csv, *, labels):
-    points, truth = keypoints.read_3d(pose3d_npz), take_truth.read(truth_npz)
+    truth = take_truth.read(truth_npz)
+    tables = [
+        table(keypoints.read_3d(path), truth).assign(**about)
+        for path, about in zip(pose3d_npz, labels, strict=True)
+    ]
+    rows = pd.concat(tables, ignore_index=True)
+    with atomic(errors_csv) as temporary:
+        columns = [*labels[0], *(name for name in rows.columns if name not in labels[0])]
+        rows[columns].to_csv(temporary, index=False, float_format="%.6g")
+
+
+def table(points, truth):
     points = points.between(truth.time_s[0], truth.time_s[-1])
     order = [truth.person_id.tolist().index(person) for person in points.person_id.tolist()]
     true = pose_errors.at_times(truth.time_s, truth.xyz[order], points.time_s)
-    found = pose_errors.errors(points, truth.joints, true)
-    rows = pose_errors.table(points.person_id, *found)
+    rows = pose_errors.table(points.person_id, *pose_errors.errors(points, truth.joints, true))
     right = pose_errors.identity_percent(points, truth.joints, true)
     who = dict(zip(points.person_id.tolist(), right, strict=True))
-    rows["identity_percent"] = rows["person"].map(who)
-    with atomic(errors_csv) as temporary:
-        rows.assign(**labels)[[*labels, *rows.columns]].to_csv(
-            temporary, index=False, float_format="%.6g"
-        )
+    return rows.assign(identity_percent=rows["person"].map(who))
 
 
 if __name__ == "__main__":

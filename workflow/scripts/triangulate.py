@@ -3,44 +3,60 @@
 import numpy as np
 
 from courtside.geometry import cameras
-from courtside.motion import fusion
-from courtside.records import keypoints, skeleton
+from courtside.motion import camera_error, fusion, halfbody, resampling
+from courtside.records import camera_covariance, keypoints, people, skeleton, sync
 from courtside.study import log
+from courtside.study.errors import InputError
 
 
-def main(cameras_toml, pose2d_npz, skeleton_yaml, pose3d_npz, *, persons, **options):
-    views = [keypoints.read_2d(path) for path in pose2d_npz]
-    known = {camera.name: camera for camera in cameras.read_toml(cameras_toml)}
-    used = [known[view.camera] for view in views]
-    for camera, view, path in zip(used, views, pose2d_npz, strict=True):
-        cameras.check_size(camera, tuple(map(int, view.size)), path)
-    points, swapped = fusion.triangulate_take(
-        used, views, skeleton.read(skeleton_yaml), persons, **options
-    )
-    report(points, swapped)
+def main(paths, pose3d_npz, *, persons, used, rule, **options):
+    views, known, joints = {}, read_cameras(paths), skeleton.read(paths.skeleton)
+    _, clocks = sync.read(paths.sync)
+    if fault := sync.fault_line(paths.sync, clocks):
+        raise InputError(fault)
+    who = people.read(paths.people)
+    for path in paths.pose2d:
+        view = keypoints.read_2d(path)
+        cameras.check_size(known[view.camera], tuple(map(int, view.size)), path)
+        views[view.camera] = who.assigned(view)
+    time_s = resampling.common_times(list(views.values()), [clocks[name] for name in views])
+
+    def fuse(names, rule):
+        own = [known[name] for name in names], [views[name] for name in names]
+        clock = [clocks[name] for name in names]
+        found, swapped = fusion.triangulate_take(
+            *own, joints, persons, clocks=clock, time_s=time_s, rule=rule, **options
+        )
+        report(found, swapped)
+        if paths.covariance:
+            part = camera_covariance.read(paths.covariance).of(names)
+            found = camera_error.with_cameras(found, own[0], part.of_columns())
+        return found
+
+    if rule == "halfbody":
+        centre, *sides = used
+        points = halfbody.merge(*(fuse((centre, side), "dlt") for side in sides), used)
+    else:
+        points = fuse(used, rule)
     keypoints.write_3d(pose3d_npz, points)
+
+
+def read_cameras(paths):
+    return {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
 
 
 def report(points, swapped):
     log.logger.info("missing points: %.1f %%", 100 * np.isnan(points.xyz[..., 0]).mean())
     for at, camera in enumerate(points.cameras):
-        error_px = points.reproj_error_px[..., at]
-        log.logger.info(
-            "%s: median reprojection error %.1f px, accepted %.0f %%, left and right exchanged in %d frames",
-            camera,
-            np.nanmedian(error_px),
-            100 * points.accepted[..., at].mean(),
-            swapped[at].any(axis=(0, 2)).sum(),
+        error_px, accepted = points.reproj_error_px[..., at], points.accepted[..., at].mean()
+        values = camera, np.nanmedian(error_px), 100 * accepted, swapped[at].any(axis=(0, 2)).sum()
+        line = (
+            "%s: median reprojection error %.1f px, accepted %.0f %%, sides exchanged in %d frames"
         )
+        log.logger.info(line, *values)
 
 
 if __name__ == "__main__":
     log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.cameras,
-        snakemake.input.pose2d,
-        snakemake.input.skeleton,
-        snakemake.output.pose3d,
-        persons=snakemake.params.persons,
-        **snakemake.params.step,
-    )
+    chosen = {"persons": snakemake.params.persons, **snakemake.params.fusion}
+    main(snakemake.input, snakemake.output.pose3d, **chosen, **snakemake.params.step)

@@ -44,7 +44,7 @@ def without(content, *keys):
     return {key: value for key, value in content.items() if key not in keys}
 
 
-FILMED = {"virtual": {"motion": "shot", "seconds": 2, "seed": 1, "bodies": {"p1": "m1"}}}
+FILMED = {"virtual": {"motion": "shot", "seconds": 2, "seed": 1, "players": {"p1": {"body": "m1"}}}}
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
@@ -126,8 +126,11 @@ def test_good_sessions_have_no_fault(root, content):
             ["takes.t: expected the key 'virtual' and not 'videos' in a virtual session, found []"],
         ),
         (
-            PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | {"bodies": {"p2": "m1"}}}}},
-            ["takes.t.virtual.bodies: expected a body for each of ['p1'], found ['p2']"],
+            PLAYERS
+            | {
+                "takes": {"t": {"virtual": FILMED["virtual"] | {"players": {"p2": {"body": "m1"}}}}}
+            },
+            ["takes.t.virtual.players: expected each of ['p1'], found ['p2']"],
         ),
         (
             PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | {"clocks": {"up": {}}}}}},

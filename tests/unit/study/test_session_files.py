@@ -129,7 +129,7 @@ def test_boards_can_be_asked_for_in_a_variation():
 
 
 def test_a_virtual_take_gets_the_videos_of_all_cameras():
-    filmed = {"motion": "shot", "seconds": 2, "seed": 1, "bodies": {"p1": "m1"}}
+    filmed = {"motion": "shot", "seconds": 2, "seed": 1, "players": {"p1": {"body": "m1"}}}
     takes = {"t1": {"virtual": filmed, "synchronised": True}}
     content = {
         **VIRTUAL,

@@ -6,6 +6,7 @@ skeleton itself gives, and subtracted elsewhere.
 """
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -13,16 +14,21 @@ import pandas as pd
 from courtside.study.errors import InputError
 
 JOINTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")  # of both sides
-PARENTS = {  # the bones next to a joint, from the trunk outwards: (from, to)
-    "shoulder": (("shoulder", "elbow"),),
-    "elbow": (("shoulder", "elbow"), ("elbow", "wrist")),
-    "wrist": (("elbow", "wrist"),),
-    "hip": (("hip", "knee"),),
-    "knee": (("hip", "knee"), ("knee", "ankle")),
-    "ankle": (("knee", "ankle"),),
+BONES = {  # lines that may tell where a joint is put, of the joint's own side: (from, to)
+    "shoulder": (("shoulder", "elbow"), ("elbow", "wrist")),
+    "elbow": (("shoulder", "elbow"), ("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
+    "wrist": (("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
+    "hip": (("hip", "knee"), ("knee", "ankle")),
+    "knee": (("hip", "knee"), ("knee", "ankle"), ("ankle", "heel"), ("ankle", "foot_index")),
+    "ankle": (("knee", "ankle"), ("ankle", "heel"), ("ankle", "foot_index")),
 }
+ACROSS = {"shoulder": ("shoulder", "elbow"), "hip": ("hip", "knee")}  # and of the other side
 TRUNK = ("out", "up", "forward")  # names of the trunk's vectors, each as long as the trunk
+UPRIGHT_M = 0.3  # length of the vector along the world's z
 RIDGE = 1e-3  # of the mean square of the vectors: what the clips do not show stays near zero
+OUTLIER = 1.5  # times the median error: beyond, a frame loses weight (Huber)
+ROUNDS = 15
+NORMAL_MEDIAN = 1.5382  # median length of a vector of three standard normal numbers
 COLUMNS = ["joint", "vector", "share", "sigma_m", "n"]
 
 
@@ -43,35 +49,42 @@ def vectors(xyz, joints, side, joint):
     Returns
     -------
     basis : dict of str to (..., 3) float
-        Trunk axes of the trunk's length (`out`: to the joint's own side; `up`; `forward`), and the bones
-        beside the joint, `shoulder-elbow` and so on, from the trunk outwards; metres.
+        Trunk axes of the trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright`, the
+        world's z; lines between joints of the own side (`hip-knee`) and of the other (`other hip-knee`), as
+        far as the network has these joints; metres.
     """
-    at = {name: xyz[..., list(joints).index(name), :] for name in _names()}
+    place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
     hips, shoulders = (
-        (at[f"left_{part}"] + at[f"right_{part}"]) / 2 for part in ("hip", "shoulder")
+        (place[f"left_{part}"] + place[f"right_{part}"]) / 2 for part in ("hip", "shoulder")
     )
     up = shoulders - hips
     length = np.linalg.norm(up, axis=-1, keepdims=True)
-    across = (at["left_shoulder"] - at["right_shoulder"]) + (at["left_hip"] - at["right_hip"])
+    across = place["left_shoulder"] - place["right_shoulder"]
+    across = across + place["left_hip"] - place["right_hip"]
     forward = np.cross(across, up)
     forward = forward / np.linalg.norm(forward, axis=-1, keepdims=True)
     left = np.cross(up, forward)  # as long as the trunk
-    out = left if side == "left" else -left
-    found = dict(zip(TRUNK, (out, up, forward * length), strict=True))
-    for start, stop in PARENTS[joint]:
-        found[f"{start}-{stop}"] = at[f"{side}_{stop}"] - at[f"{side}_{start}"]
+    other = {"left": "right", "right": "left"}[side]
+    found = dict(zip(TRUNK, (left if side == "left" else -left, up, forward * length), strict=True))
+    found["upright"] = np.broadcast_to([0.0, 0.0, UPRIGHT_M], up.shape)
+    lines = [(side, "", *bone) for bone in BONES[joint]]
+    lines += [(other, "other ", *ACROSS[joint])] if joint in ACROSS else []
+    for body_side, prefix, start, stop in lines:
+        ends = f"{body_side}_{start}", f"{body_side}_{stop}"
+        if set(ends) <= set(place):
+            found[f"{prefix}{start}-{stop}"] = place[ends[1]] - place[ends[0]]
     return found
 
 
-def estimate(pairs, joints):
+def estimate(pairs, joints, true_joints):
     """Fit the offsets on skeletons whose true joints are known.
 
     Parameters
     ----------
-    pairs : list of ((T, J, 3) float, (T, J, 3) float)
+    pairs : list of ((T, J, 3) float, (T, K, 3) float)
         Estimated and true skeletons of clips, metres; NaN where either is missing.
-    joints : sequence of str
-        Names of the J joints.
+    joints, true_joints : sequence of str
+        Names of the J and of the K joints.
 
     Returns
     -------
@@ -84,25 +97,24 @@ def estimate(pairs, joints):
     ValueError
         If a joint is never seen.
     """
-    rows = []
+    joints, true_joints, rows = list(joints), list(true_joints), []
     for joint in JOINTS:
         design, offset = [], []
-        for found, true in pairs:
-            for side in ("left", "right"):
-                at = list(joints).index(f"{side}_{joint}")
-                basis = np.stack(list(vectors(found, joints, side, joint).values()), axis=-1)
-                difference = found[:, at] - true[:, at]
-                known = np.isfinite(difference).all(axis=-1) & np.isfinite(basis).all(axis=(-2, -1))
-                design.append(basis[known].reshape(-1, basis.shape[-1]))
-                offset.append(difference[known].reshape(-1))
+        for (found, true), side in product(pairs, ("left", "right")):
+            name = f"{side}_{joint}"
+            basis = vectors(found, joints, side, joint)
+            columns = np.stack(list(basis.values()), axis=-1)
+            difference = found[:, joints.index(name)] - true[:, true_joints.index(name)]
+            known = np.isfinite(difference).all(axis=-1) & np.isfinite(columns).all(axis=(-2, -1))
+            design.append(columns[known])
+            offset.append(difference[known])
         design, offset = np.concatenate(design), np.concatenate(offset)
         if not len(offset):
             raise ValueError(f"expected {joint} in a clip, found it in none of {len(pairs)}")
         shares, sigma_m = _fit(design, offset)
-        names = [*TRUNK, *(f"{start}-{stop}" for start, stop in PARENTS[joint])]
-        n = len(offset) // 3
         rows += [
-            (joint, name, share, sigma_m, n) for name, share in zip(names, shares, strict=True)
+            (joint, vector, share, sigma_m, len(offset))
+            for vector, share in zip(basis, shares, strict=True)
         ]
     return pd.DataFrame(rows, columns=COLUMNS)
 
@@ -154,11 +166,7 @@ def read(path):
         found = list(table.columns)
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: expected a table of joint offsets, found {error}") from None
-    known = {
-        (joint, vector)
-        for joint in JOINTS
-        for vector in (*TRUNK, *(f"{start}-{stop}" for start, stop in PARENTS[joint]))
-    }
+    known = {(joint, vector) for joint in JOINTS for vector in _vector_names(joint)}
     if found != COLUMNS or not set(zip(table["joint"], table["vector"], strict=True)) <= known:
         raise InputError(
             f"{path}: expected columns {COLUMNS} with joints of {JOINTS}, found columns {found} and joints "
@@ -167,13 +175,20 @@ def read(path):
     return table
 
 
-def _names():
-    return [f"{side}_{joint}" for side in ("left", "right") for joint in JOINTS]
+def _vector_names(joint):
+    names = [*TRUNK, "upright", *(f"{start}-{stop}" for start, stop in BONES[joint])]
+    return names + ([f"other {'-'.join(ACROSS[joint])}"] if joint in ACROSS else [])
 
 
 def _fit(design, offset):
-    normal = design.T @ design
-    normal[np.diag_indices_from(normal)] += RIDGE * np.trace(normal) / len(normal)
-    shares = np.linalg.solve(normal, design.T @ offset)
-    residual = offset - design @ shares
-    return shares, float(np.sqrt(np.mean(residual**2)))
+    """Return shares (V,) of vectors (N, 3, V) that make offsets (N, 3), and what remains per axis."""
+    weight = np.ones(len(offset))
+    for _ in range(ROUNDS):
+        weighted = design * weight[:, None, None]
+        normal = np.einsum("nav,naw->vw", weighted, design)
+        normal[np.diag_indices_from(normal)] += RIDGE * np.trace(normal) / len(normal)
+        shares = np.linalg.solve(normal, np.einsum("nav,na->v", weighted, offset))
+        error = np.linalg.norm(offset - design @ shares, axis=1)
+        limit = OUTLIER * max(np.median(error), np.finfo(float).tiny)
+        weight = np.minimum(1.0, limit / np.maximum(error, limit))
+    return shares, float(np.median(error) / NORMAL_MEDIAN)

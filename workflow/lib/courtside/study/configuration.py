@@ -84,6 +84,8 @@ def load(config, config_file, folder, root="."):
         content = None if missing else _checked(file, "session", faults)
         if content is not None:
             faults += session_faults.find(folder, file, content, known, Path(root))
+            wanted = content.get("override", {}).get("models", [])
+            faults += session_faults.unknown(f"{file}: override.models", wanted, models or wanted)
             found[name] = (file, content)
     if not faults:
         faults += session_faults.conditions(config_file, config, found)
@@ -180,7 +182,8 @@ def _overridable(steps):
         for key, block in steps["properties"].items()
         if block.get("type") == "object" and key != "conditions"
     }
-    lists = ("calibrations", "take_calibrations", "fusions", "compared_fusions")
+    lists = ("models", "calibrations", "take_calibrations", "fusions", "compared_fusions")
+    lists += ("export_stages", "take_figures")
     blocks |= {key: steps["properties"][key] for key in lists}
     return {"type": "object", "additionalProperties": False, "properties": blocks}
 

@@ -65,10 +65,10 @@ def _take_faults(where, take, cameras, subjects, virtual):
     filmed = take.get("virtual", {})
     for key in ("clocks", "shake"):
         yield from unknown(f"{where}.virtual.{key}", filmed.get(key, {}), cameras)
-    if virtual and filmed and set(filmed["bodies"]) != set(there):
+    if virtual and filmed and set(filmed["players"]) != set(there):
         yield (
-            f"{where}.virtual.bodies: expected a body for each of {sorted(there)}, found "
-            f"{sorted(filmed['bodies'])}; correct one of them"
+            f"{where}.virtual.players: expected each of {sorted(there)}, found "
+            f"{sorted(filmed['players'])}; correct one of them"
         )
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:

@@ -178,7 +178,7 @@ class Network:
 
 @dataclass(frozen=True)
 class Model:
-    """A 2D pose model of config/models.yaml."""
+    """A 2D pose model of config/models.yaml; without `tracking` it searches the person in every frame."""
 
     name: str
     decoder: str
@@ -186,6 +186,7 @@ class Model:
     detector: Network
     landmarks: Network
     input: dict = field(default_factory=dict)
+    tracking: bool = True
 
     def decoder_options(self):
         """Return the keyword arguments of `courtside.pose.decoders.landmark_network`."""

@@ -1,0 +1,176 @@
+"""One table of how well virtual players are measured: skeletons, clocks, kinematics, by views and rule."""
+
+import numpy as np
+import pandas as pd
+
+TAKE = ["session", "take", "calibration", "model"]
+KEY = [*TAKE, "fusion"]
+TEXT = (*KEY, "stage", "person", "joint", "point", "camera", "status")
+STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
+LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+JOINTS = tuple(f"{side}_{limb}" for side in ("left", "right") for limb in LIMBS)
+LEVELS = (50, 90, 95)
+POINTS = ("neck", "centre", "mass")
+WANTED = (80, 97)  # percent: of the 90 % ellipsoids, what the study asks for
+OTHERS = {"two": ("dlt",), "three": ("dlt", "halfbody"), "all": ("dlt",)}  # rules beside ours
+GAIN = ["median_mm", "p95_mm"]
+ENDS = [f"{name}_{end}_mm" for name in ("median", "p95") for end in ("from", "to")]
+
+
+def read(paths):
+    """Read evaluations of takes, all of one kind, into one table.
+
+    Parameters
+    ----------
+    paths : sequence of str or Path
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        Empty, without columns, where there are no files.
+    """
+    tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
+    tables = [table for table in tables if len(table)]
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
+
+
+def together(errors):
+    """Return the rows of all persons of a take together, of takes with one person that person's.
+
+    Parameters
+    ----------
+    errors : pandas.DataFrame
+        Of `courtside.motion.pose_errors.table` with labels; identity_percent may be missing.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        identity_percent is that of the person who is mistaken most often.
+    """
+    errors = errors.reset_index(drop=True)
+    groups = errors.groupby([*KEY, "stage", "joint"], dropna=False)
+    rows = errors[(groups["person"].transform("size") == 1) | (errors["person"] == "all")].copy()
+    if "identity_percent" in errors:
+        least = groups["identity_percent"].transform("min")
+        rows["identity_percent"] = least.loc[rows.index]
+    return rows.reset_index(drop=True)
+
+
+def table(errors, kinematics, clocks, gains):
+    """Summarise the evaluations of takes, one row per take, calibration, network, fusion and stage.
+
+    Parameters
+    ----------
+    errors, kinematics, clocks, gains : pandas.DataFrame
+        Of `read`: tables of `evaluate_take`, `evaluate_kinematics`, `evaluate_clocks` and
+        `evaluate_fusions`; all but the first may be empty.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        Over the 12 limb joints: n values, missing_percent, median_mm, p95_mm, sigma_mm and coverage in
+        percent, with the least and the most of any joint and the joints whose coverage at 90 % is within
+        `WANTED`. On rows of the robust rule, what it gains: `vs_dlt_...` over the linear transformation
+        with the same cameras, `vs_halfbody_...` over the half-body rule: ours minus the other, negative
+        where ours is nearer. Those without `paired` in their name are differences of the two summaries;
+        the paired ones are over the places that both have, with the ends of their 95 % interval.
+        `beats_others` says whether ours has the smaller median and p95 than all of them in the paired
+        comparison, or in the plain one where there is no other. On raw rows, kinematics, which rest on
+        the raw joints, of the person who is worst, and the clocks of the take.
+    """
+    rows = together(errors)
+    limbs = rows[rows["joint"] == "limbs"].set_index([*KEY, "stage"])
+    names = ["n", "missing_percent", "median_mm", "p95_mm", "sigma_mm"]
+    covered = [f"coverage_{level}_percent" for level in LEVELS]
+    found = limbs.reindex(columns=[*names, *covered, "identity_percent"])
+    found = found.join(_over_joints(rows[rows["joint"].isin(JOINTS)])).reset_index()
+    found = _gains(found, gains)
+    raw = found["stage"] == "pose3d"
+    for part, on in ((_kinematics(kinematics), KEY), (_clocks(clocks), TAKE)):
+        if len(part):
+            whole = found[on].merge(part, on=on, how="left", validate="many_to_one")
+            for column in part.columns.difference(on, sort=False):
+                found[column] = whole[column].where(raw)
+    counts = [name for name in found if name.startswith("n_clocks")]
+    found = found.astype(dict.fromkeys(counts, "Int64"))
+    order = found["stage"].map({stage: at for at, stage in enumerate(STAGES)})
+    found = found.assign(order=order).sort_values([*KEY, "order"], kind="stable")
+    found["stage"] = found["stage"].map(STAGES)
+    return found.drop(columns="order").reset_index(drop=True)
+
+
+def _over_joints(rows):
+    groups = rows.groupby([*KEY, "stage"])
+    found = {"worst_joint_median_mm": groups["median_mm"].max()}
+    for level in LEVELS:
+        column = f"coverage_{level}_percent"
+        found[f"coverage_{level}_least_percent"] = groups[column].min()
+        found[f"coverage_{level}_most_percent"] = groups[column].max()
+    within = rows.assign(within=rows["coverage_90_percent"].between(*WANTED))
+    found["joints_within"] = within.groupby([*KEY, "stage"])["within"].sum()
+    found["joints_stated"] = groups["coverage_90_percent"].count()
+    return pd.DataFrame(found)
+
+
+def _gains(rows, gains):
+    values = rows.set_index([*KEY, "stage"])
+    paired = {} if gains.empty else gains.set_index([*KEY, "stage", "than"]).to_dict("index")
+    found = []
+    for key, row in values.iterrows():
+        views, _, rule = key[-2].rpartition("-")
+        others = OTHERS.get(views, ()) if rule == "robust" else ()
+        gained, nearer = {}, []
+        for other in others:
+            than = other if other == "halfbody" else f"{views}-{other}"
+            against = (*key[:-2], than, key[-1])
+            if against not in values.index:
+                continue
+            plain = {name: row[name] - values.loc[against, name] for name in GAIN}
+            best = paired.get((*key, than), {})
+            gained |= {f"vs_{other}_{name}": value for name, value in plain.items()}
+            gained |= {f"vs_{other}_paired_{name}": best.get(name) for name in [*GAIN, *ENDS]}
+            nearer += [best.get(name, plain[name]) < 0 for name in GAIN]
+        gained["beats_others"] = ("yes" if all(nearer) else "no") if nearer else ""
+        found.append(gained)
+    columns = [f"vs_{other}_{kind}" for other in ("dlt", "halfbody") for kind in _kinds()]
+    gained = pd.DataFrame(found, index=rows.index).reindex(columns=[*columns, "beats_others"])
+    return rows.join(gained.astype(dict.fromkeys(columns, float)))
+
+
+def _kinds():
+    return [*GAIN, *(f"paired_{name}" for name in [*GAIN, *ENDS])]
+
+
+def _kinematics(rows):
+    """Return the worst of each number over the persons of a take, points side by side."""
+    if rows.empty:
+        return rows
+    found = {"kinematics_seconds": rows.groupby(KEY)["seconds"].min()}
+    for point in POINTS:
+        groups = rows[rows["point"] == point].groupby(KEY)
+        furthest = groups["distance_error_percent"].agg(_furthest)
+        found[f"{point}_distance_error_percent"] = furthest
+        found[f"{point}_speed_rmse_m_s"] = groups["speed_rmse_m_s"].max()
+    return pd.DataFrame(found).reset_index()
+
+
+def _clocks(rows):
+    if rows.empty:
+        return rows
+    used = rows[rows["status"] == "found"]
+    within = used["within_90_percent"].astype(str) == "True"
+    groups = used.assign(within=within).groupby(TAKE)
+    found = {
+        "n_clocks": rows.groupby(TAKE).size(),
+        "n_clocks_found": groups.size(),
+        "n_clocks_within": groups["within"].sum(),
+        "clock_error_ms": groups["worst_error_ms"].agg(_furthest),
+    }
+    whole = pd.DataFrame(found).reset_index()
+    return whole.fillna({"n_clocks_found": 0, "n_clocks_within": 0})
+
+
+def _furthest(values):
+    """Return the value that is furthest from zero, with its sign; NaN where none is known."""
+    known = values.dropna().to_numpy(dtype=float)
+    return known[np.abs(known).argmax()] if len(known) else np.nan

@@ -1,0 +1,180 @@
+"""What fewer cameras or a plainer rule lose: skeletons of one take against one another, frame by frame."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.motion import pose_errors
+
+SHARED = ("time_s", "joints", "person_id")
+SETS = ("limbs", "right half", "left half")  # in the table's order, as in `pose_errors`
+COLUMNS = ["fusion", "n_cameras", "cameras", "reference", "person", "joint", "n"]
+COLUMNS += [
+    "missing_percent",
+    "reference_missing_percent",
+    "median_mm",
+    "p95_mm",
+    "exchanged_percent",
+]
+GAINS = ["fusion", "than", "n_frames", "n", "median_mm", "median_from_mm", "median_to_mm"]
+GAINS += ["p95_mm", "p95_from_mm", "p95_to_mm"]
+REPLICATES = 1000
+
+
+def compare(records, reference):
+    """Return how far skeletons from fewer cameras are from a reference, in the world, nothing aligned.
+
+    Parameters
+    ----------
+    records : dict of str to Keypoints3D
+        By the name of their views and rule; of one take, at the same times.
+    reference : str
+        The one that the others are compared with.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        `COLUMNS`, for each person and joint and for sets of the limb joints. missing_percent: of the places
+        that the reference has, those that the record lacks; distances are over those of both.
+        exchanged_percent, in the row of all limbs: frames in which they are nearer to the reference's
+        limbs of the other side, by the mean distance.
+
+    Raises
+    ------
+    ValueError
+        If the records differ in times, joints or persons.
+
+    Notes
+    -----
+    A distance is no error. The reference rests on the same keypoints and cameras among others, so that
+    what they share is not seen, and the reference has errors of its own.
+    """
+    _same(records)
+    base = records[reference]
+    names, rows = base.joints.tolist(), []
+    for fusion, record in records.items():
+        if fusion == reference:
+            continue
+        distance_mm = 1000 * np.linalg.norm(record.xyz - base.xyz, axis=-1)
+        known = np.isfinite(base.xyz).all(axis=-1)
+        about = {
+            "fusion": fusion,
+            "n_cameras": len(record.cameras),
+            "cameras": "+".join(record.cameras.tolist()),
+            "reference": reference,
+        }
+        for at, person in enumerate(base.person_id.tolist()):
+            for joint, of in _groups(names).items():
+                row = _distances(distance_mm[at][:, of], known[at][:, of])
+                if joint == "limbs":
+                    row["exchanged_percent"] = _exchanged(record.xyz[at], base.xyz[at], names, of)
+                rows.append({**about, "person": person, "joint": joint, **row})
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def gains(distance_mm, pairs, rate_hz, *, block_s=1.0, seed=0):
+    """Return by how much one way to fuse views is nearer to the truth than another, with 95 % intervals.
+
+    Parameters
+    ----------
+    distance_mm : dict of str to (P, T, J) float
+        Distances from the truth of the joints to be taken together, NaN where missing; of one take, at the
+        same times.
+    pairs : sequence of (str, str)
+        Ours, and what it is compared with.
+    rate_hz : float
+        Frames per second.
+    block_s : float
+        Frames of so long a piece of the take are drawn together: errors of neighbouring frames are much
+        alike.
+    seed : int
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        `GAINS`, all persons together: median_mm and p95_mm are ours minus the other, over the places that
+        both have, so that leaving out what is hard is no gain. Negative: ours is nearer. The intervals
+        are of drawing pieces of this take again; they are empty for a take of less than four pieces. They
+        say nothing of other players, motions and halls.
+
+    Notes
+    -----
+    Moving-block bootstrap, percentiles (Davison & Hinkley 1997, sec. 8.2.3); blocks do not wrap around. With
+    20 blocks, and errors that last for half a block, an interval holds the median in 90 % of takes and the
+    95 % quantile in 85 %; with 60 blocks in 93 and 91 %.
+    """
+    rows = []
+    for ours, than in pairs:
+        one, other = distance_mm[ours], distance_mm[than]
+        both = np.isfinite(one) & np.isfinite(other)
+        one, other = (np.where(both, part, np.nan) for part in (one, other))
+        row = {"fusion": ours, "than": than, "n": int(both.sum())}
+        row["n_frames"] = int(both.any(axis=(0, 2)).sum())
+        if both.any():
+            found = _difference(one[both], other[both])
+            row |= dict(zip(("median_mm", "p95_mm"), found, strict=True))
+            row |= _intervals(one, other, max(1, round(block_s * rate_hz)), seed)
+        rows.append(row)
+    return pd.DataFrame(rows, columns=GAINS)
+
+
+def _same(records):
+    first, *others = records.values()
+    for other in others:
+        for key in SHARED:
+            if not np.array_equal(getattr(first, key), getattr(other, key)):
+                raise ValueError(f"expected records of the same {key}, found others")
+
+
+def _groups(names):
+    groups = {}
+    for label in SETS:
+        limbs = [side + limb for side in pose_errors.SETS[label] for limb in pose_errors.LIMBS]
+        groups[label] = [names.index(name) for name in limbs if name in names]
+    groups |= {name: [at] for at, name in enumerate(names)}
+    return {label: of for label, of in groups.items() if of}
+
+
+def _distances(distance_mm, known):
+    placed = np.isfinite(distance_mm)
+    row = {"n": int(placed.sum()), "reference_missing_percent": 100 * (1 - known.mean())}
+    if known.any():
+        row["missing_percent"] = 100 * (1 - placed[known].mean())
+    if placed.any():
+        row["median_mm"] = np.median(distance_mm[placed])
+        row["p95_mm"] = np.percentile(distance_mm[placed], 95)
+    return row
+
+
+def _exchanged(xyz, reference, names, limbs):
+    turn = {"left": "right", "right": "left"}
+    sides = [names[at].split("_", 1) for at in limbs]
+    mirror = [names.index(f"{turn[side]}_{limb}") for side, limb in sides]
+    apart = np.linalg.norm(xyz[:, limbs] - reference[:, limbs], axis=-1)
+    crossed = np.linalg.norm(xyz[:, limbs] - reference[:, mirror], axis=-1)
+    both = np.isfinite(apart) & np.isfinite(crossed)
+    frames = both.any(axis=1)
+    nearer = np.where(both, crossed - apart, 0.0).sum(axis=1) < 0
+    return 100 * nearer[frames].mean() if frames.any() else np.nan
+
+
+def _difference(one, other):
+    return np.percentile(one, (50, 95)) - np.percentile(other, (50, 95))
+
+
+def _intervals(one, other, block, seed):
+    n_frames = one.shape[1]
+    if n_frames < 4 * block:
+        return {}
+    rng = np.random.default_rng(seed)
+    n_blocks = -(-n_frames // block)
+    found = np.empty((REPLICATES, 2))
+    for replicate in found:
+        start = rng.integers(n_frames - block + 1, size=n_blocks)
+        at = (start[:, None] + np.arange(block)).ravel()[:n_frames]
+        known = np.isfinite(one[:, at])
+        both = one[:, at][known], other[:, at][known]
+        replicate[:] = _difference(*both) if known.any() else np.nan
+    low, high = np.nanpercentile(found, (2.5, 97.5), axis=0)
+    names = ("median", "p95")
+    ends = {f"{name}_from_mm": low[k] for k, name in enumerate(names)}
+    return ends | {f"{name}_to_mm": high[k] for k, name in enumerate(names)}

@@ -1,0 +1,42 @@
+"""Draw where the network places joints in two layouts: errors per joint, videos -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.devices import video
+from courtside.figures import badminton_fig05, close_ups, style
+from courtside.records import keypoints, skeleton
+from courtside.study import log
+
+
+def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
+    joints = skeleton.read(paths.skeleton)
+    rows = pd.concat([pd.read_csv(path, dtype={"person": str}) for path in paths.errors])
+    files = {
+        tuple(source): pair
+        for source, *pair in zip(sources, paths.pose2d, paths.videos, strict=True)
+    }
+    chosen, images = badminton_fig05.examples(rows, layouts), []
+    face = [joints.index(name) for name in joints.groups["face"]]
+    for example in chosen:
+        pose2d, film = files[example["session"], example["camera"]]
+        view = keypoints.read_2d(pose2d)
+        _, image = video.read_frame(film, view.time_s[example["frame_idx"]])
+        if blur_faces:
+            image = close_ups.hide_faces(image, view.xy[:, example["frame_idx"], face])
+        images.append(image)
+    shares = badminton_fig05.table(rows, layouts)
+    drawing = badminton_fig05.draw(shares, layouts, chosen, images, joints.bones)
+    style.save(drawing, shares, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        layouts=snakemake.params.layouts,
+        sources=snakemake.params.sources,
+        blur_faces=snakemake.params.blur_faces,
+    )

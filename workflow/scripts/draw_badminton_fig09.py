@@ -1,0 +1,44 @@
+"""Draw the chain from pictures to measures: 2D, 3D keypoints, videos, measures -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.devices import video
+from courtside.figures import badminton_fig09, close_ups, stick, style
+from courtside.geometry import courts
+from courtside.motion import round_trip
+from courtside.records import derived, footage, keypoints, skeleton
+from courtside.study import log
+
+
+def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
+    joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
+    files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
+    seen = footage.read(*files, wanted=points.cameras)
+    figure = stick.stick(joints, derived.read(paths.derived))
+    frames = round_trip.span(points, n_frames, start_s).frames
+    frame = (frames.start + frames.stop - 1) // 2
+    images = {}
+    for one in seen:
+        at = one.frame_at(points.time_s[frame])
+        _, image = video.read_frame(one.video, one.view.time_s[at])
+        if blur_faces:
+            both = one.view.xy[:, at], one.reprojected(points, at)
+            image = close_ups.hide_faces(image, figure.faces_of(*both))
+        images[one.camera.name] = image
+    court = courts.read(paths.court) if paths.get("court") else None
+    rows, cameras = badminton_fig09.table(points, seen, frame, figure), [one.camera for one in seen]
+    measured = pd.read_csv(paths.measures)
+    drawing = badminton_fig09.draw(rows, images, points, cameras, figure, measured, court)
+    style.save(drawing, rows, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        blur_faces=snakemake.params.blur_faces,
+        **snakemake.params.step,
+    )

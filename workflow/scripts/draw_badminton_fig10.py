@@ -1,0 +1,44 @@
+"""Draw skeletons with trajectories beside the detections: 2D, 3D keypoints, videos -> figure, CSV."""
+
+from courtside.devices import video
+from courtside.figures import badminton_fig10, close_ups, stick, style
+from courtside.geometry import courts
+from courtside.motion import round_trip
+from courtside.records import derived, footage, keypoints, skeleton
+from courtside.study import log
+
+
+def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
+    joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
+    files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
+    seen = footage.read(*files, wanted=points.cameras)
+    figure = stick.stick(joints, derived.read(paths.derived))
+    frames = round_trip.span(points, n_frames, start_s).frames
+    shown = badminton_fig10.instants(frames, n_instants)
+
+    def picture(one, time_s):
+        at = one.frame_at(time_s)
+        _, image = video.read_frame(one.video, one.view.time_s[at])
+        if blur_faces:
+            both = one.view.xy[:, at], one.reprojected(points, at)
+            image = close_ups.hide_faces(image, figure.faces_of(*both))
+        return image, figure.of(one.view.xy[:, at])
+
+    pictures = [
+        {one.camera.name: picture(one, points.time_s[frame]) for one in seen} for frame in shown
+    ]
+    court = courts.read(paths.court) if paths.get("court") else None
+    drawing = badminton_fig10.draw(points, figure, frames, shown, pictures, court)
+    style.save(drawing, badminton_fig10.table(points, figure, frames, shown), pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        blur_faces=snakemake.params.blur_faces,
+        **snakemake.params.step,
+    )

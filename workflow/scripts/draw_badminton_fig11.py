@@ -1,0 +1,42 @@
+"""Draw detections and the reprojected skeleton of one frame: 2D, 3D keypoints, videos -> figure, CSV."""
+
+from courtside.devices import video
+from courtside.figures import badminton_fig11, close_ups, stick, style
+from courtside.motion import round_trip
+from courtside.records import derived, footage, keypoints, skeleton
+from courtside.study import log
+
+
+def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
+    joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
+    files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
+    seen = footage.read(*files, wanted=points.cameras)
+    limbs, figure = joints.groups["limbs"], stick.stick(joints, derived.read(paths.derived))
+    frames = round_trip.span(points, n_frames, start_s).frames
+    cameras = [one.camera for one in seen]
+    limit = badminton_fig11.disagreements(points, cameras, limbs, limit_torso)
+    frame = badminton_fig11.choose(limit[0], frames)
+    rows = badminton_fig11.table(points, seen, limbs, joints.mirror(), frame, limit)
+    images, detected, reprojected = {}, {}, {}
+    for one in seen:
+        at = one.frame_at(points.time_s[frame])
+        both = one.view.xy[:, at], one.reprojected(points, at)
+        _, image = video.read_frame(one.video, one.view.time_s[at])
+        if blur_faces:
+            image = close_ups.hide_faces(image, figure.faces_of(*both))
+        name = one.camera.name
+        images[name], detected[name], reprojected[name] = image, *map(figure.of, both)
+    drawing = badminton_fig11.draw(rows, images, detected, reprojected, figure, limit_torso)
+    style.save(drawing, rows, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        blur_faces=snakemake.params.blur_faces,
+        **snakemake.params.step,
+    )

@@ -1,0 +1,19 @@
+"""Draw the errors of the cameras' clocks: evaluations of takes -> figure, CSV."""
+
+from courtside.figures import clock_errors, players_table, style
+from courtside.study import log
+
+
+def main(errors_csv, pdf, png, csv):
+    numbers = clock_errors.table(players_table.read(errors_csv))
+    style.save(clock_errors.draw(numbers), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.errors,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+    )

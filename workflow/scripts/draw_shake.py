@@ -1,0 +1,32 @@
+"""Draw how the fixed cameras shook in a take: shake, cameras, skeletons -> figure, CSV, lines."""
+
+from pathlib import Path
+
+import numpy as np
+
+from courtside.figures import camera_shake, style
+from courtside.geometry import cameras
+from courtside.motion import knocks
+from courtside.records import keypoints, shake_table
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(paths, outputs):
+    calibrated = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
+    tables = {Path(path).stem: shake_table.read(path) for path in paths.shake}
+    seen = keypoints.read_3d(paths.pose3d).xyz.reshape(-1, 3)
+    seen = seen[np.isfinite(seen).all(axis=1)]
+    player = np.median(seen, axis=0) if len(seen) else np.full(3, np.nan)
+    lines = [line for name in tables for line in knocks.say(calibrated[name], tables[name], player)]
+    for line in lines:
+        log.logger.info("%s", line)
+    rows = camera_shake.table(calibrated, tables, player)
+    style.save(camera_shake.draw(rows), rows, outputs.pdf, outputs.png, outputs.csv)
+    with atomic(outputs.text) as temporary:
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(snakemake.input, snakemake.output)

@@ -1,0 +1,39 @@
+"""Evaluate the keypoints of a take in each picture: 2D keypoints, true joints and cameras -> errors in px."""
+
+import pandas as pd
+
+from courtside.motion import detection_errors
+from courtside.records import keypoints, skeleton, sync, take_truth, truth
+from courtside.study import log
+from courtside.study.files import atomic
+
+
+def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, labels):
+    known = {camera.name: camera for camera in truth.read(truth_npz).cameras}
+    real = take_truth.read(take_truth_npz)
+    joints = skeleton.read(skeleton_yaml).groups["limbs"]
+    parts = []
+    for path in pose2d_npz:
+        view = keypoints.read_2d(path)
+        clock = sync.Clock(real.offset_s[view.camera], real.drift_ppm[view.camera])
+        rows = detection_errors.evaluate(known[view.camera], view, clock, real, joints)
+        whole = 100 * rows.groupby(["person", "frame_idx"]).placed.all().mean()
+        log.logger.info("%s: all %d joints in %.0f %% of frames", view.camera, len(joints), whole)
+        parts.append(rows.assign(**labels))
+    table = pd.concat(parts, ignore_index=True)
+    with atomic(errors_csv) as temporary:
+        table[[*labels, *parts[0].columns.drop(list(labels))]].to_csv(
+            temporary, index=False, float_format="%.4f"
+        )
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.pose2d,
+        snakemake.input.take_truth,
+        snakemake.input.truth,
+        snakemake.input.skeleton,
+        snakemake.output.errors,
+        labels=snakemake.params.labels,
+    )
