@@ -20,6 +20,9 @@ include: "workflow/rules/pose.smk"
 include: "workflow/rules/motion.smk"
 include: "workflow/rules/take_evaluation.smk"
 include: "workflow/rules/players.smk"
+include: "workflow/rules/view_sets.smk"
+include: "workflow/rules/stroke_inputs.smk"
+include: "workflow/rules/badminton_takes.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/study_figures.smk"
 include: "workflow/rules/racket.smk"
@@ -37,6 +40,6 @@ rule all:
         every_export(),
         every_figure(),
         every_kinematics(),
-        every_take_evaluation(),
+        every_comparison_of_views(),
         every_players_figure(),
         every_study_figure(),

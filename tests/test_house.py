@@ -30,7 +30,8 @@ TESTED_THROUGH = {  # parts of one thing, split for length: the tests of the who
 PER_NAME = {
     "fetch_artefact.py",
     "simulate_session.py",
-}  # one rule for each artefact, each virtual session
+    "simulate_take.py",
+}  # one rule for each artefact, each virtual session and take
 # Written in pieces, so that this file does not name them itself.
 FOREIGN = ["/" + "work/", "/" + "tmp/", "pypi" + ".org", "python" + "hosted"]
 LARGEST_BYTES = 1 << 20

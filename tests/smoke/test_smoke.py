@@ -16,8 +16,8 @@ TAKE = "walk-4cams-tiny/takes/balancing"
 METHOD = "file/all-robust/blazepose-full"
 
 
-# Conditions need a session for each setting: the default study draws them.
-LARGER_STUDY = {"draw_capture"}
+# Conditions need a session for each setting, clocks a longer take, offsets several bodies.
+LARGER_STUDY = {"draw_capture", "evaluate_clocks", "draw_clock_errors", "evaluate_joint_offsets"}
 
 
 def test_every_rule_of_the_study_ran(tiny_study):

@@ -54,7 +54,13 @@ def evaluated(wildcards):
     stages = [
         stage for stage in STAGES if stage != "pose3d_corrected" or has_offsets(wildcards.model)
     ]
-    return list(product(stages, session.fusions() + session.fusions("compared_fusions")))
+    return list(product(stages, every_fusion(wildcards)))
+
+
+def every_fusion(wildcards):
+    """Return all ways to fuse views that a session can have, the exported ones first."""
+    session = session_of(wildcards)
+    return session.fusions() + session.fusions("compared_fusions")
 
 
 def has_offsets(model):
@@ -83,9 +89,9 @@ def round_trip_parameters(wildcards):
     return {**{key: step[key] for key in keys}, "start_s": start_s}
 
 
-def tabled_takes():
-    """Return (session, take) of those of table 1 that the study has."""
-    pairs = [name.split("/") for name in STUDY.parameters["evaluate_round_trip"]["takes"]]
+def named_takes(names):
+    """Return (session, take) of those takes, named `session/take`, that the study has."""
+    pairs = [Path(name).parts for name in names]
     return [(s, t) for s, t in pairs if s in STUDY.sessions and t in STUDY.sessions[s].takes]
 
 

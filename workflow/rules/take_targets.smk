@@ -57,7 +57,7 @@ def with_offsets(paths):
     return [
         path
         for path in paths
-        if "/pose3d_corrected/" not in path or has_offsets(Path(path).name.split(".")[0])
+        if "pose3d_corrected" not in Path(path).parts or has_offsets(Path(path).name.split(".")[0])
     ]
 
 
@@ -77,32 +77,68 @@ def every_kinematics():
     )
 
 
-def every_take_evaluation():
-    """Return the errors of all takes of virtual sessions, of their kinematics and of their clocks."""
+def evaluations_of_takes(kind):
+    """Return the tables of one kind of error of all takes of virtual sessions.
+
+    Kinds: errors, kinematics, clocks (of cameras without a common clock), gains (of one way to fuse over another).
+    """
     found = []
     for session in (s for s in STUDY.sessions.values() if s.virtual):
+        compared = session.fusions("compared_fusions")
         for take in session.takes.values():
             folder = f"results/{session.name}/evaluation/takes/{take.name}"
-            ways = product(session.take_calibrations(), session.parameters["models"])
-            for way, model in ways:
-                found.append(f"{folder}/errors/{way}.{model}.csv")
-                found += [
-                    f"{folder}/kinematics/{way}/{fusion}/{model}.csv"
-                    for fusion in session.fusions()
-                ]
-                if not take.synchronised:
-                    found.append(f"{folder}/clocks/{way}.{model}.csv")
+            for way, model in product(session.take_calibrations(), session.parameters["models"]):
+                last = "pose3d_corrected" if has_offsets(model) else "pose3d_filtered"
+                found += {
+                    "errors": [f"{folder}/errors/{way}.{model}.csv"],
+                    "kinematics": [
+                        f"{folder}/kinematics/{way}/{fusion}/{model}.csv"
+                        for fusion in session.fusions()
+                    ],
+                    "clocks": [f"{folder}/clocks/{way}.{model}.csv"] * (not take.synchronised),
+                    "gains": [
+                        f"{folder}/gains/{stage}.{way}.{model}.csv" for stage in ("pose3d", last)
+                    ]
+                    * bool(compared),
+                }[kind]
     return found
+
+
+def every_comparison_of_views():
+    """Return how far sets of cameras are from all of them, in real takes."""
+    return [
+        f"results/{session.name}/takes/{take}/views/{way}.{model}.csv"
+        for session in STUDY.sessions.values()
+        if not session.virtual and session.fusions("compared_fusions")
+        for take in session.takes
+        for way, model in product(session.take_calibrations(), session.parameters["models"])
+    ]
 
 
 def every_players_figure():
     """Return the figures that takes are drawn in together."""
     stems = []
-    for session, take in tabled_takes():
+    for session, take in named_takes(STUDY.parameters["evaluate_round_trip"]["takes"]):
         stem = f"results/{session}/takes/{take}/figures/badminton_tab01"
         models = STUDY.sessions[session].parameters["models"]
         ways = STUDY.sessions[session].take_calibrations()
         stems += [f"{stem}.{way}.{model}" for way, model in product(ways, models)]
+    for session, take in named_takes(STUDY.parameters["draw_stroke"]["takes"]):
+        place, models = STUDY.sessions[session], STUDY.sessions[session].parameters["models"][:1]
+        methods = product(place.take_calibrations(), place.fusions(), models)
+        folder = f"results/{session}/takes/{take}/figures"
+        stems += [
+            f"{folder}/badminton_fig{number}.{'.'.join(method)}"
+            for method, number in product(methods, ("09", "10", "11"))
+        ]
+    stems += ["results/figures/badminton_fig05"] if fig05_layouts() else []
+    for session, take in named_takes(STUDY.parameters["draw_three_cameras"]["takes"]):
+        ways = STUDY.sessions[session].take_calibrations()
+        models = STUDY.sessions[session].parameters["models"][:1]
+        stem = f"results/{session}/takes/{take}/figures/three_cameras"
+        stems += [f"{stem}.{way}.{model}" for way, model in product(ways, models)]
+    stems += ["results/figures/clock_errors"] if evaluations_of_takes("clocks") else []
     stems += ["results/figures/agreement"] if compared_takes() else []
     stems += ["results/figures/archive"] if archived_takes() else []
-    return [f"{stem}.{suffix}" for stem in stems for suffix in FORMATS]
+    tables = ["results/figures/players.csv"] if evaluations_of_takes("errors") else []
+    return [f"{stem}.{suffix}" for stem in stems for suffix in FORMATS] + tables

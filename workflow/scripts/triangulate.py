@@ -10,7 +10,8 @@ from courtside.study.errors import InputError
 
 
 def main(paths, pose3d_npz, *, persons, used, rule, **options):
-    views, known, joints = {}, read_cameras(paths), skeleton.read(paths.skeleton)
+    known = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
+    views, joints = {}, skeleton.read(paths.skeleton)
     _, clocks = sync.read(paths.sync)
     if fault := sync.fault_line(paths.sync, clocks):
         raise InputError(fault)
@@ -41,19 +42,14 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
     keypoints.write_3d(pose3d_npz, points)
 
 
-def read_cameras(paths):
-    return {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
-
-
 def report(points, swapped):
     log.logger.info("missing points: %.1f %%", 100 * np.isnan(points.xyz[..., 0]).mean())
     for at, camera in enumerate(points.cameras):
         error_px, accepted = points.reproj_error_px[..., at], points.accepted[..., at].mean()
         values = camera, np.nanmedian(error_px), 100 * accepted, swapped[at].any(axis=(0, 2)).sum()
-        line = (
-            "%s: median reprojection error %.1f px, accepted %.0f %%, sides exchanged in %d frames"
+        log.logger.info(
+            "%s: reprojected to %.1f px, accepted %.0f %%, sides exchanged %d times", *values
         )
-        log.logger.info(line, *values)
 
 
 if __name__ == "__main__":

@@ -68,3 +68,20 @@ def test_common_times_are_what_two_cameras_share():
     assert time_s[0] == pytest.approx(0.0)
     assert time_s[-1] == pytest.approx(299 / 30 - 4.0)
     np.testing.assert_allclose(np.diff(time_s), 1 / 30)
+
+
+def test_a_parabola_between_frames_is_met_exactly_and_beside_a_gap_by_a_line():
+    """Keypoints that are accelerated: a line between frames is off by a h^2 / 8 in the middle."""
+    keypoints = view(np.arange(12) / 30)
+    keypoints.xy[:] = (500 * keypoints.time_s**2)[None, :, None, None]
+    middle = (np.arange(11) + 0.5) / 30
+    xy, _ = resampling.resample(keypoints, middle)
+    error = xy[0, :, 0, 0] - 500 * middle**2
+    line = 500 * 2 / 30**2 / 8
+    np.testing.assert_allclose(error[1:-1], 0, atol=1e-9)
+    np.testing.assert_allclose(error[[0, -1]], line, atol=1e-9)
+    keypoints.xy[0, 5] = np.nan
+    xy, _ = resampling.resample(keypoints, middle)
+    error = xy[0, :, 0, 0] - 500 * middle**2
+    assert np.isnan(error[[4, 5]]).all()
+    np.testing.assert_allclose(error[[3, 6]], line, atol=1e-9)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.geometry import cameras as camera_models
+from courtside.geometry import small_matrices
 
 FADE = 4 / 3  # default of `fade_px`, in units of the limit
 START = 12.0  # the first robust kernel, in units of the last
@@ -67,30 +68,9 @@ def triangulate(xy, weight, cam_from_world):
     rows = np.where(used[..., None, None], rows * np.where(used, weight, 0)[..., None, None], 0.0)
     stacked = rows.transpose(1, 0, 2, 3).reshape(xy.shape[1], -1, 4)
     normal = stacked.transpose(0, 2, 1) @ stacked
-    xyz = solve_3x3(normal[:, :3, :3], -normal[:, :3, 3])
+    xyz = small_matrices.solve_3x3(normal[:, :3, :3], -normal[:, :3, 3])
     xyz[used.sum(axis=0) < 2] = np.nan
     return xyz
-
-
-def solve_3x3(matrix, right):
-    """Solve symmetric (N, 3, 3) systems for (N, 3) right sides; NaN where singular."""
-    return np.einsum("nij,nj->ni", inverse_3x3(matrix), right)
-
-
-def inverse_3x3(matrix):
-    """Invert symmetric (N, 3, 3) matrices by cofactors; NaN where singular."""
-    a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 0, 2]
-    d, e, f = matrix[:, 1, 1], matrix[:, 1, 2], matrix[:, 2, 2]
-    cofactor = np.empty_like(matrix)
-    cofactor[:, 0, 0], cofactor[:, 1, 1] = d * f - e * e, a * f - c * c
-    cofactor[:, 2, 2] = a * d - b * b
-    cofactor[:, 0, 1] = cofactor[:, 1, 0] = c * e - b * f
-    cofactor[:, 0, 2] = cofactor[:, 2, 0] = b * e - c * d
-    cofactor[:, 1, 2] = cofactor[:, 2, 1] = b * c - a * e
-    determinant = a * cofactor[:, 0, 0] + b * cofactor[:, 0, 1] + c * cofactor[:, 0, 2]
-    scale = (a + d + f) / 3
-    singular = ~(np.abs(determinant) > 1e-12 * scale**3)
-    return cofactor / np.where(singular, np.nan, determinant)[:, None, None]
 
 
 def triangulate_robust(
@@ -156,7 +136,13 @@ def triangulate_robust(
 
 
 def check(cameras, xy, score, min_views):
-    """Raise `ValueError` where the inputs of a triangulation contradict each other."""
+    """Raise `ValueError` where the inputs of a triangulation contradict each other.
+
+    Parameters
+    ----------
+    cameras, xy, score, min_views
+        As for `triangulate_robust`.
+    """
     if xy.shape != (len(cameras), *score.shape[1:], 2) or score.ndim != 2:
         raise ValueError(
             f"expected xy (C, N, 2) and score (C, N) with C = {len(cameras)} cameras, "
@@ -266,7 +252,7 @@ def _step(views, xyz, weight):
     """Make one damped Gauss-Newton step; a point whose system is singular stays where it is."""
     residual, in_cam = views.residuals(xyz)
     square, right = views.normal(in_cam, weight, residual)
-    step = np.nan_to_num(solve_3x3(square, right))
+    step = np.nan_to_num(small_matrices.solve_3x3(square, right))
     return xyz - step
 
 
@@ -281,13 +267,29 @@ def _in_front(views, xyz, accepted):
 
 
 def noise_covariance(views, xyz, accepted, sigma_px):
-    """Return the covariance (N, 3, 3) of points from the noise of the views that they rest on, m2."""
+    """Return the covariance (N, 3, 3) of points from the noise of the views that they rest on, m2.
+
+    Parameters
+    ----------
+    views : Views
+    xyz : (N, 3) float
+    accepted : (C, N) bool
+    sigma_px : (N,) float
+        Standard deviation per axis of a keypoint with weight 1.
+    """
     _, in_cam = views.residuals(np.nan_to_num(xyz))
     square, _ = views.normal(in_cam, views.weight * accepted)
-    return inverse_3x3(square) * (sigma_px**2)[:, None, None]
+    return small_matrices.inverse_3x3(square) * (sigma_px**2)[:, None, None]
 
 
 def reprojection_px(cameras, xy, xyz):
-    """Return the distance (C, N) of keypoints (C, N, 2) to projected points (N, 3), px."""
+    """Return the distance of keypoints to projected points, (C, N) px.
+
+    Parameters
+    ----------
+    cameras : list of Camera, length C
+    xy : (C, N, 2) float
+    xyz : (N, 3) float
+    """
     projected = np.stack([camera_models.project(camera, xyz) for camera in cameras])
     return np.linalg.norm(projected - xy, axis=-1)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.geometry import cameras as camera_models
-from courtside.geometry import triangulation
+from courtside.geometry import small_matrices, triangulation
 from courtside.motion import view_agreement
 
 GATE = 4.0  # standard deviations: a view further off does not see this person
@@ -238,5 +238,5 @@ class _Views:
             ray = ray / far_m[:, None]
             across = np.eye(3) - ray[:, :, None] * ray[:, None]
             square += across * np.where(row[:, c] >= 0, sigma_m**-2, 0.0)[:, None, None]
-        variance = np.trace(triangulation.inverse_3x3(square), axis1=1, axis2=2)
+        variance = np.trace(small_matrices.inverse_3x3(square), axis1=1, axis2=2)
         return np.sqrt(np.nan_to_num(variance, nan=np.inf))

@@ -34,7 +34,7 @@ def common_times(views, clocks=None):
 
 
 def resample(view, time_s, clock=None):
-    """Interpolate one camera's keypoints at other times, linearly between neighbouring frames.
+    """Interpolate one camera's keypoints at other times, between neighbouring frames.
 
     Parameters
     ----------
@@ -48,6 +48,12 @@ def resample(view, time_s, clock=None):
     -------
     xy, score : (P, T, J, 2) float, (P, T, J) float
         NaN where a neighbouring frame is missing: gaps are not bridged. The score is the lower one.
+
+    Notes
+    -----
+    A cubic through the two frames before and the two after (Catmull & Rom 1974), a straight line where the
+    outer ones are missing: at 30 frames per second the line alone is 3 cm off at the turning point of a
+    wrist with 200 m/s2.
     """
     own, known = (clock or Clock()).from_reference(time_s), view.time_s
     step_s = float(np.median(np.diff(known))) if len(known) > 1 else 1.0
@@ -62,11 +68,23 @@ def resample(view, time_s, clock=None):
     right = np.where(exact, left, right)
     unknown = (own < known[0]) | (own > known[-1]) | (span > LONGEST_STEP * step_s)
     share = np.where(exact, 0.0, np.where(unknown, np.nan, share))
-    xy = _blend(view.xy, left, right, share[:, None, None])
+    xy = _cubic(view.xy, known, left, right, share, LONGEST_STEP * step_s)
     score = np.minimum(view.score[:, left], view.score[:, right])
     return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
 
 
-def _blend(values, left, right, share):
+def _cubic(values, known, left, right, share, longest_s):
+    """Return values (P, T, J, 2) between frames, with a straight line where the cubic lacks a frame."""
+    share = share[:, None, None]
     before, after = values[:, left], values[:, right]
-    return before + share * (after - before)
+    straight = before + share * (after - before)
+    outer_left, outer_right = np.maximum(left - 1, 0), np.minimum(right + 1, len(known) - 1)
+    whole = (outer_left < left) & (outer_right > right)
+    whole &= (known[left] - known[outer_left] <= longest_s) & (
+        known[outer_right] - known[right] <= longest_s
+    )
+    first, last = values[:, outer_left], values[:, outer_right]
+    bent = share * (1 - share) / 2 * ((share - 1) * (first - 2 * before + after))
+    bent -= share * (1 - share) / 2 * share * (before - 2 * after + last)
+    fine = np.isfinite(bent) & whole[:, None, None]
+    return straight + np.where(fine & (left != right)[:, None, None], bent, 0.0)

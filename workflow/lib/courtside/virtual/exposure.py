@@ -175,7 +175,14 @@ class _Eye:
 
 
 def cross(net, origin, direction):
-    """Return which rays cross the net's mesh, and after how many times their direction, each (m,)."""
+    """Return which rays cross the net's mesh, and after how many times their direction, each (m,).
+
+    Parameters
+    ----------
+    net : courtside.virtual.paintwork.Net
+    origin, direction : (..., 3) float, (3, n) float
+        Of the rays, metres; one origin may serve all.
+    """
     start, end = net.feet
     along = end - start
     normal = np.array([along[1], -along[0], 0.0])

@@ -49,7 +49,16 @@ def bent(figure, skeleton, side, *, closed):
 
 
 def grip(figure, skeleton, side):
-    """Return where the axis of a racket's grip passes through the hand at rest, (3,) m."""
+    """Return where the axis of a racket's grip passes through the hand at rest, (3,) m.
+
+    Parameters
+    ----------
+    figure : courtside.virtual.makehuman.Figure
+        The bare body.
+    skeleton : courtside.virtual.posing.Skeleton
+    side : str
+        "left" or "right".
+    """
     suffix = SUFFIX[side]
     knuckles = np.mean([figure.head(f"finger{n}-1{suffix}") for n in FINGERS], axis=0)
     hand = rotations.unit(skeleton.knuckles[side] - skeleton.heads["wrist" + suffix])

@@ -18,7 +18,14 @@ RISE_DEG = ((-60.0, 0.0), (20.0, 100.0))  # of the racket above the horizontal, 
 
 
 def draw(court, length_m, *, seed, run):
-    """Return the `swing` of one run, the same for every session."""
+    """Return the `swing` of one run, the same for every session.
+
+    Parameters
+    ----------
+    court, length_m
+        As for `swing`.
+    seed, run : int
+    """
     return swing(court, length_m, _generator(seed, run, "swing"))
 
 

@@ -1,0 +1,162 @@
+"""Steadied keypoints: a known turn of a camera with a known lens is undone, by OpenCV's projection."""
+
+import logging
+
+import cv2
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry.cameras import Camera
+from courtside.motion import steadying
+from courtside.records import reasons
+from courtside.records.keypoints import Keypoints2D
+from courtside.study.errors import InputError
+
+SIZE = np.array([1920, 1080])
+K = np.array([[1450.0, 0, 985.0], [0, 1440.0, 515.0], [0, 0, 1]])
+DIST = np.array([-0.12, 0.03, 1e-3, -2e-3, 0.004])
+POSE = np.column_stack([Rotation.from_rotvec([1.2, 0.3, -0.2]).as_matrix(), [0.4, 1.0, 9.0]])
+CAMERA = Camera("mirror", SIZE, K, DIST, POSE)
+CENTRE = (SIZE - 1) / 2
+RATE_HZ = 30.0
+
+
+def projected(xyz_in_cam):
+    """Project points (N, 3) in the camera's axes by OpenCV."""
+    return cv2.projectPoints(xyz_in_cam[:, None], np.zeros(3), np.zeros(3), K, DIST)[0][:, 0]
+
+
+def turns(n, seed=0):
+    """Return turns of some ten pixels about any axis, (n, 3) radians."""
+    return np.random.default_rng(seed).normal(0, 0.006, (n, 3))
+
+
+def shake(vectors):
+    """Return the table that perfect measuring makes of turns: what the centre does, seen within a pixel."""
+    arms = np.array([[0, 0], [0.5, 0], [-0.5, 0], [0, 0.5], [0, -0.5]])
+    seen = cv2.undistortPoints(
+        (CENTRE + arms)[:, None], K, DIST, criteria=(cv2.TERM_CRITERIA_COUNT, 100, 0)
+    )[:, 0]
+    directions = np.column_stack([seen, np.ones(5)])
+    rows = []
+    for vector in vectors:
+        moved = projected(directions @ Rotation.from_rotvec(vector).as_matrix().T)
+        across, down = moved[1] - moved[2], moved[3] - moved[4]
+        turn = np.arctan2(across[1] - down[0], across[0] + down[1])
+        rows.append([*(moved[0] - CENTRE), np.degrees(turn), 0.0, 0.03])
+    names = ["shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_px"]
+    table = pd.DataFrame(rows, columns=names)
+    return table.assign(frame_idx=table.index, time_s=table.index / RATE_HZ, n_matches=150)
+
+
+def view(vectors, seed=1, joints=12):
+    """Return keypoints in the shaken pictures, the same in the still picture, of points about a court."""
+    rng = np.random.default_rng(seed)
+    shape = 2, len(vectors), joints
+    xyz = rng.uniform([-5, -2.5, 5], [5, 2.5, 14], (*shape, 3))
+    xyz[..., :2] *= xyz[..., 2:] / 14
+    rotation = Rotation.from_rotvec(vectors).as_matrix()
+    still = projected(xyz.reshape(-1, 3)).reshape(*shape, 2)
+    shaken = np.einsum("tij,ptkj->ptki", rotation, xyz)
+    made = Keypoints2D(
+        camera="mirror",
+        model="m",
+        joints=np.array([f"j{at}" for at in range(joints)]),
+        size=SIZE,
+        time_s=np.arange(len(vectors)) / RATE_HZ,
+        xy=projected(shaken.reshape(-1, 3)).reshape(*shape, 2),
+        score=np.ones(shape),
+        reason=np.full(shape, reasons.OK, np.uint8),
+        xyz_in_body=shaken,
+    )
+    return made, still, xyz
+
+
+def without(table, frames):
+    table.loc[frames, ["shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_px"]] = (
+        np.nan
+    )
+    return table
+
+
+def test_the_turn_is_found_from_what_the_centre_does():
+    vectors = turns(200)
+    found = steadying.turns(CAMERA, without(shake(vectors), [7]))
+    assert np.isnan(found[7]).all()
+    known = np.arange(200) != 7
+    assert np.abs(found - vectors)[known].max() * K[0, 0] < 0.01
+
+
+def test_keypoints_return_to_the_still_picture():
+    vectors = turns(40)
+    made, still, xyz = view(vectors)
+    assert np.abs(made.xy - still).max() > 10
+    made.xy[0, 3, 4], made.score[0, 3, 4], made.reason[0, 3, 4] = np.nan, np.nan, reasons.UNSEEN
+    found = steadying.steady(made, CAMERA, shake(vectors))
+    assert np.isnan(found.xy[0, 3, 4]).all()
+    assert np.nanmax(np.abs(found.xy - still)) < 0.02
+    np.testing.assert_allclose(found.xyz_in_body, xyz, atol=1e-4)
+    np.testing.assert_array_equal(found.reason, made.reason)
+    np.testing.assert_array_equal(found.score, made.score)
+
+
+def test_a_camera_that_stands_still_changes_nothing():
+    made, still, _ = view(np.zeros((5, 3)))
+    found = steadying.steady(made, CAMERA, shake(np.zeros((5, 3))))
+    np.testing.assert_allclose(found.xy, still, atol=1e-6)
+
+
+def test_short_gaps_are_bridged_and_long_ones_left_and_said(caplog):
+    vectors = np.linspace([0, 0, 0], [0.01, -0.01, 0.005], 40)  # an even turn, which a line bridges
+    made, still, _ = view(vectors)
+    table = without(shake(vectors), [0, *range(10, 14), *range(20, 32)])
+    with caplog.at_level(logging.WARNING, logger="courtside"):
+        found = steadying.steady(made, CAMERA, table)
+    left = np.isin(np.arange(40), [0, *range(20, 32)])
+    np.testing.assert_array_equal(found.xy[:, left], made.xy[:, left])
+    assert np.abs(found.xy - still)[:, ~left].max() < 0.02
+    assert "mirror" in caplog.text and "13 of 40" in caplog.text
+
+
+def test_a_take_of_which_nothing_is_known_is_left():
+    made, _, _ = view(turns(6))
+    found = steadying.steady(made, CAMERA, without(shake(turns(6)), range(6)))
+    np.testing.assert_array_equal(found.xy, made.xy)
+
+
+def test_a_part_of_the_take_finds_its_rows_by_time():
+    vectors = turns(30)
+    made, still, _ = view(vectors)
+    part = {name: getattr(made, name) for name in vars(made)}
+    part |= {name: part[name][:, 10:20] for name in ("xy", "score", "reason", "xyz_in_body")}
+    found = steadying.steady(
+        Keypoints2D(**part | {"time_s": made.time_s[10:20] + 1e-5}), CAMERA, shake(vectors)
+    )
+    assert np.abs(found.xy - still[:, 10:20]).max() < 0.02
+
+
+def test_smoothing_the_measured_shake_would_lose_more_than_it_gains():
+    """The tremor's fast part is larger than the noise of measuring: why `steady` does not smooth."""
+    time_s = np.arange(150) / RATE_HZ
+    waves = 0.5 * np.sin(2 * np.pi * np.array([[2.0], [5.0]]) * time_s)  # 0.5 px
+    noise = np.random.default_rng(0).normal(0, 0.05, waves.shape)
+    smooth = np.array([np.convolve(row, [0.25, 0.5, 0.25], "same") for row in waves + noise])
+    assert (smooth - waves)[:, 2:-2].std() > 1.5 * noise.std()
+
+
+def test_frames_that_were_not_measured_are_a_fault():
+    made, _, _ = view(turns(30))
+    with pytest.raises(
+        InputError, match=r"camera mirror: expected the shake of every frame"
+    ) as error:
+        steadying.steady(made, CAMERA, shake(turns(20)))
+    assert "\n" not in str(error.value)
+
+
+def test_another_size_is_a_fault():
+    made, _, _ = view(turns(3))
+    small = Camera("mirror", SIZE // 2, K, DIST, POSE)
+    with pytest.raises(InputError, match="camera mirror"):
+        steadying.steady(made, small, shake(turns(3)))

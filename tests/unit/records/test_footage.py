@@ -1,0 +1,96 @@
+"""What cameras gave, by their own clocks."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import scene
+import walker
+from courtside.geometry import cameras as camera_models
+from courtside.records import footage, keypoints, people, sync
+from courtside.study.errors import InputError
+
+CAMERAS = scene.ring(3)
+
+
+def written(folder, offset_s=0.25):
+    """Write a take whose second camera has a clock of its own, and return the arguments of `read`."""
+    record = walker.points(n_frames=12, n_persons=2)
+    views = walker.views(record, CAMERAS)
+    views[1] = replace(views[1], time_s=views[1].time_s + offset_s)
+    camera_models.write_toml(folder / "cameras.toml", CAMERAS, source="made")
+    paths = [folder / f"{view.camera}.npz" for view in views]
+    for path, view in zip(paths, views, strict=True):
+        keypoints.write_2d(path, view)
+    index = np.tile([[1], [0]], (1, 12))  # the first person is the second row
+    by_camera = {camera.name: index for camera in CAMERAS}
+    people.write(
+        folder / "people.npz",
+        people.People(record.model, record.person_id, np.ones(2), by_camera),
+    )
+    clocks = {c.name: sync.Clock(offset_s=offset_s * (c.name == "c1")) for c in CAMERAS}
+    sync.write(folder / "sync.json", "c0", clocks)
+    videos = ["a", "b", "c"]
+    return record, (
+        folder / "cameras.toml",
+        paths,
+        folder / "people.npz",
+        folder / "sync.json",
+        videos,
+    )
+
+
+def test_views_are_by_person_and_in_the_order_asked_for(tmp_path):
+    record, files = written(tmp_path)
+    found = footage.read(*files, wanted=["c2", "c1"])
+    assert [one.camera.name for one in found] == ["c2", "c1"]
+    assert [one.video for one in found] == ["c", "b"]
+    exact = scene.opencv_projection(CAMERAS[2], record.xyz[1, 6])
+    np.testing.assert_allclose(found[0].view.xy[0, 6], exact, atol=1e-6)
+    assert len(footage.read(*files)) == 3
+
+
+def test_frames_are_found_by_the_reference_clock(tmp_path):
+    record, files = written(tmp_path)
+    for one in footage.read(*files):
+        assert one.frame_at(record.time_s[7] + 0.004) == 7
+        assert one.reference_s(7) == pytest.approx(record.time_s[7])
+
+
+def test_reprojections_lie_where_opencv_projects(tmp_path):
+    record, files = written(tmp_path)
+    one = footage.read(*files)[1]
+    found = one.reprojected(record, 6)
+    np.testing.assert_allclose(
+        found[1], scene.opencv_projection(CAMERAS[1], record.xyz[1, 6]), atol=1e-6
+    )
+
+
+def test_between_two_frames_the_middle_is_in_the_middle():
+    record = walker.points(n_frames=12)
+    middle = (record.xyz[:, 6] + record.xyz[:, 7]) / 2
+    found = footage.between(record, (record.time_s[6] + record.time_s[7]) / 2)
+    np.testing.assert_allclose(found, middle, atol=1e-9)
+
+
+def test_on_a_frame_a_missing_neighbour_does_not_matter():
+    record = walker.points(n_frames=12)  # joint 4 is missing in frame 3
+    for frame in (2, 4):
+        assert np.isfinite(footage.between(record, record.time_s[frame])).all()
+    assert np.isnan(footage.between(record, record.time_s[3] - 0.005)[0, 4]).all()
+
+
+def test_beyond_the_take_is_nothing():
+    record = walker.points(n_frames=12)
+    assert np.isnan(footage.between(record, record.time_s[-1] + 0.1)).all()
+    assert np.isfinite(footage.between(record, record.time_s[-1])).all()
+
+
+def test_a_camera_without_keypoints_or_calibration_is_refused(tmp_path):
+    _, (toml, paths, who, clocks, videos) = written(tmp_path)
+    with pytest.raises(InputError, match="c2"):
+        footage.read(toml, paths[:2], who, clocks, videos[:2], wanted=["c0", "c2"])
+    camera_models.write_toml(toml, CAMERAS[:2], source="made")
+    with pytest.raises(InputError, match="camera c2"):
+        footage.read(toml, paths, who, clocks, videos)

@@ -1,0 +1,172 @@
+"""Does a network place the joints of a person in a camera's picture, frame by frame? Against the truth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import linear_sum_assignment
+
+from courtside.geometry import cameras as camera_models
+from courtside.motion import pose_errors
+from courtside.study.errors import InputError
+
+TOLERANCE = 0.2  # of the torso's length: PCK@0.2
+TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
+EDGE_S = 1e-3  # a frame so little outside the truth's span is taken to lie on its end
+COLUMNS = [
+    "person", "camera", "frame_idx", "time_s", "joint", "x_px", "y_px", "true_x_px", "true_y_px",
+    "torso_px", "error_px", "error_torso", "found", "in_picture", "placed", "exchanged",
+    "in_stroke",
+]  # fmt: skip
+
+
+def torso_px(camera, joints, xyz):
+    """Return how long the torso would be in the picture if it were seen square-on.
+
+    Parameters
+    ----------
+    camera : Camera
+    joints : sequence of str, length J
+    xyz : (..., J, 3) float
+        World, metres.
+
+    Returns
+    -------
+    length : (...) float
+        Px: the distance from the middle of the shoulders to the middle of the hips, at its place but turned
+        parallel to the picture's columns. A torso that leans towards the camera is not shorter for it, which
+        would ask more of one camera than of another.
+    """
+    at = [list(joints).index(name) for name in TRUNK]
+    shoulders, hips = (xyz[..., at[part : part + 2], :].mean(axis=-2) for part in (0, 2))
+    half = np.linalg.norm(shoulders - hips, axis=-1)[..., None] / 2
+    middle, upright = (shoulders + hips) / 2, camera.cam_from_world[1, :3]
+    ends = [camera_models.project(camera, middle + sign * half * upright) for sign in (-1, 1)]
+    return np.linalg.norm(ends[1] - ends[0], axis=-1)
+
+
+def evaluate(camera, view, clock, truth, joints, tolerance=TOLERANCE):
+    """Compare one camera's keypoints with the true joints in its pictures.
+
+    Parameters
+    ----------
+    camera : Camera
+        The true one.
+    view : Keypoints2D
+        Of that camera; its tracklets are nobody yet.
+    clock : Clock
+        The camera's true one.
+    truth
+        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3) m; `shaken` with the poses of the
+        camera at its frames where it did not stand still; and `events` of persons, of which `*_start` and
+        `*_stop` bound a stroke.
+    joints : sequence of str
+        Those that are compared; the trunk's must be among the truth's.
+    tolerance : float
+        Of the torso's length, see `torso_px`.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        `COLUMNS`, one row for each person, frame with a truth, and joint; time_s on the reference clock.
+        found: the network reports somebody whose trunk lies within a torso of the true one; in_picture: the
+        true joint lies in the picture; placed: found, and the joint's error is below the tolerance;
+        exchanged: not placed, but the other side's keypoint would be, so that only the sides are mixed up;
+        in_stroke: the person is playing a stroke.
+
+    Notes
+    -----
+    The share of placed joints is known as PCK, percentage of correct keypoints (Yang & Ramanan 2013).
+    """
+    start_s, stop_s = truth.time_s[[0, -1]]
+    time_s = clock.to_reference(view.time_s)
+    inside = (time_s >= start_s - EDGE_S) & (time_s <= stop_s + EDGE_S)
+    frames = np.flatnonzero(inside)
+    time_s = time_s[frames]
+    real = pose_errors.at_times(truth.time_s, truth.xyz, np.clip(time_s, start_s, stop_s))
+    true, torso = _seen(camera, truth, view, frames, real)
+    true = true[:, :, _places(truth.joints, joints, "the truth")]
+    rows = view.xy[:, frames][:, :, _places(view.joints, joints, f"{view.camera}, {view.model}")]
+    detected = _assign(rows, true, torso, [list(joints).index(name) for name in TRUNK])
+    return _table(truth, view, joints, frames, time_s, detected, true, torso, tolerance)
+
+
+def _seen(camera, truth, view, frames, real):
+    """Return the true joints (P, F, J, 2) and torsos (P, F) in the pictures, px."""
+    poses = truth.shaken.get(view.camera)
+    if poses is None:
+        return camera_models.project(camera, real), torso_px(camera, truth.joints, real)
+    each = [replace(camera, cam_from_world=poses[frame]) for frame in frames]
+    xy = [camera_models.project(one, real[:, at]) for at, one in enumerate(each)]
+    torso = [torso_px(one, truth.joints, real[:, at]) for at, one in enumerate(each)]
+    return np.stack(xy, axis=1), np.stack(torso, axis=1)
+
+
+def _places(known, wanted, where):
+    known = list(map(str, known))
+    missing = [name for name in wanted if name not in known]
+    if missing:
+        raise InputError(
+            f"{where}: expected the joints {list(wanted)}, missing {missing}; choose a network that has them"
+        )
+    return [known.index(name) for name in wanted]
+
+
+def _assign(rows, true, torso, trunk):
+    """Return the keypoints (P, F, K, 2) of the tracklets (R, F, K, 2) by true person; NaN if not found."""
+    found = np.full(true.shape, np.nan)
+    middle = rows[:, :, trunk].mean(axis=2)
+    apart = np.linalg.norm(middle[None] - true[:, None, :, trunk].mean(axis=3), axis=-1)
+    apart = apart / torso[:, None]  # (P, R, F)
+    cost = np.where(apart < 1, apart, 1e3)
+    for at in range(true.shape[1]):
+        for person, row in zip(*linear_sum_assignment(cost[:, :, at]), strict=True):
+            if apart[person, row, at] < 1:
+                found[person, at] = rows[row, at]
+    return found
+
+
+def _table(truth, view, joints, frames, time_s, detected, true, torso, tolerance):
+    other = [list(joints).index(_other_side(joint)) for joint in joints]
+    error = np.linalg.norm(detected - true, axis=-1)
+    share = error / torso[..., None]
+    crossed = np.linalg.norm(detected[:, :, other] - true, axis=-1) / torso[..., None]
+    placed = share < tolerance
+    names, shape = list(map(str, truth.person_id)), error.shape
+    columns = {
+        "person": np.repeat(names, shape[1] * shape[2]),
+        "camera": view.camera,
+        "frame_idx": np.tile(np.repeat(frames, shape[2]), shape[0]),
+        "time_s": np.tile(np.repeat(time_s, shape[2]), shape[0]),
+        "joint": np.tile(joints, shape[0] * shape[1]),
+        "x_px": detected[..., 0].ravel(),
+        "y_px": detected[..., 1].ravel(),
+        "true_x_px": true[..., 0].ravel(),
+        "true_y_px": true[..., 1].ravel(),
+        "torso_px": np.repeat(torso.ravel(), shape[2]),
+        "error_px": error.ravel(),
+        "error_torso": share.ravel(),
+        "found": np.repeat(np.isfinite(detected).all(axis=-1).any(axis=-1).ravel(), shape[2]),
+        "in_picture": ((true > -0.5) & (true < view.size - 0.5)).all(axis=-1).ravel(),
+        "placed": placed.ravel(),
+        "exchanged": (~placed & (crossed < tolerance)).ravel(),
+        "in_stroke": np.repeat(
+            [_strokes(truth.events.get(n, {}), time_s) for n in names], shape[2]
+        ),
+    }
+    return pd.DataFrame(columns)[COLUMNS]
+
+
+def _strokes(events, time_s):
+    """Say which times lie in a stroke of a person with these events, (F,) bool."""
+    inside = np.zeros(len(time_s), dtype=bool)
+    for name, start_s in events.items():
+        stop_s = events.get(f"{name.removesuffix('_start')}_stop")
+        if name.endswith("_start") and stop_s is not None:
+            inside |= (time_s >= start_s) & (time_s <= stop_s)
+    return inside
+
+
+def _other_side(joint):
+    side, _, rest = joint.partition("_")
+    return {"left": "right_", "right": "left_"}[side] + rest

@@ -1,0 +1,109 @@
+"""A take by its cameras: where each stands, what it saw of whom, and what its clock shows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.geometry import cameras as camera_models
+from courtside.records import keypoints, people, sync
+from courtside.records.keypoints import Keypoints2D
+from courtside.records.sync import Clock
+from courtside.study.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Footage:
+    """What one camera gave.
+
+    Attributes
+    ----------
+    camera : Camera
+    view : Keypoints2D
+        By person.
+    clock : Clock
+    video : str or Path
+    """
+
+    camera: camera_models.Camera
+    view: Keypoints2D
+    clock: Clock
+    video: object
+
+    def frame_at(self, time_s):
+        """Return the index of the frame nearest to a time of the reference clock."""
+        return int(np.abs(self.view.time_s - self.clock.from_reference(time_s)).argmin())
+
+    def reference_s(self, frame):
+        """Return when a frame was taken, on the reference clock."""
+        return float(self.clock.to_reference(self.view.time_s[frame]))
+
+    def reprojected(self, points, frame):
+        """Return the skeletons of a take as this camera's frame should show them.
+
+        Parameters
+        ----------
+        points : Keypoints3D
+        frame : int
+
+        Returns
+        -------
+        xy : (P, J, 2) float
+            Px, linearly between the two neighbouring times of `points`; NaN beyond its ends.
+        """
+        return camera_models.project(self.camera, between(points, self.reference_s(frame)))
+
+
+def between(points, time_s):
+    """Return the skeletons (P, J, 3) of a `Keypoints3D` at a time, linearly between its frames."""
+    known, tick = points.time_s, 1e-3 / max(points.rate_hz, 1) if len(points.time_s) > 1 else 1e-6
+    if not known[0] - tick <= time_s <= known[-1] + tick:
+        return np.full(points.xyz[:, 0].shape, np.nan)
+    left = int(np.clip(np.searchsorted(known, time_s, side="right") - 1, 0, len(known) - 1))
+    right = min(left + 1, len(known) - 1)
+    span = known[right] - known[left]
+    share = np.clip((time_s - known[left]) / span, 0, 1) if span > 0 else 0.0
+    if share < 1e-3 or share > 1 - 1e-3:  # on a frame: its neighbour may be missing
+        return points.xyz[:, right if share > 0.5 else left]
+    return (1 - share) * points.xyz[:, left] + share * points.xyz[:, right]
+
+
+def read(cameras_toml, pose2d_npz, people_npz, sync_json, videos, wanted=None):
+    """Read what the cameras of a take gave.
+
+    Parameters
+    ----------
+    cameras_toml, people_npz, sync_json : str or Path
+    pose2d_npz, videos : sequence of str or Path
+        Of each camera, in one order.
+    wanted : sequence of str, optional
+        Cameras to return, in this order; all by default.
+
+    Returns
+    -------
+    footage : list of Footage
+
+    Raises
+    ------
+    InputError
+        If a camera is not calibrated, has no clock, or none of the files is of a wanted one.
+    """
+    known = {camera.name: camera for camera in camera_models.read_toml(cameras_toml)}
+    who, (_, clocks), found = people.read(people_npz), sync.read(sync_json), {}
+    for path, video in zip(pose2d_npz, videos, strict=True):
+        view = keypoints.read_2d(path)
+        if wanted is not None and view.camera not in wanted:
+            continue
+        for what, there in ((cameras_toml, known), (sync_json, clocks)):
+            if view.camera not in there:
+                raise InputError(
+                    f"{what}: expected camera {view.camera}, found {sorted(there)}; make it again"
+                )
+        camera, clock = known[view.camera], clocks[view.camera]
+        found[view.camera] = Footage(camera, who.assigned(view), clock, video)
+    names = list(map(str, found if wanted is None else wanted))
+    missing = [name for name in names if name not in found]
+    if missing:
+        raise InputError(
+            f"keypoints: expected the cameras {names}, missing {missing}; detect poses in them"
+        )
+    return [found[name] for name in names]

@@ -1,0 +1,98 @@
+"""The table of a fixed camera's shake: where its static picture is in every frame of a take."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+DECIMALS = {
+    "frame_idx": 0,
+    "time_s": 6,
+    "shift_x_px": 4,
+    "shift_y_px": 4,
+    "rotation_deg": 5,
+    "zoom_percent": 4,
+    "n_matches": 0,
+    "sigma_px": 4,
+}
+MEASURED = ("shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_px")
+
+
+def write(path, table):
+    """Write a shake table as `read` takes it.
+
+    Parameters
+    ----------
+    path : str or Path
+        The CSV file.
+    table : DataFrame
+        One row per frame: `frame_idx` (of the file), `time_s` (on the camera's own clock), `shift_x_px` and
+        `shift_y_px` (of the content at the centre of the static picture: right, down), `rotation_deg` (of the
+        content about the centre, clockwise as seen), `zoom_percent` (its growth), `n_matches` (background
+        corners that agree), `sigma_px` (standard deviation of the shift, per axis). Where too few corners
+        agree, all but index, time and number are NaN.
+
+    Raises
+    ------
+    ValueError
+        If the table is not one.
+    """
+    fault = _fault(table)
+    if fault:
+        raise ValueError(f"{path}: {fault}")
+    table = table.loc[:, list(DECIMALS)].round(DECIMALS)
+    table[list(MEASURED)] += 0.0  # no minus before a zero
+    with atomic(path) as temporary:
+        table.to_csv(temporary, index=False, lineterminator="\n")
+
+
+def read(path):
+    """Read a shake table.
+
+    Parameters
+    ----------
+    path : str or Path
+        The CSV file.
+
+    Returns
+    -------
+    table : DataFrame
+        As `write` describes it.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or no such table.
+    """
+    try:
+        table = pd.read_csv(path)
+        fault = _fault(table)
+    except (OSError, ValueError) as error:
+        fault = " ".join(str(error).split())
+    if fault:
+        raise InputError(
+            f"{path}: expected a table of shake, {fault}: delete it and run the study again"
+        )
+    return table.loc[:, list(DECIMALS)].astype(dict.fromkeys(("time_s", *MEASURED), float))
+
+
+def _fault(table):
+    """Say in a few words what is wrong with a table; nothing where it is right."""
+    missing = [name for name in DECIMALS if name not in table.columns]
+    if missing:
+        return f"found no column {', '.join(missing)}"
+    if not len(table):
+        return "found no frame"
+    words = [name for name in DECIMALS if not pd.api.types.is_numeric_dtype(table[name])]
+    if words:
+        return f"found {words[0]} that is not a number"
+    if not (np.diff(table["frame_idx"]) > 0).all() or not (np.diff(table["time_s"]) > 0).all():
+        return "found frames that are not in order"
+    values = table[list(MEASURED)].to_numpy(float)
+    known = np.isfinite(values)
+    if np.isinf(values).any() or (known.any(axis=1) != known.all(axis=1)).any():
+        return "found a frame that is measured only in part"
+    if (table["sigma_px"] < 0).any() or not (table["n_matches"] >= 0).all():
+        return "found sigma_px or n_matches below 0"
+    return ""
