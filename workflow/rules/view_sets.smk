@@ -38,7 +38,7 @@ rule evaluate_fusions:
 
 rule draw_three_cameras:
     input:
-        errors="results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv",
+        errors=["results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv"],
         kinematics=lambda w: [
             f"results/{w.session}/evaluation/takes/{w.take}/kinematics/{w.calibration}/{fusion}/{w.model}.csv"
             for fusion in every_fusion(w)
