@@ -10,6 +10,7 @@ include: "workflow/rules/inputs.smk"
 include: "workflow/rules/take_inputs.smk"
 include: "workflow/rules/targets.smk"
 include: "workflow/rules/take_targets.smk"
+include: "workflow/rules/players_targets.smk"
 include: "workflow/rules/artefacts.smk"
 include: "workflow/rules/simulation.smk"
 include: "workflow/rules/frames.smk"
@@ -39,6 +40,7 @@ rule all:
         every_check(),
         every_export(),
         every_figure(),
+        every_shake(),
         every_kinematics(),
         every_comparison_of_views(),
         every_players_figure(),

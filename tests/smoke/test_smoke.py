@@ -16,8 +16,9 @@ TAKE = "walk-4cams-tiny/takes/balancing"
 METHOD = "file/all-robust/blazepose-full"
 
 
-# Conditions need a session for each setting, clocks a longer take, offsets several bodies.
+# Conditions need a session for each setting, clocks a longer take, offsets and networks several bodies.
 LARGER_STUDY = {"draw_capture", "evaluate_clocks", "draw_clock_errors", "evaluate_joint_offsets"}
+LARGER_STUDY |= {"compare_networks", "draw_agreement"}
 
 
 def test_every_rule_of_the_study_ran(tiny_study):

@@ -1,7 +1,7 @@
 """Figures of a take: what was seen, what was made of it, and how far to trust it.
 
 Inputs: 2D and 3D keypoints, cameras, videos. Outputs: results/{session}/takes/{take}/figures/.
-Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics.
+Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics, draw_shake.
 """
 
 
@@ -80,3 +80,19 @@ rule draw_kinematics:
         code=code("draw_kinematics.py"),
     script:
         "../scripts/draw_kinematics.py"
+
+
+rule draw_shake:
+    input:
+        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        shake=each_camera(f"{TAKE}/shake/{{camera}}.csv"),
+        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
+    output:
+        **figure("shake"),
+        text=f"{TAKE}/figures/shake.{{calibration}}.{{fusion}}.{{model}}.txt",
+    log:
+        f"results/{{session}}/logs/draw_shake/{OF_FUSED}.log",
+    params:
+        code=code("draw_shake.py"),
+    script:
+        "../scripts/draw_shake.py"

@@ -54,6 +54,23 @@ rule check_movement:
         "../scripts/check_movement.py"
 
 
+rule measure_shake:
+    input:
+        static="results/{session}/static/{camera}.png",
+        video=lambda w: take_of(w).videos[w.camera],
+    output:
+        shake="results/{session}/takes/{take}/shake/{camera}.csv",
+    log:
+        "results/{session}/logs/measure_shake/{take}.{camera}.log",
+    benchmark:
+        "results/{session}/benchmarks/measure_shake/{take}.{camera}.tsv"
+    params:
+        code=code("measure_shake.py"),
+        trim_s=lambda w: take_of(w).trim_s,
+    script:
+        "../scripts/measure_shake.py"
+
+
 rule estimate_background:
     input:
         source=lambda w: take_of(w).videos[w.camera],

@@ -56,6 +56,7 @@ rule triangulate:
         pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
         sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
         people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
+        shake=shake_files,
         skeleton=skeleton_file,
     output:
         pose3d=f"{TAKE}/pose3d/{FUSED}.npz",

@@ -53,8 +53,8 @@ for session in STUDY.sessions.values():
                 f"results/virtual/logs/simulate_take/{session.name}.{take.name}.log",
             benchmark:
                 f"results/virtual/benchmarks/simulate_take/{session.name}.{take.name}.tsv"
-            threads: 2 if take.virtual["seconds"] > 4 else 1
             priority: int(take.virtual["seconds"])  # the longest first, or they are left to the end
+            threads: 2 if take.virtual["seconds"] > 4 else 1
             resources:
                 mem_mb=2500,
             params:

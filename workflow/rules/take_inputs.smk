@@ -18,8 +18,19 @@ def camera_covariance_file(wildcards):
 
 def fusion_options(wildcards):
     """Return which cameras a way to fuse views rests on, and by what rule."""
-    name = wildcards.fusion
-    return {"used": session_of(wildcards).fused_cameras(name), "rule": name.rpartition("-")[2]}
+    how = wildcards.fusion.rpartition("-")[2].replace("unsteady", "robust")
+    filmed = take_of(wildcards).videos
+    used = [
+        name for name in session_of(wildcards).fused_cameras(wildcards.fusion) if name in filmed
+    ]
+    return {"used": used, "rule": how}
+
+
+def shake_files(wildcards):
+    """Return the shake of each camera of a take, where it is to be taken out."""
+    if not take_of(wildcards).steady or wildcards.fusion.endswith("unsteady"):
+        return []
+    return each_camera("results/{session}/takes/{take}/shake/{camera}.csv")(wildcards)
 
 
 def background_file(wildcards):

@@ -11,6 +11,8 @@ PAIRS = [  # ours first
     ("three-robust", "three-dlt"),
     ("three-robust", "halfbody"),
     ("all-robust", "all-dlt"),
+    ("all-robust", "all-unsteady"),
+    ("two-robust", "two-unsteady"),
 ]
 
 

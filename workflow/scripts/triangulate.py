@@ -1,10 +1,12 @@
 """Triangulate one take: 2D keypoints of every camera -> 3D keypoints in the world."""
 
+from itertools import zip_longest
+
 import numpy as np
 
 from courtside.geometry import cameras
-from courtside.motion import camera_error, fusion, halfbody, resampling
-from courtside.records import camera_covariance, keypoints, people, skeleton, sync
+from courtside.motion import camera_error, fusion, halfbody, resampling, steadying
+from courtside.records import camera_covariance, keypoints, people, shake_table, skeleton, sync
 from courtside.study import log
 from courtside.study.errors import InputError
 
@@ -16,9 +18,11 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
     if fault := sync.fault_line(paths.sync, clocks):
         raise InputError(fault)
     who = people.read(paths.people)
-    for path in paths.pose2d:
+    for path, shake in zip_longest(paths.pose2d, paths.shake):
         view = keypoints.read_2d(path)
         cameras.check_size(known[view.camera], tuple(map(int, view.size)), path)
+        if shake:
+            view = steadying.steady(view, known[view.camera], shake_table.read(shake))
         views[view.camera] = who.assigned(view)
     time_s = resampling.common_times(list(views.values()), [clocks[name] for name in views])
 
@@ -35,10 +39,8 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
         return found
 
     if rule == "halfbody":
-        centre, *sides = used
-        points = halfbody.merge(*(fuse((centre, side), "dlt") for side in sides), used)
-    else:
-        points = fuse(used, rule)
+        halves = [fuse((used[0], side), "dlt") for side in used[1:]]
+    points = halfbody.merge(*halves, used) if rule == "halfbody" else fuse(used, rule)
     keypoints.write_3d(pose3d_npz, points)
 
 
@@ -54,5 +56,5 @@ def report(points, swapped):
 
 if __name__ == "__main__":
     log.to_file(snakemake.log[0])
-    chosen = {"persons": snakemake.params.persons, **snakemake.params.fusion}
-    main(snakemake.input, snakemake.output.pose3d, **chosen, **snakemake.params.step)
+    chosen = {"persons": snakemake.params.persons, **snakemake.params.fusion, **snakemake.params.step}
+    main(snakemake.input, snakemake.output.pose3d, **chosen)

@@ -137,15 +137,6 @@ def test_a_part_of_the_take_finds_its_rows_by_time():
     assert np.abs(found.xy - still[:, 10:20]).max() < 0.02
 
 
-def test_smoothing_the_measured_shake_would_lose_more_than_it_gains():
-    """The tremor's fast part is larger than the noise of measuring: why `steady` does not smooth."""
-    time_s = np.arange(150) / RATE_HZ
-    waves = 0.5 * np.sin(2 * np.pi * np.array([[2.0], [5.0]]) * time_s)  # 0.5 px
-    noise = np.random.default_rng(0).normal(0, 0.05, waves.shape)
-    smooth = np.array([np.convolve(row, [0.25, 0.5, 0.25], "same") for row in waves + noise])
-    assert (smooth - waves)[:, 2:-2].std() > 1.5 * noise.std()
-
-
 def test_frames_that_were_not_measured_are_a_fault():
     made, _, _ = view(turns(30))
     with pytest.raises(

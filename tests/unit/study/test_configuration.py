@@ -195,7 +195,7 @@ def test_a_session_may_not_be_named_like_a_folder_of_results(folder, name):
         ({"filter_motion": {"max_gap_s": 10**400}}, "type number, found 1000"),
         ({"draw_overlay": {"n_frames": 3.0}}, "type integer, found 3.0"),
         ({"draw_overlay": {"n_frames": True}}, "type integer, found True"),
-        ({"detect_pose": {"redetect": "yes"}}, "type boolean, found 'yes'"),
+        ({"triangulate": {"fix_sides": "yes"}}, "type boolean, found 'yes'"),
         ({"detect_pose": [1]}, "type object, found [1]"),
         ({"sessions": ["hall"]}, "found 'sessions'"),
     ],

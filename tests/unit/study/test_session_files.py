@@ -140,7 +140,7 @@ def test_a_virtual_take_gets_the_videos_of_all_cameras():
     found = session_files.session("gym", "gym.yaml", content, PARAMETERS)
     folder = "results/virtual/gym/takes/t1"
     videos = {"side": f"{folder}/side.mp4", "back": f"{folder}/back.mp4"}
-    assert found.takes["t1"] == sessions.Take("t1", videos, ("p1",), None, True, filmed)
+    assert found.takes["t1"] == sessions.Take("t1", videos, ("p1",), None, True, False, filmed)
     assert found.views == {"two": ("side", "back")}
     varied = session_files.variations(found, "speed", {"vary": {"seed": [3]}})["speed-0"]
     assert varied.takes == {}

@@ -55,12 +55,14 @@ def find(camera, table):
         typically differ by in this take, and three times the tremor's root mean square beside it: of a
         trembling camera only what stands out is found, and nothing within 0.4 s of the ends of a take.
     """
-    time_s, turns = table.time_s.to_numpy(float), steadying.turns(camera, table)
-    focal = np.diag(camera.K)[:2].mean()
-    step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else WINDOW_S
+    table = table[np.isfinite(table.shift_x_px)]
+    if len(table) < 2:
+        return []
+    turns = steadying.turns(camera, table)
+    level = turns * np.diag(camera.K)[:2].mean()
+    step_s = np.median(np.diff(table.time_s))
     n, least = (max(2, round(length / step_s)) for length in (WINDOW_S, LEAST_S))
-    level = turns * focal
-    sigma_px = np.nanmedian(table.sigma_px) if np.isfinite(table.sigma_px).any() else np.nan
+    sigma_px = np.median(table.sigma_px)
     splits = []
     for _ in range(MOST):
         steps = np.linalg.norm(_steps(level, n, least), axis=1)
@@ -68,11 +70,11 @@ def find(camera, table):
             break
         split = _split(level, int(np.nanargmax(steps)), n)
         before, after = np.split(level, [split])
-        step = np.nanmedian(after[:n], axis=0) - np.nanmedian(before[-n:], axis=0)
+        step = np.median(after[:n], axis=0) - np.median(before[-n:], axis=0)
         level = np.concatenate([before, after - step])
         rest = np.nanmedian(np.linalg.norm(_steps(level, n, least), axis=1))
         near = level[max(split - n, 0) : split + n]
-        spread = np.sqrt(np.nanmean(np.sum((near - np.nanmedian(near, axis=0)) ** 2, axis=1)))
+        spread = np.sqrt(np.mean(np.sum((near - np.median(near, axis=0)) ** 2, axis=1)))
         noise = max(LEAST_PX, LEAST_RATIO * max(rest, sigma_px), LEAST_SPREADS * spread)
         sudden = _sudden(before, after, step, max(2, round(ABRUPT_S / step_s)))
         if not (sudden and np.linalg.norm(step) > noise):
@@ -91,8 +93,8 @@ def tremor_px(table, knocks=()):
     knocks : list of Knock
     """
     parts = _parts(table, knocks)
-    off = np.concatenate([part - np.median(part, axis=0) for part in parts])
-    return float(np.sqrt(np.mean(off**2))) if len(off) else np.nan
+    off = [part - np.median(part, axis=0) for part in parts]
+    return float(np.sqrt(np.mean(np.concatenate(off) ** 2))) if off else np.nan
 
 
 def mm_at(camera, xyz, table):
@@ -136,11 +138,13 @@ def say(camera, table, xyz):
     tremor = tremor_px(table, knocks)
     unknown = int(table.shift_x_px.isna().sum())
     name = f"camera {camera.name}:"
+    if unknown == len(table):
+        return [f"{name} no frame shows enough background to tell whether it shook"]
     lines = [f"{name} trembles by {tremor:.2f} px rms per axis{_at_player(scale * tremor)}"]
     if unknown:
         lines[0] += f"; {unknown} of {len(table)} frames show too little background to tell"
     parts = _parts(table, knocks)
-    start_px = np.hypot(*np.median(parts[0], axis=0)) if parts else 0.0
+    start_px = np.hypot(*np.median(parts[0], axis=0))
     if start_px > max(LEAST_PX, tremor):
         lines.append(
             f"{name} stood {start_px:.1f} px off its static picture when the take began"
@@ -156,7 +160,8 @@ def say(camera, table, xyz):
 
 
 def _at_player(length_mm):
-    return f", {length_mm:.3g} mm at the player" if np.isfinite(length_mm) else ""
+    digits = 0 if length_mm >= 10 else 1
+    return f", {length_mm:.{digits}f} mm at the player" if np.isfinite(length_mm) else ""
 
 
 def _steps(level, n, least):
@@ -171,27 +176,27 @@ def _steps(level, n, least):
 
 def _sudden(before, after, step, n):
     """Tell whether the n frames next to a split show most of its step (3,)."""
-    ends = np.array([np.nanmedian(after[:n], axis=0), np.nanmedian(before[-n:], axis=0)])
+    ends = np.array([np.median(after[:n], axis=0), np.median(before[-n:], axis=0)])
     return bool((ends[0] - ends[1]) @ step > ABRUPT_SHARE * (step @ step))
 
 
 def _split(level, near, n):
     """Return the frame near another that best parts what is before from what is after."""
     first, stop = max(near - n, 0), min(near + n, len(level))
-    before = np.nanmedian(level[first:near], axis=0)
-    after = np.nanmedian(level[near:stop], axis=0)
+    before = np.median(level[first:near], axis=0)
+    after = np.median(level[near:stop], axis=0)
     part = level[max(near - n // 2, 0) : min(near + n // 2 + 1, len(level))]
     gain = np.linalg.norm(part - after, axis=1) - np.linalg.norm(part - before, axis=1)
-    # A frame belongs to what is after where that is nearer: the sum of gains is largest before the knock.
-    total = np.concatenate([[0.0], np.cumsum(np.nan_to_num(gain))])
+    # A frame nearer to what is before adds to the sum, one nearer to what is after takes away.
+    total = np.concatenate([[0.0], np.cumsum(gain)])
     return max(near - n // 2, 0) + int(total.argmax())
 
 
 def _knock(table, turns, split, n):
     shift = table[["shift_x_px", "shift_y_px"]].to_numpy(float)
     ends = [slice(max(split - n, 0), split), slice(split, split + n)]
-    before, after = (Rotation.from_rotvec(np.nanmedian(turns[end], axis=0)) for end in ends)
-    moved = [np.nanmedian(shift[end], axis=0) for end in ends]
+    before, after = (Rotation.from_rotvec(np.median(turns[end], axis=0)) for end in ends)
+    moved = [np.median(shift[end], axis=0) for end in ends]
     turn = np.degrees((after * before.inv()).magnitude())
     return Knock(float(table.time_s.iloc[split]), moved[1] - moved[0], float(turn))
 

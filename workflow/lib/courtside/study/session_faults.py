@@ -70,6 +70,12 @@ def _take_faults(where, take, cameras, subjects, virtual):
             f"{where}.virtual.players: expected each of {sorted(there)}, found "
             f"{sorted(filmed['players'])}; correct one of them"
         )
+    if take.get("steady") and not virtual:
+        for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):
+            yield (
+                f"{where}.steady: expected `static` of camera {name}, against which shake is measured, found "
+                "none; name a recording of the empty court"
+            )
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
         yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"

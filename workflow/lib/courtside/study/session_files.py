@@ -105,6 +105,7 @@ def _take(name, content, filmed, subjects):
         subjects=tuple(content.get("subjects", subjects)),
         trim_s=tuple(content["trim_s"]) if "trim_s" in content else None,
         synchronised=content.get("synchronised", False),
+        steady=content.get("steady", False),
         virtual=content.get("virtual"),
     )
 

@@ -50,6 +50,8 @@ class Take:
         (start, stop) on each camera's own clock.
     synchronised : bool
         Whether the cameras share one clock; otherwise it is found from the videos.
+    steady : bool
+        Whether the shake of the cameras is measured and taken out.
     virtual : dict or None
         What a take of a virtual session is made from.
     """
@@ -59,6 +61,7 @@ class Take:
     subjects: tuple
     trim_s: tuple | None = None
     synchronised: bool = False
+    steady: bool = False
     virtual: dict | None = None
 
 
