@@ -56,5 +56,5 @@ def report(points, swapped):
 
 if __name__ == "__main__":
     log.to_file(snakemake.log[0])
-    chosen = {"persons": snakemake.params.persons, **snakemake.params.fusion, **snakemake.params.step}
-    main(snakemake.input, snakemake.output.pose3d, **chosen)
+    chosen = {**snakemake.params.fusion, **snakemake.params.step}
+    main(snakemake.input, snakemake.output.pose3d, persons=snakemake.params.persons, **chosen)

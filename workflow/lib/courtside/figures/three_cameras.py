@@ -13,6 +13,7 @@ JOINTS = tuple(f"{side}_{limb}" for side in ("right", "left") for limb in LIMBS)
 POINTS = {"neck": "neck", "centre": "centre of gravity"}
 ROWS = (*SETS, *JOINTS, *POINTS)
 # What the paper calls stable, or fairly so, with the two cameras that see the right half.
+NOTHING_MM = 1.0, 1000.0  # limits of the axis when nobody was placed
 CLAIMED = ("right half", *(joint for joint in JOINTS if joint.startswith("right_")), *POINTS)
 PANELS = {"pose3d": "as triangulated (raw)", "pose3d_corrected": "filtered, joint offsets removed"}
 WAYS = {  # fusion: words, colour, mark, filled
@@ -81,6 +82,7 @@ def draw(rows, cameras):
     parts = np.atleast_1d(drawing.subfigures(len(blocks), 1))
     shown = rows[rows["fusion"].isin(ways) & rows["stage"].isin([*PANELS, "kinematics"])]
     limits = 0.7 * shown["median_mm"].min(), 1.2 * shown["p95_mm"].max()
+    limits = limits if np.isfinite(limits).all() else NOTHING_MM
     for part, (key, block) in zip(parts, blocks, strict=True):
         axes = part.subplots(1, 3, sharey=True, width_ratios=[4, 4, 1.6])
         for axis, (stage, heading) in zip(axes[:2], PANELS.items(), strict=True):
