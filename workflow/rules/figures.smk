@@ -9,6 +9,8 @@ rule draw_overlay:
     input:
         pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
         pose2d=each_camera("results/{session}/takes/{take}/pose2d/{model}/{camera}.npz"),
+        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
+        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
         cameras="results/{session}/calibration/{calibration}/cameras.toml",
         videos=lambda w: list(take_of(w).videos.values()),
         skeleton=skeleton_file,
@@ -56,6 +58,8 @@ rule draw_visibility:
     input:
         pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
         pose2d=each_camera("results/{session}/takes/{take}/pose2d/{model}/{camera}.npz"),
+        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
+        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
         skeleton=skeleton_file,
     output:
         **figure("visibility"),

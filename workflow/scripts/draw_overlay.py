@@ -1,35 +1,44 @@
-"""Draw detections and reprojected skeletons on pictures: 2D, 3D, videos -> figure, CSV."""
+"""Draw detections and reprojected skeletons on pictures: 2D, people, clocks, 3D, videos -> figure, CSV."""
 
 from courtside.devices import video
 from courtside.figures import overlay, style
 from courtside.geometry import cameras
-from courtside.records import keypoints, skeleton
+from courtside.motion import resampling
+from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
 
 
 def main(paths, pdf, png, csv, *, n_frames, blur_faces):
-    joints = skeleton.read(paths.skeleton)
-    points = keypoints.read_3d(paths.pose3d)
-    views = [keypoints.read_2d(path) for path in paths.pose2d]
+    joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
     known = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
-    used = [known[view.camera] for view in views]
+    (_, clocks), who = sync.read(paths.sync), people.read(paths.people)
+    seen = {}
+    for path, film in zip(paths.pose2d, paths.videos, strict=True):
+        view = who.assigned(keypoints.read_2d(path))
+        at_times, own_s = resampling.nearest(view, points.time_s, clocks[view.camera])
+        seen[view.camera] = at_times, own_s, film
+    used = [name for name in points.cameras.tolist() if name in seen]
     times_s = overlay.chosen_times(points, n_frames)
     panels = [
-        [
-            overlay.panel(
-                video.read_frame(path, view.time_s[overlay.nearest(view, time_s)])[1],
-                view.xy[:, overlay.nearest(view, time_s)],
-                overlay.reproject(camera, points, time_s),
-                points.accepted[:, abs(points.time_s - time_s).argmin(), :, at],
-                joints,
-                blur_faces,
-            )
-            for at, (path, view, camera) in enumerate(zip(paths.videos, views, used, strict=True))
-        ]
+        [panel(points, known[name], *seen[name], time_s, joints, blur_faces) for name in used]
         for time_s in times_s
     ]
-    drawing = overlay.draw(panels, times_s, [camera.name for camera in used])
-    style.save(drawing, overlay.table(used, views, points, times_s), pdf, png, csv)
+    views = [seen[name][0] for name in used]
+    table = overlay.table([known[name] for name in used], views, points, times_s)
+    style.save(overlay.draw(panels, times_s, used), table, pdf, png, csv)
+
+
+def panel(points, camera, view, own_s, film, time_s, joints, blur_faces):
+    at = overlay.nearest(view, time_s)
+    column = points.cameras.tolist().index(camera.name)
+    return overlay.panel(
+        video.read_frame(film, own_s[at])[1],
+        view.xy[:, at],
+        overlay.reproject(camera, points, time_s),
+        points.accepted[:, at, :, column],
+        joints,
+        blur_faces,
+    )
 
 
 if __name__ == "__main__":

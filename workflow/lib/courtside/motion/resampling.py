@@ -1,5 +1,7 @@
 """Keypoints of cameras with clocks of their own -> keypoints at common, uniform times."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from courtside.records.sync import Clock
@@ -71,6 +73,30 @@ def resample(view, time_s, clock=None):
     xy = _cubic(view.xy, known, left, right, share, LONGEST_STEP * step_s)
     score = np.minimum(view.score[:, left], view.score[:, right])
     return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
+
+
+def nearest(view, time_s, clock):
+    """Return the frames of a camera nearest to times of the reference clock, as they are.
+
+    Parameters
+    ----------
+    view : Keypoints2D
+    time_s : (T,) float
+        On the reference clock.
+    clock : Clock
+        The camera's.
+
+    Returns
+    -------
+    view : Keypoints2D
+        With these times.
+    own_s : (T,) float
+        When the frames were taken, on the camera's own clock: to find them in its video.
+    """
+    own = clock.from_reference(time_s)
+    at = np.abs(view.time_s[None] - np.asarray(own)[:, None]).argmin(axis=1)
+    per_frame = {key: getattr(view, key)[:, at] for key in ("xy", "score", "reason", "xyz_in_body")}
+    return replace(view, time_s=np.asarray(time_s, dtype=float), **per_frame), view.time_s[at]
 
 
 def _cubic(values, known, left, right, share, longest_s):

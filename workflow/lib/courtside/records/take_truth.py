@@ -34,7 +34,8 @@ class TakeTruth:
     Attributes
     ----------
     time_s : (T,) float
-        Of each frame of the first camera, whose clock is the reference: mid-exposure of the middle row.
+        Of each frame of the first camera, whose clock is the reference, and in the same steps before and
+        after, as long as any camera films: mid-exposure of the middle row.
     joints : (J,) str
         Names of the virtual body's joints.
     person_id : (P,) str

@@ -254,7 +254,7 @@ def _clicked(take, preset, cameras, athletes):
 
 def _truth(take, cameras, athletes):
     names = [camera.name for camera in cameras.values()]
-    times_s = take.frame_times(names[0])
+    times_s = _covering(take, names)
     moving = list(athletes.values())
     at_s = times_s + take.start_s
     shaken = {}
@@ -277,6 +277,14 @@ def _truth(take, cameras, athletes):
         },
         shaken=shaken,
     )
+
+
+def _covering(take, names):
+    """Return the times (T,) s of the first camera's frames, and of as many more as cover those of all."""
+    ends = [take.frame_times(name)[[0, -1]] for name in names]
+    first = int(np.floor(min(start for start, _ in ends) * take.rate_hz + 1e-6))
+    last = int(np.ceil(max(stop for _, stop in ends) * take.rate_hz - 1e-6))
+    return np.arange(first, last + 1) / take.rate_hz
 
 
 def _known(what, names, known):
