@@ -13,11 +13,11 @@ from courtside.study import log
 from courtside.virtual import (
     backdrop,
     boards,
+    bystanders,
     clicking,
     crews,
     hall,
     layouts,
-    people,
     presets,
     walk,
 )
@@ -102,14 +102,14 @@ class Studio:
     ----------
     fixed : list of Camera
     walk : walk.Walk
-    people : list of people.Person
+    people : list of bystanders.Person
     """
 
     def __init__(self, settings, court):
         self.settings, self.preset = settings, presets.PRESETS[settings.preset]
         self.fixed, self.walk = plan(settings, court)
         count = self.preset.n_people if settings.people is None else settings.people
-        self.people = people.plan(count, court, crews.generator(settings.walk_seed, PEOPLE))
+        self.people = bystanders.plan(count, court, crews.generator(settings.walk_seed, PEOPLE))
         self._renderer = Renderer(hall.build(self.preset, court, crews.stream(settings.seed, HALL)))
 
     def court_xyz(self):
@@ -133,7 +133,7 @@ class Studio:
             twist=self.walk.twist(time_s),
             readout_s=preset.readout_s,
             exposure_s=preset.exposure_s,
-            extra=people.quads(self.people, time_s),
+            extra=bystanders.quads(self.people, time_s),
             noise=preset.noise_sigma,
             rng=crews.generator(settings.walk_seed, GRAIN, index),
         )

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from courtside.geometry import courts
-from courtside.virtual import people
+from courtside.virtual import bystanders
 
 FOLDER = Path(__file__).parents[3] / "config" / "courts"
 COURT = courts.read(FOLDER / "badminton.yaml")
 
 
 def crowd(count=4, seed=0, court=COURT):
-    return people.plan(count, court, np.random.default_rng(seed))
+    return bystanders.plan(count, court, np.random.default_rng(seed))
 
 
 def corners(quads):
@@ -80,7 +80,7 @@ def test_limbs_are_boxes_that_hang_together_and_swing():
 
 def test_the_same_generator_gives_the_same_people():
     one, same, other = crowd(seed=1), crowd(seed=1), crowd(seed=2)
-    a, b, c = (corners(people.quads(group, 7.5)) for group in (one, same, other))
+    a, b, c = (corners(bystanders.quads(group, 7.5)) for group in (one, same, other))
     np.testing.assert_array_equal(a, b)
     assert np.abs(a - c).max() > 0.1
     shirts = [person.clothes["shirt"] for person in (one[0], same[0], other[0])]
@@ -90,5 +90,5 @@ def test_the_same_generator_gives_the_same_people():
 def test_more_people_leave_the_first_as_they_are():
     few, many = crowd(2), crowd(7)
     np.testing.assert_array_equal(few[1].place(9.0), many[1].place(9.0))
-    assert len(many) == 7 and people.quads([], 0.0) == []
-    assert len(people.quads(many, 1.0)) == 7 * 72
+    assert len(many) == 7 and bystanders.quads([], 0.0) == []
+    assert len(bystanders.quads(many, 1.0)) == 7 * 72
