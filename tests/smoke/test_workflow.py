@@ -50,7 +50,7 @@ def test_a_copied_study_has_nothing_to_do(copy):
 
 def test_editing_a_module_reruns_exactly_what_imports_it(copy):
     module = copy / "workflow/lib/courtside/geometry/sides.py"
-    edit(module, "GAIN = 2.0", "GAIN = 2.1")
+    edit(module, "APART = 2.0", "APART = 2.1")
     assert planned(root=copy) == {"triangulate": 1, **DOWNSTREAM_OF_3D}
 
 

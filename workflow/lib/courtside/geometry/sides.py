@@ -1,4 +1,4 @@
-"""Left and right mixed up by a network in some views, found by the other views.
+"""Left and right mixed up by a network in some views: how far the views contradict one another.
 
 A network that sees a person from behind or the side sometimes names the left leg right for a while. Such
 keypoints are precise but belong to the other limb. Each view can then be read in two ways, and the views
@@ -7,50 +7,48 @@ together tell which readings belong to one body.
 
 import numpy as np
 
-from courtside.geometry import triangulation
+from courtside.geometry import epipolar, small_matrices
 
-ROUNDS = 4  # changes per frame and limb group at most, as many as there are views that can be wrong
-GAIN = 2.0  # full disagreements of a keypoint that a swap must end: ties keep the network's word
-APART = 2.0  # joints of a pair closer than this many limits in a view say nothing about sides there
+APART = 2.0  # joints of a pair closer than this many limits in a view say less about sides there
+NEAREST_M = 1e-6  # depth: points behind a camera come out far from any keypoint
+BATCH = 20000  # pairs at a time: keeps the working set in the cache and memory flat
 
 
-def swapped_views(cameras, xy, score, mirror, groups, *, max_error_px):
-    """Find the views in which a network took left for right.
+def disagreement(cameras, straight, weight, swapped, limit_px):
+    """Return how far views are from showing one body, for several readings of their sides.
 
     Parameters
     ----------
     cameras : list of Camera, length C
-    xy : (C, T, J, 2) float
-        Keypoints in px, distorted; NaN where unseen.
-    score : (C, T, J) float
-        Confidence, 0 to 1; NaN where unseen.
-    mirror : (J,) int
-        Index of the same joint of the other side, itself for joints without sides.
-    groups : list of list of int
-        Joints that a network confuses together, such as both legs; each closed under `mirror`.
-    max_error_px : float
-        Disagreement of a view is counted up to this reprojection error.
+    straight : (C, T, K, 2, 2) float
+        Straight px (`epipolar.straight_px`) of the left and the right joint of K pairs; NaN where unseen.
+    weight : (C, T, K) float
+        Of a pair in a view, such as the lower score of its joints; 0 where one of them is unseen.
+    swapped : (R, C, T) bool
+        R readings: the views whose left and right change places.
+    limit_px : (C,) float
+        Disagreement of a keypoint is counted up to this reprojection error.
 
     Returns
     -------
-    swapped : (C, T, J) bool
-        True where the left and right keypoints of a view should change places.
+    disagreement : (R, T) float
+        Sum over views, pairs and both joints of the squared errors in units of the limit, cut off at 1,
+        times the weight. A pair counts less in a view where its joints are close.
 
     Notes
     -----
-    For each frame and group, starting from the network's word, the view whose swap lowers the
-    disagreement of all views most is swapped, until none helps: C trials a round, not 2^C readings. All
-    views swapped together look as consistent as none, so the reading of fewer swaps is kept: more than
-    half of the views must be right.
+    A joint is triangulated from all views that see it, by DLT: where one is read wrong, all are off.
     """
-    swapped = np.zeros(score.shape, dtype=bool)
-    mirror = np.asarray(mirror)
-    for group in groups:
-        flags = _settle(
-            cameras, xy[:, :, group], score[:, :, group], _within(mirror, group), max_error_px
-        )
-        swapped[:, :, group] = flags[..., None]
-    return swapped & (mirror != np.arange(len(mirror)))
+    n_frames, n_pairs = weight.shape[1:]
+    matrix = np.stack([camera.cam_from_world for camera in cameras])
+    matrix[:, :2] *= np.array([epipolar.focal_px(camera) for camera in cameras])[:, None, None]
+    found = np.empty((len(swapped), n_frames))
+    step = max(1, BATCH // max(n_pairs, 1))
+    for first in range(0, n_frames, step):
+        at = slice(first, first + step)
+        views = _Views(matrix, straight[:, at], weight[:, at], limit_px)
+        found[:, at] = [views.disagreement(reading) for reading in swapped[:, :, at]]
+    return found
 
 
 def apply_swaps(values, swapped, mirror):
@@ -71,50 +69,38 @@ def apply_swaps(values, swapped, mirror):
     return np.where(shaped, values[:, :, np.asarray(mirror)], values)
 
 
-def _within(mirror, group):
-    return np.array([list(group).index(mirror[joint]) for joint in group])
+class _Views:
+    """A piece of a take: what every reading of it needs. Matrices (C, 3, 4) project to straight px."""
+
+    def __init__(self, matrix, straight, weight, limit_px):
+        used = weight > 0
+        apart = np.linalg.norm(straight[..., 0, :] - straight[..., 1, :], axis=-1)
+        share = np.minimum(apart / (APART * limit_px[:, None, None]), 1.0)
+        self.counted = np.where(used, weight * share**2, 0.0)
+        self.matrix, self.limit_px = matrix, limit_px
+        self.xy = np.where(used[..., None, None], straight, 0.0)
+        around = matrix[:, None, None, None]
+        rows = self.xy[..., None] * around[..., 2:, :] - around[..., :2, :]
+        rows *= np.sqrt(weight)[..., None, None, None]
+        self.normal = rows.swapaxes(-1, -2) @ rows
+
+    def disagreement(self, swapped):
+        """Return (T,) for one reading (C, T)."""
+        normal = _read(self.normal, swapped).sum(axis=0)
+        flat = normal.reshape(-1, 4, 4)
+        xyz = small_matrices.solve_3x3(flat[:, :3, :3], -flat[:, :3, 3])
+        total = np.zeros(normal.shape[:2])
+        views = zip(self.matrix, _read(self.xy, swapped), self.limit_px, self.counted, strict=True)
+        for matrix, xy, limit_px, counted in views:
+            in_cam = (xyz @ matrix[:, :3].T + matrix[:, 3]).reshape(*xy.shape[:-1], 3)
+            miss = in_cam[..., :2] / np.maximum(in_cam[..., 2:], NEAREST_M) - xy
+            square = (miss[..., 0] ** 2 + miss[..., 1] ** 2) / limit_px**2
+            # One view alone gives no point and contradicts nothing: a full miss in every reading.
+            total += counted * np.minimum(np.nan_to_num(square, nan=1.0), 1.0).sum(axis=-1)
+        return total.sum(axis=1)
 
 
-def _settle(cameras, xy, score, mirror, max_error_px):
-    """Return (C, T) bool for one group: greedy swaps, one view a round."""
-    flags = np.zeros(score.shape[:2], dtype=bool)
-    cost = _cost(cameras, xy, score, flags, mirror, max_error_px)
-    for _ in range(ROUNDS):
-        # A frame with less to gain than a swap must gain is settled, as is one without a gain before.
-        open_ = np.flatnonzero(cost > GAIN)
-        if not len(open_):
-            break
-        trials = []
-        for camera in range(len(cameras)):
-            trial = flags[:, open_]
-            trial[camera] ^= True
-            trials.append(
-                _cost(cameras, xy[:, open_], score[:, open_], trial, mirror, max_error_px)
-            )
-        best, lowest = np.argmin(trials, axis=0), np.min(trials, axis=0)
-        better = lowest < cost[open_] - GAIN
-        flags[best[better], open_[better]] ^= True
-        cost[open_] = np.where(better, lowest, 0.0)
-    return _fewer(flags)
-
-
-def _fewer(flags):
-    """Prefer, of a reading and its mirror image, the one with fewer swapped views."""
-    many = flags.sum(axis=0) * 2 > flags.shape[0]
-    return flags ^ many
-
-
-def _cost(cameras, xy, score, flags, mirror, max_error_px):
-    """Return (T,) disagreement: score-weighted squared errors in units of the limit, cut off at 1.
-
-    Only joints that lie apart from their mirror image in a view count there.
-    """
-    swapped = np.broadcast_to(flags[..., None], score.shape)
-    xy, score = apply_swaps(xy, swapped, mirror), apply_swaps(score, swapped, mirror)
-    flat = np.nan_to_num(score).reshape(len(cameras), -1)
-    found = triangulation.triangulate_robust(
-        cameras, xy.reshape(len(cameras), -1, 2), flat, sigma_px=1.0, max_error_px=max_error_px
-    )
-    share = np.minimum(np.nan_to_num(found.error_px / max_error_px, nan=1.0) ** 2, 1.0)
-    apart = np.linalg.norm(xy - xy[:, :, mirror], axis=-1) > APART * max_error_px
-    return (share.reshape(score.shape) * np.nan_to_num(score) * apart).sum(axis=(0, 2))
+def _read(values, swapped):
+    """Return values (C, T, K, 2, ...) with left and right exchanged where told, (C, T)."""
+    shaped = swapped.reshape(swapped.shape + (1,) * (values.ndim - 2))
+    return np.where(shaped, values[:, :, :, ::-1], values)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from courtside.geometry import plain_dlt, sides, triangulation
-from courtside.motion import resampling
+from courtside.motion import resampling, side_paths
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
 from courtside.records.sync import Clock
@@ -91,7 +91,7 @@ def _fix_sides(cameras, xy, score, skeleton, max_error_px):
     groups = [[skeleton.index(j) for j in g] for g in skeleton.side_groups()]
     swapped = np.zeros(score.shape, dtype=bool)
     for person in range(score.shape[1]):
-        swapped[:, person] = sides.swapped_views(
+        swapped[:, person] = side_paths.swapped_views(
             cameras, xy[:, person], score[:, person], mirror, groups, max_error_px=max_error_px
         )
         xy[:, person] = sides.apply_swaps(xy[:, person], swapped[:, person], mirror)
