@@ -70,8 +70,9 @@ class Session:
         run("match_images", *features, self.frames, *found, threads=1, **CONFIG["match_images"])
 
     def map(self, mapper="global", n_images=N_IMAGES):
-        sfm, options = self.folder / "sfm", dict(CONFIG["map_images"])
-        del options["colmap"]
+        sfm = self.folder / "sfm"
+        options = {key: CONFIG["map_images"][key] for key in ("rule", "seed")}
+        options["attempts"] = CONFIG["map_images"]["attempts"][mapper]
         made = {"mapper": mapper, "n_images": n_images, "offset": 0, **options}
         files = sfm / "matches.db", sfm / "features.csv", self.frames, sfm, self.summary
         run("map_images", *files, **made)

@@ -34,13 +34,28 @@ def edit(path, old, new):
     path.write_text(text.replace(old, new, 1))
 
 
+# The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one of them
+# with two cameras for table 1.
+FUSED, FILTERED = 2 + 2 * 5 + 1, 1 + 2 * 5
+TAKE_FIGURES = ("overlay", "skeletons", "reprojection", "visibility", "kinematics", "shake")
+PAPER_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11", "badminton_tab01")
+DOWNSTREAM_OF_FILTER = {
+    "correct_joints": FILTERED,
+    "evaluate_take": 2,
+    "draw_three_cameras": 1,
+    "tabulate_players": 1,
+}
 DOWNSTREAM_OF_3D = {
-    "filter_motion": 1,
-    "export_take": 2,
-    "draw_overlay": 1,
-    "draw_skeletons": 1,
-    "draw_reprojection": 1,
-    "draw_visibility": 1,
+    **DOWNSTREAM_OF_FILTER,
+    "filter_motion": FILTERED,
+    "export_take": 3,
+    "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
+    "evaluate_kinematics": 6,
+    "evaluate_fusions": 4,
+    "evaluate_round_trip": 1,
+    "compare_views": 1,
+    "compare_sessions": 1,
+    **{f"draw_{name}": 1 for name in TAKE_FIGURES + PAPER_FIGURES},
 }
 
 
@@ -51,7 +66,7 @@ def test_a_copied_study_has_nothing_to_do(copy):
 def test_editing_a_module_reruns_exactly_what_imports_it(copy):
     module = copy / "workflow/lib/courtside/geometry/sides.py"
     edit(module, "APART = 2.0", "APART = 2.1")
-    assert planned(root=copy) == {"triangulate": 1, **DOWNSTREAM_OF_3D}
+    assert planned(root=copy) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
 
 
 def test_editing_a_figure_module_reruns_that_figure(copy):
@@ -68,12 +83,13 @@ def test_a_comment_reruns_nothing(copy):
 
 def test_a_parameter_reruns_its_step_and_what_follows(copy):
     edit(copy / "config/config.yaml", "max_error_px: 15", "max_error_px: 16")
-    assert planned(root=copy) == {"triangulate": 1, **DOWNSTREAM_OF_3D}
+    assert planned(root=copy) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
 
 
 def test_a_filter_parameter_spares_the_triangulation(copy):
     edit(copy / "config/config.yaml", "max_gap_s: 0.2", "max_gap_s: 0.1")
-    assert planned(root=copy) == {"filter_motion": 1, "export_take": 1}
+    after = {"filter_motion": FILTERED, "export_take": 2, "evaluate_fusions": 2}
+    assert planned(root=copy) == {**after, **DOWNSTREAM_OF_FILTER}
 
 
 def test_another_number_of_images_maps_only_that_number(copy):
