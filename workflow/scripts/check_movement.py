@@ -4,8 +4,8 @@ import cv2
 import pandas as pd
 
 from courtside.devices import still, walks
+from courtside.records import tables
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(static_png, video_path, movement_csv, *, camera, frames, **limits):
@@ -13,8 +13,7 @@ def main(static_png, video_path, movement_csv, *, camera, frames, **limits):
     found = still.check_still(camera, cv2.imread(str(static_png)), now, **limits)
     row = {"camera": camera, **found.row()}
     log.logger.info("%s", row)
-    with atomic(movement_csv) as temporary:
-        pd.DataFrame([row]).to_csv(temporary, index=False)
+    tables.write(movement_csv, pd.DataFrame([row]))
 
 
 if __name__ == "__main__":

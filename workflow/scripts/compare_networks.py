@@ -3,28 +3,26 @@
 import pandas as pd
 
 from courtside.motion import exchange, measure_tables
-from courtside.records import keypoints
+from courtside.records import keypoints, tables
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(measures_csv, pose3d_npz, pairs_csv, table_csv, *, labels, joint_labels, networks, **step):
-    tables = [measure_tables.read(measures_csv, labels)]
-    tables += [
+    parts = [measure_tables.read(measures_csv, labels)]
+    parts += [
         measure_tables.of_joints(keypoints.read_3d(path), label)
         for path, label in zip(pose3d_npz, joint_labels, strict=True)
     ]
     left_out = step.pop("left_out")
-    rows = measure_tables.check_single(pd.concat(tables, ignore_index=True))
+    rows = measure_tables.check_single(pd.concat(parts, ignore_index=True))
     for part in left_out:
         rows = rows[~rows["measure"].str.contains(part, regex=False)]
     pairs = exchange.pair(rows, networks)
     table = exchange.compare(pairs, networks, **step)
     for sentence in table["sentence"]:
         log.logger.info("%s", sentence)
-    for path, content in ((pairs_csv, pairs), (table_csv, table)):
-        with atomic(path) as temporary:
-            content.to_csv(temporary, index=False, float_format="%.6g", lineterminator="\n")
+    tables.write(pairs_csv, pairs)
+    tables.write(table_csv, table)
 
 
 if __name__ == "__main__":

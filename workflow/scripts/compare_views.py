@@ -1,9 +1,8 @@
 """Compare skeletons from fewer cameras with those from all: 3D keypoints of a take -> distances per joint."""
 
 from courtside.motion import view_sets
-from courtside.records import keypoints
+from courtside.records import keypoints, tables
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(pose3d_npz, distances_csv, *, fusions, labels):
@@ -11,10 +10,7 @@ def main(pose3d_npz, distances_csv, *, fusions, labels):
         name: keypoints.read_3d(path) for name, path in zip(fusions, pose3d_npz, strict=True)
     }
     rows = view_sets.compare(records, fusions[-1])
-    with atomic(distances_csv) as temporary:
-        rows.assign(**labels)[[*labels, *rows.columns]].to_csv(
-            temporary, index=False, float_format="%.6g", lineterminator="\n"
-        )
+    tables.write(distances_csv, rows, labels)
 
 
 if __name__ == "__main__":

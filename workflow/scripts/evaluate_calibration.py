@@ -7,9 +7,8 @@ import numpy as np
 import pandas as pd
 
 from courtside.geometry import court_trials, courts, walk_path
-from courtside.records import image_names, ties, truth
+from courtside.records import image_names, tables, ties, truth
 from courtside.study import log
-from courtside.study.files import atomic
 from courtside.virtual import clicking
 
 CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there
@@ -42,9 +41,8 @@ def main(
         "neighbour_deg_median": np.median(angles),
         "neighbour_deg_max": np.max(angles),
     }
-    table, columns = pd.DataFrame(rows).assign(**about), [*about, "draw", *court_trials.COLUMNS]
-    with atomic(errors_csv) as temporary:
-        table.reindex(columns=columns).to_csv(temporary, index=False, float_format="%.6g")
+    table = pd.DataFrame(rows).reindex(columns=["draw", *court_trials.COLUMNS])
+    tables.write(errors_csv, table, about)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,9 @@
 import numpy as np
 import pandas as pd
 
-from courtside.records import sync, take_truth
+from courtside.geometry import uncertainty
+from courtside.records import sync, tables, take_truth
 from courtside.study import log
-from courtside.study.files import atomic
-
-WITHIN = 1.645  # standard deviations: 90 % of normal errors
 
 
 def main(sync_json, truth_npz, errors_csv, *, labels):
@@ -23,7 +21,6 @@ def main(sync_json, truth_npz, errors_csv, *, labels):
         worst_s = error_s[np.abs(error_s).argmax()]
         rows.append(
             {
-                **labels,
                 "camera": camera,
                 "status": clock.status,
                 "offset_s": clock.offset_s,
@@ -31,12 +28,13 @@ def main(sync_json, truth_npz, errors_csv, *, labels):
                 "error_ms": 1000 * error_s.mean(),
                 "worst_error_ms": 1000 * worst_s,
                 "sigma_ms": 1000 * clock.uncertainty_s,
-                "within_90_percent": bool(abs(worst_s) <= WITHIN * clock.uncertainty_s),
+                "within_90_percent": bool(
+                    abs(worst_s) <= uncertainty.WITHIN_90 * clock.uncertainty_s
+                ),
                 "drift_error_ppm": clock.drift_ppm - truth.drift_ppm[camera],
             }
         )
-    with atomic(errors_csv) as temporary:
-        pd.DataFrame(rows).to_csv(temporary, index=False, float_format="%.6g")
+    tables.write(errors_csv, pd.DataFrame(rows), labels)
 
 
 if __name__ == "__main__":

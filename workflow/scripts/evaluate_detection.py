@@ -3,9 +3,8 @@
 import pandas as pd
 
 from courtside.motion import detection_errors
-from courtside.records import keypoints, skeleton, sync, take_truth, truth
+from courtside.records import keypoints, skeleton, sync, tables, take_truth, truth
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, labels):
@@ -19,12 +18,8 @@ def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, la
         rows = detection_errors.evaluate(known[view.camera], view, clock, real, joints)
         whole = 100 * rows.groupby(["person", "frame_idx"]).placed.all().mean()
         log.logger.info("%s: all %d joints in %.0f %% of frames", view.camera, len(joints), whole)
-        parts.append(rows.assign(**labels))
-    table = pd.concat(parts, ignore_index=True)
-    with atomic(errors_csv) as temporary:
-        table[[*labels, *parts[0].columns.drop(list(labels))]].to_csv(
-            temporary, index=False, float_format="%.4f"
-        )
+        parts.append(rows)
+    tables.write(errors_csv, pd.concat(parts, ignore_index=True), labels, "%.4f")
 
 
 if __name__ == "__main__":

@@ -3,26 +3,20 @@
 import numpy as np
 
 from courtside.motion import pose_errors, view_sets
-from courtside.records import keypoints, take_truth
+from courtside.records import keypoints, limbs, tables, take_truth
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(pose3d_npz, truth_npz, gains_csv, *, fusions, pairs, labels):
     truth, distance_mm = take_truth.read(truth_npz), {}
-    limbs = [side + limb for side in ("left_", "right_") for limb in pose_errors.LIMBS]
     for name, path in zip(fusions, pose3d_npz, strict=True):
         points = keypoints.read_3d(path).between(truth.time_s[0], truth.time_s[-1])
-        order = [truth.person_id.tolist().index(person) for person in points.person_id.tolist()]
-        true = pose_errors.at_times(truth.time_s, truth.xyz[order], points.time_s)
+        true = pose_errors.true_places(points, truth)
         joints, error, _ = pose_errors.errors(points, truth.joints, true)
-        of = [joints.index(limb) for limb in limbs]
+        of = [joints.index(limb) for limb in limbs.JOINTS]
         distance_mm[name] = 1000 * np.linalg.norm(error[:, :, of], axis=-1)
     rows = view_sets.gains(distance_mm, pairs, points.rate_hz)
-    with atomic(gains_csv) as temporary:
-        rows.assign(**labels)[[*labels, *rows.columns]].to_csv(
-            temporary, index=False, float_format="%.6g", lineterminator="\n"
-        )
+    tables.write(gains_csv, rows, labels)
 
 
 if __name__ == "__main__":

@@ -14,10 +14,7 @@ def main(pose3d_npz, truth_npz, offsets_csv, *, about):
     pairs = []
     for found_npz, true_npz in zip(pose3d_npz, truth_npz, strict=True):
         points, truth = keypoints.read_3d(found_npz), take_truth.read(true_npz)
-        true = pose_errors.at_times(truth.time_s, truth.xyz, points.time_s)
-        for at, person in enumerate(points.person_id.tolist()):
-            body = truth.person_id.tolist().index(person)
-            pairs.append((points.xyz[at], true[body]))
+        pairs += zip(points.xyz, pose_errors.true_places(points, truth), strict=True)
     table = joint_offsets.estimate(pairs, points.joints, truth.joints)
     log.logger.info("frames: %d", np.sum([len(found) for found, _ in pairs]))
     with atomic(offsets_csv) as temporary, Path(temporary).open("w", encoding="utf-8") as file:

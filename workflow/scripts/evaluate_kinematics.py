@@ -3,9 +3,8 @@
 import pandas as pd
 
 from courtside.motion import kinematic_errors
-from courtside.records import derived, take_truth
+from courtside.records import derived, tables, take_truth
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(paths, errors_csv, *, labels, sex_of):
@@ -13,10 +12,7 @@ def main(paths, errors_csv, *, labels, sex_of):
     known = take_truth.read(paths.truth), derived.read(paths.derived), sex_of
     rows = kinematic_errors.table(frames, *known)
     rows = kinematic_errors.distances(rows, frames, summary, *known)
-    with atomic(errors_csv) as temporary:
-        rows.assign(**labels)[[*labels, *rows.columns]].to_csv(
-            temporary, index=False, float_format="%.6g"
-        )
+    tables.write(errors_csv, rows, labels)
 
 
 if __name__ == "__main__":

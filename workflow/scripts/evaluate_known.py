@@ -3,9 +3,8 @@
 import pandas as pd
 
 from courtside.geometry import cameras, court_trials, courts
-from courtside.records import truth
+from courtside.records import tables, truth
 from courtside.study import log
-from courtside.study.files import atomic
 from courtside.virtual import clicking
 
 
@@ -17,11 +16,9 @@ def main(truth_npz, court_yaml, lens_toml, errors_csv, *, labels, clicks, sets, 
         found = court_trials.of_known(
             real.cameras, court, marked, lenses, sets=sets, click_sigma_px=click_sigma_px
         )
-        rows += [{**labels, "draw": draw, **row} for row in found]
-    columns = [*labels, "draw", *court_trials.COLUMNS]
-    with atomic(errors_csv) as temporary:
-        table = pd.DataFrame(rows).reindex(columns=columns)
-        table.to_csv(temporary, index=False, float_format="%.6g")
+        rows += [{"draw": draw, **row} for row in found]
+    table = pd.DataFrame(rows).reindex(columns=["draw", *court_trials.COLUMNS])
+    tables.write(errors_csv, table, labels)
 
 
 if __name__ == "__main__":

@@ -5,9 +5,8 @@ from itertools import product
 import pandas as pd
 
 from courtside.geometry import courts, racket_trials
-from courtside.records import ties, truth
+from courtside.records import tables, ties, truth
 from courtside.study import log
-from courtside.study.files import atomic
 from courtside.virtual import clicking, racket_swings
 
 VIEWS = 2  # the paper's: the first two fixed cameras of a layout
@@ -30,12 +29,10 @@ def main(
             seen = racket_swings.click(views, ends, **tip, **of_run)
             about = {"offset": offset, "draw": run, "tip_sigma_px": sigma_px, "again": again}
             found = racket_trials.rows(ways, seen, length_m, below)
-            rows += [{**labels, **about, **row} for row in found]
+            rows += [{**about, **row} for row in found]
     lengths = racket_trials.length_columns(racket_swings.FRAMES)
-    columns = [*labels, *about, *racket_trials.COLUMNS, *lengths]
-    with atomic(lengths_csv) as temporary:
-        table = pd.DataFrame(rows).reindex(columns=columns)
-        table.to_csv(temporary, index=False, float_format="%.6g")
+    table = pd.DataFrame(rows).reindex(columns=[*about, *racket_trials.COLUMNS, *lengths])
+    tables.write(lengths_csv, table, labels)
 
 
 if __name__ == "__main__":

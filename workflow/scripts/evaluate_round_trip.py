@@ -4,9 +4,8 @@ import pandas as pd
 
 from courtside.geometry import cameras
 from courtside.motion import joint_errors, round_trip
-from courtside.records import derived, keypoints, skeleton, sync, take_truth
+from courtside.records import derived, keypoints, skeleton, sync, tables, take_truth
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(
@@ -30,9 +29,7 @@ def main(
             if camera.name in views and camera.name not in points.cameras
         ]
         rows.append(rows_of(points, known, others, truth, **step))
-    with atomic(rows_csv) as temporary:
-        table = pd.concat(rows, ignore_index=True)
-        table.to_csv(temporary, index=False, float_format="%.6g", lineterminator="\n")
+    tables.write(rows_csv, pd.concat(rows, ignore_index=True))
 
 
 def rows_of(points, known, others, truth, *, joints, derived_joints, n_frames, start_s, **options):

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pandas as pd
 
+from courtside.records import tables
 from courtside.sfm import features, grid
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(static_png, frames_csv, features_db, table_csv, *, threads, **options):
@@ -25,8 +25,7 @@ def main(static_png, frames_csv, features_db, table_csv, *, threads, **options):
         [(g.name, name, counts[name]) for g in groups for name in g.images],
         columns=["source", "name", "n_features"],
     )
-    with atomic(table_csv) as temporary:
-        table.to_csv(temporary, index=False)
+    tables.write(table_csv, table)
 
 
 if __name__ == "__main__":

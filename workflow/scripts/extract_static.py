@@ -3,8 +3,8 @@
 import pandas as pd
 
 from courtside.devices import still, video, walks
+from courtside.records import tables
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(
@@ -21,8 +21,7 @@ def main(
     row = {"camera": camera, **moved.row()}
     log.logger.info("%s", row)
     if out_csv:
-        with atomic(out_csv) as temporary:
-            pd.DataFrame([row]).to_csv(temporary, index=False)
+        tables.write(out_csv, pd.DataFrame([row]))
 
 
 if __name__ == "__main__":

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
+from courtside.records import tables
 from courtside.sfm import grid, matching
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(features_db, features_csv, frames_csv, matches_db, table_csv, *, threads, **options):
@@ -18,8 +18,7 @@ def main(features_db, features_csv, frames_csv, matches_db, table_csv, *, thread
     log.logger.info(
         "pairs with a two-view geometry: %d of %d", (table.n_matches > 0).sum(), len(table)
     )
-    with atomic(table_csv) as temporary:
-        table.to_csv(temporary, index=False)
+    tables.write(table_csv, table)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 from courtside.exports import measures
 from courtside.motion import cutoffs, filtering, kinematics
-from courtside.records import derived, keypoints, skeleton
+from courtside.records import derived, keypoints, skeleton, tables
 from courtside.study import log
 
 
@@ -14,9 +14,9 @@ def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_
     how = kinematics.Filter(shape.by_group(chosen), step["order"], step["distance_cutoff_hz"])
     table = derived.read(derived_yaml)
     people = kinematics.measure(points, table, shape.name, how, step["sex_of"])
-    measures.write(frames_csv, measures.frames(people))
-    measures.write(summary_csv, measures.summary(people))
-    measures.write(cutoffs_csv, measures.cutoffs(choices))
+    tables.write(frames_csv, measures.frames(people))
+    tables.write(summary_csv, measures.summary(people))
+    tables.write(cutoffs_csv, measures.cutoffs(choices))
 
 
 if __name__ == "__main__":

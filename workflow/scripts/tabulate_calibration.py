@@ -1,14 +1,13 @@
 """Tabulate all ways to calibrate: evaluations of several sessions -> one CSV."""
 
 from courtside.figures import calibration_table, trials
+from courtside.records import tables
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(errors_csv, table_csv, *, n_reference):
     found = calibration_table.table(trials.read(errors_csv), n_reference=n_reference)
-    with atomic(table_csv) as temporary:
-        found.to_csv(temporary, index=False, float_format="%.4f", lineterminator="\n")
+    tables.write(table_csv, found, float_format="%.4f")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Tabulate how well virtual players are measured: evaluations of takes -> one CSV."""
 
 from courtside.figures import players_table
+from courtside.records import tables
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(paths, table_csv):
@@ -10,10 +10,7 @@ def main(paths, table_csv):
         players_table.read(part)
         for part in (paths.errors, paths.kinematics, paths.clocks, paths.gains)
     ]
-    with atomic(table_csv) as temporary:
-        players_table.table(*parts).to_csv(
-            temporary, index=False, float_format="%.4f", lineterminator="\n"
-        )
+    tables.write(table_csv, players_table.table(*parts), float_format="%.4f")
 
 
 if __name__ == "__main__":

@@ -26,6 +26,8 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
         views[view.camera] = who.assigned(view)
     time_s = resampling.common_times(list(views.values()), [clocks[name] for name in views])
 
+    shared = camera_covariance.read(paths.covariance) if paths.covariance else None
+
     def fuse(names, rule):
         own = [known[name] for name in names], [views[name] for name in names]
         clock = [clocks[name] for name in names]
@@ -33,9 +35,8 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
             *own, joints, persons, clocks=clock, time_s=time_s, rule=rule, **options
         )
         report(found, swapped)
-        if paths.covariance:
-            part = camera_covariance.read(paths.covariance).of(names)
-            found = camera_error.with_cameras(found, own[0], part.of_columns())
+        if shared:
+            found = camera_error.with_cameras(found, own[0], shared.of(names).of_columns())
         return found
 
     if rule == "halfbody":

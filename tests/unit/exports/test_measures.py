@@ -10,7 +10,7 @@ import footwork
 import walker
 from courtside.exports import measures
 from courtside.motion import cutoffs, joint_angles, kinematics
-from courtside.records import derived, reasons
+from courtside.records import derived, reasons, tables
 
 TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 
@@ -90,7 +90,7 @@ def test_cutoffs_say_how_they_were_chosen(tmp_path):
     stated = cutoffs.Choice(6.0, np.zeros(0), np.zeros(0), float("nan"))
     found = cutoffs.Choice(4.5, np.array([4.0, 5.0]), np.array([0.011, 0.009]), 0.01)
     path = tmp_path / "cutoffs.csv"
-    measures.write(path, measures.cutoffs({"head": stated, "trunk": found}))
+    tables.write(path, measures.cutoffs({"head": stated, "trunk": found}))
     rows = pd.read_csv(path)
     assert rows.group.tolist() == ["head", "trunk", "trunk"]
     assert rows.cutoff_hz.tolist() == [6.0, 4.5, 4.5]

@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from courtside.figures import players_table
+from courtside.records import limbs
 
 MODEL = {"calibration": "sfm-n40", "model": "net"}
 
@@ -18,9 +19,9 @@ def errors(fusion="all-robust", stage="pose3d", median=20.0, p95=50.0, persons=(
         about |= {"identity_percent": 100.0 if person == "m3" else 97.0, "p95_mm": p95, **changes}
         if person == "all":
             about["identity_percent"] = np.nan
-        limbs = {"joint": "limbs", "median_mm": median, "coverage_90_percent": 85.0}
-        rows.append({**about, **limbs, "coverage_50_percent": 45.0, "coverage_95_percent": 93.0})
-        for at, joint in enumerate((*players_table.JOINTS, "nose")):
+        whole = {"joint": "limbs", "median_mm": median, "coverage_90_percent": 85.0}
+        rows.append({**about, **whole, "coverage_50_percent": 45.0, "coverage_95_percent": 93.0})
+        for at, joint in enumerate((*limbs.JOINTS, "nose")):
             level = 70.0 + 2 * at if joint != "nose" else 5.0
             own = {"joint": joint, "median_mm": median + at, "coverage_90_percent": level}
             rows.append({**about, **own, "coverage_50_percent": 1.0, "coverage_95_percent": 1.0})

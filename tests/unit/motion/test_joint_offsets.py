@@ -8,9 +8,10 @@ from scipy.spatial.transform import Rotation
 
 import walker
 from courtside.motion import joint_offsets
+from courtside.records import limbs
 from courtside.study.errors import InputError
 
-JOINTS = [f"{side}_{joint}" for side in ("left", "right") for joint in joint_offsets.JOINTS]
+JOINTS = list(limbs.JOINTS)
 SHARES = {"up": 0.05, "out": -0.03, "forward": 0.02}
 ALONG_THIGH = 0.1
 

@@ -5,7 +5,6 @@ import pandas as pd
 
 from courtside.motion import kinematics, path_length
 from courtside.records import reasons
-from courtside.study.files import atomic
 
 LEAST_EXTENT_M = 1.0
 # column: (unit, meaning, meaning of an empty cell); POINT is neck, centre or mass, ANGLE one of joint_angles
@@ -201,9 +200,3 @@ def cutoffs(choices):
             )
     names = ["group", "cutoff_hz", "noise_mm", "candidate_hz", "residual_mm"]
     return pd.DataFrame(rows, columns=names).round(4)
-
-
-def write(path, rows):
-    """Write a table as CSV, floats to 6 significant digits."""
-    with atomic(path) as temporary:
-        rows.to_csv(temporary, index=False, lineterminator="\n", float_format="%.6g")

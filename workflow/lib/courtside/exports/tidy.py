@@ -3,8 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.records import reasons
-from courtside.study.files import atomic
+from courtside.records import reasons, tables
 
 # column: (unit, meaning, meaning of an empty cell)
 DICTIONARY = {
@@ -81,5 +80,4 @@ def write(path, keypoints, person):
     keypoints, person
         As for `table`.
     """
-    with atomic(path) as temporary:
-        table(keypoints, person).to_csv(temporary, index=False, lineterminator="\n")
+    tables.write(path, table(keypoints, person), float_format=None)

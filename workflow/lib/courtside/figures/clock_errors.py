@@ -3,9 +3,9 @@
 import numpy as np
 
 from courtside.figures import bars, style
+from courtside.geometry import uncertainty
 
 SPEED_M_S = 12.0  # of a wrist in a smash: millimetres per millisecond
-WITHIN = 1.645  # standard deviations: 90 % of normal errors
 LIMIT_MS = 8.0  # what the study asks for at 30 frames per second
 FURTHEST_MS = 40.0  # errors beyond are marked at the edge, with their number
 COLOURS = {"yes": style.CYCLE[0], "no": style.CYCLE[1], "unused": "#888888"}
@@ -33,7 +33,7 @@ def table(rows):
         status is not `found`.
     """
     rows = rows.sort_values(LABELS, kind="stable").reset_index(drop=True)
-    reach = WITHIN * rows["sigma_ms"]
+    reach = uncertainty.WITHIN_90 * rows["sigma_ms"]
     inside = np.where(rows["worst_error_ms"].abs() <= reach, "yes", "no")
     return rows.assign(
         lower_ms=rows["worst_error_ms"] - reach,

@@ -3,12 +3,12 @@
 import numpy as np
 import pandas as pd
 
+from courtside.records import limbs
+
 TAKE = ["session", "take", "calibration", "model"]
 KEY = [*TAKE, "fusion"]
 TEXT = (*KEY, "stage", "person", "joint", "point", "camera", "status")
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
-LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-JOINTS = tuple(f"{side}_{limb}" for side in ("left", "right") for limb in LIMBS)
 LEVELS = (50, 90, 95)
 POINTS = ("neck", "centre", "mass")
 WANTED = (80, 97)  # percent: of the 90 % ellipsoids, what the study asks for
@@ -79,11 +79,11 @@ def table(errors, kinematics, clocks, gains):
         the raw joints, of the person who is worst, and the clocks of the take.
     """
     rows = together(errors)
-    limbs = rows[rows["joint"] == "limbs"].set_index([*KEY, "stage"])
+    in_one = rows[rows["joint"] == "limbs"].set_index([*KEY, "stage"])
     names = ["n", "missing_percent", "median_mm", "p95_mm", "sigma_mm"]
     covered = [f"coverage_{level}_percent" for level in LEVELS]
-    found = limbs.reindex(columns=[*names, *covered, "identity_percent"])
-    found = found.join(_over_joints(rows[rows["joint"].isin(JOINTS)])).reset_index()
+    found = in_one.reindex(columns=[*names, *covered, "identity_percent"])
+    found = found.join(_over_joints(rows[rows["joint"].isin(limbs.JOINTS)])).reset_index()
     found = _gains(found, gains)
     raw = found["stage"] == "pose3d"
     for part, on in ((_kinematics(kinematics), KEY), (_clocks(clocks), TAKE)):

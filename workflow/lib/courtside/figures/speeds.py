@@ -3,9 +3,9 @@
 import numpy as np
 
 from courtside.figures import court_plan, style
+from courtside.geometry import uncertainty
 
 ROW_MM = 105
-BAND = 1.645  # standard deviations to either side hold 90 %
 ROOM_M = 0.5  # around the path, where it leaves the court
 SPEEDS = {"neck": style.CYCLE[0], "mass": style.CYCLE[1]}
 NAMES = {"neck": "neck", "mass": "centre of mass"}
@@ -62,8 +62,9 @@ def _draw_path(axis, own, measured, court, person):
     ):
         axis.plot(x[at], y[at], mark, color=SPEEDS["neck"], markersize=4, zorder=4, label=word)
     found = measured.loc["neck_ground_distance"]
+    reach = uncertainty.WITHIN_90 * found.sigma
     axis.set_title(
-        f"{person}: neck from above\n{found.value:.2f} ± {BAND * found.sigma:.2f} m on the ground (90 %)"
+        f"{person}: neck from above\n{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
     )
     if known.size:
         low = min(0.0, np.min(y[known])) - ROOM_M
@@ -76,9 +77,9 @@ def _draw_path(axis, own, measured, court, person):
 
 def _band(axis, own, name, ends, colour, label):
     value, sigma = (own[f"{name}_{end}"].to_numpy() for end in ends)
-    axis.fill_between(
-        own.time_s, value - BAND * sigma, value + BAND * sigma, color=colour, alpha=0.2, linewidth=0
-    )
+    reach = uncertainty.WITHIN_90 * sigma
+    band = own.time_s, value - reach, value + reach
+    axis.fill_between(*band, color=colour, alpha=0.2, linewidth=0)
     axis.plot(own.time_s, value, color=colour, linewidth=0.9, label=label)
 
 

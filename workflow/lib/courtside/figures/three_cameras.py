@@ -5,11 +5,11 @@ import pandas as pd
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from courtside.figures import bars, players_table, style
+from courtside.records import limbs
 
 BLOCK = ["session", "take", "calibration", "model"]  # what has panels of its own
 SETS = {"limbs": "12 limb joints", "right half": "right half", "left half": "left half"}
-LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-JOINTS = tuple(f"{side}_{limb}" for side in ("right", "left") for limb in LIMBS)
+JOINTS = (*limbs.JOINTS[6:], *limbs.JOINTS[:6])  # the half that the paper speaks of first
 POINTS = {"neck": "neck", "centre": "centre of gravity"}
 ROWS = (*SETS, *JOINTS, *POINTS)
 # What the paper calls stable, or fairly so, with the two cameras that see the right half.

@@ -6,6 +6,8 @@ import numpy as np
 
 from courtside.geometry import network as networks
 
+WITHIN_90 = 1.645  # standard deviations to either side hold 90 % of normal errors
+
 
 def sensitivity(network, xyz):
     """Find how triangulated points move when image and lens parameters do.

@@ -6,9 +6,8 @@ import numpy as np
 
 from courtside.geometry import cameras as camera_models
 from courtside.motion import pose_errors, resampling
+from courtside.records import derived
 from courtside.study.errors import InputError
-
-TRUTH_SKELETON = "rig"  # as the table of derived joints names it
 
 
 def derive_truth(truth, table, skeleton, names):
@@ -27,10 +26,10 @@ def derive_truth(truth, table, skeleton, names):
     -------
     truth
     """
-    alike = [name for name in names if table.comparable(skeleton, TRUTH_SKELETON, name)]
+    alike = [name for name in names if table.comparable(skeleton, derived.RIG, name)]
     if not alike:
         return truth
-    weights = np.stack([table.weights(TRUTH_SKELETON, name, truth.joints) for name in alike])
+    weights = np.stack([table.weights(derived.RIG, name, truth.joints) for name in alike])
     more = np.einsum("nj,ptjk->ptnk", weights, truth.xyz)
     joints = np.array([*map(str, truth.joints), *alike])
     return replace(truth, joints=joints, xyz=np.concatenate([truth.xyz, more], axis=2))
@@ -51,25 +50,16 @@ def true(points, truth):
     InputError
         If none of the persons is in the truth.
     """
-    known = list(map(str, truth.person_id))
-    wanted = list(map(str, points.person_id))
-    there = [at for at, name in enumerate(wanted) if name in known]
-    if not there:
+    known, wanted = list(map(str, truth.person_id)), list(map(str, points.person_id))
+    if not set(known) & set(wanted):
         raise InputError(
             f"truth: expected one of the persons {wanted}, found {known}; name the takes' persons alike"
         )
-    real = truth.xyz[[known.index(wanted[at]) for at in there]]
-    real = pose_errors.at_times(truth.time_s, real, points.time_s)
-    some = replace(
-        points,
-        xyz=points.xyz[there],
-        covariance_2d=points.covariance_2d[there],
-        covariance_camera=points.covariance_camera[there],
-    )
-    names, apart, _ = pose_errors.errors(some, list(map(str, truth.joints)), real)
+    real = pose_errors.true_places(points, truth)
+    names, apart, _ = pose_errors.errors(points, list(map(str, truth.joints)), real)
     at = [list(points.joints).index(name) for name in names]
     error = np.full(points.xyz.shape[:-1], np.nan)
-    error[np.ix_(there, np.arange(error.shape[1]), at)] = 1000 * np.linalg.norm(apart, axis=-1)
+    error[:, :, at] = 1000 * np.linalg.norm(apart, axis=-1)
     return error
 
 

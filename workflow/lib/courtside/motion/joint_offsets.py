@@ -11,9 +11,9 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
+from courtside.records import limbs
 from courtside.study.errors import InputError
 
-JOINTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")  # of both sides
 BONES = {  # lines that may tell where a joint is put, of the joint's own side: (from, to)
     "shoulder": (("shoulder", "elbow"), ("elbow", "wrist")),
     "elbow": (("shoulder", "elbow"), ("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
@@ -44,7 +44,7 @@ def vectors(xyz, joints, side, joint):
     side : str
         "left" or "right"
     joint : str
-        One of `JOINTS`.
+        One of `limbs.LIMBS`.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def estimate(pairs, joints, true_joints):
         If a joint is never seen.
     """
     joints, true_joints, rows = list(joints), list(true_joints), []
-    for joint in JOINTS:
+    for joint in limbs.LIMBS:
         design, offset = [], []
         for (found, true), side in product(pairs, ("left", "right")):
             name = f"{side}_{joint}"
@@ -166,11 +166,11 @@ def read(path):
         found = list(table.columns)
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: expected a table of joint offsets, found {error}") from None
-    known = {(joint, vector) for joint in JOINTS for vector in _vector_names(joint)}
+    known = {(joint, vector) for joint in limbs.LIMBS for vector in _vector_names(joint)}
     if found != COLUMNS or not set(zip(table["joint"], table["vector"], strict=True)) <= known:
         raise InputError(
-            f"{path}: expected columns {COLUMNS} with joints of {JOINTS}, found columns {found} and joints "
-            f"{sorted(set(table.get('joint', [])))}; make it anew with the rule evaluate_joint_offsets"
+            f"{path}: expected columns {COLUMNS} with joints of {limbs.LIMBS}, found columns {found} and "
+            f"joints {sorted(set(table.get('joint', [])))}; make it anew with the rule evaluate_joint_offsets"
         )
     return table
 

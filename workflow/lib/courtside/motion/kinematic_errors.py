@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
 
+from courtside.geometry import uncertainty
 from courtside.motion import kinematics
+from courtside.records import derived as derived_joints
 
-RIG = "rig"  # the truth's skeleton in the table of derived joints
 FINE = 10  # true points per frame, for the length of the true path
-WITHIN = 1.645  # standard deviations: 90 % of normal errors
 COLUMNS = [
     "person",
     "point",
@@ -44,7 +44,9 @@ def table(frames, truth, derived, sex_of):
     rows = []
     for person, part in frames.groupby("person", sort=False):
         of = truth.person_id.tolist().index(person)
-        weights, _ = kinematics.definitions(derived, RIG, truth.joints, sex_of.get(person))
+        weights, _ = kinematics.definitions(
+            derived, derived_joints.RIG, truth.joints, sex_of.get(person)
+        )
         time_s = part["time_s"].to_numpy()
         inside = (time_s >= truth.time_s[0]) & (time_s <= truth.time_s[-1])
         for point, shares in weights.items():
@@ -80,7 +82,9 @@ def distances(rows, frames, summary, truth, derived, sex_of):
         if not whole or time_s[0] < truth.time_s[0] or time_s[-1] > truth.time_s[-1]:
             continue
         of = truth.person_id.tolist().index(row["person"])
-        weights, _ = kinematics.definitions(derived, RIG, truth.joints, sex_of.get(row["person"]))
+        weights, _ = kinematics.definitions(
+            derived, derived_joints.RIG, truth.joints, sex_of.get(row["person"])
+        )
         path = np.einsum("j,tjk->tk", weights[row["point"]], truth.xyz[of])
         fine_s = np.linspace(time_s[0], time_s[-1], FINE * len(time_s))
         steps = np.diff(CubicSpline(truth.time_s, path)(fine_s), axis=0)
@@ -106,7 +110,7 @@ def _errors(part, point, path):
     ground = ground - np.linalg.norm(velocity[:, :2], axis=1)
     sigma = part[f"{point}_speed_sd_m_s"].to_numpy()
     stated = np.isfinite(sigma) & np.isfinite(speed)
-    inside = np.abs(speed[stated]) <= WITHIN * sigma[stated]
+    inside = np.abs(speed[stated]) <= uncertainty.WITHIN_90 * sigma[stated]
     return {
         **row,
         "position_median_mm": np.nanmedian(apart_mm),

@@ -5,14 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.motion import body_mass, filtering, joint_angles, noise_gain, path_length
-from courtside.records import derived
+from courtside.records import derived, limbs
 
-LIMBS = tuple(
-    side + joint
-    for side in ("left_", "right_")
-    for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-)
-CENTRE = ("head_centre", "neck", *LIMBS)  # the 14 joints whose plain mean is the skeleton's centre
+CENTRE = (
+    "head_centre",
+    "neck",
+    *limbs.JOINTS,
+)  # the 14 joints whose plain mean is the skeleton's centre
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,7 +239,7 @@ def _spread(take, weights, noise, derivative):
 
 
 def _angles(take):
-    joints = [joint for joint in take.raw.joints if joint in LIMBS]
+    joints = [joint for joint in take.raw.joints if joint in limbs.JOINTS]
     at = [take.raw.joints.tolist().index(joint) for joint in joints]
     spreads = []
     for index in at:

@@ -7,13 +7,14 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 from scipy.stats import chi2
 
+from courtside.records import limbs
+
 LEVELS = (0.5, 0.9, 0.95)  # of the ellipsoids whose coverage is counted
 SETS = {  # joints taken together, by what their names begin with
     "limbs": ("left_", "right_"),
     "left half": ("left_",),
     "right half": ("right_",),
 }
-LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 COLUMNS = ["person", "joint", "n", "missing_percent", "median_mm", "p95_mm", "mean_mm", "rms_mm"]
 COLUMNS += ["bias_x_mm", "bias_y_mm", "bias_z_mm", "sigma_mm"]
 COLUMNS += [f"coverage_{100 * level:.0f}_percent" for level in LEVELS]
@@ -36,6 +37,28 @@ def at_times(time_s, xyz, wanted_s):
     """
     found = CubicSpline(time_s, xyz, axis=1, extrapolate=False)(wanted_s)
     return np.asarray(found)
+
+
+def true_places(points, truth):
+    """Return the truth at a record's times and in its order of persons.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    truth
+        Has joints (K,), person_id (Q,), time_s (U,), xyz (Q, U, K, 3) m on the same clock and in world.
+
+    Returns
+    -------
+    true_xyz : (P, T, K, 3) float
+        NaN outside the truth's span, and for a person whom it has not.
+    """
+    known, wanted = list(map(str, truth.person_id)), list(map(str, points.person_id))
+    there = [at for at, person in enumerate(wanted) if person in known]
+    true = np.full((len(wanted), len(points.time_s), *truth.xyz.shape[2:]), np.nan)
+    order = [known.index(wanted[at]) for at in there]
+    true[there] = at_times(truth.time_s, truth.xyz[order], points.time_s)
+    return true
 
 
 def errors(points, joints, true_xyz):
@@ -82,11 +105,10 @@ def table(person_id, names, error, covariance):
         of the mean trace of the stated covariance; coverage the share of the errors that lie in their
         stated ellipsoid, in percent, empty where no covariance is stated.
     """
-    limbs = [f"{side}{limb}" for side in ("left_", "right_") for limb in LIMBS]
     groups = {name: [names.index(name)] for name in names}
     for label, sides in SETS.items():
         groups[label] = [
-            names.index(name) for name in limbs if name in names and name.startswith(sides)
+            names.index(name) for name in limbs.JOINTS if name in names and name.startswith(sides)
         ]
     persons = {str(name): [at] for at, name in enumerate(person_id)}
     if len(persons) > 1:

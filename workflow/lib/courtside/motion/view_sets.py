@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.motion import pose_errors
+from courtside.records import limbs
 
 SHARED = ("time_s", "joints", "person_id")
 SETS = ("limbs", "right half", "left half")  # in the table's order, as in `pose_errors`
@@ -128,8 +129,9 @@ def _same(records):
 def _groups(names):
     groups = {}
     for label in SETS:
-        limbs = [side + limb for side in pose_errors.SETS[label] for limb in pose_errors.LIMBS]
-        groups[label] = [names.index(name) for name in limbs if name in names]
+        sides = pose_errors.SETS[label]
+        of = [name for name in limbs.JOINTS if name.startswith(sides)]
+        groups[label] = [names.index(name) for name in of if name in names]
     groups |= {name: [at] for at, name in enumerate(names)}
     return {label: of for label, of in groups.items() if of}
 

@@ -10,6 +10,7 @@ from courtside.study.errors import InputError
 
 SUM_TOLERANCE = 1e-9
 SEE = "see config/derived_joints.yaml"
+RIG = "rig"  # the skeleton of the truth of virtual sessions, as the table names it
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.records import tables
 
 COLUMNS = ("frame_idx", "time_s", "name", "sharpness", "kept", "reason")
 NUMBERS = ("frame_idx", "time_s", "sharpness", "kept")
@@ -36,8 +35,7 @@ def write(path, table):
         sharpness=table["sharpness"].round(3),
         kept=table["kept"].astype(int),
     )
-    with atomic(path) as temporary:
-        table.to_csv(temporary, index=False, lineterminator="\n")
+    tables.write(path, table, float_format=None)
 
 
 def read(path):
@@ -58,15 +56,9 @@ def read(path):
     InputError
         If the file is missing or no such table.
     """
-    try:
-        table = pd.read_csv(path, keep_default_na=False, na_values={"time_s": [""]})
-        fault = _fault(table)
-    except (OSError, ValueError) as error:
-        fault = " ".join(str(error).split())
-    if fault:
-        raise InputError(
-            f"{path}: expected a frame table, {fault}: delete it and run the study again"
-        )
+    table = tables.read(
+        path, "a frame table", _fault, keep_default_na=False, na_values={"time_s": [""]}
+    )
     return table.loc[:, list(COLUMNS)].assign(kept=table["kept"].astype(bool))
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.records import tables
 
 DECIMALS = {
     "frame_idx": 0,
@@ -43,8 +42,7 @@ def write(path, table):
         raise ValueError(f"{path}: {fault}")
     table = table.loc[:, list(DECIMALS)].round(DECIMALS)
     table[list(MEASURED)] += 0.0  # no minus before a zero
-    with atomic(path) as temporary:
-        table.to_csv(temporary, index=False, lineterminator="\n")
+    tables.write(path, table, float_format=None)
 
 
 def read(path):
@@ -65,15 +63,7 @@ def read(path):
     InputError
         If the file is missing or no such table.
     """
-    try:
-        table = pd.read_csv(path)
-        fault = _fault(table)
-    except (OSError, ValueError) as error:
-        fault = " ".join(str(error).split())
-    if fault:
-        raise InputError(
-            f"{path}: expected a table of shake, {fault}: delete it and run the study again"
-        )
+    table = tables.read(path, "a table of shake", _fault)
     return table.loc[:, list(DECIMALS)].astype(dict.fromkeys(("time_s", *MEASURED), float))
 
 

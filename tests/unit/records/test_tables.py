@@ -1,0 +1,50 @@
+"""CSV tables of the study."""
+
+import csv
+
+import pandas as pd
+import pytest
+
+from courtside.records import tables
+from courtside.study.errors import InputError
+
+
+def test_labels_come_first_and_numbers_have_six_digits(tmp_path):
+    path = tmp_path / "made" / "rows.csv"
+    rows = pd.DataFrame({"joint": ["left_hip", "a, b"], "error_mm": [1 / 3, float("nan")]})
+    tables.write(path, rows, {"session": "north", "n": 3})
+    with path.open(newline="") as stream:
+        found = list(csv.reader(stream))
+    assert found[0] == ["session", "n", "joint", "error_mm"]
+    assert found[1] == ["north", "3", "left_hip", "0.333333"]
+    assert found[2] == ["north", "3", "a, b", ""]
+    assert b"\r" not in path.read_bytes()
+
+
+def test_a_label_replaces_a_column_of_its_name(tmp_path):
+    tables.write(tmp_path / "rows.csv", pd.DataFrame({"n": [1], "take": ["old"]}), {"take": "new"})
+    assert (tmp_path / "rows.csv").read_text() == "take,n\nnew,1\n"
+
+
+def test_nothing_is_left_of_a_table_that_cannot_be_written(tmp_path):
+    with pytest.raises(TypeError):
+        tables.write(tmp_path / "rows.csv", pd.DataFrame({"n": [0.5]}), float_format=3)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_was_written_is_read(tmp_path):
+    tables.write(tmp_path / "rows.csv", pd.DataFrame({"n": [1, 2]}))
+    found = tables.read(tmp_path / "rows.csv", "rows", lambda table: "")
+    assert found["n"].tolist() == [1, 2]
+
+
+@pytest.mark.parametrize("content", [None, b"", b"\xff\xfe\x00", b"n\n1\n"])
+def test_what_is_no_such_table_is_named_in_one_line(tmp_path, content):
+    path = tmp_path / "rows.csv"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(
+        InputError, match=r"rows.csv: expected a table of rows, .*: delete it"
+    ) as said:
+        tables.read(path, "a table of rows", lambda table: "found one row only")
+    assert "\n" not in str(said.value)
