@@ -10,6 +10,9 @@ ONE_VIEW = 3  # fewer usable views than triangulation needs
 REJECTED = 4  # views disagree: no subset of them meets the reprojection limit
 INTERPOLATED = 5  # a value filled in over a short gap (only in filtered results)
 OUT_OF_IMAGE = 6  # the network placed it outside the picture
+NO_DEPTH = (
+    7  # a depth camera has no trusted depth there: a hole, an edge, another body part in front
+)
 
 WORDS = {
     OK: "ok",
@@ -19,4 +22,5 @@ WORDS = {
     REJECTED: "rejected",
     INTERPOLATED: "interpolated",
     OUT_OF_IMAGE: "out_of_image",
+    NO_DEPTH: "no_depth",
 }
