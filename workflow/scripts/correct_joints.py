@@ -1,6 +1,6 @@
-"""Take the network's joint offsets off one take: filtered 3D keypoints, offsets -> corrected ones."""
+"""Take joint offsets off, keep limbs at their length: filtered 3D keypoints, offsets -> corrected ones."""
 
-from courtside.motion import joint_offsets
+from courtside.motion import joint_offsets, limb_lengths
 from courtside.records import keypoints
 from courtside.study import log
 
@@ -8,7 +8,7 @@ from courtside.study import log
 def main(filtered_npz, offsets_csv, corrected_npz):
     table = joint_offsets.read(offsets_csv)
     corrected = joint_offsets.correct(keypoints.read_3d(filtered_npz), table)
-    keypoints.write_3d(corrected_npz, corrected)
+    keypoints.write_3d(corrected_npz, limb_lengths.keep(corrected))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,8 @@ from courtside.study import log
 
 
 def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_csv, **step):
-    points = filtering.fill_gaps(keypoints.read_3d(raw_npz), step["max_gap_s"])
+    points = filtering.leave_out_uncertain(keypoints.read_3d(raw_npz))
+    points = filtering.fill_gaps(points, step["max_gap_s"])
     shape = skeleton.read(skeleton_yaml)
     choices = cutoffs.by_group(points, shape, step["cutoff_hz"], step["order"])
     chosen = {group: choice.cutoff_hz for group, choice in choices.items()}

@@ -1,5 +1,7 @@
 """Gaps and filters against functions whose answer is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -99,3 +101,17 @@ def test_the_raw_record_is_not_touched():
     before = raw.xyz.copy()
     filtering.smooth(filtering.fill_gaps(raw, 0.1), [6.0], 4)
     np.testing.assert_array_equal(raw.xyz, before)
+
+
+def test_frames_that_are_known_far_worse_than_the_rest_are_left_out():
+    points = record(np.zeros((40, 3, 3)))
+    points.covariance_2d[0, :5] *= 100  # two cameras from nearly one side: ten times the deviation
+    points.covariance_2d[0, 20, 0] *= 10000  # one joint alone is no reason
+    points.xyz[0, 2, 1] = np.nan
+    found = filtering.leave_out_uncertain(points)
+    assert np.isnan(found.xyz[0, :5]).all()
+    assert np.isfinite(found.xyz[0, 5:]).all()
+    assert (found.reason[0, :2] == reasons.UNCERTAIN).all()
+    assert found.reason[0, 2, 1] == points.reason[0, 2, 1]  # missing for a reason of its own
+    unknown = replace(points, covariance_2d=np.full_like(points.covariance_2d, np.nan))
+    np.testing.assert_array_equal(filtering.leave_out_uncertain(unknown).xyz, points.xyz)

@@ -83,7 +83,7 @@ def test_the_sigma_is_the_scatter_of_the_length():
         )
         for seed in range(60)
     ]  # fmt: skip
-    own = [np.sqrt(f.sigma_m**2 - (path_length.BIAS_SHARE * f.bias_m) ** 2) for f in found]
+    own = [np.sqrt(f.sigma_m**2 - (f.bias_sigma_m) ** 2) for f in found]
     scatter = np.std([f.measured_m for f in found], ddof=1)
     assert np.mean(own) == pytest.approx(scatter, rel=0.3)
 

@@ -134,12 +134,12 @@ def _distances(point):
     n_frames = int(np.isfinite(point.velocity).all(axis=1).sum())
     share, unknown = _camera_share(point), float("nan")
     for prefix, found in (("", point.distance), ("ground_", point.ground_distance)):
-        value, sigma, bias = found.corrected_m, found.sigma_m, found.bias_m
+        value, sigma = found.corrected_m, found.sigma_m
         seconds = found.seconds if found.seconds > 0 else unknown
         yield f"{prefix}distance", value, sigma, share * value, "m", n_frames
         yield f"{prefix}distance_measured", found.measured_m, unknown, unknown, "m", n_frames
-        own = path_length.BIAS_SHARE * bias
-        yield f"{prefix}distance_noise_bias", bias, own, unknown, "m", n_frames
+        bias = found.bias_m, found.bias_sigma_m
+        yield f"{prefix}distance_noise_bias", *bias, unknown, "m", n_frames
         most = found.bias_most_m
         yield f"{prefix}distance_noise_bias_most", most, unknown, unknown, "m", n_frames
         mean = value / seconds

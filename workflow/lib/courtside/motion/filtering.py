@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from courtside.records import reasons
 from courtside.study.errors import InputError
 
+UNCERTAIN_TIMES = 4.0  # the usual standard deviation
 PAD_PERIODS = 1.0  # mirrored padding at both ends, in periods of the cut-off
 
 
@@ -44,6 +45,32 @@ def fill_gaps(points, max_gap_s):
             line[holes] = _pchip(points.time_s, line, holes)
             reason[person, holes, joint] = reasons.INTERPOLATED
     return replace(points, xyz=xyz, reason=reason)
+
+
+def leave_out_uncertain(points, times=UNCERTAIN_TIMES):
+    """Leave out frames that are known far worse than the rest of the take.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    times : float
+        A frame is left out where the median over the joints of their stated standard deviation, each over its
+        own median in the take, is larger: where few cameras film, and from nearly one side.
+
+    Returns
+    -------
+    points : Keypoints3D
+        Without those frames, whose reason is UNCERTAIN.
+    """
+    sigma = np.sqrt(np.trace(points.covariance_2d, axis1=-2, axis2=-1))
+    stated = np.ma.masked_invalid(sigma)
+    ratio = np.ma.median(stated / np.ma.median(stated, axis=1, keepdims=True), axis=2)
+    dropped = (ratio.filled(0.0) > times)[..., None] & np.isfinite(points.xyz[..., 0])
+    return replace(
+        points,
+        xyz=np.where(dropped[..., None], np.nan, points.xyz),
+        reason=np.where(dropped, reasons.UNCERTAIN, points.reason).astype(points.reason.dtype),
+    )
 
 
 def _pchip(time_s, line, holes):

@@ -11,7 +11,10 @@ SLOWER = 2.0  # the true speed is taken from a path filtered at the cut-off divi
 SUBTRACTED = 0.5  # share of the noise's variance taken from the square of that speed
 MEMORIES_S = (0.0, 0.01, 0.02, 0.04, 0.08, 0.16)  # tried for the largest bias
 MEMORIES = 4.0  # noise further apart is independent
-BIAS_SHARE = 0.15  # ASSUME: standard uncertainty of a bias that rests on a noise model, of itself
+MODEL_BIAS = (
+    1.0,
+    0.15,
+)  # ASSUME: mean and standard deviation of a bias over what its noise model makes expect
 GROUND = slice(0, 2)  # x and y
 SPACE = slice(0, 3)
 
@@ -60,25 +63,28 @@ class Distance:
         Of the filtered path as it is.
     bias_m : float
         By how much noise lengthens it, in expectation; NaN where no covariance is known.
+    bias_sigma_m : float
+        Standard deviation of `bias_m`.
     bias_most_m : float
         The most that noise of the stated covariance can do, whatever its memory.
     corrected_m : float
         Measured, less the bias. What the filter cuts off corners and hops is not added.
     sigma_m : float
-        Standard deviation of `corrected_m`, 15 % of the bias included.
+        Standard deviation of `corrected_m`, that of the bias included.
     seconds : float
         Time over which the path is known; gaps that stayed open are not in the distance.
     """
 
     measured_m: float
     bias_m: float
+    bias_sigma_m: float
     bias_most_m: float
     corrected_m: float
     sigma_m: float
     seconds: float
 
 
-def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE):
+def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE, model_bias=MODEL_BIAS):
     """Return the length of a path.
 
     Parameters
@@ -94,6 +100,8 @@ def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE):
         taken off, what is cut from the motion is not known.
     axes : slice
         `SPACE`, or `GROUND` for the path's projection on the floor.
+    model_bias : (float, float)
+        Mean and standard deviation of the bias over what the noise makes expect.
 
     Returns
     -------
@@ -121,18 +129,19 @@ def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE):
     measured = float(np.linalg.norm(velocity, axis=1) @ weight_s)
     if not used.any() or not np.isfinite(spread).any():
         unknown = float("nan")
-        return Distance(measured, unknown, unknown, unknown, unknown, float(weight_s.sum()))
+        return Distance(measured, *5 * [unknown], float(weight_s.sum()))
     spread = _filled(spread)
     true = true_velocity(slow[0][used][:, axes], _filled(slow[1][used][:, axes, axes]))
-    bias = float(_lengthening(true, spread) @ weight_s)
+    bias, bias_sigma = float(_lengthening(true, spread) @ weight_s) * np.array(model_bias)
     most = _most(rate_hz, noise, cutoff_hz, order)
     lags = _correlation(len(true), rate_hz, noise, cutoff_hz, order)
-    sigma = np.hypot(np.sqrt(variance(true, spread, weight_s, lags)), BIAS_SHARE * bias)
+    sigma = np.hypot(np.sqrt(variance(true, spread, weight_s, lags)), bias_sigma)
     return Distance(
         measured,
-        bias,
+        float(bias),
+        float(bias_sigma),
         float(_lengthening(true, spread * most) @ weight_s),
-        measured - bias,
+        float(measured - bias),
         float(sigma),
         float(weight_s.sum()),
     )

@@ -10,9 +10,8 @@ ONE_VIEW = 3  # fewer usable views than triangulation needs
 REJECTED = 4  # views disagree: no subset of them meets the reprojection limit
 INTERPOLATED = 5  # a value filled in over a short gap (only in filtered results)
 OUT_OF_IMAGE = 6  # the network placed it outside the picture
-NO_DEPTH = (
-    7  # a depth camera has no trusted depth there: a hole, an edge, another body part in front
-)
+NO_DEPTH = 7  # a depth camera has no trusted depth there: a hole, an edge, something in front
+UNCERTAIN = 8  # placed, but known far worse than usual: left out of kinematics
 
 WORDS = {
     OK: "ok",
@@ -23,4 +22,5 @@ WORDS = {
     INTERPOLATED: "interpolated",
     OUT_OF_IMAGE: "out_of_image",
     NO_DEPTH: "no_depth",
+    UNCERTAIN: "uncertain",
 }
