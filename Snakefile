@@ -8,6 +8,7 @@ min_version("9.27.1")
 include: "workflow/rules/common.smk"
 include: "workflow/rules/inputs.smk"
 include: "workflow/rules/take_inputs.smk"
+include: "workflow/rules/device_inputs.smk"
 include: "workflow/rules/targets.smk"
 include: "workflow/rules/take_targets.smk"
 include: "workflow/rules/players_targets.smk"
@@ -19,6 +20,13 @@ include: "workflow/rules/cameras.smk"
 include: "workflow/rules/evaluation.smk"
 include: "workflow/rules/pose.smk"
 include: "workflow/rules/motion.smk"
+include: "workflow/rules/devices.smk"
+include: "workflow/rules/bodies.smk"
+include: "workflow/rules/single_view_inputs.smk"
+include: "workflow/rules/page_inputs.smk"
+include: "workflow/rules/pages.smk"
+include: "workflow/rules/plans.smk"
+include: "workflow/rules/single_view.smk"
 include: "workflow/rules/take_evaluation.smk"
 include: "workflow/rules/players.smk"
 include: "workflow/rules/view_sets.smk"
@@ -51,4 +59,8 @@ rule all:
         every_kinematics(),
         every_comparison_of_views(),
         every_players_figure(),
+        every_device_figure(),
+        every_viewer(),
+        every_overlay_video(),
+        every_plan(),
         every_study_figure(),

@@ -17,7 +17,7 @@ SCRIPTS = REPOSITORY / "workflow" / "scripts"
 LIBRARY = REPOSITORY / "workflow" / "lib"
 sys.path.insert(0, str(LIBRARY))
 
-from courtside.study import configuration, digest
+from courtside.study import configuration, digest, plans
 from courtside.study.errors import InputError
 
 
@@ -31,6 +31,7 @@ FORMATS = ["pdf", "png", "csv"]
 
 try:
     STUDY = configuration.load(config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd())
+    PLANS = {name: plans.read(CONFIG / "plans" / f"{name}.yaml") for name in config["plans"]}
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 
@@ -40,6 +41,9 @@ wildcard_constraints:
     take=NAME,
     camera=NAME,
     person=NAME,
+    device=NAME,
+    source=NAME,
+    plan=NAME,
     model="|".join(STUDY.models),
     calibration=NAME,
     fusion=NAME,

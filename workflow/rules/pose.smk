@@ -7,7 +7,7 @@ Steps: detect_pose.
 
 rule detect_pose:
     input:
-        video=lambda w: take_of(w).videos[w.camera],
+        video=video_of,
         background=background_file,
         detector="results/networks/{model}/detector.onnx",
         landmarks="results/networks/{model}/landmarks.onnx",
@@ -23,7 +23,7 @@ rule detect_pose:
         step=step("detect_pose"),
         redetect=lambda w: not STUDY.models[w.model].tracking,
         decoder=lambda w: STUDY.models[w.model].decoder_options(),
-        trim_s=lambda w: take_of(w).trim_s,
-        max_people=lambda w: followed(take_of(w).subjects),
+        trim_s=trimmed,
+        max_people=followed,
     script:
         "../scripts/detect_pose.py"

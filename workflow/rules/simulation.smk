@@ -9,33 +9,35 @@ for session in STUDY.sessions.values():
     if session.virtual is None:
         continue
 
-    rule:
-        name:
-            f"simulate_{session.name.replace('-', '_')}"
-        input:
-            court=court_file(session),
-        output:
-            videos=[f"results/virtual/{session.name}/{name}.mp4" for name in session.filmed()],
-            boards=(
-                directory(f"results/virtual/{session.name}/boards")
-                if session.films_boards()
-                else []
-            ),
-            clicks=f"results/virtual/{session.name}/court_points.csv",
-            truth=f"results/virtual/{session.name}/truth.npz",
-        log:
-            f"results/virtual/logs/simulate_session/{session.name}.log",
-        benchmark:
-            f"results/virtual/benchmarks/simulate_session/{session.name}.tsv"
-        threads: 2 if session.virtual["walk_frames"] > 24 else 1
-        resources:
-            mem_mb=2000,
-        params:
-            code=code("simulate_session.py"),
-            settings=session.virtual,
-            names=session.filmed(),
-        script:
-            "../scripts/simulate_session.py"
+    if session.filmed():
+
+        rule:
+            name:
+                f"simulate_{session.name.replace('-', '_')}"
+            input:
+                court=court_file(session),
+            output:
+                videos=[f"results/virtual/{session.name}/{name}.mp4" for name in session.filmed()],
+                boards=(
+                    directory(f"results/virtual/{session.name}/boards")
+                    if session.films_boards()
+                    else []
+                ),
+                clicks=f"results/virtual/{session.name}/court_points.csv",
+                truth=f"results/virtual/{session.name}/truth.npz",
+            log:
+                f"results/virtual/logs/simulate_session/{session.name}.log",
+            benchmark:
+                f"results/virtual/benchmarks/simulate_session/{session.name}.tsv"
+            threads: 2 if session.virtual["walk_frames"] > 24 else 1
+            resources:
+                mem_mb=2000,
+            params:
+                code=code("simulate_session.py"),
+                settings=session.virtual,
+                names=session.filmed(),
+            script:
+                "../scripts/simulate_session.py"
 
     for take in session.takes.values():
 
@@ -47,6 +49,7 @@ for session in STUDY.sessions.values():
                 body=body_files,
             output:
                 videos=list(take.videos.values()),
+                devices=[device.file for device in take.devices.values()],
                 racket=f"results/virtual/{session.name}/takes/{take.name}/racket.csv",
                 truth=f"results/virtual/{session.name}/takes/{take.name}/truth.npz",
             log:

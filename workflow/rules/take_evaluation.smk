@@ -1,7 +1,7 @@
 """Takes of virtual sessions against their truth: with evaluation.smk and racket.smk, the only rules that read it.
 
 Inputs: 3D keypoints, clocks, truth of takes. Outputs: results/{session}/evaluation/takes/.
-Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_joint_offsets (of development sessions, asked for by name).
+Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_joint_offsets (of development sessions, asked for by name).
 """
 
 TRUE_TAKE = "results/virtual/{session}/takes/{take}/truth.npz"
@@ -58,6 +58,27 @@ rule evaluate_kinematics:
         sex_of=lambda w: {name: sex_of(w, name) for name in take_of(w).subjects},
     script:
         "../scripts/evaluate_kinematics.py"
+
+
+rule evaluate_sources:
+    input:
+        bodies=body_files_of,
+        truth=TRUE_TAKE,
+        derived=CONFIG / "derived_joints.yaml",
+    output:
+        errors="results/{session}/evaluation/takes/{take}/sources/{model}.errors.csv",
+        parts="results/{session}/evaluation/takes/{take}/sources/{model}.parts.csv",
+        paths="results/{session}/evaluation/takes/{take}/sources/{model}.true_paths.csv",
+        distortion="results/{session}/evaluation/takes/{take}/sources/{model}.true_distortion.csv",
+    log:
+        "results/{session}/logs/evaluate_sources/{take}.{model}.log",
+    params:
+        code=code("evaluate_sources.py"),
+        labels=lambda w: dict(w.items()),
+        person=worn_by,
+        step=step("measure_arcs"),
+    script:
+        "../scripts/evaluate_sources.py"
 
 
 rule evaluate_joint_offsets:

@@ -34,7 +34,9 @@ def shake_files(wildcards):
 
 
 def background_file(wildcards):
-    """Return the empty picture of a camera: of its static recording, or estimated from the take."""
+    """Return the empty picture of a camera: of its static recording, or estimated from the take; a device has none."""
+    if wildcards.camera not in take_of(wildcards).videos:
+        return []
     if session_of(wildcards).cameras[wildcards.camera].static:
         return f"results/{wildcards.session}/static/{wildcards.camera}.png"
     return f"results/{wildcards.session}/takes/{wildcards.take}/background/{wildcards.camera}.png"
@@ -54,9 +56,11 @@ def every_take_file(wildcards, pattern):
     ]
 
 
-def followed(subjects):
+def followed(wildcards):
     """Return how many people are followed in a camera: of several, one more, so that a bystander takes no place."""
-    return 1 if len(subjects) == 1 else len(subjects) + 1
+    take = take_of(wildcards)
+    n_people = len(take.subjects) if wildcards.camera in take.videos else 1  # a device follows one
+    return 1 if n_people == 1 else n_people + 1
 
 
 def evaluated(wildcards):

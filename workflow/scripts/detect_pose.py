@@ -15,11 +15,14 @@ def main(paths, pose2d_npz, names, *, decoder, trim_s, max_people, min_differenc
     start_s, stop_s = trim_s or (None, None)
     info = video.probe(paths.video, stop_s=stop_s)
     frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
+    changed = foreground.Whole()
+    if paths.background:
+        changed = foreground.Foreground(cv2.imread(paths.background), min_difference)
     track = tracklets.track_people(
         log.progress(frames, info.n_frames if not trim_s else None, f"{names.camera}: frames"),
         decoders.person_detector(paths.detector),
         decoders.landmark_network(paths.landmarks, joints, **decoder),
-        foreground.Foreground(cv2.imread(paths.background), min_difference),
+        changed,
         max_people=max_people,
         **options,
     )

@@ -1,7 +1,8 @@
-"""Film one take of a virtual session: settings, a court and the virtual body -> videos, clicks, truth."""
+"""Film one take of a virtual session: settings, a court and the virtual body -> recordings, clicks, truth."""
 
 from pathlib import Path
 
+from courtside.exports import bvh
 from courtside.geometry import courts
 from courtside.study import log
 from courtside.virtual import capture, makehuman, takes
@@ -13,7 +14,7 @@ def body_folder(files):
 
 
 def main(court_yaml, body_folder, folder, *, settings, take, threads):
-    takes.simulate_take(
+    worn = takes.simulate_take(
         capture.Settings(**settings),
         takes.TakeSettings(**take),
         courts.read(court_yaml),
@@ -21,6 +22,8 @@ def main(court_yaml, body_folder, folder, *, settings, take, threads):
         folder,
         threads=threads,
     )
+    for name, posed in worn.items():
+        bvh.write(Path(folder) / f"{name}.bvh", posed)
 
 
 if __name__ == "__main__":

@@ -39,10 +39,8 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
             found = camera_error.with_cameras(found, own[0], shared.of(names).of_columns())
         return found
 
-    if rule == "halfbody":
-        halves = [fuse((used[0], side), "dlt") for side in used[1:]]
-    points = halfbody.merge(*halves, used) if rule == "halfbody" else fuse(used, rule)
-    keypoints.write_3d(pose3d_npz, points)
+    halves = [fuse((used[0], side), "dlt") for side in used[1:]] if rule == "halfbody" else []
+    keypoints.write_3d(pose3d_npz, halfbody.merge(*halves, used) if halves else fuse(used, rule))
 
 
 def report(points, swapped):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.records import device_motion, reasons
+from courtside.records import device_motion, keypoints, reasons
 from courtside.study.errors import InputError
 
 
@@ -40,5 +40,28 @@ def test_a_joint_is_found_by_its_name():
 
 def test_another_file_is_refused(tmp_path):
     np.savez(tmp_path / "other.npz", time_s=np.zeros(3))
-    with pytest.raises(InputError, match="other.npz"):
+    with pytest.raises(InputError, match=r"other\.npz"):
         device_motion.read(tmp_path / "other.npz")
+
+
+def test_one_person_of_the_cameras_is_a_source():
+    shape = (2, 4, 3)
+    points = keypoints.Keypoints3D(
+        cameras=np.array(["a", "b"]),
+        model="net",
+        joints=np.array(["j0", "j1", "j2"]),
+        person_id=np.array(["p1", "p2"]),
+        time_s=np.arange(4) / 30,
+        xyz=np.arange(72.0).reshape(*shape, 3),
+        covariance_2d=np.full((*shape, 3, 3), np.nan),
+        covariance_camera=np.full((*shape, 3, 3), np.nan),
+        n_views=np.full(shape, 2),
+        reproj_error_px=np.zeros((*shape, 2)),
+        accepted=np.ones((*shape, 2), dtype=bool),
+        reason=np.full(shape, reasons.OK, dtype=np.uint8),
+    )
+    found = device_motion.of_person(points, "p2")
+    np.testing.assert_array_equal(found.xyz, points.xyz[1])
+    assert (found.source, found.kind, found.performed.all()) == ("cameras", "cameras", True)
+    with pytest.raises(InputError, match=r"person p3: expected one of \['p1', 'p2'\]"):
+        device_motion.of_person(points, "p3")

@@ -69,9 +69,25 @@ def test_a_small_skeleton_reads(tmp_path):
         found.index("nose")
 
 
+def test_a_device_may_call_joints_otherwise(tmp_path):
+    (tmp_path / "small.yaml").write_text(
+        GOOD + "names: {left_hip: l_up_leg, right_hip: r_up_leg}\n"
+    )
+    found = skeleton.read(tmp_path / "small.yaml")
+    assert found.names == {"left_hip": "l_up_leg", "right_hip": "r_up_leg"}
+    assert found.device_names() == ["neck", "l_up_leg", "r_up_leg"]
+    (tmp_path / "small.yaml").write_text(GOOD)
+    assert skeleton.read(tmp_path / "small.yaml").names == {}
+
+
 @pytest.mark.parametrize(
     ("old", "new", "named"),
     [
+        ("bones:", "names: {tail: t}\nbones:", "'tail'"),
+        ("bones:", "names: {left_hip: neck}\nbones:", "names.*'neck'"),
+        ("bones:", "names: {left_hip: hip, right_hip: hip}\nbones:", "names.*'hip'"),
+        ("bones:", "names: {left_hip: 7}\nbones:", "names.*found 7"),
+        ("bones:", "names: [left_hip]\nbones:", "mappings"),
         ("[neck, left_hip, right_hip]\n", "[neck, left_hip, right_hip, neck]\n", "'neck'"),
         ("[neck, left_hip, right_hip]\n", "[neck, left_hip, right_hip, 7]\n", "found 7"),
         ("[neck, left_hip, right_hip]\n", "[neck, left_hip]\n", "'right_hip'"),

@@ -19,10 +19,16 @@ TRUTH = take_truth.TakeTruth(
     drift_ppm={"back": 0.0, "side": -35.0},
     events={"p1": {"hit": 1.25, "hit_stop": 1.5}, "p2": {}},
     shaken={"side": RNG.normal(size=(7, 3, 4))},
+    devices={
+        "d415": take_truth.DeviceTruth("rgbd", "p1", 0.0, 0.0, 0.0, RNG.normal(size=(3, 4))),
+        "mocopi": take_truth.DeviceTruth(
+            "inertial", "p2", 0.25, -30.0, 0.05, RNG.normal(size=(3, 4))
+        ),
+    },
 )
 
 
-@pytest.mark.parametrize("truth", [TRUTH, replace(TRUTH, events={}, shaken={})])
+@pytest.mark.parametrize("truth", [TRUTH, replace(TRUTH, events={}, shaken={}, devices={})])
 def test_what_was_written_is_read(tmp_path, truth):
     take_truth.write(tmp_path / "truth.npz", truth)
     found = take_truth.read(tmp_path / "truth.npz")
@@ -34,6 +40,18 @@ def test_what_was_written_is_read(tmp_path, truth):
     assert found.shaken.keys() == truth.shaken.keys()
     for name, poses in truth.shaken.items():
         np.testing.assert_array_equal(found.shaken[name], poses)
+    assert list(found.devices) == list(truth.devices)
+    for name, device in truth.devices.items():
+        read, written = vars(found.devices[name]), dict(vars(device))
+        np.testing.assert_array_equal(read.pop("from_world"), written.pop("from_world"))
+        assert read == written
+
+
+def test_a_take_may_have_devices_only(tmp_path):
+    truth = replace(TRUTH, offset_s={}, drift_ppm={}, shaken={})
+    take_truth.write(tmp_path / "truth.npz", truth)
+    found = take_truth.read(tmp_path / "truth.npz")
+    assert (found.offset_s, list(found.devices)) == ({}, ["d415", "mocopi"])
 
 
 @pytest.mark.parametrize(
@@ -41,6 +59,10 @@ def test_what_was_written_is_read(tmp_path, truth):
     [
         ({"drift_ppm": {"back": 0.0}}, "clocks of the same cameras"),
         ({"events": {"p9": {"hit": 1.0}}}, "events of people"),
+        (
+            {"devices": {"d": take_truth.DeviceTruth("rgbd", "p9", 0, 0, 0, np.eye(3, 4))}},
+            "p9",
+        ),
         ({"time_s": np.arange(4) / 30}, "expected shape"),
         ({"racket": np.zeros((2, 5, 3, 3))}, "expected shape"),
     ],
@@ -53,5 +75,5 @@ def test_what_does_not_fit_together_is_refused(tmp_path, change, message):
 
 def test_another_file_is_refused(tmp_path):
     np.savez(tmp_path / "other.npz", format=np.array("courtside truth 1"), time_s=np.zeros(3))
-    with pytest.raises(InputError, match="courtside take truth 1"):
+    with pytest.raises(InputError, match="courtside take truth 2"):
         take_truth.read(tmp_path / "other.npz")

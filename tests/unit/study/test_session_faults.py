@@ -136,10 +136,28 @@ def test_good_sessions_have_no_fault(root, content):
             PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | {"clocks": {"up": {}}}}}},
             ["takes.t.virtual.clocks: expected one of", "found 'up'"],
         ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"d": {"file": "d.bvh"}}}}},
+            ["takes.t.devices.d.file: expected a file", "d.bvh"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}}
+            | {"takes": {"t": {"devices": {"d": {"file": "a.mp4", "subject": "p2"}}}}},
+            ["takes.t.devices.d.subject: expected one of ['p1'], found 'p2'"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"a": {"file": "a.mp4"}}}}},
+            ["takes.t.devices: expected names that no camera has, found 'a'"],
+        ),
         (PLAYERS | {"views": {"two": ["side", "up"]}}, ["views.two: expected one of", "'up'"]),
         (
             RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},
-            ["takes.t: expected the key 'videos' and not 'virtual' in a recorded session"],
+            [
+                "takes.t: expected the key 'videos' or 'devices' and not 'virtual' in a recorded session"
+            ],
         ),
         (
             VIRTUAL | {"court_points": "p.csv"},
@@ -162,6 +180,12 @@ def test_good_sessions_have_no_fault(root, content):
 def test_a_contradiction_is_one_line(root, content, parts):
     (line,) = find(root, content)
     assert [part for part in parts if part not in line] == []
+
+
+def test_a_session_of_devices_alone_needs_no_cameras(root):
+    taken = {"t": {"devices": {"webcam": {"file": "a.mp4"}}}}
+    content = {"description": "d", "court": "none", "cameras": {}, "subjects": {"p1": None}}
+    assert find(root, content | {"takes": taken}) == []
 
 
 def test_files_of_artefacts_must_be_members(root):

@@ -19,6 +19,7 @@ COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton
 SESSION = capture.Settings(preset="rich", layout="a", seed=3, size_px=[320, 180], walk_frames=0)
 LARGE = replace(SESSION, size_px=[640, 360])
 HALLS = []
+SUIT = {"kind": "inertial"}
 TAKE = takes.TakeSettings(
     motion="rally", seconds=0.1, players={"p1": {"body": "m3"}}, seed=5, racket=True, start_s=2.1,
     clocks={"back": {"offset_s": -0.25, "drift_ppm": 900.0}}, shake={"side": {"tremor_px": 0.5}},
@@ -75,8 +76,9 @@ def assert_shown(image, xy):
 def test_a_take_has_its_files_which_do_not_depend_on_the_number_of_processes(tmp_path):
     anny = mannequin.folder()
     one, two = tmp_path / "one" / "shot", tmp_path / "two" / "shot"
-    takes.simulate_take(SESSION, TAKE, COURT, anny, one)
-    takes.simulate_take(SESSION, TAKE, COURT, anny, two, threads=2)
+    take = replace(TAKE, devices={"suit": SUIT})
+    worn = takes.simulate_take(SESSION, take, COURT, anny, one)
+    takes.simulate_take(SESSION, take, COURT, anny, two, threads=2)
     assert files(one).keys() == {"side.mp4", "back.mp4", "racket.csv", "truth.npz"}
     assert files(one) == files(two)
     for name in ("side", "back"):
@@ -85,6 +87,7 @@ def test_a_take_has_its_files_which_do_not_depend_on_the_number_of_processes(tmp
         np.testing.assert_allclose(video.frame_times(one / f"{name}.mp4"), np.arange(3) / 30)
     known = take_truth.read(one / "truth.npz")
     assert known.joints.tolist() == list(body.JOINTS)
+    assert list(worn) == list(known.devices) == ["suit"], "cameras and devices in one take"
     # The other camera's frames are from 0.25 to 0.316 s of the reference clock.
     assert known.xyz.shape == (1, 11, len(body.JOINTS), 3)
     np.testing.assert_allclose(known.time_s, np.arange(11) / 30)
@@ -181,6 +184,7 @@ def test_two_players_take_turns_in_halves_and_lanes():
         ({"players": {"p1": {"body": "m1", "hat": "red"}}}, "keys of player p1"),
         ({"clocks": {"back": {"offset": 1.0}}}, "keys of the clock of camera back"),
         ({"shake": {"back": {"hum": 1.0}}}, "keys of the shake of camera back"),
+        ({"devices": {"d415": {"kind": "lidar"}}}, "kind of"),
     ],
 )
 def test_impossible_takes_are_refused(change, message):
@@ -196,9 +200,12 @@ def test_impossible_takes_are_refused(change, message):
         ({"clocks": {"front": {"offset_s": 1.0}}}, "clocks of layout a"),
         ({"shake": {"front": {"tremor_px": 1.0}}}, "shake of layout a"),
         ({"clocks": {"side": {"offset_s": 1.0}}}, "the reference"),
+        ({"cameras": []}, "cameras or devices"),
+        ({"cameras": [], "devices": {"d": SUIT}, "clocks": {"d": {"offset_s": 1.0}}}, "reference"),
     ],
 )
 def test_takes_that_do_not_fit_the_session_are_refused(change, message, tmp_path):
+    take = replace(TAKE, **({"shake": {}, "clocks": {}} | change))
     with pytest.raises(ValueError, match=message):
-        takes.simulate_take(SESSION, replace(TAKE, **change), COURT, None, tmp_path)
+        takes.simulate_take(SESSION, take, COURT, None, tmp_path)
     assert list(tmp_path.iterdir()) == []

@@ -43,6 +43,14 @@ class Foreground:
         return [tuple(int(v) * SHRINK for v in stats[at, :4]) for at in large]
 
 
+class Whole:
+    """In place of a `Foreground` where one person stands large before a camera, all the time: anywhere."""
+
+    def boxes(self, image, without=()):
+        """Return the whole picture as one box, whatever is known already."""
+        return [(0, 0, image.shape[1], image.shape[0])]
+
+
 def _shrink(image):
     size = (image.shape[1] // SHRINK, image.shape[0] // SHRINK)
     return cv2.resize(image, size, interpolation=cv2.INTER_AREA)

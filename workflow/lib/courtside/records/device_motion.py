@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.records import npz
+from courtside.study.errors import InputError
 
 FORM = "courtside device motion 1"
 SPEC = {
@@ -51,6 +52,42 @@ class DeviceMotion:
     def joint(self, name):
         """Return the path (T, 3) of a joint, metres; raise `ValueError` if there is none of that name."""
         return self.xyz[:, list(self.joints).index(name)]
+
+
+def of_person(points, person, source="cameras"):
+    """Return one person of the fixed cameras as a source beside devices.
+
+    Parameters
+    ----------
+    points : courtside.records.keypoints.Keypoints3D
+    person : str
+    source : str
+
+    Returns
+    -------
+    motion : DeviceMotion
+        In world, on the cameras' reference clock.
+
+    Raises
+    ------
+    InputError
+        If there is no such person.
+    """
+    known = points.person_id.tolist()
+    if person not in known:
+        raise InputError(
+            f"person {person}: expected one of {known} of the fixed cameras; name the subject of the devices"
+        )
+    at = known.index(person)
+    return DeviceMotion(
+        source=source,
+        kind="cameras",
+        joints=points.joints,
+        time_s=points.time_s,
+        xyz=points.xyz[at],
+        reason=points.reason[at],
+        performed=np.ones(len(points.time_s), dtype=bool),
+    )
 
 
 def write(path, motion):

@@ -1,6 +1,6 @@
 """Ordered joints and the bones between them, read from `config/skeletons/`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from courtside.study import yaml_files
@@ -25,6 +25,8 @@ class Skeleton:
         Rigid limb segments, for checks of constant length.
     groups : dict of str to tuple of str
         Named sets of joints, such as `limbs` or `face`.
+    names : dict of str to str
+        What the device's own files call a joint, for the joints that they call otherwise.
     """
 
     name: str
@@ -32,10 +34,15 @@ class Skeleton:
     bones: tuple
     segments: dict
     groups: dict
+    names: dict = field(default_factory=dict)
 
     def index(self, joint):
         """Return the position of a joint; raise `ValueError` if the skeleton has none of that name."""
         return self.joints.index(joint)
+
+    def device_names(self):
+        """Return what the device calls each joint, in the order of `joints`, list of str."""
+        return [self.names.get(joint, joint) for joint in self.joints]
 
     def mirror(self):
         """Return for each joint the index of the same joint of the other body side, (J,) list of int.
@@ -92,7 +99,7 @@ def read(path):
     Parameters
     ----------
     path : str or Path
-        YAML with `joints`, `bones`, `segments`, `groups`.
+        YAML with `joints`, `bones`, `segments`, `groups`, and for a device's `names`.
 
     Returns
     -------
@@ -102,7 +109,8 @@ def read(path):
     ------
     InputError
         If a key is missing, a joint stands twice in `joints`, a bone or segment is no pair, a bone, segment
-        or group names a joint that is not in `joints`, or a side has no mirror.
+        or group names a joint that is not in `joints`, a side has no mirror, or `names` gives two joints one
+        name.
     """
     content = yaml_files.read(path)
     try:
@@ -112,6 +120,7 @@ def read(path):
             bones=tuple((start, end) for start, end in content["bones"]),
             segments={name: (start, end) for name, (start, end) in content["segments"].items()},
             groups={name: tuple(joints) for name, joints in content["groups"].items()},
+            names=dict(content.get("names", {}).items()),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise InputError(
@@ -129,6 +138,7 @@ def _check(path, skeleton):
                 f"{path}: joints: expected names that differ, found {joint!r}; rename it"
             )
     used = [*skeleton.bones, *skeleton.segments.values(), *skeleton.groups.values()]
+    used.append(tuple(skeleton.names))
     used.append(tuple(_other_side(joint) for joint in skeleton.joints))
     for joints in used:
         for joint in joints:
@@ -137,3 +147,10 @@ def _check(path, skeleton):
                     f"{path}: expected joints from the list `joints`, found {joint!r}; "
                     "add it there or correct the name"
                 )
+    called = skeleton.device_names()
+    for at, name in enumerate(called):
+        if not isinstance(name, str) or name in called[:at]:
+            raise InputError(
+                f"{path}: names: expected a name for each joint that no other joint has, found {name!r}; "
+                "correct it"
+            )

@@ -9,7 +9,7 @@ import numpy as np
 
 from courtside.records import npz
 
-FORM = "courtside take truth 1"
+FORM = "courtside take truth 2"
 SPEC = {
     "time_s": ("float", ("T",)),
     "joints": ("str", ("J",)),
@@ -24,7 +24,40 @@ SPEC = {
     "event_s": ("float", ("E",)),
     "shaken_camera": ("str", ("S",)),
     "cam_from_world": ("float", ("S", "F", "3", "4")),
+    "device": ("str", ("D",)),
+    "device_kind": ("str", ("D",)),
+    "device_person": ("str", ("D",)),
+    "device_clock": ("float", ("D", "3")),  # offset s, drift ppm, latency s
+    "device_from_world": ("float", ("D", "3", "4")),
 }
+
+
+@dataclass(frozen=True, eq=False)
+class DeviceTruth:
+    """How a device really was.
+
+    Attributes
+    ----------
+    kind : str
+        `inertial` or `rgbd`.
+    person : str
+        Whom it follows.
+    offset_s, drift_ppm : float
+        Of its clock, as a camera's.
+    latency_s : float
+        By how much it shows everything late: what happens at t_own by its clock is in its data at
+        t_own + latency_s.
+    from_world : (3, 4) float
+        World to the device's own axes, metres: of a camera its colour sensor's cam_from_world; of an inertial
+        suit as it is when the recording starts, for afterwards it drifts.
+    """
+
+    kind: str
+    person: str
+    offset_s: float
+    drift_ppm: float
+    latency_s: float
+    from_world: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +67,8 @@ class TakeTruth:
     Attributes
     ----------
     time_s : (T,) float
-        Of each frame of the first camera, whose clock is the reference, and in the same steps before and
-        after, as long as any camera films: mid-exposure of the middle row.
+        Of each frame of the first camera (without cameras, the first device), whose clock is the reference,
+        and in the same steps before and after, as long as anything records: mid-exposure of the middle row.
     joints : (J,) str
         Names of the virtual body's joints.
     person_id : (P,) str
@@ -50,6 +83,7 @@ class TakeTruth:
     shaken : dict of str to (F, 3, 4) float
         Of cameras that did not stand still: cam_from_world at each of their frames, mid-exposure of the
         middle row.
+    devices : dict of str to DeviceTruth
     """
 
     time_s: np.ndarray
@@ -61,6 +95,7 @@ class TakeTruth:
     drift_ppm: dict
     events: dict = field(default_factory=dict)
     shaken: dict = field(default_factory=dict)
+    devices: dict = field(default_factory=dict)
 
 
 def write(path, truth):
@@ -74,11 +109,12 @@ def write(path, truth):
     Raises
     ------
     ValueError
-        If shapes disagree, the clocks are not of the same cameras, or events are of nobody in it.
+        If shapes disagree, the clocks are not of the same cameras, or events or devices are of nobody in it.
     """
     people, cameras = [str(person) for person in truth.person_id], list(truth.offset_s)
-    if cameras != list(truth.drift_ppm) or not set(truth.events) <= set(people):
-        found = f"{cameras} and {list(truth.drift_ppm)}, {list(truth.events)} of {people}"
+    there = {*truth.events, *(device.person for device in truth.devices.values())}
+    if cameras != list(truth.drift_ppm) or not there <= set(people):
+        found = f"{cameras} and {list(truth.drift_ppm)}, {sorted(there)} of {people}"
         raise ValueError(
             f"{path}: expected clocks of the same cameras, events of people, found {found}"
         )
@@ -102,6 +138,7 @@ def write(path, truth):
         "shaken_camera": _names(truth.shaken),
         "cam_from_world": poses if len(poses) else np.zeros((0, 0, 3, 4)),
     }
+    arrays |= _of_devices(truth.devices)
     npz.write(path, FORM, SPEC, arrays)
 
 
@@ -134,7 +171,32 @@ def read(path):
         drift_ppm=dict(zip(cameras, arrays["drift_ppm"].tolist(), strict=True)),
         events=events,
         shaken=dict(zip(arrays["shaken_camera"].tolist(), arrays["cam_from_world"], strict=True)),
+        devices=_devices(arrays),
     )
+
+
+def _of_devices(devices):
+    """Return the arrays of the devices' truth."""
+    those = list(devices.values())
+    clocks = [(device.offset_s, device.drift_ppm, device.latency_s) for device in those]
+    poses = [device.from_world for device in those]
+    return {
+        "device": _names(devices),
+        "device_kind": _names(device.kind for device in those),
+        "device_person": _names(device.person for device in those),
+        "device_clock": np.array(clocks, dtype=float).reshape(-1, 3),
+        "device_from_world": np.array(poses, dtype=float).reshape(-1, 3, 4),
+    }
+
+
+def _devices(arrays):
+    """Return the devices' truth by name."""
+    columns = (arrays[f"device_{key}"] for key in ("kind", "person", "clock", "from_world"))
+    found = zip(arrays["device"].tolist(), *columns, strict=True)
+    return {
+        name: DeviceTruth(str(kind), str(person), *map(float, clock), from_world)
+        for name, kind, person, clock, from_world in found
+    }
 
 
 def _names(values):

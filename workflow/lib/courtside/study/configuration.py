@@ -17,6 +17,7 @@ RESERVED = (
     "run",
     "figures",
     "virtual",
+    "plans",
 )  # folders of results/ that are no session
 
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")

@@ -5,6 +5,7 @@ import re
 from courtside.study.session_files import VIRTUAL
 
 EXTERNAL = "results/external/"
+RECORDINGS = ("videos", "devices")  # keys of a take that was recorded
 CALIBRATED = r"results/[^/]+/calibration/[^/]+/cameras\.toml"  # by the workflow, in another session
 
 
@@ -45,16 +46,24 @@ def find(folder, file, content, known, root):
         )
         videos = take.get("videos", {})
         paths |= {f"takes.{name}.videos.{camera}": path for camera, path in videos.items()}
+        devices = take.get("devices", {})
+        paths |= {
+            f"takes.{name}.devices.{key}.file": value["file"] for key, value in devices.items()
+        }
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
 
 
 def _take_faults(where, take, cameras, subjects, virtual):
-    expected, other = ("virtual", "videos") if virtual else ("videos", "virtual")
-    if expected not in take or other in take:
+    if virtual and ("virtual" not in take or set(RECORDINGS) & set(take)):
         yield (
-            f"{where}: expected the key '{expected}' and not '{other}' in a "
-            f"{'virtual' if virtual else 'recorded'} session, found {sorted(take)}; correct the take"
+            f"{where}: expected the key 'virtual' and not 'videos' in a virtual session, found "
+            f"{sorted(take)}; correct the take"
+        )
+    if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
+        yield (
+            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded session, found "
+            f"{sorted(take)}; correct the take"
         )
     if not subjects:
         yield f"{where}: expected `subjects` in the session, found none; name the persons of the take"
@@ -62,14 +71,8 @@ def _take_faults(where, take, cameras, subjects, virtual):
     there = take.get("subjects", subjects)
     yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
     yield from unknown(f"{where}.subjects", there, subjects)
-    filmed = take.get("virtual", {})
-    for key in ("clocks", "shake"):
-        yield from unknown(f"{where}.virtual.{key}", filmed.get(key, {}), cameras)
-    if virtual and filmed and set(filmed["players"]) != set(there):
-        yield (
-            f"{where}.virtual.players: expected each of {sorted(there)}, found "
-            f"{sorted(filmed['players'])}; correct one of them"
-        )
+    yield from _device_faults(where, take, cameras, there)
+    yield from _filmed_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
         for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):
             yield (
@@ -79,6 +82,31 @@ def _take_faults(where, take, cameras, subjects, virtual):
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
         yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
+
+
+def _device_faults(where, take, cameras, subjects):
+    """Check the devices of a take, recorded or virtual."""
+    devices = {**take.get("devices", {}), **(take.get("virtual") or {}).get("devices", {})}
+    for name, device in devices.items():
+        named = [device["subject"]] if "subject" in device else []
+        yield from unknown(f"{where}.devices.{name}.subject", named, subjects)
+        if name in {*cameras, "cameras"}:
+            yield f"{where}.devices: expected names that no camera has, found {name!r}; rename it"
+
+
+def _filmed_faults(where, filmed, cameras, subjects):
+    """Check what a take of a virtual session is made from."""
+    if not filmed:
+        return
+    clocks = [*cameras, *filmed.get("devices", {})]
+    yield from unknown(f"{where}.virtual.cameras", filmed.get("cameras", []), cameras)
+    yield from unknown(f"{where}.virtual.clocks", filmed.get("clocks", {}), clocks)
+    yield from unknown(f"{where}.virtual.shake", filmed.get("shake", {}), cameras)
+    if set(filmed["players"]) != set(subjects):
+        yield (
+            f"{where}.virtual.players: expected each of {sorted(subjects)}, found "
+            f"{sorted(filmed['players'])}; correct one of them"
+        )
 
 
 def _paths(content):
@@ -110,7 +138,8 @@ def _source_faults(file, content):
 
 def _virtual_faults(file, content):
     virtual, walks = content["virtual"], content.get("walks", {})
-    if not content["cameras"]:
+    takes = [take for take in content.get("takes", {}).values() if take]
+    if not content["cameras"] and not any("devices" in take.get("virtual", {}) for take in takes):
         yield f"{file}: virtual: expected cameras that it films with, found none; name them"
     if bool(walks) != (virtual["walk_frames"] >= 2):
         yield (
@@ -131,12 +160,14 @@ def _virtual_faults(file, content):
 
 def _recorded_faults(file, content):
     cameras, walks = content["cameras"], content.get("walks", {})
-    if not walks and "calibration" not in content and "court_points" not in content:
+    takes = [take for take in content.get("takes", {}).values() if take]
+    found = {"walks", "calibration", "court_points"} & set(content)
+    if not found and (cameras or not takes):
         yield (
             f"{file}: expected `walks`, `court_points` or `calibration`, found none; say how the cameras are "
             "to be found"
         )
-    if len(cameras) < 2 and ("calibration" in content or content.get("takes")):
+    if len(cameras) < 2 and ("calibration" in content or any("videos" in take for take in takes)):
         yield f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
     for name in (name for name, walk in walks.items() if not walk):
         yield (

@@ -2,10 +2,19 @@
 
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
-from courtside.study.sessions import FixedCamera, Session, Subject, Take
+from courtside.study.sessions import Device, FixedCamera, Session, Subject, Take
 
 VIRTUAL = "results/virtual"  # made by the workflow itself
+KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
+    ".bvh": "inertial",
+    ".bag": "rgbd",
+    ".db3": "rgbd",
+    "": "rgbd",
+    ".json": "nuitrack",
+    ".csv": "nuitrack",
+}
 
 
 def session(name, file, content, parameters):
@@ -99,15 +108,28 @@ def _merged(parameters, override):
 
 
 def _take(name, content, filmed, subjects):
+    there = tuple(content.get("subjects", subjects))
     return Take(
         name=name,
-        videos=filmed or dict(content["videos"]),
-        subjects=tuple(content.get("subjects", subjects)),
+        videos=dict(content.get("videos", {})) if filmed is None else filmed["videos"],
+        devices=_devices(content if filmed is None else filmed, there),
+        subjects=there,
         trim_s=tuple(content["trim_s"]) if "trim_s" in content else None,
         synchronised=content.get("synchronised", False),
         steady=content.get("steady", False),
         virtual=content.get("virtual"),
     )
+
+
+def _devices(content, subjects):
+    return {
+        name: Device(
+            kind=KINDS.get(Path(device["file"]).suffix.lower(), "rgb"),
+            file=device["file"],
+            subject=device.get("subject", subjects[0]),
+        )
+        for name, device in content.get("devices", {}).items()
+    }
 
 
 def _walks(content):
@@ -122,8 +144,19 @@ def _virtual(name, content):
         "walks": {walk: f"{folder}/{walk}.mp4" for walk in content.get("walks", {})},
         "court_points": f"{folder}/court_points.csv",
         "takes": {
-            take: {camera: f"{folder}/takes/{take}/{camera}.mp4" for camera in content["cameras"]}
-            for take in content.get("takes", {})
+            take: _virtual_take(f"{folder}/takes/{take}", made["virtual"], content["cameras"])
+            for take, made in content.get("takes", {}).items()
+        },
+    }
+
+
+def _virtual_take(folder, made, cameras):
+    endings = {"inertial": "bvh", "rgbd": "bag"}
+    return {
+        "videos": {camera: f"{folder}/{camera}.mp4" for camera in made.get("cameras", cameras)},
+        "devices": {
+            name: {"file": f"{folder}/{name}.{endings[device['kind']]}"}
+            for name, device in made.get("devices", {}).items()
         },
     }
 

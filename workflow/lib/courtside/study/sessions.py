@@ -36,8 +36,32 @@ class FixedCamera:
 
 
 @dataclass(frozen=True)
+class Device:
+    """What follows one person by itself during a take.
+
+    Attributes
+    ----------
+    kind : str
+        `inertial` (mocopi's BVH), `rgb` (a video), `rgbd` (a RealSense recording or a folder), `nuitrack`.
+    file : str
+        Its recording.
+    subject : str
+        Whom it follows.
+    """
+
+    kind: str
+    file: str
+    subject: str
+
+    def sources(self, name):
+        """Return the names of the skeletons that this device, of this name, gives."""
+        endings = {"rgb": ("-rgb",), "rgbd": ("-rgb", "-depth")}
+        return tuple(name + ending for ending in endings.get(self.kind, ("",)))
+
+
+@dataclass(frozen=True)
 class Take:
-    """One recording by several fixed cameras.
+    """One recording by several fixed cameras, by devices of their own, or by both.
 
     Attributes
     ----------
@@ -54,6 +78,7 @@ class Take:
         Whether the shake of the cameras is measured and taken out.
     virtual : dict or None
         What a take of a virtual session is made from.
+    devices : dict of str to Device
     """
 
     name: str
@@ -63,6 +88,7 @@ class Take:
     synchronised: bool = False
     steady: bool = False
     virtual: dict | None = None
+    devices: dict = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -118,7 +144,7 @@ class Session:
 
     def calibrations(self):
         """Return those of the study's ways to find cameras for which this session has recordings."""
-        clicked, walked = self.court_points is not None, bool(self.walks)
+        clicked, walked = self.court_points is not None and bool(self.cameras), bool(self.walks)
         boards = clicked and all(camera.chessboard for camera in self.cameras.values())
         possible = {
             "file": self.calibration_file is not None,

@@ -5,7 +5,7 @@ Options of all: hand ("right" or "left") that holds the racket, half ("near": y 
 
 from dataclasses import replace
 
-from courtside.virtual import clapping, drills, performance, poses, strolls
+from courtside.virtual import clapping, drills, free_motion, performance, poses, strolls
 
 REST_S = (0.5, 0.8)
 
@@ -153,6 +153,42 @@ def tpose_clap_bouncing(proportions, court, rng, **options):
     return tpose_clap(proportions, court, rng, bouncing=True, **options)
 
 
+def single_view(
+    proportions,
+    court,
+    rng,
+    *,
+    hand="right",
+    half="near",
+    free_s=20.0,
+    claps=2,
+    bouncing=False,
+):
+    """Stand facing the net, T-pose, clap; move freely on the spot; T-pose, clap, without a racket.
+
+    Parameters
+    ----------
+    proportions : courtside.virtual.stance.Proportions
+    court : courtside.geometry.courts.Court
+    rng : numpy.random.Generator
+    hand, half : str
+    free_s : float
+        Of free motion at most: raised arms, bent elbows, twists and turns, squats, steps in place and aside.
+        All lasts about 6 s more for each clap.
+    claps : int
+        T-poses with a clap, the first before and the last after all, others evenly between; 1: only before.
+    bouncing : bool
+        The hands rebound from each clap and touch again.
+
+    Returns
+    -------
+    motion : courtside.virtual.performance.Motion
+        Events: tpose_1_start, tpose_1_stop, clap_1 (first touch), clap_1_rebound_1 ..., tpose_2_start ...
+    """
+    player = performance.Player(proportions, court, rng, hand, half)
+    return free_motion.perform(player, free_s=free_s, claps=claps, bouncing=bouncing)
+
+
 def walk(proportions, court, rng, *, hand="right", half="near"):
     """Walk a round of the own half, racket in hand.
 
@@ -205,5 +241,6 @@ MOTIONS = {
     "tpose_clap_bouncing": tpose_clap_bouncing,
     "crossing": crossing,
     "rally": rally,
+    "single_view": single_view,
     "walk": walk,
 }

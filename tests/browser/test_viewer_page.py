@@ -1,0 +1,284 @@
+"""The viewer in a real browser: it opens fast, plays, and what it draws is where the numbers say."""
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+import scene
+import walker
+from courtside.geometry import courts
+from courtside.pages import page as pages
+from courtside.pages import viewer, viewer_layers
+
+pytestmark = pytest.mark.browser
+COURT = Path(__file__).parents[2] / "config" / "courts" / "badminton.yaml"
+ROGUE = "p</b><i>1</i>\"&'"
+MINUTE, RATE_HZ = 60, 60
+
+
+def long_take(n_persons=1):
+    """Return a Keypoints3D of 60 s at 60 Hz: the walker on a circle, with noise of 3 mm."""
+    short = walker.points(n_frames=20, n_persons=n_persons)
+    n_frames = MINUTE * RATE_HZ
+    angle = np.linspace(0, 20, n_frames)[:, None]
+    body = walker.body(20)[0] - walker.body(20)[0, :1] * [1, 1, 0]
+    centre = np.stack([3 + 2 * np.cos(angle), 3 + 2 * np.sin(angle), 0 * angle], axis=-1)
+    xyz = np.stack([body + centre + [0, 6 * at, 0] for at in range(n_persons)])
+    rng = np.random.default_rng(0)
+    shape = xyz.shape[:3]
+    sigma = 0.01 + 0.005 * rng.random((*shape, 1, 1)) + 0.01 * (np.sin(angle) > 0)[..., None, None]
+    return replace(
+        short,
+        time_s=np.arange(n_frames) / RATE_HZ,
+        xyz=xyz + rng.normal(0, 0.003, xyz.shape),
+        covariance_2d=sigma**2 * np.diag([1.0, 4.0, 1.0]),
+        covariance_camera=np.broadcast_to(np.eye(3) * 1e-4, (*shape, 3, 3)),
+        n_views=np.full(shape, 3),
+        reproj_error_px=rng.uniform(1, 9, (*shape, 3)),
+        accepted=np.ones((*shape, 3), bool),
+        reason=np.zeros(shape, np.uint8),
+        person_id=np.array([ROGUE, "p2"][:n_persons]),
+    )
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Return the page of three layers and the points of the first."""
+    points = long_take()
+    layers = []
+    for at, name in enumerate(("raw", "filtered", "corrected")):
+        moved = replace(points, xyz=points.xyz + np.array([0, 0, 0.02 * at]))
+        layers.append(viewer_layers.of_points(name, moved, walker.SKELETON, shown=at == 0))
+    path = tmp_path_factory.mktemp("viewer") / "viewer.html"
+    source = viewer.build("A take", layers, scene.ring(4), courts.read(COURT))
+    pages.write(path, source)
+    return path, points
+
+
+@pytest.fixture
+def opened(made, open_page):
+    page = open_page(made[0])
+    page.evaluate("courtside.viewer.ready")
+    return page, made[1]
+
+
+def picture(page):
+    """Return what the canvas shows, (H, W, 3) uint8."""
+    png = page.locator("#canvas").screenshot()
+    return cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)
+
+
+def joint(page, name="left_wrist"):
+    found = [one for one in page.evaluate("courtside.viewer.drawn()") if one["joint"] == name]
+    return np.array([found[0]["x"], found[0]["y"]])
+
+
+def at_pixel(image, xy, reach=2):
+    x, y = np.round(xy).astype(int)
+    return image[y - reach : y + reach + 1, x - reach : x + reach + 1].reshape(-1, 3).astype(int)
+
+
+def test_a_minute_of_three_layers_is_small_and_opens_within_two_seconds(made, open_page):
+    assert made[0].stat().st_size <= 8_000_000
+    start = time.monotonic()
+    page = open_page(made[0])
+    page.evaluate("courtside.viewer.ready")
+    assert time.monotonic() - start < 4  # with the browser's own start of a window
+    assert page.evaluate("courtside.viewer.opened_ms") < 2000
+    state = page.evaluate("courtside.viewer.state()")
+    assert (state["n_frames"], state["playing"]) == (3600, False)
+    assert [layer["shown"] for layer in state["layers"]] == [True, False, False]
+
+
+def test_positions_and_covariances_are_the_inputs(opened):
+    page, points = opened
+    ask = "([person, joint, frame]) => courtside.viewer.NAME('raw', person, joint, frame)"
+    for name in ("nose", "right_heel"):
+        j = points.joints.tolist().index(name)
+        for frame in (0, 1, 1799, 3599):
+            xyz = page.evaluate(ask.replace("NAME", "position"), [ROGUE, name, frame])
+            assert np.abs(np.array(xyz) - points.xyz[0, frame, j]).max() <= 0.00051
+            found = np.array(page.evaluate(ask.replace("NAME", "covariance"), [ROGUE, name, frame]))
+            true = points.covariance_2d[0, frame, j] + points.covariance_camera[0, frame, j]
+            assert np.abs(found - true).max() < 0.08 * np.abs(true).max()
+            px = page.evaluate(ask.replace("NAME", "reprojection_px"), [ROGUE, name, frame])
+            errors = points.reproj_error_px[0, frame, j]
+            assert px == pytest.approx(np.sqrt((errors**2).mean()), rel=0.03)
+
+
+def test_the_slider_moves_the_skeleton(opened):
+    page, _ = opened
+    before, place = picture(page), joint(page)
+    page.locator("#slider").evaluate("s => { s.value = 900; s.dispatchEvent(new Event('input')); }")
+    page.wait_for_timeout(100)
+    after, moved = picture(page), joint(page)
+    assert page.evaluate("courtside.viewer.state()")["time_s"] == pytest.approx(15)
+    assert np.linalg.norm(moved - place) > 20
+    assert (before != after).any(axis=2).sum() > 500
+    # Blue of the left side stands where the joint is said to be, and no longer where it was.
+    blue = np.array([0xB2, 0x72, 0x00])
+    assert np.abs(at_pixel(after, moved) - blue).max(axis=1).min() < 12
+    assert np.abs(at_pixel(before, place) - blue).max(axis=1).min() < 12
+    assert np.abs(at_pixel(after, place, 1) - blue).max(axis=1).min() > 40
+
+
+def test_it_plays_at_the_speed_asked_for_and_pauses(opened):
+    page, _ = opened
+    for speed in ("0.5", "2"):
+        page.select_option("#speed", speed)
+        page.evaluate("courtside.viewer.seek(5)")
+        before = picture(page)
+        page.click("#play")
+        page.wait_for_timeout(1000)
+        assert page.locator("#play").inner_text() == "Pause"
+        page.click("#play")
+        state = page.evaluate("courtside.viewer.state()")
+        assert not state["playing"]
+        assert 0.5 * float(speed) < state["time_s"] - 5 < 2.5 * float(speed)
+        assert (picture(page) != before).any()
+    page.wait_for_timeout(150)
+    assert page.evaluate("courtside.viewer.state()")["time_s"] == state["time_s"]
+
+
+def test_playing_ends_at_the_end_and_begins_again(opened):
+    page, _ = opened
+    page.evaluate("courtside.viewer.seek(59.8)")
+    page.click("#play")
+    page.wait_for_timeout(100)
+    for _ in range(50):  # not wait_for_function, which the page's own policy refuses
+        if not page.evaluate("courtside.viewer.state()")["playing"]:
+            break
+        page.wait_for_timeout(100)
+    assert page.evaluate("courtside.viewer.state()")["frame"] == 3599
+    page.click("#play")
+    page.wait_for_timeout(100)
+    assert page.evaluate("courtside.viewer.state()")["time_s"] < 5
+
+
+def test_keys_step_and_switch(opened):
+    page, _ = opened
+    page.locator("#canvas").focus()
+    for key, frame in (
+        ("End", 3599),
+        ("Home", 0),
+        ("ArrowRight", 1),
+        ("Shift+ArrowRight", 61),
+        ("ArrowLeft", 60),
+    ):
+        page.keyboard.press(key)
+        assert page.evaluate("courtside.viewer.state()")["frame"] == frame
+    page.keyboard.press("2")
+    assert [one["shown"] for one in page.evaluate("courtside.viewer.state()")["layers"]] == [
+        True,
+        True,
+        False,
+    ]
+    place = joint(page)
+    page.keyboard.press("a")
+    page.wait_for_timeout(60)
+    assert np.linalg.norm(joint(page) - place) > 2
+    page.keyboard.press("Space")
+    assert page.evaluate("courtside.viewer.state()")["playing"]
+
+
+def test_a_joint_is_picked_and_read(opened):
+    page, points = opened
+    page.evaluate("courtside.viewer.seek(10)")
+    x, y = joint(page, "right_heel")
+    page.locator("#canvas").click(position={"x": float(x), "y": float(y)})
+    picked = page.evaluate("courtside.viewer.state()")["picked"]
+    assert picked["person"] == ROGUE
+    page.locator("#readout table").wait_for()  # drawn with the next picture
+    told = page.locator("#readout").inner_text()
+    assert ROGUE in told
+    j = points.joints.tolist().index(picked["joint"])
+    xyz = points.xyz[0, 600, j]
+    for name, value in zip("xyz", xyz, strict=True):
+        row = page.locator("#readout tr", has=page.get_by_text(f"{name} (m)", exact=True))
+        assert float(row.locator("td").first.inner_text()) == pytest.approx(value, abs=0.0011)
+    total = points.covariance_2d[0, 600, j] + points.covariance_camera[0, 600, j]
+    row = page.locator("#readout tr", has=page.get_by_text("σ (mm)", exact=True))
+    sigma = float(row.locator("td").first.inner_text())
+    assert sigma == pytest.approx(1000 * np.sqrt(np.trace(total)), rel=0.03)
+    before = picture(page)
+    page.select_option("#magnified", "20")
+    page.wait_for_timeout(80)
+    assert (picture(page) != before).any(axis=2).sum() > 300
+
+
+def test_errors_are_coloured_with_a_legend(opened):
+    page, points = opened
+    page.select_option("#colour", "sigma")
+    page.wait_for_timeout(80)
+    legend = page.locator("#legend").inner_text()
+    assert "mm" in legend and "keypoints and cameras" in legend
+    end = page.evaluate("courtside.viewer.state()")["scale_end"]
+    sigma = 1000 * np.sqrt(
+        np.trace(points.covariance_2d + points.covariance_camera, axis1=-2, axis2=-1)
+    )
+    assert 0.8 * np.percentile(sigma, 95) < end < 2.6 * np.percentile(sigma, 95)
+    page.select_option("#colour", "distance")
+    page.locator("#layers input").nth(2).check()
+    page.wait_for_timeout(80)
+    assert "distance from raw (mm)" in page.locator("#legend").inner_text()
+    # `corrected` lies 40 mm above `raw`: the scale ends at the next round number.
+    assert page.evaluate("courtside.viewer.state()")["scale_end"] == 50
+
+
+def test_every_switch_works_and_a_layer_can_be_switched_off(opened):
+    page, _ = opened
+    for view in ("hall", "above", "x", "y", "camera c2", "all"):
+        before = picture(page)
+        page.select_option("#view", view)
+        page.wait_for_timeout(60)
+        assert (picture(page) != before).any(), view
+    for name in ("#cameras", "#names", "#follow"):
+        page.locator(name).click()
+    page.select_option("#trail", "Infinity")
+    page.locator("#layers input").first.uncheck()
+    page.wait_for_timeout(60)
+    assert page.evaluate("courtside.viewer.drawn()") == []
+
+
+def test_the_hand_turns_moves_and_zooms(opened):
+    page, _ = opened
+    area = page.locator("#canvas").bounding_box()
+    x, y = area["x"] + 100, area["y"] + 100
+    places = [joint(page)]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y + 20, steps=4)
+    page.mouse.up()
+    page.wait_for_timeout(60)
+    places.append(joint(page))
+    page.mouse.wheel(0, -300)
+    page.wait_for_timeout(60)
+    places.append(joint(page))
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert steps.min() > 3
+
+
+@pytest.mark.parametrize("width", [400, 1280])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_fits_the_window(made, open_page, width, scheme):
+    page = open_page(made[0], width=width, color_scheme=scheme)
+    page.evaluate("courtside.viewer.ready")
+    page.select_option("#joint", "nose")
+    for box in page.locator("#layers input").all():
+        box.check()
+    page.wait_for_timeout(60)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert picture(page).std() > 5
+
+
+def test_a_browser_too_old_is_told_so(made, browser):
+    page = browser.new_page()
+    page.add_init_script("delete window.DecompressionStream")
+    page.goto(made[0].as_uri())
+    page.wait_for_selector("#message:visible")
+    assert "too old" in page.locator("#message").inner_text()
+    page.close()

@@ -1,0 +1,140 @@
+import shutil
+
+import cv2
+import numpy as np
+import pytest
+
+from courtside.devices import depth_folder, video_writer
+from courtside.geometry import cameras
+from courtside.study.errors import InputError
+from depth_recordings_made import PLACED
+
+RNG = np.random.default_rng(2)
+N = 5
+DEPTHS = RNG.integers(0, 65536, (N, 24, 32), dtype=np.uint16)
+GREYS = (40, 80, 120, 160, 200)
+IN_DEVICE = np.column_stack([np.eye(3), [0.3, -0.2, 0.1]])  # both cameras, in some common frame
+
+
+def write(folder):
+    depth = cameras.Camera(
+        "depth", (32, 24), [[25, 0, 15], [0, 25, 11], [0, 0, 1]], np.zeros(5), IN_DEVICE
+    )
+    placed = np.column_stack([PLACED[:, :3], PLACED[:, :3] @ IN_DEVICE[:, 3] + PLACED[:, 3]])
+    colour = cameras.Camera(
+        "colour", (48, 32), [[40, 0, 23], [0, 41, 15], [0, 0, 1]], [0.1, 0, 0, 0, 0], placed
+    )
+    cameras.write_toml(folder / "cameras.toml", [colour, depth], source="test")
+    with (folder / "cameras.toml").open("a") as stream:
+        stream.write("depth_unit_m = 0.0005\nbaseline_m = 0.05\n")
+    pictures = [np.full((32, 48, 3), grey, np.uint8) for grey in GREYS]
+    video_writer.write_video(folder / "colour.mp4", pictures, 30, crf=10)
+    (folder / "depth").mkdir()
+    for k, steps in enumerate(DEPTHS):
+        cv2.imwrite(str(folder / "depth" / f"{k:04}.png"), steps)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made")
+    write(folder)
+    return folder
+
+
+@pytest.fixture
+def folder(made, tmp_path):
+    return shutil.copytree(made, tmp_path / "recording")
+
+
+def test_a_folder_is_read(folder):
+    found = depth_folder.read(folder, "cam")
+    assert (found.depth_unit_m, found.baseline_m, found.remarks) == (0.0005, 0.05, ())
+    assert np.allclose(found.colour_from_depth, PLACED)
+    assert found.colour.dist[0] == 0.1
+    depth, colour = list(found.depth_frames()), list(found.colour_frames())
+    assert np.array_equal([steps for _, steps in depth], DEPTHS)
+    assert np.allclose([time_s for time_s, _ in depth], np.arange(N) / 30, atol=1e-4)
+    assert [time_s for time_s, _ in colour] == [time_s for time_s, _ in depth]
+    assert (
+        np.abs([image.mean() - grey for (_, image), grey in zip(colour, GREYS, strict=True)]).max()
+        < 3
+    )
+    assert found.colour_index().n_missing == 0
+
+
+def test_times_of_tables(folder):
+    (folder / "colour.csv").write_text("number,time_s\n7,1.0\n8,1.1\n9,1.2\n11,1.4\n12,1.5\n")
+    (folder / "depth.csv").write_text("number,time_s\n7,1.01\n8,1.11\n10,1.31\n11,1.41\n")
+    (folder / "depth" / "0004.png").unlink()
+    found = depth_folder.read(folder)
+    assert [time_s for time_s, _ in found.depth_frames()] == [1.01, 1.11, 1.31, 1.41]
+    assert [time_s for time_s, _ in found.colour_frames()] == [1.0, 1.1, 1.2, 1.4, 1.5]
+    assert found.colour_index().n_missing == 1
+
+
+def test_the_default_unit_is_remarked(folder):
+    toml = folder / "cameras.toml"
+    toml.write_text(toml.read_text().replace("depth_unit_m = 0.0005\n", ""))
+    found = depth_folder.read(folder)
+    assert found.depth_unit_m == 0.001
+    assert "0.001 m assumed" in found.remarks[0]
+
+
+def unlink(name):
+    return lambda folder: (folder / name).unlink()
+
+
+def text(name, old, new):
+    def change(folder):
+        path = folder / name
+        path.write_text(path.read_text().replace(old, new))
+
+    return change
+
+
+def table(name, content):
+    def change(folder):
+        for other in ("colour.csv", "depth.csv"):
+            rows = "".join(f"{k},{k}\n" for k in range(N))
+            (folder / other).write_text(f"number,time_s\n{rows}")
+        (folder / name).write_text(content)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (unlink("cameras.toml"), "expected TOML"),
+        (unlink("colour.mp4"), "expected one video"),
+        (unlink("depth/0002.png"), "as many depth pictures"),
+        (lambda folder: shutil.rmtree(folder / "depth"), "expected 16-bit PNG"),
+        (text("cameras.toml", '"depth"', '"ir"'), "named colour and depth"),
+        (text("cameras.toml", "0.0005", "5"), "depth_unit_m of"),
+        (text("cameras.toml", "0.0005", '"mm"'), "depth_unit_m as"),
+        (text("cameras.toml", "48", "64"), "expected 64x32 px"),
+        (lambda folder: (folder / "colour.csv").write_text("number,time_s\n"), "found one"),
+        (table("depth.csv", "number,time_s\n0,0\n1,1\n"), "expected 5 rows"),
+        (table("depth.csv", "number,time_s\n0,0\n1,1\n2,2\n3,2\n4,4\n"), "rising"),
+        (table("depth.csv", "number\n0\n"), "expected columns number"),
+        (table("depth.csv", "number,time_s\n0,a\n1,1\n2,2\n3,3\n4,4\n"), "expected columns number"),
+    ],
+)
+def test_what_is_missing_is_named_in_one_line(folder, change, says):
+    change(folder)
+    with pytest.raises(InputError, match=says) as raised:
+        depth_folder.read(folder)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "picture", [np.zeros((24, 32), np.uint8), np.zeros((24, 30), np.uint16), None]
+)
+def test_a_picture_that_is_no_depth_is_named(folder, picture):
+    path = folder / "depth" / "0003.png"
+    if picture is None:
+        path.write_bytes(b"no picture")
+    else:
+        cv2.imwrite(str(path), picture)
+    with pytest.raises(InputError, match=r"0003\.png: expected a 16-bit picture"):
+        list(depth_folder.read(folder).depth_frames())

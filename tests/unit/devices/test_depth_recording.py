@@ -1,0 +1,44 @@
+import numpy as np
+import pytest
+
+from courtside.devices.depth_recording import DepthRecording, FrameIndex
+from depth_recordings_made import COLOUR, DEPTH, PLACED
+
+
+def recording(**changed):
+    index = FrameIndex(np.array([0.0]), np.array([1]))
+    values = {"colour_from_depth": PLACED, "depth_unit_m": 0.001} | changed
+    return DepthRecording(
+        name="d",
+        colour=COLOUR,
+        depth=DEPTH,
+        colour_frames=lambda: iter([]),
+        depth_frames=lambda: iter([]),
+        colour_index=lambda: index,
+        **values,
+    )
+
+
+def test_missing_frames_are_gaps_in_the_numbers():
+    assert FrameIndex(np.arange(5.0), np.array([7, 8, 10, 11, 14])).n_missing == 3
+    assert FrameIndex(np.zeros(0), np.zeros(0, int)).n_missing == 0
+
+
+def test_separation_is_the_distance_of_the_cameras():
+    assert recording().separation_m == pytest.approx(np.sqrt(0.0147**2 + 0.0002**2 + 0.0005**2))
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"depth_unit_m": 0.0},
+        {"depth_unit_m": np.nan},
+        {"colour_from_depth": np.eye(3)},
+        {"colour_from_depth": np.full((3, 4), np.nan)},
+        {"colour_from_depth": 2 * np.eye(3, 4)},
+        {"colour_from_depth": np.diag([1, 1, -1, 1])[:3]},
+    ],
+)
+def test_impossible_recordings_are_refused(changed):
+    with pytest.raises(ValueError, match="expected"):
+        recording(**changed)

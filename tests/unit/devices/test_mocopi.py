@@ -1,0 +1,164 @@
+"""mocopi's files: the study's names, metres, the row that nobody performed, the app's frame rates."""
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.devices import bvh, mocopi
+from courtside.exports import bvh as writer
+from courtside.records import device_motion, reasons, skeleton
+from courtside.records.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+
+ROOT = Path(__file__).parents[3]
+YAML = ROOT / "config" / "skeletons" / "mocopi27.yaml"
+MOCOPI = skeleton.read(YAML)
+PARENT = {child: parent for parent, child in MOCOPI.bones}
+REAL_FILES = [("mocopi-mobile-arm-raise-turn", 853, 50.0), ("jump", 802, 60.0)]
+
+
+def recorded(path, *, n_frames=5, rest=True, period_s=1 / 60, names=None):
+    """Write a file as the app does: every row turns every joint, except a rest pose in front."""
+    rng = np.random.default_rng(2)
+    parents = [
+        MOCOPI.index(PARENT[joint]) if joint in PARENT else NO_PARENT for joint in MOCOPI.joints
+    ]
+    shape = Hierarchy(
+        tuple(names or MOCOPI.device_names()), np.array(parents), rng.normal(0, 0.2, (27, 3))
+    )
+    angle = rng.uniform(-0.5, 0.5, (n_frames, 27))
+    angle[: int(rest)] = 0
+    c, s, one, zero = np.cos(angle), np.sin(angle), np.ones_like(angle), np.zeros_like(angle)
+    rotation = np.stack([c, -s, zero, s, c, zero, zero, zero, one], axis=-1).reshape(
+        n_frames, 27, 3, 3
+    )
+    posed = PosedHierarchy(
+        shape,
+        np.arange(n_frames) * period_s,
+        np.repeat(shape.offsets[None], n_frames, axis=0),
+        rotation,
+    )
+    writer.write(path, posed)
+    return posed
+
+
+def test_the_skeleton_is_a_tree_from_the_root():
+    assert len(MOCOPI.joints) == 27
+    assert set(PARENT) == set(MOCOPI.joints) - {"root"}
+    assert [PARENT[joint] for joint in ("neck_1", "left_clavicle", "right_clavicle")] == [
+        "torso_7"
+    ] * 3
+    assert PARENT["left_hip"] == PARENT["right_hip"] == "root"
+
+
+@needs_real
+@pytest.mark.parametrize(("name", "n_frames", "rate_hz"), REAL_FILES)
+def test_a_real_file_has_the_study_s_joints(name, n_frames, rate_hz):
+    path = REAL / "mocopi" / f"{name}.bvh"
+    motion, posed = mocopi.read(path, MOCOPI)
+    assert (motion.source, motion.kind) == ("mocopi", "inertial")
+    assert motion.joints.tolist() == list(posed.hierarchy.joints) == list(MOCOPI.joints)
+    assert motion.xyz.shape == (n_frames, 27, 3)
+    np.testing.assert_allclose(motion.time_s, np.arange(n_frames) / rate_hz, rtol=0, atol=1e-12)
+    assert (motion.reason == reasons.OK).all()
+    assert motion.performed.tolist() == [False] + [True] * (n_frames - 1)
+    for joint, parent in zip(posed.hierarchy.joints, posed.hierarchy.parents, strict=True):
+        assert PARENT.get(joint) == (
+            None if parent == NO_PARENT else posed.hierarchy.joints[parent]
+        )
+    np.testing.assert_array_equal(motion.xyz, forward(bvh.read(path))[0])
+
+
+@needs_real
+@pytest.mark.parametrize("name", [name for name, _, _ in REAL_FILES])
+def test_a_real_body_stands_upright_in_metres(name):
+    motion, posed = mocopi.read(REAL / "mocopi" / f"{name}.bvh", MOCOPI)
+    place = {joint: motion.joint(joint) for joint in MOCOPI.joints}
+    rest = {joint: path[0] for joint, path in place.items()}
+    assert 0.85 < rest["root"][1] < 1.05
+    assert 1.5 < rest["head"][1] < 1.75
+    assert abs(rest["left_toes"][1]) < 0.05
+    assert rest["left_toes"][2] > rest["left_ankle"][2]  # toes point along Z
+    assert rest["left_wrist"][0] > rest["left_shoulder"][0] > 0 > rest["right_wrist"][0]
+    for (
+        start,
+        end,
+    ) in MOCOPI.segments.values():  # bones keep their length: position channels are offsets
+        length = np.linalg.norm(place[end] - place[start], axis=1)
+        assert np.ptp(length) < 1e-6
+        assert 0.2 < length[0] < 0.5
+    assert set(posed.hierarchy.ends) == {
+        "head",
+        "left_wrist",
+        "right_wrist",
+        "left_toes",
+        "right_toes",
+    }
+
+
+@pytest.mark.parametrize(("written_s", "rate_hz"), [(0.033333, 30), (0.02, 50), (0.016667, 60)])
+def test_the_app_s_rates_are_exact(tmp_path, written_s, rate_hz):
+    recorded(tmp_path / "a.bvh", n_frames=1001, period_s=written_s)
+    motion, posed = mocopi.read(tmp_path / "a.bvh", MOCOPI, source="suit")
+    assert motion.source == "suit"
+    assert motion.time_s[-1] == pytest.approx(1000 / rate_hz, abs=1e-9)
+    np.testing.assert_array_equal(posed.time_s, motion.time_s)
+
+
+def test_another_rate_is_as_written(tmp_path):
+    recorded(tmp_path / "a.bvh", period_s=0.0167)
+    assert mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].time_s[4] == pytest.approx(4 * 0.0167)
+
+
+def test_only_a_first_row_without_any_rotation_is_the_rest_pose(tmp_path):
+    recorded(tmp_path / "a.bvh")
+    assert mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].performed.tolist() == [False] + [True] * 4
+    recorded(tmp_path / "a.bvh", rest=False)
+    assert mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].performed.all()
+    recorded(tmp_path / "a.bvh", n_frames=0)
+    assert len(mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].performed) == 0
+
+
+def test_joints_in_another_order_come_out_in_the_skeleton_s(tmp_path):
+    posed = recorded(tmp_path / "a.bvh")
+    text = (tmp_path / "a.bvh").read_text()
+    start, end = text.index("  JOINT l_up_leg"), text.index("  JOINT r_up_leg")
+    last = text.index("}\nMOTION")
+    head = text[:start] + text[end:last] + text[start:end] + text[last:].split("0.016666", 1)[0]
+    rows = np.loadtxt(text.splitlines()[-5:])
+    rows = np.hstack([rows[:, : 19 * 6], rows[:, 23 * 6 :], rows[:, 19 * 6 : 23 * 6]])
+    table = "\n".join(" ".join(map(str, row)) for row in rows)
+    (tmp_path / "a.bvh").write_text(f"{head}0.016667\n{table}\n")
+    motion, found = mocopi.read(tmp_path / "a.bvh", MOCOPI)
+    assert found.hierarchy.joints[19] == "right_hip"
+    assert motion.joints.tolist() == list(MOCOPI.joints)
+    np.testing.assert_allclose(motion.xyz, forward(posed)[0], atol=1e-6)
+
+
+def test_other_joints_are_named_in_one_line(tmp_path):
+    names = MOCOPI.device_names()
+    names[5], names[20] = "spine", "shin"
+    recorded(tmp_path / "a.bvh", names=names)
+    told = r"a\.bvh: expected the 27 joints of mocopi27, found 27: "
+    with pytest.raises(
+        InputError, match=told + "missing: torso_5, l_low_leg; unknown: spine, shin;"
+    ):
+        mocopi.read(tmp_path / "a.bvh", MOCOPI)
+    text = (tmp_path / "a.bvh").read_text()
+    (tmp_path / "a.bvh").write_text(text.replace("spine", "torso_5").replace("shin", "torso_5"))
+    with pytest.raises(InputError, match="missing: l_low_leg; twice: torso_5;") as caught:
+        mocopi.read(tmp_path / "a.bvh", MOCOPI)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_script_hands_the_motion_on(tmp_path):
+    posed = recorded(tmp_path / "a.bvh")
+    script = runpy.run_path(str(ROOT / "workflow" / "scripts" / "import_device.py"))
+    script["main"](tmp_path / "a.bvh", YAML, tmp_path / "suit.npz", device="suit", kind="inertial")
+    found = device_motion.read(tmp_path / "suit.npz")
+    assert (found.source, found.kind) == ("suit", "inertial")
+    assert found.performed.tolist() == [False] + [True] * 4
+    np.testing.assert_allclose(found.joint("left_wrist"), forward(posed)[0][:, 14], atol=1e-6)

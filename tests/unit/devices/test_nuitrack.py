@@ -1,0 +1,180 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.devices import nuitrack
+from courtside.records import reasons, skeleton
+from courtside.study.errors import InputError
+
+CONFIG = Path(__file__).parents[3] / "config"
+JOINTS = skeleton.read(CONFIG / "skeletons" / "nuitrack19.yaml").joints
+N = 4
+TIMES_US = 1715151474879921 + 33333 * np.arange(N)
+PLACES = np.random.default_rng(0).uniform((-1, -1, 2), (1, 1, 4), (N, len(JOINTS), 3))
+PLACES[:, JOINTS.index("neck")] = [0.0, 0.8, 3.3]  # y is up
+PLACES[:, JOINTS.index("waist")] = [0.0, 0.26, 3.38]
+
+
+def names(joint):
+    return ("left_collar", "right_collar") if joint == "collar" else (joint,)
+
+
+def csv_rows():
+    header = ["timestamp", "serial", "id"]
+    for joint in JOINTS:
+        header += [f"JOINT_{name.upper()}.{axis}" for name in names(joint) for axis in "xyz"]
+        header += [f"JOINT_{joint.upper()}.rot"]
+    rows = [header]
+    for time_us, places in zip(TIMES_US, PLACES, strict=True):
+        row = [time_us, "AS3M323001D", 1]
+        for joint, place in zip(JOINTS, places, strict=True):
+            row += [*place] * len(names(joint)) + [170.1]
+        rows += [row, row]  # as the maker's sample has it: rows are repeated
+    return rows
+
+
+def write_csv(path, rows):
+    path.write_text("\n".join(",".join(map(str, row)) for row in rows) + "\n")
+    return path
+
+
+def frames():
+    """Return frames in millimetres with joints by name."""
+    return [
+        {
+            "timestamp": int(time_us),
+            "skeletons": [
+                {"user_id": 1}
+                | {
+                    name: {"real": (1000 * place).tolist(), "confidence": 0.75}
+                    for joint, place in zip(JOINTS, places, strict=True)
+                    for name in names(joint)
+                }
+            ],
+        }
+        for time_us, places in zip(TIMES_US, PLACES, strict=True)
+    ]
+
+
+def listed(frame):
+    """Return a frame with joints in a list, as numbers and in capital letters."""
+    joints = [
+        {
+            "Type": nuitrack.NUMBERS.index(name),
+            "Confidence": joint["confidence"],
+            "Real": dict(zip("XYZ", joint["real"], strict=True)),
+        }
+        for name, joint in frame["skeletons"][0].items()
+        if name != "user_id"
+    ]
+    return {"Timestamp": str(frame["timestamp"]), "Skeletons": [{"ID": 1, "Joints": joints}]}
+
+
+def check(motion):
+    assert motion.joints.tolist() == list(JOINTS)
+    assert np.allclose(motion.xyz, PLACES * [1, -1, 1])  # y down
+    assert np.allclose(motion.time_s, TIMES_US * 1e-6, atol=1e-6)
+    assert (motion.reason == reasons.OK).all()
+    assert (motion.source, motion.kind) == ("n", "rgbd")
+
+
+def test_numbers_of_the_interface():
+    """Nuitrack's enumeration: head is 1, the left hand 9, the right shoulder 12, the right ankle 23."""
+    wanted = {1: "head", 4: "waist", 9: "left_hand", 12: "right_shoulder", 17: "left_hip"}
+    assert {k: nuitrack.NUMBERS[k] for k in wanted} == wanted
+    assert nuitrack.NUMBERS[23] == "right_ankle"
+    assert len(nuitrack.NUMBERS) == 25
+
+
+def test_csv(tmp_path):
+    check(nuitrack.read(write_csv(tmp_path / "a.csv", csv_rows()), JOINTS, "n"))
+
+
+def test_json_by_name_in_a_list_or_in_lines(tmp_path):
+    whole, lines, capitals = (tmp_path / f"{name}.json" for name in "abc")
+    whole.write_text(json.dumps(frames()))
+    lines.write_text("\n".join(json.dumps(frame) for frame in frames()) + "\n")
+    capitals.write_text(json.dumps([listed(frame) for frame in frames()]))
+    for path in (whole, lines, capitals):
+        check(nuitrack.read(path, JOINTS, "n"))
+
+
+def test_unsure_and_absent_joints_are_missing_with_their_reason(tmp_path):
+    made = frames()
+    made[1]["skeletons"][0]["left_wrist"]["confidence"] = 0.1
+    del made[2]["skeletons"][0]["head"]
+    made[3]["skeletons"][0]["right_knee"]["real"] = [0, 0, 0]
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps(made))
+    motion = nuitrack.read(path, JOINTS, "n")
+    missing = {
+        (1, "left_wrist"): reasons.LOW_SCORE,
+        (2, "head"): reasons.UNSEEN,
+        (3, "right_knee"): reasons.UNSEEN,
+    }
+    for (frame, joint), reason in missing.items():
+        assert motion.reason[frame, JOINTS.index(joint)] == reason
+        assert np.isnan(motion.xyz[frame, JOINTS.index(joint)]).all()
+    assert np.count_nonzero(motion.reason) == 3
+    assert np.isnan(motion.xyz).any(axis=-1).sum() == 3
+
+
+def test_one_user_of_several(tmp_path):
+    rows = csv_rows()
+    other = [
+        [*row[:2], 7, *(v + 1 if isinstance(v, float) else v for v in row[3:])] for row in rows[1:4]
+    ]
+    path = write_csv(tmp_path / "a.csv", [*rows, *other])
+    check(nuitrack.read(path, JOINTS, "n"))
+    found = nuitrack.read(path, JOINTS, "n", user=7)
+    assert np.allclose(found.xyz, PLACES[:2] * [1, -1, 1] + [1, -1, 1])
+    with pytest.raises(InputError, match=r"user 3, found users \[1, 7\]"):
+        nuitrack.read(path, JOINTS, "n", user=3)
+
+
+def test_a_wrong_unit_is_noticed(tmp_path):
+    rows = csv_rows()
+    large = [[1000 * v if isinstance(v, np.floating | float) else v for v in row] for row in rows]
+    path = write_csv(tmp_path / "a.csv", large)
+    with pytest.raises(InputError, match="found 546 m"):
+        nuitrack.read(path, JOINTS, "n")
+    check(nuitrack.read(path, JOINTS, "n", unit_m=0.001))
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.txt", "1"),
+        ("a.csv", ""),
+        ("a.csv", "timestamp,id\n1,1\n"),
+        ("a.csv", "\x00\x01"),
+        ("a.json", ""),
+        ("a.json", "nothing"),
+        ("a.json", "[]"),
+        ("a.json", "[1, 2]"),
+        ("a.json", '[{"timestamp": 1}]'),
+        ("a.json", '[{"timestamp": 1, "skeletons": []}]'),
+        ("a.json", '[{"timestamp": "x", "skeletons": [{}]}]'),
+        ("a.json", '[{"timestamp": 1e400, "skeletons": [{}]}]'),
+        ("a.json", '[{"timestamp": 1, "skeletons": [{"head": {"real": [1, 2]}}]}]'),
+        ("a.json", '[{"timestamp": 1, "skeletons": [{"head": {"real": "abc"}}]}]'),
+        ("a.json", '[{"timestamp": 1, "skeletons": [{"joints": [{"type": 99}]}]}]'),
+        ("a.json", '[{"timestamp": 1, "skeletons": [{"head": {}}]}]'),
+        ("a.json", "[" * 100000),
+    ],
+)
+def test_what_is_no_such_recording_is_refused_in_one_line(tmp_path, name, content):
+    path = tmp_path / name
+    path.write_text(content)
+    with pytest.raises(InputError, match="expected") as raised:
+        nuitrack.read(path, JOINTS, "n")
+    assert str(path) in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    for name in ("a.csv", "a.json"):
+        with pytest.raises(InputError, match=name):
+            nuitrack.read(tmp_path / name, JOINTS, "n")

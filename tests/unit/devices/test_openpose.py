@@ -1,0 +1,166 @@
+"""2D keypoints of OpenPose's JSON: the real ones against another program's result, and every fault named."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.devices import openpose
+from courtside.exports import markers, trc
+from courtside.geometry import calibration_files
+from courtside.geometry.cameras import project
+from courtside.records import reasons, skeleton
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+
+SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
+COCO = skeleton.read(SKELETONS / "coco17.yaml")
+
+
+def keypoints(x=100.0):
+    points = np.column_stack([x + 10 * np.arange(17), 50 + 20.0 * np.arange(17), np.full(17, 0.8)])
+    return points.ravel().tolist()
+
+
+def write(folder, name, *people):
+    folder.mkdir(exist_ok=True)
+    content = {"version": 1.3, "people": [{"pose_keypoints_2d": person} for person in people]}
+    (folder / name).write_text(json.dumps(content))
+
+
+def read(folder, joints=COCO, **options):
+    options = {"size": (640, 480), "rate_hz": 30} | options
+    if "time_s" in options:
+        del options["rate_hz"]
+    return openpose.read(folder, joints, camera="left", model="theirs", **options)
+
+
+def test_a_small_folder(tmp_path):
+    moved = keypoints(101.0)
+    moved[3:6] = [0, 0, 0]  # OpenPose's way to say unseen
+    moved[6:9] = [-40, 50, 0.9]
+    write(tmp_path / "j", "cam1_000000000007_keypoints.json", keypoints())
+    write(tmp_path / "j", "cam1_000000000008_keypoints.json", moved)
+    write(tmp_path / "j", "cam1_000000000010_keypoints.json")
+    found = read(tmp_path / "j")
+    assert (found.camera, found.model, found.xy.shape) == ("left", "theirs", (1, 4, 17, 2))
+    assert found.joints.tolist() == list(COCO.joints)
+    assert found.time_s == pytest.approx(np.arange(4) / 30)
+    assert found.xy[0, 0, 2] == pytest.approx([120, 90])
+    assert found.score[0, 0] == pytest.approx([0.8] * 17)
+    assert found.reason[0, 1, :3].tolist() == [reasons.OK, reasons.UNSEEN, reasons.OUT_OF_IMAGE]
+    assert np.isnan(found.xy[0, 1, 1:3]).all()
+    assert (found.reason[0, 2:] == reasons.UNSEEN).all()
+    assert np.isnan(found.xyz_in_body).all()
+
+
+def test_the_videos_times_and_a_trim(tmp_path):
+    for at in range(5):
+        write(tmp_path / "j", f"{at}.json", keypoints(100.0 + at))
+    time_s = np.array([0, 0.03, 0.07, 0.1, 0.13, 0.17, 0.2])
+    found = read(tmp_path / "j", time_s=time_s)
+    assert np.array_equal(found.time_s, time_s)
+    assert (found.reason[0, 5:] == reasons.UNSEEN).all()
+    found = read(tmp_path / "j", time_s=time_s, trim_s=(0.03, 0.1))
+    assert found.time_s.tolist() == [0.03, 0.07]
+    assert found.xy[0, :, 0, 0].tolist() == [101, 102]
+    with pytest.raises(InputError, match="a video that has 3, found numbers 0 to 4"):
+        read(tmp_path / "j", time_s=time_s[:3])
+
+
+def test_scores_above_one_are_one(tmp_path):
+    high = keypoints()
+    high[2] = 1.7
+    write(tmp_path / "j", "0.json", high)
+    assert read(tmp_path / "j").score[0, 0, 0] == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{", "expected OpenPose's JSON"),
+        ("[]", "expected OpenPose's JSON"),
+        ('{"people": [{}]}', "pose_keypoints_2d"),
+        ('{"people": [{"pose_keypoints_2d": ["a"]}]}', "expected OpenPose's JSON"),
+        (
+            '{"people": [{"pose_keypoints_2d": [1, 2, 3]}]}',
+            "17 points of skeleton coco17, found 1;",
+        ),
+        ('{"people": [{"pose_keypoints_2d": [[1, 2, 3]]}]}', "17 points of skeleton coco17"),
+    ],
+)
+def test_a_damaged_file_is_named(tmp_path, text, said):
+    write(tmp_path / "j", "0.json", keypoints())
+    (tmp_path / "j" / "1.json").write_text(text)
+    with pytest.raises(InputError, match=said) as told:
+        read(tmp_path / "j")
+    assert str(told.value).startswith(f"{tmp_path}/j/1.json: ")
+    assert "\n" not in str(told.value)
+
+
+def test_folders_that_are_none(tmp_path):
+    with pytest.raises(InputError, match="found none; correct the path"):
+        read(tmp_path / "nowhere")
+    (tmp_path / "j").mkdir()
+    with pytest.raises(InputError, match="give the folder of one camera"):
+        read(tmp_path / "j")
+    write(tmp_path / "j", "a_1.json", keypoints())
+    write(tmp_path / "j", "b_1.json", keypoints())
+    with pytest.raises(InputError, match=r"one file for frame 1, found a_1\.json as well"):
+        read(tmp_path / "j")
+    write(tmp_path / "k", "frame.json", keypoints())
+    with pytest.raises(InputError, match="frame's number"):
+        read(tmp_path / "k")
+
+
+def test_times_or_a_rate():
+    for options in ({}, {"rate_hz": 30, "time_s": np.arange(3)}):
+        with pytest.raises(ValueError, match="time_s and rate_hz"):
+            openpose.read(".", COCO, camera="left", model="theirs", size=(640, 480), **options)
+
+
+@pytest.mark.parametrize("name", ["body25", "body25b"])
+def test_25_points_in_the_other_order_are_recognised(tmp_path, name):
+    """A standing person's points by name, written in each order."""
+    heights = {"eye": 40, "ear": 42, "nose": 50, "head_top": 0, "neck": 90, "shoulder": 95}
+    heights |= {"elbow": 150, "wrist": 200, "hip": 205, "mid_hip": 205, "knee": 300, "ankle": 390}
+    heights |= {"heel": 400, "big_toe": 402, "small_toe": 401}
+    joints = skeleton.read(SKELETONS / f"{name}.yaml")
+    row = []
+    for joint in joints.joints:
+        side, _, part = joint.partition("_")
+        sign = {"left": 1, "right": -1}.get(side, 0)
+        row += [300 + 30.0 * sign, 20.0 + heights[part if sign else joint], 0.9]
+    write(tmp_path / "j", "0.json", row)
+    assert read(tmp_path / "j", joints).xy.shape == (1, 1, 25, 2)
+    other = {"body25": "body25b", "body25b": "body25"}[name]
+    with pytest.raises(InputError, match=f"points of {other}, found what looks like {name},"):
+        read(tmp_path / "j", skeleton.read(SKELETONS / f"{other}.yaml"))
+
+
+@needs_real
+@pytest.mark.parametrize("number", [1, 2, 3, 4])
+def test_real_keypoints_lie_where_another_program_puts_the_joints(number):
+    """The markers of Pose2Sim's TRC file, projected into the picture, are near the person's keypoints."""
+    real = REAL / "walk-4cams"
+    joints = skeleton.read(SKELETONS / "body25b.yaml")
+    folder = real / "openpose_body25b" / f"cam{number}_json"
+    found = read(folder, joints, size=(1088, 1920), rate_hz=60)
+    assert found.xy.shape[1:] == (100, 25, 2)
+    names, _, _, xyz = trc.read(real / "trc" / "Balancing_for_IK.trc")
+    camera = {c.name: c for c in calibration_files.read(real / "calibration" / "Calib.qca.txt")}
+    places = markers.joints_of(names, joints.joints)
+    assert sum(place is not None for place in places) == 21
+    off = {
+        joint: np.linalg.norm(
+            found.xy[0, :, at] - project(camera[f"cam0{number}"], xyz[:, place]), axis=-1
+        )
+        for at, (joint, place) in enumerate(zip(joints.joints, places, strict=True))
+        if place is not None
+    }
+    assert np.nanmedian(list(off.values())) < 22  # px; the person is 750 px tall
+    assert max(np.nanmedian(error) for error in off.values()) < 60
+    with pytest.raises(InputError, match="looks like body25b"):
+        read(folder, replace(joints, name="body25"), size=(1088, 1920), rate_hz=60)

@@ -1,0 +1,133 @@
+"""What the files of a folder are, and the program that drafts a session of them."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import pytest
+import video_files
+import yaml
+
+from courtside.devices import survey
+from courtside.study import configuration
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+
+PROGRAM = configuration.SCHEMAS.parents[1] / "workflow" / "draft_session.py"
+
+
+@pytest.fixture(scope="module")
+def gym(tmp_path_factory):
+    """A folder as users have them: spaces, capitals, photos, other files, one broken video."""
+    root = tmp_path_factory.mktemp("root")
+    folder = root / "data" / "My Gym"
+    (folder / "board left").mkdir(parents=True)
+    (folder / ".trash").mkdir()
+    video_files.write(str(folder / "left.mp4"), n=20, rate=10)
+    for name in ("Serve left.MP4", "Serve right.MP4", "walk.mp4", ".trash/old.mp4"):
+        shutil.copy(folder / "left.mp4", folder / name)
+    (folder / "left.mp4").rename(folder / "left empty.mp4")
+    (folder / "cut right.mp4").write_bytes((folder / "walk.mp4").read_bytes()[:900])
+    for number in range(3):
+        cv2.imwrite(
+            str(folder / "board left" / f"{number}.png"), video_files.draw(number, (160, 120))
+        )
+    cv2.imwrite(str(folder / "right empty.png"), video_files.draw(3, (160, 120)))
+    (folder / "clicks.csv").write_text("camera,point,frame_idx,x_px,y_px\nleft,p01,0,1,2\n")
+    (folder / "ends.csv").write_text("take,camera,frame_idx,end,x_px,y_px\n")
+    (folder / "notes.csv").write_text("who,what\n")
+    (folder / "notes.txt").write_text("Remember the net.\n")
+    (folder / "Serve.bvh").write_text("HIERARCHY\n")
+    return root
+
+
+def test_every_kind_is_found(gym):
+    found = {r.path: r for r in survey.survey(gym / "data" / "My Gym", root=gym)}
+    kinds = {path.removeprefix("data/My Gym/"): r.kind for path, r in found.items()}
+    assert kinds == {
+        "Serve left.MP4": "video",
+        "Serve right.MP4": "video",
+        "left empty.mp4": "video",
+        "walk.mp4": "video",
+        "cut right.mp4": "unusable",
+        "board left": "photos",
+        "right empty.png": "photo",
+        "clicks.csv": "court_points",
+        "ends.csv": "racket",
+        "Serve.bvh": "bvh",
+    }
+    walk = found["data/My Gym/walk.mp4"]
+    assert walk.rate_hz == pytest.approx(10)
+    assert walk.duration_s == pytest.approx(2)
+    assert walk.parts == ("walk",)
+    board = found["data/My Gym/board left"]
+    assert (board.size, board.n_photos) == ((160, 120), 3)
+    assert found["data/My Gym/cut right.mp4"].note.startswith("expected a video")
+
+
+def test_a_folder_elsewhere_gives_absolute_paths(gym, tmp_path):
+    found = survey.survey(gym / "data" / "My Gym", root=tmp_path)
+    assert all(
+        Path(recording.path).is_file() or Path(recording.path).is_dir() for recording in found
+    )
+
+
+def test_a_path_that_is_no_folder(gym):
+    with pytest.raises(InputError, match="found none"):
+        survey.survey(gym / "nowhere", root=gym)
+    with pytest.raises(InputError, match="found a file"):
+        survey.survey(gym / "data" / "My Gym" / "notes.txt", root=gym)
+
+
+def test_a_name_that_no_session_can_hold(tmp_path):
+    (tmp_path / "a\nb.bvh").write_text("HIERARCHY\n")
+    (found,) = survey.survey(tmp_path, root=tmp_path)
+    assert (found.kind, "rename" in found.note) == ("unusable", True)
+
+
+@needs_real
+def test_real_calibrations_are_told_from_other_text():
+    found = survey.survey(REAL / "walk-4cams" / "calibration", root=REAL)
+    calibrations = [r for r in found if r.kind == "calibration"]
+    assert calibrations[0].path == "walk-4cams/calibration/Calib.qca.txt"
+    assert calibrations[0].cameras["cam01"] == (1088, 1920)
+
+
+def run(root, *arguments):
+    command = [sys.executable, str(PROGRAM), *arguments, "--sessions", str(root / "sessions")]
+    return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+
+
+def test_the_program_drafts_once(gym):
+    (gym / "sessions").mkdir(exist_ok=True)
+    done = run(gym, "data/My Gym")
+    assert done.returncode == 0, done.stderr
+    assert "my_gym.yaml" in done.stdout
+    content = yaml.safe_load((gym / "sessions" / "my_gym.yaml").read_text())
+    assert content["cameras"] == {
+        "left": {
+            "static": "data/My Gym/left empty.mp4",
+            "chessboard": {
+                "images": "data/My Gym/board left",
+                "inner_corners": [7, 4],
+                "square_m": 0.06,
+            },
+        },
+        "right": {"static": "data/My Gym/right empty.png"},
+    }
+    assert content["walks"] == {"walk": {"video": "data/My Gym/walk.mp4"}}
+    assert content["court_points"] == "data/My Gym/clicks.csv"
+    assert list(content["takes"]) == ["serve"]
+    again = run(gym, "data/My Gym")
+    assert again.returncode == 1
+    assert again.stderr.count("\n") == 1
+    assert again.stderr.startswith("Error: ")
+
+
+def test_the_program_says_when_there_is_nothing(tmp_path):
+    (tmp_path / "data").mkdir()
+    done = run(tmp_path, "data")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "found none" in done.stderr

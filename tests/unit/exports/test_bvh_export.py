@@ -1,0 +1,161 @@
+"""BVH written and read back: by the study's reader, by bvhio, and by eye."""
+
+from dataclasses import replace
+
+import bvhio
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from courtside.devices import bvh as reader
+from courtside.exports import bvh
+from courtside.records.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+
+PARENTS = [NO_PARENT, 0, 1, 1, 0]
+NAMES = ("root", "chest", "left_arm", "right_arm", "leg")
+REAL_FILES = ["mocopi/mocopi-mobile-arm-raise-turn", "mocopi/jump", "bvh-walk01/walk01"]
+
+
+def made(n_frames=40, seed=5):
+    rng = np.random.default_rng(seed)
+    offsets = rng.normal(0, 0.3, (5, 3))
+    shape = Hierarchy(NAMES, np.array(PARENTS), offsets, {"leg": np.array([0, -0.4, 0.1])})
+    translation = np.repeat(offsets[None], n_frames, axis=0)
+    translation[:, 0] = rng.normal(0, 2, (n_frames, 3))
+    rotation = Rotation.random(n_frames * 5, rng=rng).as_matrix().reshape(n_frames, 5, 3, 3)
+    return PosedHierarchy(shape, np.arange(n_frames) / 60, translation, rotation)
+
+
+def turned_deg(a, b):
+    """Return the largest angle between two sets of rotations, degrees."""
+    apart = np.swapaxes(a, -1, -2) @ b
+    return np.degrees(Rotation.from_matrix(apart.reshape(-1, 3, 3)).magnitude().max())
+
+
+@pytest.mark.parametrize("order", ["ZXY", "XYZ", "YXZ", "ZYX"])
+@pytest.mark.parametrize("unit_m", [0.01, 1.0])
+def test_what_is_written_is_read_back(tmp_path, order, unit_m):
+    posed = made()
+    bvh.write(tmp_path / "a.bvh", posed, order=order, unit_m=unit_m)
+    found = reader.read(tmp_path / "a.bvh", unit_m=unit_m)
+    assert found.hierarchy.joints == NAMES
+    assert found.hierarchy.parents.tolist() == PARENTS
+    np.testing.assert_allclose(found.hierarchy.offsets, posed.hierarchy.offsets, atol=1e-6)
+    np.testing.assert_allclose(found.hierarchy.ends["leg"], [0, -0.4, 0.1], atol=1e-6)
+    assert found.hierarchy.ends["left_arm"].tolist() == [0, 0, 0]
+    np.testing.assert_allclose(found.time_s, posed.time_s, atol=1e-6)
+    np.testing.assert_allclose(found.translation, posed.translation, atol=1e-6)
+    assert turned_deg(found.parent_from_joint, posed.parent_from_joint) < 2e-6
+    assert [path.name for path in tmp_path.iterdir()] == ["a.bvh"]
+
+
+def test_the_middle_angle_may_be_90_degrees(tmp_path):
+    posed = made(n_frames=2)
+    posed.parent_from_joint[:, 1] = Rotation.from_euler(
+        "ZXY", [20, 90, 35], degrees=True
+    ).as_matrix()
+    posed.parent_from_joint[:, 2] = Rotation.from_euler(
+        "ZXY", [20, -90, 0], degrees=True
+    ).as_matrix()
+    bvh.write(tmp_path / "a.bvh", posed)
+    found = reader.read(tmp_path / "a.bvh")
+    assert turned_deg(found.parent_from_joint, posed.parent_from_joint) < 2e-6
+
+
+def test_the_text_is_what_the_format_wants(tmp_path):
+    shape = Hierarchy(
+        ("root", "tail"), np.array([NO_PARENT, 0]), np.array([[0, 0.9, 0], [0, 0, -0.2]])
+    )
+    turn = Rotation.from_euler("ZXY", [[10, 20, 30], [0, 0, -45]], degrees=True).as_matrix()
+    posed = PosedHierarchy(shape, np.zeros(1), np.array([[[0.5, 1, 0], [0, 0, -0.2]]]), turn[None])
+    bvh.write(tmp_path / "a.bvh", posed)
+    words = (tmp_path / "a.bvh").read_text().split()
+    channels = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+    expected = f"""HIERARCHY ROOT root {{ OFFSET 0 90 0 {channels} JOINT tail {{ OFFSET 0 0 -20 {channels}
+        End Site {{ OFFSET 0 0 0 }} }} }} MOTION Frames: 1 Frame Time: 0
+        50 100 0 10 20 30 0 0 -20 0 0 -45"""
+    for found, wanted in zip(words, expected.split(), strict=True):
+        assert found == wanted or float(found) == pytest.approx(float(wanted), abs=1e-6)
+
+
+def test_bvhio_places_it_the_same(tmp_path):
+    posed = made()
+    bvh.write(tmp_path / "a.bvh", posed)
+    root = bvhio.readAsHierarchy(str(tmp_path / "a.bvh"))
+    xyz, _ = forward(posed)
+    for frame in range(len(xyz)):
+        root.loadPose(frame)
+        places = [tuple(joint.PositionWorld) for joint, _, _ in root.layout()]
+        np.testing.assert_allclose(0.01 * np.array(places), xyz[frame], rtol=1e-6, atol=1e-6)
+
+
+def test_joints_are_written_chain_by_chain(tmp_path):
+    posed = made(n_frames=3)
+    mixed = [0, 1, 4, 2, 3]  # the leg before the arms: parents first, but no longer depth first
+    shape = posed.hierarchy
+    other = PosedHierarchy(
+        Hierarchy(
+            tuple(NAMES[at] for at in mixed),
+            np.array([-1, 0, 0, 1, 1]),
+            shape.offsets[mixed],
+            shape.ends,
+        ),
+        posed.time_s,
+        posed.translation[:, mixed],
+        posed.parent_from_joint[:, mixed],
+    )
+    bvh.write(tmp_path / "a.bvh", posed)
+    bvh.write(tmp_path / "b.bvh", other)
+    assert (tmp_path / "a.bvh").read_text() == (tmp_path / "b.bvh").read_text()
+
+
+@pytest.mark.parametrize("n_frames", [0, 1])
+def test_no_frame_and_one_frame(tmp_path, n_frames):
+    bvh.write(tmp_path / "a.bvh", made(n_frames))
+    found = reader.read(tmp_path / "a.bvh")
+    np.testing.assert_allclose(found.translation, made(n_frames).translation, atol=1e-6)
+    assert len(found.time_s) == n_frames
+
+
+@needs_real
+@pytest.mark.parametrize("name", REAL_FILES)
+def test_a_real_file_is_written_back(tmp_path, name):
+    posed = reader.read(REAL / f"{name}.bvh")
+    bvh.write(tmp_path / "a.bvh", posed)
+    found = reader.read(tmp_path / "a.bvh")
+    np.testing.assert_allclose(forward(found)[0], forward(posed)[0], atol=1e-6)
+    assert turned_deg(found.parent_from_joint, posed.parent_from_joint) < 2e-6
+    assert abs(found.time_s - posed.time_s).max() < 1e-6
+
+
+def broken(**changes):
+    return replace(made(4), **changes)
+
+
+def test_what_bvh_cannot_hold_is_one_line(tmp_path):
+    path = tmp_path / "a.bvh"
+    gap = made(4)
+    gap.translation[2, 3, 1] = np.nan
+    shape = made(4).hierarchy
+    faults = {
+        r"found none of 'right_arm' in frame 2": gap,
+        r"frames even in time": broken(time_s=np.array([0, 0.02, 0.04, 0.08])),
+        r"frames even": broken(time_s=np.zeros(4)),
+        r"without blanks, found 'left arm'": broken(
+            hierarchy=replace(shape, joints=("a", "b", "left arm", "c", "d"))
+        ),
+        r"that differ, .* found 'b'": broken(
+            hierarchy=replace(shape, joints=("a", "b", "c", "b", "d"))
+        ),
+    }
+    for told, posed in faults.items():
+        with pytest.raises(InputError, match=told) as caught:
+            bvh.write(path, posed)
+        assert "\n" not in str(caught.value)
+    with pytest.raises(ValueError, match="one root"):
+        bvh.write(path, broken(hierarchy=replace(shape, parents=np.array([-1, 0, -1, 1, 0]))))
+    with pytest.raises(ValueError, match="'ZXZ'"):
+        bvh.write(path, made(), order="ZXZ")
+    assert list(tmp_path.iterdir()) == []

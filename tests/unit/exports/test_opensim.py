@@ -1,0 +1,60 @@
+"""The marker set: well-formed, one marker for each of the TRC file's, on bodies that the models have."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from courtside.exports import markers, opensim
+from courtside.records import skeleton
+from courtside.study.errors import InputError
+
+SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
+# Bodies of Model_Pose2Sim_simple.osim of Pose2Sim 0.10.49.
+BODIES = {f"{body}_{side}" for side in "lr" for body in (
+    "femur", "tibia", "talus", "calcn", "toes", "humerus", "ulna", "radius", "hand"
+)} | {"pelvis", "torso", "head"}  # fmt: skip
+
+
+def read(path):
+    """Return body, place and fixedness of each marker, as OpenSim's serialiser nests them."""
+    root = ElementTree.parse(path).getroot()
+    assert (root.tag, root.get("Version")) == ("OpenSimDocument", "40000")
+    found = {}
+    for entry in root.findall("MarkerSet/objects/Marker"):
+        body = entry.findtext("socket_parent_frame")
+        place = [float(value) for value in entry.findtext("location").split()]
+        assert body.startswith("/bodyset/")
+        assert entry.get("name") not in found
+        found[entry.get("name")] = (body.removeprefix("/bodyset/"), place, entry.findtext("fixed"))
+    return found
+
+
+@pytest.mark.parametrize("name", ["blazepose33", "cpm14", "body25", "body25b", "halpe26", "coco17"])
+def test_every_skeleton_of_a_network_has_its_markers(tmp_path, name):
+    joints = skeleton.read(SKELETONS / f"{name}.yaml").joints
+    opensim.write_markers(tmp_path / "m.xml", joints)
+    found = read(tmp_path / "m.xml")
+    assert list(found) == markers.names(joints)
+    assert {body for body, *_ in found.values()} <= BODIES
+    assert found["LKnee"] == ("tibia_l", [0, 0, 0], "true")
+    assert found["RWrist"] == ("hand_r", [0, 0, 0], "true")
+    assert all(len(place) == 3 for _, place, _ in found.values())
+
+
+def test_sides_mirror_each_other_and_rough_places_may_move(tmp_path):
+    joints = skeleton.read(SKELETONS / "blazepose33.yaml").joints
+    opensim.write_markers(tmp_path / "m.xml", joints)
+    found = read(tmp_path / "m.xml")
+    for left in (name for name in found if name.startswith("L")):
+        (body, (x, y, z), fixed), (other, place, same) = found[left], found["R" + left[1:]]
+        assert place == [x, y, -z]
+        assert (body[:-1], fixed) == (other[:-1], same)
+    assert found["REye"][1][2] > 0  # z to the right
+    assert {found[name][2] for name in ("Nose", "LHeel", "RThumb")} == {"false"}
+
+
+def test_a_joint_without_a_place_is_named(tmp_path):
+    with pytest.raises(InputError, match="found 'tail'"):
+        opensim.write_markers(tmp_path / "m.xml", ["left_knee", "tail"])
+    assert not (tmp_path / "m.xml").exists()

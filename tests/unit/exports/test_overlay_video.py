@@ -1,0 +1,204 @@
+"""A video with skeletons burnt in: long, fast and large as its source, colours at joints, no faces."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import scene
+import walker
+from courtside.devices import video, video_writer
+from courtside.exports import overlay_video
+from courtside.figures import close_ups, style
+from courtside.records.sync import Clock
+from courtside.study.errors import InputError
+
+COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
+N = 12
+FACE = [walker.SKELETON.index(joint) for joint in walker.SKELETON.groups["face"]]
+WRIST = walker.SKELETON.index("left_wrist")
+
+
+@pytest.fixture(scope="module")
+def take():
+    """Return camera, 2D, 3D of a walker whom each camera sees 20 px to the right of where she is."""
+    points = walker.points(n_frames=N)
+    camera = scene.ring(3)[1]
+    view = walker.views(points, [camera], offset_px=(20.0, 0.0))[0]
+    return camera, view, points
+
+
+def tracked(take, clock=None, **changes):
+    camera, view, points = take
+    view = replace(view, **changes)
+    return overlay_video.track(camera, view, view, clock or Clock(), points, walker.SKELETON)
+
+
+def grey_frames(camera, times_s, size=None):
+    width, height = size or camera.size
+    return [(float(time), np.full((height, width, 3), 90, np.uint8)) for time in times_s]
+
+
+def drawn(take, track, hide_faces=None, frames=None):
+    frames = frames or grey_frames(take[0], track.own_s)
+    return list(overlay_video.pictures(frames, track, colours=COLOURS, hide_faces=hide_faces))
+
+
+def test_colours_stand_at_the_joints(take):
+    camera, view, points = take
+    image = drawn(take, tracked(take))[7]
+    true = scene.opencv_projection(camera, points.xyz[0, 7, [WRIST]])[0]
+    for xy, colour in ((view.xy[0, 7, WRIST], COLOURS[0]), (true, COLOURS[1])):
+        x, y = np.round(xy).astype(int)
+        assert image[y, x].tolist() == list(colour)
+
+
+def test_a_view_that_was_not_used_is_joined_by_a_red_line(take):
+    camera, view, points = take
+    images = drawn(take, tracked(take))
+    true = scene.opencv_projection(camera, points.xyz[0, 5, [7]])[0]
+    x, y = np.round((true + view.xy[0, 5, 7]) / 2).astype(int)
+    assert images[5][y, x].tolist() == list(
+        COLOURS[2]
+    )  # c1 is rejected for joint 7 in frame 5 only
+    assert images[7][y, x].tolist() != list(COLOURS[2])
+
+
+def test_the_skeleton_follows_the_clock(take):
+    camera, view, points = take
+    clock = Clock(offset_s=0.5, drift_ppm=100.0)
+    own_s = clock.from_reference(points.time_s[:-1] + 0.01)  # half a frame late
+    per_frame = ("xy", "score", "reason", "xyz_in_body")
+    kept = {key: getattr(view, key)[:, :-1] for key in per_frame}
+    track = tracked(take, clock, time_s=own_s, **kept)
+    np.testing.assert_allclose(track.reference_s, points.time_s[:-1] + 0.01)
+    middle = (points.xyz[0, 8, [WRIST]] + points.xyz[0, 9, [WRIST]]) / 2
+    expected = scene.opencv_projection(camera, middle)[0]
+    np.testing.assert_allclose(track.reprojected[0, 8, WRIST], expected, atol=1e-6)
+
+
+def test_nothing_is_drawn_before_and_after_the_3d(take):
+    _, _, points = take
+    wanted = np.array([-0.5, points.time_s[0], points.time_s[-1], points.time_s[-1] + 0.5])
+    found = overlay_video.between(points.time_s, points.xyz, wanted)
+    assert np.isnan(found[:, [0, 3]]).all()
+    np.testing.assert_allclose(found[:, 1:3], points.xyz[:, [0, -1]])
+
+
+def test_faces_are_hidden_also_while_nobody_sees_them(take):
+    camera, view, points = take
+    xy = view.xy.copy()
+    xy[:, 4:8] = np.nan
+    lost = replace(points, xyz=np.full_like(points.xyz, np.nan))
+    track = tracked((camera, view, lost), xy=xy)
+    rng = np.random.default_rng(0)
+    noise = rng.integers(0, 255, (camera.size[1], camera.size[0], 3), dtype=np.uint8)
+    frames = [(float(time), noise) for time in view.time_s]
+    hidden = drawn(take, track, close_ups.hide_faces, frames)
+    shown = drawn(take, track, None, frames)
+    for at in range(N):
+        x, y = np.round(view.xy[0, at, FACE].mean(axis=0)).astype(int)
+        part = (slice(y - 3, y + 4), slice(x - 3, x + 4))
+        assert detail(hidden[at][part]) < 0.5 * detail(noise[part]) or at not in range(4, 8)
+        if at in range(4, 8):  # without hiding nothing at all is drawn there then
+            np.testing.assert_array_equal(shown[at][part], noise[part])
+
+
+def detail(image):
+    return np.abs(np.diff(image.astype(float), axis=1)).mean()
+
+
+def test_nobody_in_the_background_can_be_recognised(take):
+    track = tracked(take)
+    rng = np.random.default_rng(0)
+    noise = rng.integers(0, 255, (1080, 1920, 3), dtype=np.uint8)
+    frames = [(float(track.own_s[0]), noise)]
+    hidden = drawn(take, track, close_ups.hide_faces, frames)[0]
+    x, y = np.round(track.detected[0, 0, WRIST]).astype(int)
+    around = np.linalg.norm(
+        np.stack(np.meshgrid(np.arange(1920), np.arange(1080)), axis=-1)[..., None, :]
+        - np.concatenate([track.detected[0, 0], track.reprojected[0, 0]])[::4],
+        axis=-1,
+    ).min(axis=-1)
+    away = around > 250
+    away[:150] = False  # the caption
+    assert away.mean() > 0.3
+    across = np.abs(np.diff(hidden.astype(float), axis=1)).mean(axis=-1)
+    assert across[away[:, 1:]].max() < 12  # of noise, whose neighbours differ by 85 on average
+    beside = (slice(y - 20, y - 12), slice(x - 10, x + 10))
+    assert (hidden[beside] == noise[beside]).mean() > 0.5  # sharp at the person, but for lines
+    kept = overlay_video.pictures(
+        frames, track, colours=COLOURS, hide_faces=close_ups.hide_faces, keep_background=True
+    )
+    np.testing.assert_array_equal(next(kept)[away], noise[away])
+
+
+def test_without_a_person_all_is_coarse():
+    rng = np.random.default_rng(0)
+    noise = rng.integers(0, 255, (240, 320, 3), dtype=np.uint8)
+    for persons in (np.empty((0, 3, 2)), np.full((2, 3, 2), np.nan)):
+        assert detail(overlay_video.only_persons(noise, persons, [(0, 1)])) < 0.35 * detail(noise)
+
+
+def test_gaps_in_a_face_are_bridged_for_a_second():
+    time_s = np.arange(40) / 10
+    xy = np.stack([time_s, 2 * time_s], axis=-1)[:, None]
+    seen = xy.copy()
+    seen[5:12], seen[33:] = np.nan, np.nan
+    seen[15:38] = np.nan
+    found = overlay_video.bridged(time_s, seen)
+    np.testing.assert_allclose(found[:15], xy[:15])
+    np.testing.assert_allclose(found[38 - 13 : 38 - 10, 0], [[np.nan, np.nan]] * 3)
+    assert np.isfinite(found[15:24]).all()
+    assert np.isnan(overlay_video.bridged(time_s, np.full((40, 1, 2), np.nan))).all()
+
+
+def test_the_file_is_like_its_source(take, tmp_path):
+    camera, _, points = take
+    source, result = tmp_path / "source.mp4", tmp_path / "overlay.mp4"
+    width, height = camera.size
+    frames = grey_frames(camera, points.time_s, (width // 2 * 2, height // 2 * 2))
+    video_writer.write_video(source, (image for _, image in frames), 50, crf=18)
+    pictures = overlay_video.pictures(
+        video.frames(source), tracked(take), colours=COLOURS, hide_faces=close_ups.hide_faces
+    )
+    video_writer.write_video(result, pictures, video.probe(source).rate_hz, crf=18)
+    before, after = video.probe(source), video.probe(result)
+    assert (after.n_frames, after.size, after.rate_hz) == (N, before.size, pytest.approx(50))
+    np.testing.assert_allclose(video.frame_times(result), video.frame_times(source), atol=1e-6)
+    image = video.read_frame(result, points.time_s[7])[1].astype(float)
+    x, y = np.round(take[1].xy[0, 7, WRIST]).astype(int)
+    assert np.abs(image[y, x] - COLOURS[0]).max() < 60  # H.264 keeps half the colour's resolution
+    assert np.abs(image[20, -20] - 90).max() < 6  # grey stays grey
+
+
+def test_an_odd_picture_grows_by_a_pixel(take):
+    track = tracked(take)
+    frames = grey_frames(take[0], track.own_s[:1], (641, 361))
+    assert drawn(take, track, None, frames)[0].shape == (362, 642, 3)
+
+
+def test_pictures_come_one_by_one(take):
+    taken = []
+
+    def source():
+        for frame in grey_frames(take[0], take[1].time_s):
+            taken.append(frame[0])
+            yield frame
+
+    made = overlay_video.pictures(source(), tracked(take), colours=COLOURS, hide_faces=None)
+    next(made)
+    assert len(taken) == 1
+
+
+def test_a_frame_without_keypoints_stops_the_video(take):
+    with pytest.raises(InputError, match=r"camera c1.*detect the pose"):
+        drawn(take, tracked(take), None, grey_frames(take[0], [0.03]))
+
+
+def test_persons_and_cameras_must_fit(take):
+    camera, view, points = take
+    with pytest.raises(ValueError, match="persons"):
+        tracked((camera, replace(view, xy=view.xy[:0]), points))
+    with pytest.raises(ValueError, match="cameras"):
+        overlay_video.track(replace(camera, name="z"), view, view, Clock(), points, walker.SKELETON)

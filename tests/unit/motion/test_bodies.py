@@ -1,0 +1,136 @@
+"""All sources of a take lie in one body frame, on one clock."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import device_takes
+from courtside.devices import mocopi
+from courtside.motion import bodies, bodyframe, device_events
+from courtside.records import derived, skeleton
+from courtside.records.sync import Clock
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+
+CONFIG = Path(__file__).parents[3] / "config"
+TABLE = derived.read(CONFIG / "derived_joints.yaml")
+CARRIED_BY = bodyframe.anchors(TABLE, "rig", device_takes.JOINTS)
+CLOCKS = {"d415-rgb": Clock(status="reference"), "mocopi": Clock(2.0, 0.0)}
+
+
+def take(seed=0):
+    truth = device_takes.truth(seed)
+    rng = np.random.default_rng(seed)
+    made = [
+        device_takes.device(rng, truth),
+        device_takes.mocopi(rng, truth, clock=CLOCKS["mocopi"], scale=0.9, cutoff_hz=None),
+    ]
+    return truth, made, {motion.source: device_events.events(motion) for motion in made}
+
+
+def test_exact_devices_agree_in_space_and_time():
+    truth, made, happened = take()
+    chosen = bodies.common(happened, CLOCKS)
+    aligned = []
+    for motion in made:
+        frame = bodyframe.at_tpose(motion, CARRIED_BY, chosen[motion.source])
+        claps = bodies.claps_of(motion.source, happened, CLOCKS)
+        aligned.append(bodies.aligned(motion, frame, CLOCKS[motion.source], claps))
+    rgb, mocopi = aligned
+    assert mocopi.unit_m == pytest.approx(0.9 * rgb.unit_m, rel=0.005)
+    for body in aligned:
+        np.testing.assert_allclose(
+            body.clap_s, [truth[2]["clap_1"], truth[2]["clap_2"]], atol=0.006
+        )
+        assert truth[2]["tpose_1_start"] - 0.2 < body.tpose_s[0] or body.tpose_s[0] > 5
+    at = np.arange(1.5, 4.0, 1 / 30)
+    for name in ("left_wrist", "right_ankle"):
+        both = [
+            np.column_stack([np.interp(at, b.time_s, line) for line in b.joint(name).T])
+            for b in aligned
+        ]
+        assert np.abs(both[0] - both[1]).max() < 0.02  # units; straight lines between frames
+
+
+def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
+    _, made, happened = take()
+    first, second = (happened[motion.source].tposes for motion in made)
+    at_s = {m.source: s for m, s in zip(made, (first, second), strict=True)}
+    for best in (0, 1):
+        costs = {source: [0.1, 0.1] for source in at_s}
+        costs["d415-rgb"][best] = 0.0
+        costs["mocopi"][1 - best] = 0.05
+        happened = {
+            source: device_events.Events(
+                [
+                    type(s)(**{**vars(s), "cost": c})
+                    for s, c in zip(spells, costs[source], strict=True)
+                ],
+                [],
+            )
+            for source, spells in at_s.items()
+        }
+        chosen = bodies.common(happened, CLOCKS)
+        assert chosen["d415-rgb"].start_s == first[best].start_s
+        assert chosen["mocopi"].start_s == second[best].start_s
+
+
+def test_no_common_t_pose_is_an_error_with_the_times():
+    _, _, happened = take()
+    wrong = CLOCKS | {"mocopi": Clock(20.0, 0.0)}
+    with pytest.raises(InputError, match=r"T-pose that all sources show.*mocopi -") as caught:
+        bodies.common(happened, wrong)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_counterpart_has_the_frame_of_the_same_t_pose():
+    truth, made, _ = take()
+    for number in (1, 2):
+        span = [truth[2][f"tpose_{number}_{end}"] for end in ("start", "stop")]
+        body = bodies.counterpart(made[0], CARRIED_BY, span)
+        assert body.tpose_s[0] == pytest.approx(span[0], abs=0.15)
+        held = (body.time_s > span[0] + 0.1) & (body.time_s < span[1] - 0.1)
+        wrist = np.median(body.joint("left_wrist")[held], axis=0)
+        assert wrist[0] == pytest.approx(1.0, abs=0.03)
+    with pytest.raises(InputError, match="check the clocks"):
+        bodies.counterpart(made[0], CARRIED_BY, [100.0, 101.0])
+
+
+def test_frames_that_nobody_performed_are_left_out():
+    _, made, happened = take()
+    motion = made[0]
+    motion.performed[:7] = False
+    frame = bodyframe.at_tpose(motion, CARRIED_BY, happened["d415-rgb"].tposes[0])
+    body = bodies.aligned(motion, frame, Clock())
+    assert len(body.time_s) == len(motion.time_s) - 7 == len(body.fixed) == len(body.reason)
+
+
+def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
+    truth, _, happened = take()
+    happened["d415-rgb"] = device_events.Events(happened["d415-rgb"].tposes, [])
+    found = bodies.claps_of("d415-rgb", happened, CLOCKS)
+    np.testing.assert_allclose(found, [truth[2]["clap_1"], truth[2]["clap_2"]], atol=0.006)
+
+
+@needs_real
+@pytest.mark.parametrize("name", ["jump", "mocopi-mobile-arm-raise-turn"])
+def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(name):
+    joints = skeleton.read(CONFIG / "skeletons" / "mocopi27.yaml")
+    motion, _ = mocopi.read(REAL / "mocopi" / f"{name}.bvh", joints)
+    happened = {"mocopi": device_events.events(motion, alone=True)}
+    assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
+    clocks = {"mocopi": Clock(status="reference")}
+    with pytest.raises(InputError, match="T-pose"):
+        bodies.common(happened, clocks)
+    chosen = bodies.common(happened, clocks, {"mocopi": motion})["mocopi"]
+    carried_by = bodyframe.anchors(TABLE, "mocopi27", motion.joints)
+    body = bodies.aligned(motion, bodyframe.at_tpose(motion, carried_by, chosen), clocks["mocopi"])
+    assert len(body.time_s) == motion.performed.sum()
+    assert np.isfinite(body.following).all()
+    wide = body.following[
+        :, [list(body.joints).index(f"{s}_shoulder") for s in ("left", "right")], 0
+    ]
+    assert (wide[:, 0] > 0).all()  # the left shoulder lies to the left in every frame
+    assert (wide[:, 1] < 0).all()
+    assert 0.5 < body.unit_m < 0.9

@@ -1,0 +1,187 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import depth_scenes
+from courtside.geometry import cameras
+from courtside.motion import depth_lift
+from courtside.motion.depth_samples import Sampling
+from courtside.records import reasons
+from courtside.records.keypoints import Keypoints2D
+from depth_scenes import BONES, RADIUS_M, STANDING
+
+RIG = depth_scenes.rig()
+NAMES = list(STANDING)
+N = 12
+
+
+def view(xyz):
+    """Return the keypoints of joints (T, J, 3) as the colour camera sees them."""
+    n_frames = len(xyz)
+    shape = (1, n_frames, len(NAMES))
+    return Keypoints2D(
+        camera="c",
+        model="m",
+        joints=np.array(NAMES),
+        size=np.array(RIG.colour.size),
+        time_s=5 + np.arange(n_frames) / 30,
+        xy=cameras.project(RIG.colour, xyz)[np.newaxis],
+        score=np.ones(shape),
+        reason=np.zeros(shape, np.uint8),
+        xyz_in_body=np.full((*shape, 3), np.nan),
+    )
+
+
+def joints(**moved):
+    return np.array([moved.get(name, STANDING[name]) for name in NAMES])
+
+
+def seen(places):
+    shapes = depth_scenes.capsules(dict(zip(NAMES, places, strict=True)))
+    return depth_scenes.depth_of(RIG.depth, shapes, RIG.colour_from_depth, n_balls=20)
+
+
+def lift(keypoints, pictures, **options):
+    taken = [(t, depth_scenes.steps(z)) for t, z in zip(keypoints.time_s, pictures, strict=True)]
+    settings = {"bones": BONES, "baseline_m": 0.055, "skin_m": RADIUS_M} | options
+    return depth_lift.lift_take("cam-depth", keypoints, taken, RIG, **settings)
+
+
+@pytest.fixture(scope="module")
+def still():
+    """Return the joints, the depth picture, and both repeated over a take."""
+    places = joints()
+    depth_m = seen(places)
+    return np.repeat(places[np.newaxis], N, axis=0), [depth_m] * N
+
+
+def test_joints_lie_where_the_limbs_are(still):
+    xyz, pictures = still
+    motion, sigma_m = lift(view(xyz), pictures)
+    error = np.linalg.norm(motion.xyz - xyz, axis=-1)
+    assert np.median(error) < 0.005
+    assert error.max() < 0.015
+    assert (motion.source, motion.kind) == ("cam-depth", "rgbd")
+    assert motion.time_s.tolist() == view(xyz).time_s.tolist()
+    assert (motion.reason == reasons.OK).all()
+    skin = motion.xyz[..., 2] - 0.05
+    assert np.allclose(sigma_m, skin**2 * 0.1 / (RIG.depth.K[0, 0] * 0.055), rtol=0.06)
+
+
+def test_noise_holes_and_misplaced_joints(still):
+    xyz, pictures = still
+    rng = np.random.default_rng(1)
+    noisy = []
+    for depth_m in pictures:
+        z = depth_m + rng.normal(0, 1, depth_m.shape) * depth_m**2 * 0.1 / (
+            RIG.depth.K[0, 0] * 0.055
+        )
+        z[rng.random(z.shape) < 0.15] = 0
+        noisy.append(z)
+    keypoints = view(xyz)
+    moved = replace(keypoints, xy=keypoints.xy + rng.normal(0, 2, keypoints.xy.shape))
+    motion, _ = lift(moved, noisy)
+    error = np.linalg.norm(motion.xyz - xyz, axis=-1)
+    assert np.isfinite(error).mean() > 0.97
+    assert np.nanmedian(error) < 0.02
+    assert np.nanpercentile(error, 95) < 0.05
+
+
+def test_a_hole_over_a_limb_is_no_depth(still):
+    xyz, pictures = still
+    wrist = NAMES.index("left_wrist")
+    at = RIG.colour_from_depth[:, :3].T @ (xyz[0, wrist] - RIG.colour_from_depth[:, 3])
+    u, v = np.rint(cameras.project(RIG.depth, at)).astype(int)
+    holed = [depth_m.copy() for depth_m in pictures]
+    holed[3][v - 12 : v + 13, u - 12 : u + 13] = 0
+    motion, sigma_m = lift(view(xyz), holed)
+    assert motion.reason[3, wrist] == reasons.NO_DEPTH
+    assert np.isnan(motion.xyz[3, wrist]).all()
+    assert np.isnan(sigma_m[3, wrist])
+    assert np.count_nonzero(motion.reason) == 1
+
+
+@pytest.mark.parametrize("beside", [True, False], ids=["trunk-beside-hand", "hand-only"])
+def test_a_hand_before_the_trunk_is_not_the_hip(still, beside):
+    """The hand before the hip: the hip is read beside it, or missing; the wrist keeps its depth."""
+    xyz, pictures = still
+    hip, wrist, elbow = (NAMES.index(n) for n in ("right_hip", "right_wrist", "right_elbow"))
+    shown = xyz[0, hip] * (2.36 / xyz[0, hip, 2])  # on the ray of the hip, nearer
+    crossed = joints(right_wrist=tuple(shown), right_elbow=(-0.144, -0.181, 2.426))
+    several = np.concatenate([xyz[:-1], crossed[np.newaxis]])
+    last = seen(crossed)
+    if not beside:
+        u, v = np.rint(cameras.project(RIG.depth, xyz[0, hip])).astype(int)
+        around = last[v - 25 : v + 25, u - 25 : u + 25]
+        around[around > 2.38] = 0
+    exact = Sampling(disparity_px=0.02)
+    motion, _ = lift(view(several), [*pictures[:-1], last], sampling=exact)
+    assert np.linalg.norm(motion.xyz[-1, wrist] - shown) < 0.03
+    assert np.linalg.norm(motion.xyz[-1, elbow] - crossed[elbow]) < 0.05
+    if beside:
+        assert np.linalg.norm(motion.xyz[-1, hip] - xyz[0, hip]) < 0.05
+    else:
+        assert motion.reason[-1, hip] == reasons.NO_DEPTH
+
+
+def test_a_joint_that_another_limb_hides_is_missing(still):
+    """The left forearm is stretched out to the camera before the right wrist, 40 cm behind it."""
+    xyz, pictures = still
+    wrist = NAMES.index("right_wrist")
+    ray = xyz[0, wrist] / xyz[0, wrist, 2]
+    front = {"left_elbow": tuple(ray * 1.95 + [0, 0.25, 0]), "left_wrist": tuple(ray * 1.95)}
+    crossed = joints(**front)
+    several = np.concatenate([xyz[:-1], crossed[np.newaxis]])
+    motion, _ = lift(view(several), [*pictures[:-1], seen(crossed)])
+    assert motion.reason[-1, wrist] == reasons.NO_DEPTH
+    assert (motion.reason[:-1] == reasons.OK).all()
+
+
+def test_reasons_of_the_picture_stay(still):
+    xyz, pictures = still
+    keypoints = view(xyz)
+    keypoints.reason[0, 2, 4] = reasons.OUT_OF_IMAGE
+    motion, _ = lift(keypoints, pictures)
+    assert motion.reason[2, 4] == reasons.OUT_OF_IMAGE
+    assert np.isnan(motion.xyz[2, 4]).all()
+
+
+def test_a_lost_depth_picture_is_no_depth(still):
+    xyz, pictures = still
+    keypoints = view(xyz)
+    taken = [(t, depth_scenes.steps(z)) for t, z in zip(keypoints.time_s, pictures, strict=True)]
+    del taken[5]
+    motion, _ = depth_lift.lift_take(
+        "d", keypoints, taken, RIG, bones=BONES, baseline_m=0.055, skin_m=RADIUS_M
+    )
+    assert (motion.reason[5] == reasons.NO_DEPTH).all()
+    assert np.count_nonzero(motion.reason) == len(NAMES)
+    assert "91.7%" in depth_lift.summary(motion, np.ones(3))
+
+
+def test_frames_are_taken_at_the_nearest_time():
+    frames = [(0.0, "a"), (0.1, "b"), (0.3, "c")]
+    times = [-0.2, 0.04, 0.06, 0.19, 0.29, 0.5]
+    found = list(depth_lift.nearest_frames(times, iter(frames), 0.06))
+    assert found == [None, "a", "b", None, "c", None]
+    assert list(depth_lift.nearest_frames([1.0], [], 9)) == [None]
+
+
+def test_the_skin_of_each_joint_by_its_name():
+    found = depth_lift.by_joint(
+        ["left_wrist", "nose", "right_wrist"], {"wrist": 0.03, "right_wrist": 0.02}
+    )
+    assert found.tolist() == [0.03, 0.0, 0.02]
+    with pytest.raises(ValueError, match="missing"):
+        depth_lift.by_joint(["tail"], {})
+
+
+def test_several_people_or_standing_clocks_are_refused(still):
+    xyz, pictures = still
+    keypoints = view(xyz)
+    two = replace(keypoints, xy=np.repeat(keypoints.xy, 2, axis=0))
+    stopped = replace(keypoints, time_s=np.zeros(N))
+    for wrong in (two, stopped):
+        with pytest.raises(ValueError, match="one person"):
+            lift(wrong, pictures)

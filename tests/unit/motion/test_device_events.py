@@ -1,0 +1,41 @@
+"""What sources show: of one device one source must clap, a device that is alone none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import device_takes
+from courtside.motion import device_events
+from courtside.study.errors import InputError
+
+DEVICES = {"d415-rgb": "d415", "mocopi": "mocopi", "d415-depth": "d415"}
+
+
+def take():
+    truth = device_takes.truth(3)
+    rng = np.random.default_rng(3)
+    rgb = device_takes.device(rng, truth)
+    still = np.repeat(rgb.xyz[:1], len(rgb.xyz), axis=0)  # arms down all the time
+    depth = replace(rgb, source="d415-depth", xyz=still)
+    return truth, rgb, device_takes.mocopi(rng, truth), depth
+
+
+def test_a_source_without_a_clap_is_borne_with_where_its_device_claps_in_another():
+    truth, rgb, mocopi, depth = take()
+    found = device_events.shown([rgb, mocopi, depth], DEVICES)
+    assert found["d415-depth"].claps == []
+    assert len(found["d415-rgb"].claps) == len(found["mocopi"].claps) == 2
+    assert found["d415-rgb"].claps[0].time_s == pytest.approx(truth[2]["clap_1"], abs=0.02)
+
+
+def test_a_device_among_others_must_clap():
+    _, _, mocopi, depth = take()
+    with pytest.raises(InputError, match="d415-depth: expected a T-pose"):
+        device_events.shown([mocopi, depth], DEVICES)
+
+
+def test_a_device_that_is_alone_need_not():
+    *_, depth = take()
+    found = device_events.shown([depth], {"d415-depth": "d415"})["d415-depth"]
+    assert (found.tposes, found.claps) == ([], [])

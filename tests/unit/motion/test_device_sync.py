@@ -1,0 +1,117 @@
+"""Clocks of virtual devices: offsets and drifts against those that the devices were given."""
+
+import numpy as np
+import pytest
+
+import device_takes
+from courtside.motion import device_events, device_sync
+from courtside.records.sync import Clock
+from courtside.study.errors import InputError
+
+LONG = {"between_s": 46.0, "fine_hz": 120.0}
+CAMERAS = {"source": "cameras", "kind": "cameras", "noise_m": (0.004,) * 3, "axes": np.eye(3)}
+
+
+def solve(*motions, **options):
+    happened = {motion.source: device_events.events(motion) for motion in motions}
+    return device_sync.synchronise(list(motions), happened, **options)
+
+
+def worst_s(reference, found, true):
+    ends = reference.time_s[[0, -1]]
+    return np.abs(found.from_reference(ends) - true.from_reference(ends)).max()
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_minute_gives_offset_within_8_ms_and_drift(seed):
+    take = device_takes.truth(0, **LONG)
+    rng = np.random.default_rng(seed)
+    reference = device_takes.device(rng, take, **CAMERAS)
+    clocks = {"mocopi": Clock(2.4, 55.0), "d415-rgb": Clock(-1.7, -40.0)}
+    mocopi = device_takes.mocopi(rng, take, clock=clocks["mocopi"], scale=1.05, turn=(0, 0.7, 0))
+    rgb = device_takes.blazepose(
+        rng, take, clock=clocks["d415-rgb"], noise_m=(0.006, 0.006, 0.03), turn=(0, 0.3, 0)
+    )
+    found = solve(reference, mocopi, rgb)
+    assert found["cameras"].clock.status == "reference"
+    for source, true in clocks.items():
+        clock = found[source].clock
+        assert worst_s(reference, clock, true) < 0.008
+        assert len(found[source].claps) == 2
+        assert abs(found[source].disagree_s) < 0.02
+        assert clock.status == "found" and clock.usable
+        assert worst_s(reference, clock, true) < 2.5 * clock.uncertainty_s
+        drift_ppm = abs(clock.drift_ppm - true.drift_ppm)
+        assert drift_ppm < 2.5 * clock.drift_uncertainty_ppm
+        assert clock.drift_uncertainty_ppm < 45
+        if source == "mocopi":
+            assert drift_ppm < 30
+
+
+def test_a_short_take_of_noisy_devices_is_covered():
+    errors, stated = [], []
+    for seed in range(6):
+        take = device_takes.truth(seed % 2)
+        rng = np.random.default_rng(seed)
+        true = Clock(rng.uniform(-5, 5), rng.normal(0, 60))
+        reference = device_takes.blazepose(rng, take)
+        mocopi = device_takes.mocopi(rng, take, clock=true)
+        clock = solve(reference, mocopi)["mocopi"].clock
+        middle_s = np.mean(reference.time_s)
+        errors.append(clock.from_reference(middle_s) - true.from_reference(middle_s))
+        stated.append(clock.uncertainty_s)
+    assert np.mean(np.abs(errors) <= 1.645 * np.array(stated)) >= 0.85
+    assert np.sqrt(np.mean(np.square(errors))) < 0.008
+    assert np.median(stated) < 0.01
+
+
+def test_a_stated_latency_is_reported_and_not_taken_off():
+    take = device_takes.truth(0)
+    rng = np.random.default_rng(0)
+    reference = device_takes.device(rng, take, **CAMERAS)
+    late = device_takes.mocopi(rng, take, cutoff_hz=None, causal_s=0.03)
+    found = solve(reference, late, latency={"mocopi": (0.03, 0.005)})["mocopi"]
+    assert (found.latency_s, found.latency_uncertainty_s) == (0.03, 0.005)
+    assert found.clock.offset_s == pytest.approx(0.03, abs=0.012)  # the delay is in the offset
+    assert found.clock.offset_s - found.latency_s == pytest.approx(0, abs=0.012)
+
+
+def test_sources_of_one_device_have_one_clock_and_known_clocks_stay():
+    take = device_takes.truth(0)
+    rng = np.random.default_rng(0)
+    true = Clock(1.5, 0.0)
+    reference = device_takes.device(rng, take, **CAMERAS)
+    rgb = device_takes.blazepose(rng, take, source="d415-rgb", clock=true)
+    depth = device_takes.device(
+        rng, take, source="d415-depth", kind="rgbd", clock=true, noise_m=(0.004,) * 3
+    )
+    mocopi = device_takes.mocopi(rng, take)
+    said = Clock(0.25, 0.0, 0.001, 0.0, "assumed", "said")
+    devices = {"d415-rgb": "d415", "d415-depth": "d415"}
+    found = solve(reference, rgb, depth, mocopi, devices=devices, known={"mocopi": said})
+    assert found["d415-rgb"].clock == found["d415-depth"].clock
+    assert found["d415-rgb"].clock.offset_s == pytest.approx(1.5, abs=0.008)
+    assert found["mocopi"].clock is said
+    shared = solve(depth, rgb, devices=devices)
+    assert shared["d415-rgb"].clock.offset_s == 0 and shared["d415-rgb"].clock.usable
+
+
+def test_a_device_without_a_clap_is_refused_by_name():
+    take = device_takes.truth(0)
+    rng = np.random.default_rng(0)
+    mocopi = device_takes.mocopi(rng, take)
+    still = device_takes.of(
+        np.tile(mocopi.xyz[:1], (300, 1, 1)), np.arange(300) / 60, "mocopi", "inertial"
+    )
+    with pytest.raises(InputError, match="mocopi: expected a T-pose"):
+        device_events.events(still)
+
+
+def test_other_peoples_claps_do_not_pair_silently():
+    """Motion of somebody else: the offset is the claps', and the note says that the motions differ."""
+    rng = np.random.default_rng(0)
+    first = device_takes.device(rng, device_takes.truth(0), **CAMERAS)
+    second = device_takes.mocopi(rng, device_takes.truth(1))
+    found = solve(first, second)["mocopi"]
+    assert "too little alike" in found.clock.note
+    assert np.isnan(found.motion_offset_s)

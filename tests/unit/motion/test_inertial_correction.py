@@ -1,0 +1,208 @@
+"""Known errors in a smooth body are found from noisy vision, and what is right is left so."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import moved_bodies
+from courtside.motion import inertial_correction
+from courtside.motion.body_segments import LIMB_JOINTS
+from courtside.records.hierarchy import PosedHierarchy, forward
+from courtside.study.errors import InputError
+
+SECONDS = 15.0
+SIGMA_M = 0.03
+SAME_JOINTS = inertial_correction.Settings(
+    offset_m=0.002, bias_m=0.005
+)  # vision's are the skeleton's
+LONGER = {
+    **{f"{side}_elbow": 1.08 for side in ("left", "right")},
+    **{f"{side}_knee": 0.94 for side in ("left", "right")},
+}
+
+
+def heading(n):
+    return np.radians(40) * np.linspace(0, 1, n) ** 2
+
+
+@cache
+def truth():
+    return moved_bodies.moving(0, SECONDS)
+
+
+@cache
+def corrected(case):
+    """Return (device's body, corrected body, report) of a case."""
+    true = truth()
+    bodies = {
+        "right": true,
+        "bones": moved_bodies.stretched(true, {j: 1 / f for j, f in LONGER.items()}),
+        "heading": moved_bodies.drifted(true, -heading(len(true.time_s))),
+        "swivel": moved_bodies.swivelled(true, "left", np.radians(30)),
+    }
+    vision = moved_bodies.seen(true, 1)
+    found = inertial_correction.correct(bodies[case], vision, sigma_m=SIGMA_M, settings=SAME_JOINTS)
+    return bodies[case], *found
+
+
+def errors_m(posed, report):
+    """Return distances (T, 12) to the truth, in vision's frame."""
+    return np.linalg.norm(
+        moved_bodies.in_vision(posed, report) - moved_bodies.true_in_vision(truth()), axis=2
+    )
+
+
+def sparc(speed, rate_hz, cutoff_hz=10.0, level=0.05, pad=4):
+    """Spectral arc length of a speed profile (Balasubramanian et al. 2015)."""
+    n = 2 ** int(np.ceil(np.log2(len(speed)) + pad))
+    frequency = np.arange(n) * rate_hz / n
+    spectrum = np.abs(np.fft.fft(speed, n))
+    spectrum = spectrum[frequency <= cutoff_hz] / spectrum.max()
+    last = np.flatnonzero(spectrum >= level)[-1] + 1
+    steps = np.diff(spectrum[:last])
+    return -np.sum(np.hypot(1 / (last - 1), steps))
+
+
+def test_bones_get_their_lengths():
+    _, _, report = corrected("bones")
+    found = {joint: report.bone_scale[joint] for joint in LONGER}
+    assert found == pytest.approx(LONGER, abs=0.02)
+
+
+def test_a_drifting_heading_is_taken_off():
+    _, body, report = corrected("heading")
+    wanted = np.degrees(np.interp(report.heading_s, truth().time_s, heading(len(truth().time_s))))
+    off = np.array(report.heading_deg) - wanted
+    assert np.ptp(wanted) > 30
+    assert np.abs(off - np.median(off)).max() < 3
+    assert np.median(errors_m(body, report)) < 0.025
+
+
+def test_an_elbow_turned_about_the_arm_is_turned_back():
+    raw, body, report = corrected("swivel")
+    elbow, wrist = (LIMB_JOINTS.index(f"left_{part}") for part in ("elbow", "wrist"))
+    true = moved_bodies.limbs(truth())
+    before = np.linalg.norm(moved_bodies.limbs(raw) - true, axis=2)
+    after = errors_m(body, report)
+    assert np.median(before[:, elbow]) > 0.05
+    assert np.median(before[:, wrist]) < 1e-9
+    assert np.median(after[:, elbow]) < 0.4 * np.median(before[:, elbow])
+    assert np.median(after[:, wrist]) < 0.03
+
+
+@pytest.mark.parametrize("case", ["right", "bones", "heading", "swivel"])
+def test_what_is_fast_stays_the_devices(case):
+    raw, body, report = corrected(case)
+    for side in ("left", "right"):
+        wrist = LIMB_JOINTS.index(f"{side}_wrist")
+        paths = [moved_bodies.limbs(posed)[:, wrist] for posed in (truth(), raw, body)]
+        speeds = [np.linalg.norm(np.gradient(path, axis=0), axis=1) for path in paths]
+        smoothness = [sparc(speed, moved_bodies.RATE_HZ) for speed in speeds]
+        jerks = [np.sqrt(np.mean(np.diff(path, 3, axis=0) ** 2)) for path in paths]
+        assert smoothness[2] > min(smoothness[:2]) - 0.05 * abs(smoothness[0])
+        assert jerks[2] < 1.15 * max(jerks[:2])
+    assert max(report.rms_change_mm) > report.rms_change_mm[-1]
+
+
+def test_a_right_device_stays_nearly_right():
+    _, body, report = corrected("right")
+    vision = moved_bodies.seen(truth(), 1)
+    at = np.searchsorted(truth().time_s, vision.time_s)
+    theirs = np.nanmedian(
+        np.linalg.norm(vision.xyz - moved_bodies.true_in_vision(truth())[at], axis=2)
+    )
+    assert theirs > 0.03
+    assert np.median(errors_m(body, report)) < 0.5 * theirs
+
+
+def test_a_right_device_stays_right_where_vision_is_good():
+    vision = moved_bodies.seen(truth(), 2, sd_m=(0.001,) * 3, outliers=0.02)
+    body, report = inertial_correction.correct(truth(), vision, sigma_m=0.001)
+    assert np.median(errors_m(body, report)) < 0.004
+
+
+def test_it_stays_a_body_of_constant_bones():
+    raw, body, _ = corrected("swivel")
+    assert body.hierarchy.joints == raw.hierarchy.joints
+    lengths = np.linalg.norm(body.translation[:, 1:], axis=2)
+    assert np.ptp(lengths, axis=0).max() < 1e-12
+    product = body.parent_from_joint @ body.parent_from_joint.swapaxes(2, 3)
+    assert np.abs(product - np.eye(3)).max() < 1e-9
+    assert np.allclose(body.hierarchy.offsets[1:], body.translation[0, 1:])
+
+
+def test_joints_that_nobody_sees_stay_the_devices():
+    vision = moved_bodies.seen(truth(), 3)
+    legs = [joint.split("_")[1] in ("knee", "ankle") for joint in LIMB_JOINTS]
+    vision.xyz[:, legs] = np.nan
+    raw = moved_bodies.swivelled(truth(), "right", 0.5)
+    body, report = inertial_correction.correct(raw, vision, sigma_m=SIGMA_M)
+    time_s = raw.time_s
+    turn = np.radians(np.interp(time_s, report.heading_s, report.heading_deg))
+    old, new = forward(raw)[1], forward(body)[1]
+    for joint in ("left_hip", "right_knee"):
+        at = raw.hierarchy.joints.index(joint)
+        wanted = moved_bodies.about_up(turn) @ old[:, at]
+        off = Rotation.from_matrix(wanted.swapaxes(1, 2) @ new[:, at]).magnitude()
+        assert np.degrees(off).max() < 1.0
+    assert report.seen[LIMB_JOINTS.index("left_knee")] == 0
+    assert report.after_mm[LIMB_JOINTS.index("left_knee")] is None
+
+
+def test_a_shift_of_the_clock_is_found():
+    vision = moved_bodies.seen(truth(), 4, late_s=0.03)
+    body, report = inertial_correction.correct(truth(), vision, sigma_m=SIGMA_M, lag_s=0.03)
+    assert report.lag_s == pytest.approx(-0.03, abs=0.005)
+    assert report.lag_sd_s < 0.005
+    assert np.allclose(body.time_s, truth().time_s - report.lag_s)
+
+
+def test_known_offsets_are_taken_off_and_not_given_to_bones():
+    away = {
+        f"{side}_wrist": np.array([0.05 * sign, 0, 0])
+        for side, sign in (("left", 1), ("right", -1))
+    }
+    shifted = moved_bodies.stretched(truth(), {joint: 1.2 for joint in away})  # 5 cm of 25
+    vision = moved_bodies.seen(shifted, 5)
+    scales = [
+        inertial_correction.correct(truth(), vision, sigma_m=SIGMA_M, offsets_m=known)[1].bone_scale
+        for known in (away, None)
+    ]
+    assert scales[0]["left_wrist"] == pytest.approx(1.0, abs=0.03)
+    assert scales[1]["left_wrist"] > 1.06
+
+
+def test_a_row_that_nobody_performed_keeps_its_pose():
+    true = truth()
+    first = PosedHierarchy(
+        true.hierarchy,
+        np.concatenate([[true.time_s[0] - 1 / 60], true.time_s]),
+        np.concatenate([true.hierarchy.offsets[None], true.translation]),
+        np.concatenate(
+            [np.tile(np.eye(3), (1, len(true.hierarchy.joints), 1, 1)), true.parent_from_joint]
+        ),
+    )
+    performed = np.arange(len(first.time_s)) > 0
+    vision = moved_bodies.seen(true, 1)
+    body, _ = inertial_correction.correct(first, vision, sigma_m=SIGMA_M, performed=performed)
+    assert np.array_equal(body.parent_from_joint[0], first.parent_from_joint[0])
+    assert np.array_equal(body.translation[0, 0], first.translation[0, 0])
+    assert np.allclose(body.translation[0, 1:], body.hierarchy.offsets[1:])
+
+
+def test_feet_keep_their_floor():
+    raw, body, _ = corrected("bones")
+    ankles = [LIMB_JOINTS.index(f"{side}_ankle") for side in ("left", "right")]
+    lowest = [
+        np.percentile(moved_bodies.limbs(p)[:, ankles, 1].min(axis=1), 5) for p in (raw, body)
+    ]
+    assert lowest[1] == pytest.approx(lowest[0], abs=1e-9)
+
+
+def test_vision_about_its_own_hips_is_refused():
+    vision = replace(moved_bodies.seen(truth(), 1), kind="rgb", source="d415-rgb")
+    with pytest.raises(InputError, match="d415-rgb: expected joints with a place in space"):
+        inertial_correction.correct(truth(), vision, sigma_m=SIGMA_M)

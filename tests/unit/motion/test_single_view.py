@@ -1,0 +1,54 @@
+import numpy as np
+
+from courtside.motion import single_view
+from courtside.records import reasons
+from courtside.records.keypoints import Keypoints2D
+
+
+def view(xy, in_body=None):
+    """Return keypoints (P, T, J, 2); missing where NaN."""
+    xy = np.asarray(xy, dtype=float)
+    seen = np.isfinite(xy).all(axis=-1)
+    empty = np.full((*xy.shape[:3], 3), np.nan)
+    return Keypoints2D(
+        camera="c",
+        model="m",
+        joints=np.array(["left_hip", "right_hip"]),
+        size=np.array([640, 480]),
+        time_s=np.arange(xy.shape[1]) / 30,
+        xy=xy,
+        score=np.where(seen, 0.9, np.nan),
+        reason=np.where(seen, reasons.OK, reasons.UNSEEN).astype(np.uint8),
+        xyz_in_body=empty if in_body is None else in_body,
+    )
+
+
+NONE = [np.nan, np.nan]
+NEAR, FAR = [[100, 100], [100, 300]], [[500, 100], [500, 150]]
+
+
+def test_the_largest_in_the_picture_is_taken_in_each_frame():
+    found = single_view.main_person(
+        view([[FAR, FAR, [NONE, NONE]], [NEAR, [NONE, NONE], [NONE, NONE]]])
+    )
+    assert found.xy.shape == (1, 3, 2, 2)
+    assert found.xy[0, 0].tolist() == NEAR
+    assert found.xy[0, 1].tolist() == FAR
+    assert (found.reason[0, 2] == reasons.UNSEEN).all()
+
+
+def test_nobody_is_unseen():
+    found = single_view.main_person(view(np.zeros((0, 4, 2, 2))))
+    assert found.xy.shape == (1, 4, 2, 2)
+    assert (found.reason == reasons.UNSEEN).all()
+
+
+def test_landmarks_become_a_motion():
+    in_body = np.random.default_rng(0).normal(size=(1, 2, 2, 3))
+    in_body[0, 1, 1] = np.nan
+    motion = single_view.landmarks("cam-rgb", view([[NEAR, NEAR]], in_body), [7.0, 7.1])
+    assert (motion.source, motion.kind) == ("cam-rgb", "rgb")
+    assert np.array_equal(motion.xyz, in_body[0], equal_nan=True)
+    assert motion.reason.tolist() == [[0, 0], [0, reasons.UNSEEN]]
+    assert motion.time_s.tolist() == [7.0, 7.1]
+    assert motion.performed.all()

@@ -1,0 +1,147 @@
+"""Errors and their parts against errors that were put in."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from bodies_made import body
+from courtside.motion import source_errors
+
+JOINTS = ["left_hip", "right_hip", "left_wrist", "right_wrist", "head", "left_ankle"]
+UNIT_M = 0.75
+
+
+def path(time_s, seed=0):
+    """Return smooth paths (T, J, 3) in body units."""
+    rng = np.random.default_rng(seed)
+    hz, phase, size = (
+        rng.uniform(0.2, 1.5, (3, 6, 3)),
+        rng.uniform(0, 6, (3, 6, 3)),
+        [0.4, 0.3, 0.2],
+    )
+    waves = np.sin(2 * np.pi * hz * np.asarray(time_s)[:, None, None, None] + phase)
+    return rng.uniform(-0.7, 0.7, (6, 3)) + np.einsum("k,tkji->tji", size, waves)
+
+
+TRUE_S = np.arange(0, 20, 1 / 100)
+REFERENCE = body(TRUE_S, path(TRUE_S), JOINTS, source="truth", unit_m=UNIT_M)
+OWN_S = np.arange(0.5, 19.5, 1 / 30)
+
+
+def source(
+    *, scale=1.0, turn=(0, 0, 0), shift=(0, 0, 0), late_s=0.0, noise=0.0, joints=JOINTS, unit_m=0.7
+):
+    xyz = scale * path(OWN_S - late_s) @ Rotation.from_rotvec(turn).as_matrix().T + shift
+    xyz += noise * np.random.default_rng(1).normal(size=xyz.shape)
+    order = [JOINTS.index(name) for name in joints]
+    return body(OWN_S, xyz[:, order], joints, unit_m=unit_m)
+
+
+def parts(**options):
+    return source_errors.split(source(**options), REFERENCE).set_index("part")
+
+
+def test_interpolation_is_a_cubic_and_bridges_no_gap():
+    time_s = np.arange(0, 2, 0.05)
+    cubic = np.stack([time_s**2, time_s**3 - time_s, 2 * time_s], axis=1)[:, None]
+    wanted = np.array([0.33, 1.011, 1.5, 0.02, -0.1, 2.5])
+    found = source_errors.at_times(time_s, cubic, wanted)[:, 0]
+    np.testing.assert_allclose(
+        found[:3, [0, 2]], np.stack([wanted[:3] ** 2, 2 * wanted[:3]], axis=1)
+    )
+    np.testing.assert_allclose(found[:3, 1], (wanted**3 - wanted)[:3], atol=2e-4)
+    np.testing.assert_allclose(
+        found[3], [0.02 * 0.05, 0.02 * (0.05**2 - 1), 0.04]
+    )  # a line at the end
+    assert np.isnan(found[4:]).all()
+    cubic[20:24] = np.nan
+    assert np.isnan(source_errors.at_times(time_s, cubic, np.array([0.97, 1.1, 1.17]))).all()
+    holed = np.delete(time_s, [20, 21, 22])
+    assert np.isnan(
+        source_errors.at_times(holed, np.delete(cubic, [20, 21, 22], axis=0), [1.05])
+    ).all()
+
+
+def test_an_exact_source_has_no_error():
+    _, found = source_errors.errors(source(), REFERENCE)
+    for alignment in source_errors.ALIGNMENTS:
+        assert np.nanmax(np.abs(found[alignment])) < 0.5  # mm: cubic between frames
+
+
+def test_each_alignment_takes_off_what_it_should():
+    shift = np.array([0.1, -0.05, 0.02])
+    turned = source(turn=(0.1, 0.3, -0.1), scale=1.1, shift=shift)
+    names, found = source_errors.errors(turned, REFERENCE)
+    assert names == JOINTS
+    for alignment in ("procrustes_take", "procrustes_frame"):
+        assert np.nanmax(np.abs(found[alignment])) < 0.6
+    _, found = source_errors.errors(source(shift=shift), REFERENCE)
+    np.testing.assert_allclose(
+        np.nanmean(found["body_frame"], axis=(0, 1)), 1000 * UNIT_M * shift, atol=0.1
+    )
+    assert np.nanmax(np.abs(found["root_relative"])) < 0.6
+
+
+def test_the_table_counts_and_adds_up():
+    rng = np.random.default_rng(0)
+    error = rng.normal(0, 10, (4000, 2, 3)) + np.array([[3, 0, -4], [0, 0, 0]])
+    error[:400, 0] = np.nan
+    known = np.ones((4000, 2), bool)
+    known[:100] = False
+    rows = source_errors.table(["a", "b"], {"body_frame": error}, known).set_index("joint")
+    assert rows.n["a"] == 3600
+    assert rows.missing_percent["a"] == pytest.approx(100 * 300 / 3900)
+    assert rows.missing_percent["b"] == 0
+    assert (rows.bias_x_mm["a"], rows.bias_z_mm["a"]) == pytest.approx((3, -4), abs=0.6)
+    assert rows.bias_mm["a"] == pytest.approx(5, abs=0.6)
+    assert rows.sd_mm["a"] == pytest.approx(10 * np.sqrt(3), rel=0.03)
+    np.testing.assert_allclose(rows.rmse_mm**2, rows.bias_mm**2 + rows.sd_mm**2)
+    assert rows.median_mm["b"] == pytest.approx(
+        10 * np.sqrt(2.366), rel=0.04
+    )  # chi, three dimensions
+    assert rows.p95_mm["b"] == pytest.approx(10 * np.sqrt(7.815), rel=0.04)
+    assert rows.n["all"] == 3600 + 3900
+
+
+@pytest.mark.parametrize(
+    ("options", "part", "value"),
+    [
+        ({"scale": 1.08}, "scale", 1 / 1.08),
+        ({"turn": (0.0, 0.2, 0.0)}, "rotation", np.degrees(0.2)),
+        ({"late_s": 0.05}, "time", -0.05),
+        ({"shift": (0.06, 0.0, 0.08)}, "origin", 100 * UNIT_M),
+        ({"noise": 0.05}, "remainder", None),
+    ],
+)
+def test_one_fault_is_found_as_itself(options, part, value):
+    rows = parts(**options)
+    assert rows.percent[part] > 90
+    assert rows.percent["all"] == pytest.approx(100)
+    if value is not None:
+        assert rows.value[part] == pytest.approx(value, rel=0.02)
+
+
+def test_the_parts_add_up_and_none_is_negative():
+    options = {
+        "scale": 1.05,
+        "turn": (0.05, 0.1, 0),
+        "late_s": 0.03,
+        "shift": (0.05, 0, 0),
+        "noise": 0.03,
+    }
+    rows = parts(**options)
+    named = rows.drop(index="all")
+    assert named.mean_square_mm2.sum() == pytest.approx(rows.mean_square_mm2["all"])
+    assert (named.mean_square_mm2 > 0).all()
+    expected = 3 * (0.03 * 1000 * UNIT_M) ** 2 / 1.05**2
+    assert rows.mean_square_mm2["remainder"] == pytest.approx(expected, rel=0.03)
+    assert rows.value["scale"] == pytest.approx(1 / 1.05, rel=0.005)
+    assert rows.value["time"] == pytest.approx(-0.03, abs=0.002)
+    assert rows.value["rotation"] == pytest.approx(np.degrees(np.hypot(0.05, 0.1)), rel=0.05)
+
+
+def test_only_joints_of_both_are_compared():
+    few = source(joints=["left_hip", "right_hip", "head", "left_wrist", "right_wrist"])
+    names, found = source_errors.errors(few, REFERENCE)
+    assert names == ["left_hip", "right_hip", "head", "left_wrist", "right_wrist"]
+    assert found["body_frame"].shape[1] == 5

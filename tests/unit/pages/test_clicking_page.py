@@ -1,0 +1,100 @@
+"""What the clicking page is given: pictures, court, earlier clicks; the browser tests click on it."""
+
+import json
+import re
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from courtside.geometry import courts
+from courtside.pages import clicking_page
+from courtside.study.errors import InputError
+
+COURT = Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml"
+
+
+@pytest.fixture(scope="module")
+def court():
+    return courts.read(COURT)
+
+
+@pytest.fixture
+def picture(tmp_path):
+    image = np.random.default_rng(0).integers(0, 255, (60, 80, 3)).astype(np.uint8)
+    path = tmp_path / "static.png"
+    cv2.imwrite(str(path), image)
+    return path, image
+
+
+def given(built):
+    (held,) = re.findall(r'id="data-clicking">(.*?)</script>', built)
+    return json.loads(held)
+
+
+def test_a_picture_is_taken_as_it_is_or_made_smaller(picture):
+    path, image = picture
+    exact = clicking_page.frame("left", path)
+    assert (exact.size, exact.mime, exact.image) == ((80, 60), "image/png", path.read_bytes())
+    small = clicking_page.frame("left", path, jpeg_quality=95)
+    assert small.mime == "image/jpeg"
+    again = cv2.imdecode(np.frombuffer(small.image, np.uint8), cv2.IMREAD_COLOR)
+    assert again.shape == image.shape
+    path.with_suffix(".jpg").write_bytes(small.image)
+    assert clicking_page.frame("left", path.with_suffix(".jpg")).mime == "image/jpeg"
+
+
+@pytest.mark.parametrize("content", [b"", b"no picture", None])
+def test_a_file_that_is_no_picture_is_named(tmp_path, content):
+    path = tmp_path / "odd.png"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(InputError, match=r"odd\.png: expected a .*picture") as fault:
+        clicking_page.frame("left", path)
+    assert "\n" not in str(fault.value)
+
+
+def test_the_page_holds_points_clicks_and_targets(court, picture):
+    path, _ = picture
+    clicks = clicking_page.by_point(np.array([[1.25, 2.0]] + [[np.nan, 3.0]] * 17), court.points)
+    assert clicks == {"p01": [1.25, 2.0]}
+    assert clicking_page.by_point(None, court.points) == {}
+    frames = [
+        clicking_page.frame("left", path, clicks=clicks),
+        clicking_page.frame("left", path, take="smash", frame_idx=7),
+    ]
+    targets = {"court_points.csv": "data/hall/court_points.csv"}
+    held = given(clicking_page.build("<hall>", court, frames, targets=targets))
+    assert held["session"] == "<hall>"
+    assert [point["name"] for point in held["court"]["points"]] == list(court.points)
+    assert held["court"]["points"][4]["marks"] == [
+        {"axis": 0, "at_m": 6.1, "side": 1}, {"axis": 1, "at_m": 4.72, "side": 1},
+    ]  # fmt: skip
+    assert held["frames"][0]["clicks"] == {"p01": [1.25, 2.0]}
+    assert [frame["take"] for frame in held["frames"]] == [None, "smash"]
+    assert held["targets"] == {**targets, "racket.csv": "racket.csv"}
+
+
+def test_kept_work_belongs_to_one_session_its_pictures_and_its_clicks(court, picture):
+    path, _ = picture
+
+    def stamp(session="hall", camera="left", clicks=None, proposals=None):
+        frame = clicking_page.frame(camera, path, clicks=clicks, proposals=proposals)
+        return given(clicking_page.build(session, court, [frame], targets={}))["stamp"]
+
+    assert stamp() == stamp(proposals={"p01": {"x": 1, "y": 2, "sigma_px": 0.1}})
+    different = [
+        stamp(),
+        stamp(session="gym"),
+        stamp(camera="right"),
+        stamp(clicks={"p01": [1, 2]}),
+    ]
+    assert len(set(different)) == 4
+
+
+@pytest.mark.parametrize("names", [[], ["left", "left"]])
+def test_pictures_are_of_different_cameras(court, picture, names):
+    frames = [clicking_page.frame(name, picture[0]) for name in names]
+    with pytest.raises(ValueError, match="expected pictures of different cameras"):
+        clicking_page.build("hall", court, frames, targets={})

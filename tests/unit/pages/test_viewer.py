@@ -1,0 +1,126 @@
+"""The viewer's page, read by a parser: what it holds, that it names nothing outside, that names stay text."""
+
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+import scene
+import walker
+from courtside.figures import style
+from courtside.geometry import courts
+from courtside.pages import page, viewer, viewer_layers
+
+CONFIG = Path(__file__).parents[3] / "config"
+ROGUE = '</script><img src="https://example.invalid/x">"&'
+
+
+class Stores(HTMLParser):
+    """Collects JSON by element id, and every address in an attribute."""
+
+    def __init__(self, source):
+        super().__init__()
+        self.held, self.addresses, self.title, self._into = {}, [], "", None
+        self.feed(source)
+
+    def handle_starttag(self, tag, attrs):
+        has = dict(attrs)
+        self.addresses += [value for key, value in attrs if key in ("src", "href", "action")]
+        self._into = has.get("id", tag)
+
+    def handle_endtag(self, tag):
+        self._into = None
+
+    def handle_data(self, data):
+        if self._into in ("data-scene", "data-layers"):
+            self.held[self._into] = json.loads(data)
+        if self._into == "title":
+            self.title += data
+
+
+def layer(name="raw", n_frames=20, **more):
+    return viewer_layers.of_points(name, walker.points(n_frames=n_frames), walker.SKELETON, **more)
+
+
+def test_nothing_outside_and_names_are_text():
+    cameras = scene.ring(3)
+    source = viewer.build(ROGUE, [layer(ROGUE)], cameras, notes=[ROGUE])
+    read = Stores(source)
+    assert read.title == ROGUE
+    assert read.held["data-layers"][0]["name"] == ROGUE
+    assert read.held["data-scene"]["notes"] == [ROGUE]
+    assert [at for at in read.addresses if not at.startswith("data:")] == []
+    rest = source.replace("https:\\/\\/example", "").replace("https://example", "")
+    assert re.findall(r"https?:|//[a-z]+\.[a-z]", rest) == []
+    assert "<img" not in source
+    assert len(source) < 200_000
+
+
+def test_cameras_are_pyramids_that_project_onto_their_pictures_corners():
+    for camera in scene.ring(4):
+        drawn = viewer.frustum(camera, 0.7)
+        xy = scene.opencv_projection(camera, np.array(drawn["corners"]))
+        width, height = camera.size
+        corners = np.array([[0, 0], [width, 0], [width, height], [0, height]]) - 0.5
+        np.testing.assert_allclose(xy, corners, atol=1e-3)
+        seen = np.array(drawn["corners"]) @ camera.cam_from_world[:, :3].T
+        np.testing.assert_allclose(seen[:, 2] + camera.cam_from_world[2, 3], 0.7)
+        np.testing.assert_allclose(np.linalg.norm(drawn["forward"]), 1)
+
+
+def test_the_court_is_its_files():
+    court = courts.read(CONFIG / "courts" / "badminton.yaml")
+    drawn = viewer.drawn_court(court)
+    areas = [
+        cv2.contourArea(np.array([place[:2] for place in line], np.float32))
+        for line in drawn["lines"]
+    ]
+    widths = court.lines_m[:, 2:] - court.lines_m[:, :2]
+    np.testing.assert_allclose(areas, widths.prod(axis=1), rtol=1e-5)
+    top = drawn["net"][0]["points"]
+    assert top == [[0.0, 6.7, 1.55], [3.05, 6.7, 1.524], [6.1, 6.7, 1.55]]
+    heights = [part["points"][1][2] for part in drawn["net"][6:]]
+    assert max(heights) < 1.55 and min(heights) >= 1.524
+
+
+def test_without_a_court_a_grid_lies_around_the_movement():
+    read = Stores(viewer.build("t", [layer()]))
+    grid = np.array(read.held["data-scene"]["grid"])
+    xyz = walker.points().xyz.reshape(-1, 3)
+    low, high = np.nanmin(xyz, axis=0), np.nanmax(xyz, axis=0)
+    assert (grid[..., :2].min(axis=(0, 1)) < low[:2]).all()
+    assert (grid[..., :2].max(axis=(0, 1)) > high[:2]).all()
+    assert not grid[..., 2].any()
+    assert read.held["data-scene"]["court"] is None
+
+
+def test_a_take_too_large_is_thinned_and_says_so(monkeypatch):
+    monkeypatch.setattr(viewer, "LARGEST_BYTES", 8_000)
+    read = Stores(viewer.build("t", [layer(n_frames=200)]))
+    kept = len(read.held["data-layers"][0]["time_s"])
+    assert kept in (100, 50, 25)
+    assert f"one frame of {200 // kept}" in read.held["data-scene"]["notes"][-1]
+    assert "one frame of" not in str(
+        Stores(viewer.build("t", [layer()])).held["data-scene"]["notes"]
+    )
+
+
+def test_colours_are_those_of_the_figures():
+    assert (viewer.LEFT, viewer.RIGHT, viewer.MIDDLE) == (style.LEFT, style.RIGHT, style.MIDDLE)
+    assert set(viewer.LAYER_COLOURS) <= set(style.CYCLE)
+
+
+def test_the_page_is_written_whole(tmp_path):
+    source = viewer.build("t", [layer()])
+    page.write(tmp_path / "v.html", source)
+    assert (tmp_path / "v.html").read_text(encoding="utf-8") == source
+
+
+@pytest.mark.parametrize("layers", [[], [layer(), layer()]])
+def test_layers_need_names_that_differ(layers):
+    with pytest.raises(ValueError, match="differ"):
+        viewer.build("t", layers)

@@ -1,0 +1,63 @@
+"""Tables of proposals: round trip, and faults in one line."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from courtside.records import clicks, proposals
+from courtside.study.errors import InputError
+
+POINTS = ("p01", "p02", "p03")
+
+
+def some():
+    found = SimpleNamespace(
+        xy=np.array([[12.34567, 8.0], [np.nan, np.nan], [-0.25, 1e3]]),
+        sigma_px=np.array([0.2, np.nan, 0.5]),
+        confidence=np.array([0.9, 0.0, 0.4]),
+        reason=("", "a line it names, or two, is not seen", ""),
+    )
+    return {"left": found, "right": found}
+
+
+def test_what_is_written_is_read(tmp_path):
+    path = tmp_path / "new" / "proposals.csv"
+    proposals.write(path, some(), POINTS)
+    read = proposals.read(path, ["left", "right", "third"], POINTS)
+    assert read["third"] == {}
+    assert read["left"] == read["right"]
+    assert set(read["left"]) == {"p01", "p03"}
+    assert read["left"]["p01"] == pytest.approx({"x": 12.3457, "y": 8.0, "sigma_px": 0.2})
+    assert len(path.read_text().splitlines()) == 7
+
+
+def test_proposals_are_not_clicks(tmp_path):
+    path = tmp_path / "proposals.csv"
+    proposals.write(path, some(), POINTS)
+    with pytest.raises(InputError, match="expected the columns"):
+        clicks.read(path, ["left", "right"], POINTS)
+
+
+@pytest.mark.parametrize(
+    ("cameras", "points", "words"),
+    [
+        (["left"], POINTS, "unknown cameras or points: right"),
+        (["left", "right"], POINTS[:2], "unknown cameras or points: p03"),
+    ],
+)
+def test_other_cameras_and_points_are_named(tmp_path, cameras, points, words):
+    path = tmp_path / "proposals.csv"
+    proposals.write(path, some(), POINTS)
+    with pytest.raises(InputError, match=words) as fault:
+        proposals.read(path, cameras, points)
+    assert str(path) in str(fault.value) and "\n" not in str(fault.value)
+
+
+def test_no_table_is_said(tmp_path):
+    path = tmp_path / "odd.csv"
+    path.write_text("a,b\n1,2\n")
+    with pytest.raises(
+        InputError, match="expected a table of proposed court points, found the columns a, b"
+    ):
+        proposals.read(path, ["left"], POINTS)

@@ -1,0 +1,172 @@
+"""Drafted sessions: what they say, that their schema takes them, that nothing is written over."""
+
+import pytest
+import yaml
+
+from courtside.study import configuration, session_draft, session_faults, session_guess
+from courtside.study.errors import InputError
+from courtside.study.session_guess import Recording
+
+
+def recording(path, kind="video", **more):
+    parts = tuple(path.removeprefix("data/").rpartition(".")[0].split("/")[1:])
+    keys = {"size": (64, 48), "rate_hz": 30.0, "duration_s": 5.0}
+    return Recording(path, parts or (path,), kind, **(keys | more))
+
+
+def draft(*recordings, title="North", folder="data/north", **options):
+    guess = session_guess.guess(list(recordings))
+    text = session_draft.text(guess, title=title, folder=folder, **options)
+    content = yaml.safe_load(text)
+    assert configuration.schema_faults(content, "session", "draft") == []
+    return guess, text, content
+
+
+TAKE = (recording("data/north/a_left.mp4"), recording("data/north/a_right.mp4"))
+WALK = recording("data/north/walk.mp4", rate_hz=60.0, duration_s=95.2)
+
+
+def test_a_whole_session():
+    static = recording("data/north/left_empty.mp4"), recording("data/north/right_empty.mp4")
+    _, text, content = draft(*TAKE, *static, WALK)
+    assert content == {
+        "description": "North",
+        "court": "badminton",
+        "subjects": {"p1": {}},
+        "cameras": {
+            "left": {"static": "data/north/left_empty.mp4"},
+            "right": {"static": "data/north/right_empty.mp4"},
+        },
+        "walks": {"walk": {"video": "data/north/walk.mp4"}},
+        "court_points": "data/north/court_points.csv",
+        "takes": {
+            "a": {"videos": {"left": "data/north/a_left.mp4", "right": "data/north/a_right.mp4"}}
+        },
+    }
+    assert "walk.mp4}  # 64x48, 60 Hz, 95.2 s" in text
+    assert text.count(session_draft.MARK) >= 6
+    assert "click them" in text
+
+
+def test_the_workflow_takes_a_draft(tmp_path):
+    """All but the files themselves, which are not there, is as a session must be."""
+    guess, text, _ = draft(*TAKE, WALK)
+    path = tmp_path / "sessions" / "north.yaml"
+    path.parent.mkdir()
+    session_draft.write(path, text)
+    folder = configuration.SCHEMAS.parents[1] / "config"
+    content = yaml.safe_load(path.read_text())
+    found = list(session_faults.find(folder, path, content, None, tmp_path))
+    assert [line for line in found if "expected a file, found none" not in line] == []
+    assert len(found) == 6  # two videos, the same as static recordings, the walk, the clicks
+    assert guess.stand_ins == ["left", "right"]
+
+
+def test_odd_names_stay_what_they_are():
+    odd = 'data/my gym, no. 2/a: "x" #1'
+    takes = [recording(f"{odd} {camera}.mp4") for camera in ("left", "right")]
+    _, _, content = draft(*takes, title="no", folder="data/my gym, no. 2")
+    (take,) = content["takes"].values()
+    assert list(take["videos"].values()) == [f"{odd} left.mp4", f"{odd} right.mp4"]
+    assert content["description"] == "no"
+    assert content["court_points"] == "data/my gym, no. 2/court_points.csv"
+    takes = [recording(f"data/x/{camera}.mp4") for camera in ("no", "on", "1")]
+    assert list(draft(*takes)[2]["cameras"]) == ["no", "on", "1"]
+
+
+def test_a_calibration_replaces_clicks_and_its_cameras_are_matched():
+    calibration = recording(
+        "data/north/Calib.toml",
+        "calibration",
+        cameras={"Left": (64, 48), "cam": (1, 1), "right": (72, 48)},
+    )
+    _, text, content = draft(*TAKE, calibration)
+    assert content["calibration"] == {"file": "data/north/Calib.toml"}
+    assert content["court"] == "none"
+    assert "court_points" not in content
+    assert content["cameras"] == {
+        "left": {"name_in_calibration": "Left"},
+        "right": {"crop_px": [0, 0, 64, 48]},
+    }
+    assert "72x48" in text
+
+
+def test_a_camera_unknown_to_the_calibration_is_marked():
+    calibration = recording("data/north/c.toml", "calibration", cameras={"int_1_img": (64, 48)})
+    _, text, content = draft(*TAKE, calibration)
+    assert content["cameras"]["left"] == {"name_in_calibration": "left"}
+    assert "one of int_1_img" in text
+
+
+def test_photos_alone_and_courts():
+    photos = Recording("data/door/images", ("images",), "photos", (640, 480), n_photos=12)
+    _, text, content = draft(photos, folder="data/door")
+    assert content["walks"] == {"images": {"images": "data/door/images"}}
+    assert (content["cameras"], content["court"]) == ({}, "none")
+    assert "12 photos, 640x480" in text
+    assert draft(*TAKE, court="tennis")[2]["court"] == "tennis"
+    assert "court_points" not in draft(*TAKE, WALK, court="none")[2]
+
+
+def test_devices_and_left_over_files_are_told():
+    bad = recording("data/north/bad_left.mp4", "unusable", note="expected a video,\nfound none")
+    bvh = recording("data/north/a.bvh", "bvh")
+    again = recording("data/north/a2.bvh", "bvh")
+    chess = recording("data/north/chess.x", "photos")
+    _, text, content = draft(*TAKE, WALK, bad, bvh, again, chess)
+    assert content["takes"]["a"]["devices"] == {
+        "mocopi": {"file": "data/north/a.bvh"},
+        "mocopi_2": {"file": "data/north/a2.bvh"},
+    }
+    assert '#   "data/north/bad_left.mp4": expected a video, found none\n' in text
+    assert '"data/north/chess.x"' in text
+
+
+def test_a_folder_without_recordings_says_what_is_there():
+    with pytest.raises(InputError, match=r"data/north: expected videos .* found none; put") as told:
+        draft()
+    assert "\n" not in str(told.value)
+    bad = recording("data/north/x.mp4", "unusable", note="expected a video, found text")
+    with pytest.raises(
+        InputError, match=r"found data/north/x.mp4 \(expected a video, found text\)"
+    ):
+        draft(bad)
+
+
+def test_nothing_is_written_over(tmp_path):
+    path = tmp_path / "north.yaml"
+    path.write_text("mine")
+    with pytest.raises(InputError, match="found one"):
+        session_draft.write(path, draft(*TAKE)[1])
+    assert path.read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["North", "external", "a b", ".yaml"])
+def test_a_session_needs_a_name_that_it_may_have(tmp_path, name):
+    with pytest.raises(InputError, match="--name"):
+        session_draft.write(tmp_path / f"{name}.yaml", draft(*TAKE)[1])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_draft_that_its_schema_refuses_leaves_no_file(tmp_path):
+    with pytest.raises(ValueError, match="schema"):
+        session_draft.write(tmp_path / "north.yaml", "description: 1\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_to_check_names_what_is_odd(tmp_path):
+    slow = recording("data/north/a_right.mp4", rate_hz=25.0, duration_s=60.0, size=(32, 48))
+    static = recording("data/north/right_empty.mp4"), recording("data/north/left_empty.mp4")
+    walk = recording("data/north/walk.mp4", note="frames come at irregular times")
+    guess, *_ = draft(TAKE[0], slow, *static, walk)
+    lines = session_draft.to_check(guess, tmp_path / "north.yaml", "data/north/court_points.csv")
+    said = "\n".join(lines)
+    for part in ("camera right has pictures of 32x48 and 64x48", "25 and 30 Hz", "twofold"):
+        assert part in said
+    assert "walk.mp4: frames come at irregular times" in said
+    assert "data/north/court_points.csv" in said
+    assert "sessions: [north]" in said
+    assert "No walk" not in said
+    lines = session_draft.to_check(draft(*TAKE)[0], tmp_path / "north.yaml", "c.csv")
+    assert any(line.startswith("No walk") for line in lines)
+    assert not any(line.startswith("Odd") for line in lines)

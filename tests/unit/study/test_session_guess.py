@@ -1,0 +1,164 @@
+"""Which camera, walk and take recordings belong to, by their names alone."""
+
+from pathlib import PurePosixPath
+
+from courtside.study import session_guess
+from courtside.study.session_guess import Recording
+
+
+def recordings(*paths, **kinds):
+    """Return recordings of a folder `gym`: videos, but where a suffix says otherwise."""
+    by_suffix = {
+        ".jpg": "photo",
+        ".bvh": "bvh",
+        ".bag": "bag",
+        ".csv": "court_points",
+        "": "photos",
+    }
+    found = []
+    for path in map(PurePosixPath, paths):
+        kind = kinds.get(path.stem, by_suffix.get(path.suffix, "video"))
+        parts = (*path.parts[:-1], path.stem)
+        found.append(Recording(f"gym/{path}", parts, kind, (64, 48), 30.0, 5.0))
+    return found
+
+
+def guess(*paths, **kinds):
+    given = recordings(*paths, **kinds)
+    found = session_guess.guess(given)
+    placed = [*found.walks.values(), *found.boards.values()]
+    placed += [r for c, r in found.static.items() if c not in found.stand_ins]
+    placed += [r for take in found.takes.values() for r in take.values()]
+    placed += [r for r, _ in found.unused] + [r for *_, r in found.devices]
+    placed += [r for r in (found.court_points, found.calibration) if r]
+    assert sorted(r.path for r in placed) == sorted(r.path for r in given)  # each exactly once
+    return found
+
+
+def paths(by_name):
+    return {name: recording.path.removeprefix("gym/") for name, recording in by_name.items()}
+
+
+def test_the_names_of_the_manual():
+    found = guess(
+        "centre_empty.mp4",
+        "left_empty.mp4",
+        "smash1_centre.mp4",
+        "smash1_left.mp4",
+        "smash2_centre.mp4",
+        "smash2_left.mp4",
+        "walk1.mp4",
+        "board_left",
+        "court_points.csv",
+        "smash2.bvh",
+    )
+    assert found.cameras == ["centre", "left"]
+    assert paths(found.static) == {"centre": "centre_empty.mp4", "left": "left_empty.mp4"}
+    assert paths(found.takes["smash1"]) == {
+        "centre": "smash1_centre.mp4",
+        "left": "smash1_left.mp4",
+    }
+    assert list(found.takes) == ["smash1", "smash2"]
+    assert paths(found.walks) == {"walk1": "walk1.mp4"}
+    assert paths(found.boards) == {"left": "board_left"}
+    assert found.court_points.path == "gym/court_points.csv"
+    assert [(take, device) for take, device, _ in found.devices] == [("smash2", "mocopi")]
+    assert not found.unused
+    assert not found.stand_ins
+
+
+def test_odd_cases_spaces_and_accents():
+    found = guess("Übung 2 Kamera 01.MOV", "Übung 2 Kamera 2.MOV", "Gehen walk.mov")
+    assert found.cameras == ["kamera01", "kamera2"]
+    assert list(found.takes) == ["ubung2"]
+    assert list(found.walks) == ["gehen_walk"]
+
+
+def test_what_all_names_share_names_neither_cameras_nor_takes():
+    found = guess(*(f"north_{take}_{camera}.mp4" for take in "ab" for camera in ("left", "right")))
+    assert found.cameras == ["left", "right"]
+    assert list(found.takes) == ["a", "b"]
+
+
+def test_a_single_take_keeps_its_name():
+    assert list(guess("smash_left.mp4", "smash_right.mp4").takes) == ["smash"]
+    assert list(guess("left.mp4", "right.mp4").takes) == ["take1"]
+
+
+def test_cameras_that_no_word_tells():
+    found = guess("a.mp4", "b.mp4", "c.mp4")
+    assert found.cameras == ["a", "b", "c"]
+    found = guess("serve_x.mp4", "serve_y.mp4", "lob_x.mp4", "lob_y.mp4")
+    assert (found.cameras, list(found.takes)) == (["x", "y"], ["serve", "lob"])
+
+
+def test_folders_for_cameras_and_folders_for_takes():
+    found = guess("cam1/serve.mp4", "cam1/lob.mp4", "cam2/serve.mp4", "cam2/lob.mp4")
+    assert paths(found.takes["lob"]) == {"cam1": "cam1/lob.mp4", "cam2": "cam2/lob.mp4"}
+    found = guess("serve/cam1.mp4", "serve/cam2.mp4", "lob/cam1.mp4", "lob/cam2.mp4")
+    assert paths(found.takes["lob"]) == {"cam1": "lob/cam1.mp4", "cam2": "lob/cam2.mp4"}
+
+
+def test_numbers_that_each_camera_counts_for_itself():
+    names = ("left/GX010034", "left/GX010035", "right/GX010107", "right/GX010108")
+    found = guess(*(f"{name}.MP4" for name in names))
+    assert list(found.takes) == ["take1", "take2"]
+    assert paths(found.takes["take2"]) == {
+        "left": "left/GX010035.MP4",
+        "right": "right/GX010108.MP4",
+    }
+
+
+def test_a_walk_that_players_walk_is_a_take():
+    found = guess("walk01_cam1.mp4", "walk01_cam2.mp4")
+    assert list(found.takes) == ["walk01"]
+    assert not found.walks
+
+
+def test_a_take_stands_in_for_static_recordings_that_a_walk_needs():
+    found = guess("left_empty.mp4", "a_left.mp4", "a_right.mp4", "right_empty.mp4", "walk.mp4")
+    assert (set(found.static), found.stand_ins) == ({"left", "right"}, [])
+    found = guess("serve_cam1.mp4", "serve_cam2.mp4", "walk.mp4")
+    assert found.stand_ins == ["cam1", "cam2"]
+    assert paths(found.static) == {"cam1": "serve_cam1.mp4", "cam2": "serve_cam2.mp4"}
+    assert guess("serve_cam1.mp4", "serve_cam2.mp4").stand_ins == []
+
+
+def test_photos_alone_are_a_walk():
+    found = guess("photos")
+    assert (paths(found.walks), found.cameras) == ({"photos": "photos"}, [])
+    found = guess(
+        "left_empty.jpg", "right_empty.jpg", "serve_left.mp4", "serve_right.mp4", "photos"
+    )
+    assert paths(found.walks) == {"photos": "photos"}
+
+
+def test_static_photos():
+    found = guess("left_empty.jpg", "a_left.mp4", "a_right.mp4", "right_empty.jpg")
+    assert paths(found.static) == {"left": "left_empty.jpg", "right": "right_empty.jpg"}
+    found = guess("tall_empty.jpg", "serve_tall.mp4", "serve_low.mp4", "low_empty.jpg")
+    assert set(found.static) == {"tall", "low"}
+
+
+def test_what_fits_nowhere_is_told():
+    found = guess("cam1_a.mp4", "cam2_a.mp4", "cam1_b.mp4", "chess", "more.csv", "court.csv")
+    told = {recording.path: why for recording, why in found.unused}
+    assert set(told) == {"gym/cam1_b.mp4", "gym/chess", "gym/court.csv"}
+    assert "cam1" in told["gym/cam1_b.mp4"]
+    assert "another" in told["gym/court.csv"]
+
+
+def test_one_video_is_a_walk_and_nothing_is_nothing():
+    assert paths(guess("IMG_0007.mov").walks) == {"img0007": "IMG_0007.mov"}
+    found = guess()
+    assert not (found.cameras or found.walks or found.takes)
+
+
+def test_files_of_devices_without_a_name_go_to_the_only_take():
+    found = guess("a_cam1.mp4", "a_cam2.mp4", "recording.bvh", "20260501.bag")
+    assert [(take, device) for take, device, _ in found.devices] == [
+        ("a", "mocopi"),
+        ("a", "realsense"),
+    ]
+    found = guess("a_cam1.mp4", "a_cam2.mp4", "b_cam1.mp4", "b_cam2.mp4", "x.bvh")
+    assert [take for take, *_ in found.devices] == [""]

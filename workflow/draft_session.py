@@ -1,0 +1,42 @@
+"""Draft a session's file from a folder of recordings: `python workflow/draft_session.py data/north`.
+
+A plain program, for Snakemake checks sessions before it runs. It writes config/sessions/<session>.yaml with
+every guess marked, never over a file that is there, and says what to look at next.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
+
+from courtside.devices import survey  # noqa: E402
+from courtside.study import file_names, session_draft, session_guess  # noqa: E402
+from courtside.study.errors import InputError  # noqa: E402
+
+
+def main(folder, name, court, sessions):
+    """Draft one session and return the lines to print."""
+    recordings = survey.survey(folder, root=Path.cwd())
+    guess = session_guess.guess(recordings)
+    name = name or file_names.name(folder.resolve().name, "session1")
+    written = survey.written(folder, Path.cwd())
+    path = sessions / f"{name}.yaml"
+    title = folder.resolve().name
+    session_draft.write(path, session_draft.text(guess, title=title, folder=written, court=court))
+    points = session_draft.court_points(guess, written)
+    return [f"Wrote {path}.", *session_draft.to_check(guess, path, points)]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, help="folder of recordings, such as data/north")
+    parser.add_argument("--name", help="of the session; the folder's without it")
+    parser.add_argument("--court", default="badminton", help="a file of config/courts, or none")
+    parser.add_argument("--sessions", type=Path, default=REPOSITORY / "config" / "sessions")
+    given = parser.parse_args()
+    try:
+        print("\n".join(main(given.folder, given.name, given.court, given.sessions)))
+    except InputError as error:
+        sys.exit(f"Error: {error}")

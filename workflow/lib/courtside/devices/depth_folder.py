@@ -1,0 +1,177 @@
+"""Read colour and depth from a folder of plain files, for cameras of any maker.
+
+The folder holds
+- `cameras.toml`: two cameras named `colour` and `depth` in the study's form (`name size matrix
+  distortions rotation
+  translation`; see `geometry.cameras.read_toml`), both placed in one frame of axes. Its `[metadata]` may
+  hold `unit` (of the translations: m, cm or mm; m where absent), `depth_unit_m` (metres of one step of
+  depth; 0.001 where absent) and `baseline_m` (between the imagers that depth comes from);
+- `colour.mp4` (or .mkv .mov .avi): the colour video;
+- `depth/`: one 16-bit PNG of one channel per frame, taken in the order of their names; 0 is a hole;
+- where a frame got lost or the clocks differ, `colour.csv` and `depth.csv` with the columns `number` (as
+  the camera
+  counted) and `time_s` (by one clock), one row per frame. Without them frame k of both is taken at the
+  time the video says, and the video and the folder must hold equally many.
+
+    [colour]
+    name = "colour"
+    size = [1280, 720]
+    matrix = [[924.0, 0.0, 639.5], [0.0, 924.0, 359.5], [0.0, 0.0, 1.0]]
+    distortions = [0.0, 0.0, 0.0, 0.0, 0.0]
+    rotation = [0.0, 0.0, 0.0]
+    translation = [0.015, 0.0, 0.0]
+
+    [depth]
+    ...
+    [metadata]
+    unit = "m"
+    depth_unit_m = 0.001
+"""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pandas as pd
+
+from courtside.devices import video
+from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording, FrameIndex
+from courtside.geometry import cameras, fields, transforms
+from courtside.study.errors import InputError
+
+VIDEOS = (".mp4", ".mkv", ".mov", ".avi")
+STANDING_STILL = np.eye(3, 4)
+
+
+def read(path, name="rgbd"):
+    """Read such a folder.
+
+    Parameters
+    ----------
+    path : str or Path
+    name : str
+        Of the device in the study.
+
+    Returns
+    -------
+    recording : DepthRecording
+
+    Raises
+    ------
+    InputError
+        If a file is missing or not as described above. A damaged picture shows when it is read.
+    """
+    folder = Path(path)
+    toml = folder / "cameras.toml"
+    found = {camera.name: camera for camera in cameras.read_toml(toml)}
+    if set(found) != {"colour", "depth"}:
+        raise InputError(
+            f"{toml}: expected cameras named colour and depth, found {sorted(found)}; rename them"
+        )
+    depth_unit_m, baseline_m, remarks = _metadata(toml)
+    film, pictures = _film(folder), _pictures(folder / "depth")
+    colour_index, depth_index = _indices(folder, film, len(pictures))
+    colour, depth = found["colour"], found["depth"]
+    cameras.check_size(colour, video.probe(film).size, film)
+    back = transforms.invert(depth.cam_from_world)
+    turn, shift = colour.cam_from_world[:, :3], colour.cam_from_world[:, 3]
+    return DepthRecording(
+        name=name,
+        colour=replace(colour, name=f"{name}-colour", cam_from_world=STANDING_STILL),
+        depth=replace(depth, name=f"{name}-depth", cam_from_world=STANDING_STILL),
+        colour_from_depth=np.column_stack([turn @ back[:, :3], turn @ back[:, 3] + shift]),
+        depth_unit_m=depth_unit_m,
+        colour_frames=lambda: _colour(film, colour_index.time_s),
+        depth_frames=lambda: _depth(pictures, depth_index.time_s, depth.size),
+        colour_index=lambda: colour_index,
+        baseline_m=baseline_m,
+        remarks=remarks,
+    )
+
+
+def _metadata(toml):
+    metadata = tomllib.loads(toml.read_text(encoding="utf-8-sig")).get("metadata", {})
+    where, remarks = f"{toml}: [metadata]", ()
+    if "depth_unit_m" not in metadata:
+        remarks = (f"no depth_unit_m in {toml}: {DEFAULT_UNIT_M} m assumed",)
+    unit = metadata.get("depth_unit_m", DEFAULT_UNIT_M)
+    depth_unit_m = float(fields.numbers(where, "depth_unit_m", unit, ()))
+    if not 1e-6 <= depth_unit_m <= 0.1:
+        raise InputError(
+            f"{where}: expected depth_unit_m of 0.000001 to 0.1, found {depth_unit_m}; correct it"
+        )
+    baseline = metadata.get("baseline_m")
+    baseline_m = np.nan if baseline is None else fields.numbers(where, "baseline_m", baseline, ())
+    return depth_unit_m, float(baseline_m), remarks
+
+
+def _film(folder):
+    found = [path for path in sorted(folder.glob("colour.*")) if path.suffix.lower() in VIDEOS]
+    if len(found) != 1:
+        names = [path.name for path in found]
+        raise InputError(
+            f"{folder}: expected one video colour{'|'.join(VIDEOS)}, found {names}; add or remove"
+        )
+    return found[0]
+
+
+def _pictures(folder):
+    found = sorted(folder.glob("*.png"))
+    if not found:
+        raise InputError(f"{folder}: expected 16-bit PNG pictures of depth, found none; add them")
+    return found
+
+
+def _indices(folder, film, n_depth):
+    """Return the `FrameIndex` of colour and of depth."""
+    times_s = video.frame_times(film)
+    tables = [folder / "colour.csv", folder / "depth.csv"]
+    given = [path.is_file() for path in tables]
+    if all(given):
+        return _table(tables[0], len(times_s)), _table(tables[1], n_depth)
+    if any(given):
+        raise InputError(f"{folder}: expected colour.csv and depth.csv, found one; add the other")
+    if len(times_s) != n_depth:
+        raise InputError(
+            f"{folder}: expected as many depth pictures as colour frames, {len(times_s)}, found {n_depth}; "
+            "add colour.csv and depth.csv that say when each was taken"
+        )
+    index = FrameIndex(times_s, np.arange(n_depth))
+    return index, index
+
+
+def _table(path, n_frames):
+    try:
+        rows = pd.read_csv(path)
+        times_s = rows["time_s"].to_numpy(dtype=float)
+        numbers = rows["number"].to_numpy(dtype=np.int64)
+    except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
+        raise InputError(
+            f"{path}: expected columns number (whole) and time_s, found {fields.short(error)}; correct them"
+        ) from error
+    rising = np.isfinite(times_s).all() and (np.diff(times_s) > 0).all()
+    if len(rows) != n_frames or not rising or not (np.diff(numbers) > 0).all():
+        raise InputError(
+            f"{path}: expected {n_frames} rows with rising number and time_s, one for each frame, found "
+            f"{len(rows)} rows or others; correct them"
+        )
+    return FrameIndex(times_s, numbers)
+
+
+def _colour(film, times_s):
+    for time_s, (_, image) in zip(times_s.tolist(), video.frames(film), strict=True):
+        yield time_s, image
+
+
+def _depth(pictures, times_s, size):
+    for path, time_s in zip(pictures, times_s.tolist(), strict=True):
+        image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+        if image is None or image.dtype != np.uint16 or image.shape != size[::-1]:
+            found = "no picture" if image is None else f"{image.dtype} {image.shape}"
+            raise InputError(
+                f"{path}: expected a 16-bit picture of one channel, {fields.times(size)} px, found {found}; "
+                "export depth again, without conversion"
+            )
+        yield time_s, image

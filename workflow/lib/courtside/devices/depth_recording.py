@@ -1,0 +1,97 @@
+"""A recording of a colour and depth camera, whatever file it comes from."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.geometry import fields
+from courtside.geometry.cameras import Camera
+
+DEFAULT_UNIT_M = 0.001  # what one step of a D400's depth means unless its option says otherwise
+
+
+@dataclass(frozen=True, eq=False)
+class FrameIndex:
+    """The frames of one stream.
+
+    Attributes
+    ----------
+    time_s : (T,) float
+        By the device's clock, increasing.
+    number : (T,) int
+        As the device counted them; a gap is a frame that never came.
+    """
+
+    time_s: np.ndarray
+    number: np.ndarray
+
+    @property
+    def n_missing(self):
+        """How many frames between the first and the last are missing by their numbers."""
+        if not len(self.number):
+            return 0
+        return int(self.number[-1] - self.number[0] + 1 - len(self.number))
+
+
+@dataclass(frozen=True, eq=False)
+class DepthRecording:
+    """Colour and depth of one device, by its own clock.
+
+    Attributes
+    ----------
+    name : str
+        Of the device in the study.
+    colour, depth : Camera
+        Their `cam_from_world` is the identity: the world of each is its own view.
+    colour_from_depth : (3, 4) float
+        From the depth camera's axes to the colour camera's, both x right, y down, z forward; metres.
+    depth_unit_m : float
+        Metres of one step of the depth pictures; 0 in them is a hole.
+    colour_frames : callable
+        Without arguments gives a new iterator of (time_s, (H, W, 3) uint8 BGR), in order of time.
+    depth_frames : callable
+        Without arguments gives a new iterator of (time_s, (h, w) uint16), in order of time.
+    colour_index : callable
+        Without arguments gives the `FrameIndex` of the colour frames, without decoding a picture.
+    baseline_m : float
+        Between the two imagers that the depth comes from; NaN where the recording does not say.
+    remarks : tuple of str
+        What was assumed because the recording does not say, one line each.
+
+    Raises
+    ------
+    ValueError
+        If `colour_from_depth` or `depth_unit_m` is impossible.
+    """
+
+    name: str
+    colour: Camera
+    depth: Camera
+    colour_from_depth: np.ndarray
+    depth_unit_m: float
+    colour_frames: Callable
+    depth_frames: Callable
+    colour_index: Callable
+    baseline_m: float = math.nan
+    remarks: tuple = ()
+
+    def __post_init__(self):
+        moved = np.array(self.colour_from_depth, dtype=float)
+        if moved.shape != (3, 4) or not np.isfinite(moved).all():
+            raise ValueError(
+                f"expected colour_from_depth as (3, 4) finite numbers, found {fields.short(moved)}"
+            )
+        rotation = moved[:, :3]
+        if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-4 or np.linalg.det(rotation) < 0:
+            raise ValueError("expected colour_from_depth with a right-handed rotation, found none")
+        if not 0 < self.depth_unit_m < 1:
+            raise ValueError(f"expected a depth unit between 0 and 1 m, found {self.depth_unit_m}")
+        moved.setflags(write=False)
+        object.__setattr__(self, "colour_from_depth", moved)
+
+    @property
+    def separation_m(self):
+        """Distance between the centres of the colour and the depth camera, metres."""
+        return float(np.linalg.norm(self.colour_from_depth[:, 3]))

@@ -1,0 +1,110 @@
+"""mocopi: the BVH files of its app -> the motion of its 27 joints, by the study's names.
+
+The axes stay the app's: Y up, right-handed, X to the left of a person who faces Z. Lengths are centimetres
+there. Every file of the app opens with a row that nobody performed: the rest pose of its own model, all
+rotations zero.
+"""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.devices import bvh
+from courtside.records import hierarchy, reasons
+from courtside.records.device_motion import DeviceMotion
+from courtside.study.errors import InputError
+
+KIND = "inertial"
+RATES_HZ = (30.0, 50.0, 60.0)
+WRITTEN_TO_S = 0.6e-6  # the app writes its frame time with six decimals: 0.016667
+NO_TURN = 1e-6  # largest entry by which a rotation may differ from none
+
+
+def read(path, skeleton, *, source="mocopi"):
+    """Read a file of the app.
+
+    Parameters
+    ----------
+    path : str or Path
+        BVH.
+    skeleton : Skeleton
+        `config/skeletons/mocopi27.yaml`: its `names` say what the file calls each joint.
+    source : str
+        Name of the device in the take.
+
+    Returns
+    -------
+    motion : DeviceMotion
+        Joints in the skeleton's order; metres in the app's axes; the clock starts at zero with the first row.
+        The rest pose in the first row is kept, as not performed.
+    posed : PosedHierarchy
+        The same motion as rotations, joints in the file's order by the study's names.
+
+    Raises
+    ------
+    InputError
+        If the file is not BVH or its joints are not the skeleton's.
+
+    Notes
+    -----
+    A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame times of 30, 50
+    and 60 frames a second are taken as these; others as written.
+    """
+    posed = bvh.read(path)
+    studied = dict(zip(skeleton.device_names(), skeleton.joints, strict=True))
+    _check_joints(path, skeleton.name, posed.hierarchy.joints, studied)
+    posed = replace(
+        posed, hierarchy=_renamed(posed.hierarchy, studied), time_s=_nominal(posed.time_s)
+    )
+    xyz, _ = hierarchy.forward(posed)
+    order = [posed.hierarchy.joints.index(joint) for joint in skeleton.joints]
+    motion = DeviceMotion(
+        source=source,
+        kind=KIND,
+        joints=np.array(skeleton.joints),
+        time_s=posed.time_s,
+        xyz=xyz[:, order],
+        reason=np.full(xyz.shape[:2], reasons.OK, dtype=np.uint8),
+        performed=~_rest_rows(posed),
+    )
+    return motion, posed
+
+
+def _check_joints(path, name, found, wanted):
+    missing = [joint for joint in wanted if joint not in found]
+    unknown = [joint for joint in found if joint not in wanted]
+    twice = [joint for joint, count in Counter(found).items() if count > 1]
+    if missing or unknown or twice:
+        faults = {"missing": missing, "unknown": unknown, "twice": twice}
+        told = "; ".join(f"{fault}: {', '.join(js)}" for fault, js in faults.items() if js)
+        raise InputError(
+            f"{path}: expected the {len(wanted)} joints of {name}, found {len(found)}: {told}; give the file "
+            "that the app exported, or add the names to the skeleton's file"
+        )
+
+
+def _renamed(shape, studied):
+    return hierarchy.Hierarchy(
+        joints=tuple(studied[joint] for joint in shape.joints),
+        parents=shape.parents,
+        offsets=shape.offsets,
+        ends={studied[joint]: tip for joint, tip in shape.ends.items()},
+    )
+
+
+def _nominal(time_s):
+    """Return the times by the rate that the app means, if it is one of its rates."""
+    if len(time_s) < 2:
+        return time_s
+    for rate_hz in RATES_HZ:
+        if abs(time_s[1] - time_s[0] - 1 / rate_hz) < WRITTEN_TO_S:
+            return np.arange(len(time_s)) / rate_hz
+    return time_s
+
+
+def _rest_rows(posed):
+    """Return which rows are the app's rest pose, (T,) bool: the first one, if nothing is turned in it."""
+    found = np.zeros(len(posed.time_s), dtype=bool)
+    found[:1] = (np.abs(posed.parent_from_joint[:1] - np.eye(3)) < NO_TURN).all()
+    return found

@@ -1,0 +1,230 @@
+"""Import skeletons that Nuitrack recorded.
+
+Accepted are
+- `.csv` of its recorder (documented in the maker's repository, `doc/CSV_Recorder.md`): columns
+  `timestamp` (the
+  sensor's, microseconds), `id` (of the user) and `JOINT_<NAME>.x .y .z` in metres; `serial` and `.rot`
+  are not used;
+- `.json` with the fields of its programming interface (`GET_SKELETON` of PyNuitrack): a list of frames,
+  or one frame
+  per line, each
+  `{"timestamp": 1715151474879921, "skeletons": [{"user_id": 1, "left_wrist": {"real": [x, y, z],
+  "confidence": 0.75}, ...}]}` with `real` in millimetres; `projection`, `orientation` and `type` are not
+  used. In place of joints by name, a skeleton may hold `"joints": [{"type": "JOINT_LEFT_WRIST", "real":
+  ..., "confidence": ...}, ...]`, `type` being the name or the number of the interface. Capital letters do
+  not matter (`Timestamp`, `Real`), `real` may be `{"x": ..., "y": ..., "z": ...}`, and `confidence` may
+  be missing.
+
+Nuitrack's x is to the right of the picture, y up and z away from the camera: left-handed. Here y is
+turned down, so that the axes are those of a camera.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from courtside.geometry import fields
+from courtside.records import reasons
+from courtside.records.device_motion import DeviceMotion
+from courtside.study import log
+from courtside.study.errors import InputError
+
+COLLARS = ("left_collar", "right_collar")  # one point under two names
+SIDED = ("collar", "shoulder", "elbow", "wrist", "hand", "fingertip")
+LEGS = ("hip", "knee", "ankle", "foot")
+NUMBERS = ("none", "head", "neck", "torso", "waist")  # of the interface, from 0
+NUMBERS += tuple(f"{side}_{joint}" for side in ("left", "right") for joint in SIDED)
+NUMBERS += tuple(f"{side}_{joint}" for side in ("left", "right") for joint in LEGS)
+UNITS_M = {".csv": 1.0, ".json": 0.001}
+TRUNK_M = (0.2, 1.0)  # from neck to waist, by the median: tells millimetres from metres
+EXPORT = "export the skeletons from Nuitrack again"
+
+
+def read(path, joints, source, *, min_confidence=0.5, user=None, unit_m=None):
+    """Read one user's skeleton.
+
+    Parameters
+    ----------
+    path : str or Path
+        `.csv` or `.json`, as above.
+    joints : sequence of str
+        Of `config/skeletons/nuitrack19.yaml`; `collar` is the mean of the two that are one.
+    source : str
+        Name of the result.
+    min_confidence : float
+        A joint below it is missing.
+    user : int, optional
+        Whose; of the user seen in most frames where absent.
+    unit_m : float, optional
+        Of the coordinates; metres in a `.csv` and millimetres in a `.json` where absent.
+
+    Returns
+    -------
+    motion : DeviceMotion
+        In the axes of a camera (x right, y down, z forward), metres; seconds on the sensor's clock.
+
+    Raises
+    ------
+    InputError
+        If the file is not such a recording, holds no such user or is not in the unit.
+    """
+    path = Path(path)
+    kind = path.suffix.lower()
+    if kind not in UNITS_M:
+        raise InputError(
+            f"{path}: expected a recording of Nuitrack (.csv or .json), found *{kind}; {EXPORT}"
+        )
+    users, time_us, xyz, confidence = (_csv if kind == ".csv" else _json)(path, list(joints))
+    chosen = _user(path, users, user)
+    time_us, xyz, confidence = time_us[chosen], xyz[chosen], confidence[chosen]
+    newer = np.concatenate(
+        [[True], np.diff(np.maximum.accumulate(time_us)) > 0]
+    )  # rows are repeated
+    time_us, confidence = time_us[newer], confidence[newer]
+    xyz = xyz[newer] * (UNITS_M[kind] if unit_m is None else unit_m) * (1.0, -1.0, 1.0)
+    unseen = ~np.isfinite(xyz).all(axis=-1) | (xyz == 0).all(axis=-1)
+    unsure = confidence < min_confidence
+    xyz[unseen | unsure] = np.nan
+    _check_size(path, xyz, list(joints))
+    reason = np.where(unseen, reasons.UNSEEN, np.where(unsure, reasons.LOW_SCORE, reasons.OK))
+    return DeviceMotion(
+        source=source,
+        kind="rgbd",
+        joints=np.array(joints),
+        time_s=time_us * 1e-6,
+        xyz=xyz,
+        reason=reason.astype(np.uint8),
+        performed=np.ones(len(xyz), dtype=bool),
+    )
+
+
+def _user(path, users, user):
+    """Return which rows are the user's."""
+    known, counts = np.unique(users, return_counts=True)
+    if not len(known) or (user is not None and user not in known):
+        raise InputError(
+            f"{path}: expected a skeleton of {'a user' if user is None else f'user {user}'}, found users "
+            f"{known.tolist()}; {EXPORT} or name another"
+        )
+    user = known[counts.argmax()] if user is None else user
+    if len(known) > 1:
+        log.logger.info("%s: user %s of %s", path, user, dict(zip(known, counts, strict=True)))
+    return users == user
+
+
+def _check_size(path, xyz, joints):
+    if not {"neck", "waist"} <= set(joints):
+        return
+    trunk = np.linalg.norm(xyz[:, joints.index("neck")] - xyz[:, joints.index("waist")], axis=-1)
+    if not np.isfinite(trunk).any():
+        raise InputError(f"{path}: expected neck and waist in some frame, found neither; {EXPORT}")
+    median_m = float(np.nanmedian(trunk))
+    if not TRUNK_M[0] <= median_m <= TRUNK_M[1]:
+        raise InputError(
+            f"{path}: expected {TRUNK_M[0]} to {TRUNK_M[1]} m from neck to waist, found {median_m:.3g} m; "
+            "say the unit of the coordinates (unit_m)"
+        )
+
+
+def _names(joint):
+    """Return the names of a joint in Nuitrack."""
+    return COLLARS if joint == "collar" else (joint,)
+
+
+def _csv(path, joints):
+    """Return users (N,), times (N,) us, places (N, J, 3) and confidences (N, J)."""
+    try:
+        rows = pd.read_csv(path, skipinitialspace=True)
+        rows.columns = [str(name).strip().lower() for name in rows.columns]
+        users = rows["id"].to_numpy(dtype=np.int64)
+        time_us = rows["timestamp"].to_numpy(dtype=np.int64)
+        xyz = np.stack([_columns(rows, joint) for joint in joints], axis=1)
+    except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
+        raise InputError(
+            f"{path}: expected columns timestamp, id and JOINT_<NAME>.x .y .z of each joint, found: "
+            f"{fields.short(error)}; {EXPORT}"
+        ) from error
+    return users, time_us, xyz, np.ones(xyz.shape[:2])
+
+
+def _columns(rows, joint):
+    found = [
+        rows[[f"joint_{name}.{axis}" for axis in "xyz"]].to_numpy(dtype=float)
+        for name in _names(joint)
+    ]
+    return np.mean(found, axis=0)
+
+
+def _json(path, joints):
+    """Return users (N,), times (N,) us, places (N, J, 3) and confidences (N, J)."""
+    users, time_us, xyz, confidence = [], [], [], []
+    try:
+        for frame in _frames(path):
+            for skeleton in frame["skeletons"]:
+                users.append(int(skeleton.get("user_id", skeleton.get("id", 0))))
+                time_us.append(int(frame["timestamp"]))
+                of_user = [_joint(_by_name(skeleton), joint) for joint in joints]
+                xyz.append([place for place, _ in of_user])
+                confidence.append([sure for _, sure in of_user])
+        times = np.array(time_us, dtype=np.int64)
+    except (KeyError, ValueError, TypeError, AttributeError, OverflowError) as error:
+        raise InputError(
+            f"{path}: expected frames with timestamp and skeletons, their joints with real, found: "
+            f"{type(error).__name__} {fields.short(error)}; {EXPORT}"
+        ) from error
+    places = np.array(xyz, dtype=float).reshape(-1, len(joints), 3)
+    sure = np.array(confidence, dtype=float).reshape(-1, len(joints))
+    return np.array(users, dtype=np.int64), times, places, sure
+
+
+def _frames(path):
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: expected JSON, found {fields.short(error)}; {EXPORT}") from error
+    try:
+        found = json.loads(text)
+    except RecursionError as error:
+        raise ValueError("brackets within brackets without end") from error
+    except json.JSONDecodeError:
+        found = [json.loads(line) for line in text.splitlines() if line.strip()]
+    found = _lower(found)
+    return [found] if isinstance(found, dict) else found
+
+
+def _lower(value):
+    """Return parsed JSON with all keys in small letters."""
+    if isinstance(value, dict):
+        return {key.lower(): _lower(item) for key, item in value.items()}
+    return [_lower(item) for item in value] if isinstance(value, list) else value
+
+
+def _by_name(skeleton):
+    if "joints" not in skeleton:
+        return skeleton
+    named = {}
+    for joint in skeleton["joints"]:
+        kind = joint["type"]
+        if isinstance(kind, int) and not 0 <= kind < len(NUMBERS):
+            raise ValueError(f"joint of type {kind}")
+        name = NUMBERS[kind] if isinstance(kind, int) else kind.lower().removeprefix("joint_")
+        named[name] = joint
+    return named
+
+
+def _joint(skeleton, joint):
+    """Return a joint's place, as written, and confidence; NaN where it is not there."""
+    found = [skeleton[name] for name in _names(joint) if name in skeleton]
+    if not found:
+        return [np.nan] * 3, np.nan
+    places = [_place(item["real"]) for item in found]
+    return np.mean(places, axis=0).tolist(), min(float(item.get("confidence", 1)) for item in found)
+
+
+def _place(real):
+    values = [real[axis] for axis in "xyz"] if isinstance(real, dict) else real
+    if len(values) != 3:
+        raise ValueError(f"real of {len(values)} numbers")
+    return [float(value) for value in values]

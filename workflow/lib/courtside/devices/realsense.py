@@ -1,0 +1,215 @@
+"""Read recordings of RealSense cameras: `.bag` (ROS 1) and `.db3` (ROS 2, software 2.59 and later).
+
+A stream has the topic `/device_0/sensor_<n>/Depth_<n>` or `.../Color_<n>`, followed by `image/data`
+(pictures; in a `.db3` also `image/data/compressed` and `image/data/compressedDepth`, both PNG),
+`image/metadata`, `camera_info` (a `.bag`: `info/camera_info`) and `tf/<reference>`: the transform from
+the reference's axes to the stream's own. A `.bag` holds ROS messages, a `.db3` text
+(`width=640;height=480;fx=...`).
+"""
+
+import functools
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from courtside.devices import bag_images, bags, realsense_lens, realsense_text
+from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording, FrameIndex
+from courtside.geometry import fields, transforms
+from courtside.geometry.cameras import Camera
+from courtside.study import log
+from courtside.study.errors import InputError
+
+PICTURES = re.compile(
+    r"(/device_\d+/sensor_\d+/(Depth|Color)_\d+)/image/data(/compressed|/compressedDepth)?"
+)
+RECORD = "record depth and colour together in the camera's program"
+STANDING_STILL = np.eye(3, 4)
+
+
+def read(path, name="realsense"):
+    """Read a recording.
+
+    Parameters
+    ----------
+    path : str or Path
+        The `.bag` or `.db3` file.
+    name : str
+        Of the device in the study.
+
+    Returns
+    -------
+    recording : DepthRecording
+        Times are the camera's own (its hardware clock where both streams have it). Frames that do not
+        come after the one before are left out, and counted in the log, as are frames missing by their
+        numbers.
+
+    Raises
+    ------
+    InputError
+        If the file is no such recording, damaged, or lacks a stream, its lens or its place. A fault
+        further in shows when the frames are read.
+    """
+    path = Path(path)
+    with bags.opened(path) as bag:
+        streams = _streams(bag)
+        lenses = {kind: _camera(bag, streams[kind], f"{name}-{kind}") for kind in streams}
+        domains = {kind: realsense_text.clock(bag, streams[kind]) for kind in streams}
+        depth_unit_m, remark = _depth_unit(bag, streams["depth"])
+        moved, remarks = _colour_from_depth(bag, streams), (remark,) if remark else ()
+        baseline_m = _option(bag, streams["depth"], "Stereo Baseline", np.nan) / 1000
+    own_clock = domains["depth"] == domains["colour"]
+    if not own_clock:
+        remarks += (
+            f"the streams have different clocks ({domains}): times are those of the recording",
+        )
+    follow = functools.partial(_follow, path, name, own_clock)
+    colour, depth = ((streams[k], lenses[k]) for k in ("colour", "depth"))
+    try:
+        return DepthRecording(
+            name=name,
+            colour=lenses["colour"],
+            depth=lenses["depth"],
+            colour_from_depth=moved,
+            depth_unit_m=depth_unit_m,
+            colour_frames=lambda: _pictures(follow(*colour, bag_images.colour)),
+            depth_frames=lambda: _pictures(follow(*depth, bag_images.depth)),
+            colour_index=lambda: _index(follow(*colour, None)),
+            baseline_m=float(baseline_m),
+            remarks=remarks,
+        )
+    except ValueError as error:
+        raise InputError(f"{path}: {error}; {RECORD}") from error
+
+
+def _streams(bag):
+    """Return the topics of both streams by `depth` and `colour`."""
+    found = {"Depth": set(), "Color": set()}
+    for topic, count in bag.counts.items():
+        match = PICTURES.fullmatch(topic)
+        if match and count:
+            found[match[2]].add(match[1])
+    for kind, prefixes in found.items():
+        if len(prefixes) != 1:
+            seen = sorted(prefixes) or sorted(t for t in bag.counts if "image" in t)[:3] or "none"
+            raise InputError(
+                f"{bag.path}: expected one stream of pictures named {kind}, found "
+                f"{fields.short(seen)}; {RECORD}"
+            )
+    return {"depth": found["Depth"].pop(), "colour": found["Color"].pop()}
+
+
+def _camera(bag, stream, name):
+    where = f"{bag.path}: {stream}"
+    info = bag.first(f"{stream}/info/camera_info") or bag.first(f"{stream}/camera_info")
+    if info is None:
+        raise InputError(f"{where}: expected its lens (camera_info), found none; {RECORD}")
+    size, matrix, model, coefficients = realsense_text.lens(where, info)
+    try:
+        camera = Camera(name, size, matrix, np.zeros(5), STANDING_STILL)
+        dist = realsense_lens.five_coefficients(where, model, coefficients, matrix, size)
+        return replace(camera, dist=dist)
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"{where}: {error}; {RECORD}") from error
+
+
+def _depth_unit(bag, stream):
+    """Return metres per step, and a remark where that is the default."""
+    unit = _option(bag, stream, "Depth Units", np.nan)
+    if np.isnan(unit):
+        unit = realsense_text.number_in(bag.first(f"{stream}/image/metadata"), "depth_units")
+    if np.isnan(unit):
+        return (
+            DEFAULT_UNIT_M,
+            f"no depth unit in the recording: {DEFAULT_UNIT_M} m assumed, as cameras have it",
+        )
+    if not 1e-6 <= unit <= 0.1:
+        raise InputError(
+            f"{bag.path}: expected a depth unit of 0.000001 to 0.1 m, found {unit}; {RECORD}"
+        )
+    return float(f"{unit:.7g}"), ""  # stored as a 32-bit float: 0.001 there is 0.0010000000475
+
+
+def _option(bag, stream, option, absent):
+    """Return a setting of a stream's sensor."""
+    sensor = stream.rpartition("/")[0]
+    for name in (option, option.replace(" ", "_")):
+        value = realsense_text.number(bag.first(f"{sensor}/option/{name}/value"))
+        if np.isfinite(value):
+            return value
+    return absent
+
+
+def _colour_from_depth(bag, streams):
+    places = {}
+    for kind, stream in streams.items():
+        topics = [topic for topic in bag.counts if topic.startswith(f"{stream}/tf/")]
+        found = bag.first(topics[0]) if len(topics) == 1 else None
+        if found is None:
+            raise InputError(
+                f"{bag.path}: {stream}: expected its place (tf), found {len(topics)} of them; {RECORD}"
+            )
+        reference = topics[0].rpartition("/")[2].removeprefix("ref_")
+        places[kind] = reference, realsense_text.place(f"{bag.path}: {stream}", found)
+    (to_depth, depth_from), (to_colour, colour_from) = places["depth"], places["colour"]
+    if to_depth != to_colour:
+        raise InputError(
+            f"{bag.path}: expected depth and colour placed against one reference, found {to_depth} and "
+            f"{to_colour}; "
+            f"{RECORD}"
+        )
+    back = transforms.invert(depth_from)
+    rotation = colour_from[:, :3] @ back[:, :3]
+    return np.column_stack([rotation, colour_from[:, :3] @ back[:, 3] + colour_from[:, 3]])
+
+
+def _follow(path, name, own_clock, stream, camera, decode):
+    """Yield (time_s, number, picture) of a stream; no picture without `decode`."""
+    what, last_s, late, n, numbers = f"{name}: {stream.rpartition('/')[2]}", -np.inf, 0, 0, [0, 0]
+    with bags.opened(path) as bag:
+        stamps = realsense_text.stamps(bag, stream) if own_clock else {}
+        topics = [t for t in bag.counts if (m := PICTURES.fullmatch(t)) and m[1] == stream]
+        for index, (_, time_ns, message) in enumerate(bag.messages(topics)):
+            number, time_s = stamps.get(time_ns) or realsense_text.stamp(
+                message, time_ns, index, own_clock
+            )
+            if not time_s > last_s:
+                late += 1
+                continue
+            last_s, n = time_s, n + 1
+            numbers = [number if n == 1 else numbers[0], number]
+            yield time_s, number, _decoded(f"{path}: {what} {number}", message, camera, decode)
+    missing = max(numbers[1] - numbers[0] + 1 - n, 0)
+    log.logger.info("%s: %d frames, %d missing, %d out of order", what, n, missing, late)
+
+
+def _decoded(where, message, camera, decode):
+    if decode is None:
+        return None
+    try:
+        picture = decode(message)
+    except (ValueError, TypeError, OverflowError, MemoryError) as error:
+        raise InputError(f"{where}: {error}; {bags.HOW}") from error
+    size = picture.shape[1], picture.shape[0]
+    if size != camera.size:
+        raise InputError(
+            f"{where}: expected {fields.times(camera.size)} px as its lens, found {fields.times(size)}; "
+            f"{bags.HOW}"
+        )
+    return picture
+
+
+def _pictures(followed):
+    for time_s, _, picture in followed:
+        yield time_s, picture
+
+
+def _index(followed):
+    rows = [(time_s, number) for time_s, number, _ in followed]
+    return FrameIndex(
+        np.array([time_s for time_s, _ in rows], dtype=float),
+        np.array([number for _, number in rows], dtype=np.int64),
+    )

@@ -1,0 +1,140 @@
+"""What a RealSense recording says beside the pictures, as messages (`.bag`) or text (`.db3`)."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry import fields
+from courtside.study.errors import InputError
+
+FIRST = (
+    60  # messages of metadata that hold those of the first frame: a .bag has about twenty for each
+)
+HOW = "record again in the camera's program"
+
+
+def pairs(message):
+    """Return `key=value;key=value` of a text message as a dict; empty where it is none."""
+    text = getattr(message, "data", "")
+    if not isinstance(text, str):
+        return {}
+    return dict(item.split("=", 1) for item in text.split(";") if "=" in item)
+
+
+def number(message):
+    """Return the number that a message holds, as text or not; NaN where there is none."""
+    try:
+        return float(message.data)
+    except (AttributeError, TypeError, ValueError):
+        return float("nan")
+
+
+def number_in(message, key):
+    """Return a number of a text message; NaN where there is none."""
+    try:
+        return float(pairs(message)[key])
+    except (KeyError, ValueError):
+        return float("nan")
+
+
+def lens(where, info):
+    """Return size, matrix (3, 3), name of the lens model and its coefficients.
+
+    Parameters
+    ----------
+    where : str
+        File and stream: begins messages.
+    info : message
+        `sensor_msgs/CameraInfo` or text.
+    """
+    found = pairs(info)
+    if found:
+        values = [found.get(key) for key in ("fx", "ppx", "fy", "ppy", "width", "height")]
+        fx, ppx, fy, ppy, *size = fields.numbers(where, "fx ppx fy ppy width height", values, (6,))
+        matrix = np.array([[fx, 0, ppx], [0, fy, ppy], [0, 0, 1]])
+        model, coefficients = found.get("model", ""), found.get("coeffs", "0,0,0,0,0").split(",")
+    elif hasattr(info, "distortion_model"):
+        size = [info.width, info.height]
+        matrix = np.reshape(getattr(info, "K", getattr(info, "k", None)), (3, 3))
+        model = info.distortion_model
+        coefficients = getattr(info, "D", getattr(info, "d", None))
+    else:
+        raise InputError(f"{where}: expected its lens (camera_info), found another message; {HOW}")
+    matrix = fields.numbers(where, "the lens matrix", matrix, (3, 3))
+    shapes = tuple((n,) for n in range(13))
+    coefficients = fields.numbers(where, "lens coefficients", coefficients, *shapes)
+    return [int(length) for length in size], matrix, model, coefficients
+
+
+def place(where, message):
+    """Return `stream_from_reference` (3, 4), metres, of a `geometry_msgs/Transform` or text.
+
+    Parameters
+    ----------
+    where : str
+        File and stream: begins messages.
+    message : message
+        The text holds the rotation column by column.
+    """
+    found = pairs(message)
+    try:
+        if found:
+            rotation = np.array(found["rotation"].split(","), dtype=float).reshape(3, 3).T
+            moved = np.array(found["translation"].split(","), dtype=float).reshape(3)
+            # six decimals in the file: brought back to the nearest rotation
+            left, _, right = np.linalg.svd(rotation)
+            off = np.abs(left @ right - rotation).max()
+            rotation = left @ right
+        else:
+            turn, shift = message.rotation, message.translation
+            quaternion = np.array([turn.x, turn.y, turn.z, turn.w])
+            off = abs(np.linalg.norm(quaternion) - 1)
+            rotation = Rotation.from_quat(quaternion).as_matrix()
+            moved = np.array([shift.x, shift.y, shift.z])
+        if not off < 1e-3 or np.linalg.det(rotation) < 0 or not np.abs(moved).max() < 1:
+            raise ValueError(f"rotation {off:.2g} off, translation {moved.tolist()} m")
+    except (KeyError, ValueError, AttributeError, np.linalg.LinAlgError) as error:
+        raise InputError(
+            f"{where}: expected its place as a rotation and less than 1 m, found {fields.short(error)}; {HOW}"
+        ) from error
+    return np.column_stack([rotation, moved])
+
+
+def clock(bag, stream):
+    """Return the name of the clock that a stream's times come from; empty where the recording has none."""
+    for message in bag.all(f"{stream}/image/metadata", FIRST):
+        if getattr(message, "key", "") == "timestamp_domain":
+            return message.value
+        if "timestamp_domain" in pairs(message):
+            return pairs(message)["timestamp_domain"]
+    return ""
+
+
+def stamps(bag, stream):
+    """Return (number, time_s) on the camera's clock by the time of the message: a `.db3` has them apart."""
+    found = {}
+    topic = f"{stream}/image/metadata"
+    if "timestamp" not in pairs(bag.first(topic)):
+        return found
+    for _, time_ns, message in bag.messages([topic]):
+        number, time_ms = number_in(message, "Frame number"), number_in(message, "timestamp")
+        if np.isfinite(number) and np.isfinite(time_ms):
+            found[time_ns] = int(number), time_ms * 1e-3
+    return found
+
+
+def stamp(message, time_ns, index, own_clock):
+    """Return (number, time_s) of a picture by its own header.
+
+    Parameters
+    ----------
+    message : message
+    time_ns, index : int
+        Time in the recording, and place in the stream: used where the header has none.
+    own_clock : bool
+        False to take the time in the recording.
+    """
+    header = message.header
+    number = int(getattr(header, "seq", index))
+    if not own_clock:
+        return number, time_ns * 1e-9
+    return number, header.stamp.sec + header.stamp.nanosec * 1e-9

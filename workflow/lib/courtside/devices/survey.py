@@ -1,0 +1,168 @@
+"""Find out what the files of a folder are: videos, photos, recordings of devices, clicks, calibrations."""
+
+import csv
+import math
+import os
+from pathlib import Path
+
+from courtside.devices import video, walks
+from courtside.geometry import calibration_files
+from courtside.records import clicks
+from courtside.study.errors import InputError
+from courtside.study.session_guess import Recording
+
+VIDEOS = {
+    ".mp4",
+    ".mov",
+    ".m4v",
+    ".avi",
+    ".mkv",
+    ".mts",
+    ".m2ts",
+    ".ts",
+    ".mpg",
+    ".mpeg",
+    ".webm",
+    ".wmv",
+    ".3gp",
+}
+BAGS = {".bag", ".db3"}
+CALIBRATIONS = {".toml", ".txt", ".xml"}  # a YAML file in a folder of recordings may be anything
+RACKET = {"take", "camera", "frame_idx", "end"}
+
+
+def survey(folder, *, root):
+    """Describe every recording of a folder and of the folders in it.
+
+    Parameters
+    ----------
+    folder : str or Path
+    root : str or Path
+        Where paths of sessions start from; a folder elsewhere gives absolute paths.
+
+    Returns
+    -------
+    recordings : list of Recording
+        In name order; files that nobody would take for a recording are left out, those that cannot be read
+        come as `unusable` with the reason.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError(
+            f"{folder}: expected a folder of recordings, found {'a file' if folder.exists() else 'none'}; "
+            "correct the path"
+        )
+    found = []
+    for at, inner, names in os.walk(folder):
+        inner[:] = sorted(name for name in inner if not name.startswith("."))
+        files = [Path(at) / name for name in sorted(names) if not name.startswith(".")]
+        photos = [path for path in files if path.suffix.lower() in walks.PHOTOS + walks.UNREADABLE]
+        together = len(photos) > 1 and Path(at) != folder
+        if together:
+            found.append(_described(Path(at), folder, root, _photos))
+        for path in files:
+            reader = _READERS.get(_kind(path))
+            if reader and not (together and path in photos):
+                found.append(_described(path, folder, root, reader))
+    return [recording for recording in found if recording]
+
+
+def _kind(path):
+    suffix = path.suffix.lower()
+    for kind, suffixes in (
+        ("video", VIDEOS),
+        ("photo", {*walks.PHOTOS, *walks.UNREADABLE}),
+        ("bag", BAGS),
+        ("calibration", CALIBRATIONS),
+    ):
+        if suffix in suffixes:
+            return kind
+    return suffix.removeprefix(".")
+
+
+def _described(path, folder, root, reader):
+    """Return the `Recording` that a file is, None for none."""
+    inside = path.relative_to(folder)
+    keys = {"path": written(path, root), "parts": (*inside.parts[:-1], inside.stem)}
+    if any(not letter.isprintable() for letter in keys["path"]):
+        return Recording(**keys, kind="unusable", note="a control character in its name; rename it")
+    try:
+        more = reader(path)
+    except InputError as error:
+        return Recording(**keys, kind="unusable", note=str(error).removeprefix(f"{path}: "))
+    return Recording(**keys, **more) if more else None
+
+
+def written(path, root):
+    """Return a path as a session names it: from `root` where it lies below, else absolute."""
+    whole, root = path.absolute(), Path(root).absolute()
+    return (whole.relative_to(root) if whole.is_relative_to(root) else whole).as_posix()
+
+
+def _video(path):
+    info = video.probe(path)
+    note = "frames come at irregular times" if info.variable_rate else ""
+    rate_hz = info.rate_hz if math.isfinite(info.rate_hz) else None
+    return {
+        "kind": "video",
+        "size": info.size,
+        "rate_hz": rate_hz,
+        "duration_s": info.duration_s,
+        "note": note,
+    }
+
+
+def _photo(path):
+    height, width = walks.read_photo(walks.photo_paths(path)[0]).shape[:2]
+    return {"kind": "photo", "size": (width, height)}
+
+
+def _photos(path):
+    photos = walks.photo_paths(path)
+    height, width = walks.read_photo(photos[0]).shape[:2]
+    return {"kind": "photos", "size": (width, height), "n_photos": len(photos)}
+
+
+def _table(path):
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            header = set(next(csv.reader(stream), []))
+    except (OSError, UnicodeDecodeError, csv.Error):
+        return None
+    if set(clicks.COLUMNS) <= header:
+        return {"kind": "court_points"}
+    return {"kind": "racket"} if header >= RACKET else None
+
+
+def _calibration(path):
+    try:
+        cameras = calibration_files.read(path)
+    except InputError:  # any other text file
+        return None
+    return {
+        "kind": "calibration",
+        "cameras": {camera.name: tuple(camera.size) for camera in cameras},
+    }
+
+
+def _bvh(path):
+    return {"kind": "bvh"}
+
+
+def _bag(path):
+    return {"kind": "bag"}
+
+
+_READERS = {
+    "video": _video,
+    "photo": _photo,
+    "csv": _table,
+    "calibration": _calibration,
+    "bvh": _bvh,
+    "bag": _bag,
+}

@@ -1,0 +1,143 @@
+"""BVH: a body's joints and rotations, as animation programs and the readers of mocopi's files take it."""
+
+import warnings
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from courtside.records.hierarchy import NO_PARENT
+from courtside.study.errors import InputError
+from courtside.study.files import atomic
+
+INDENT = "  "
+NO_TIP = np.zeros(3)
+EVEN_S = 1e-4  # how far a frame may lie from an even grid: BVH knows only one frame time
+
+
+def write(path, posed, *, order="ZXY", unit_m=0.01):
+    """Write a posed hierarchy.
+
+    Parameters
+    ----------
+    path : str or Path
+    posed : PosedHierarchy
+        One root; time even. Every joint gets six channels, as mocopi writes it: its place in its parent,
+        then its rotation.
+    order : str
+        Of the rotation channels: a permutation of XYZ. "ZXY" is R = Rz Rx Ry.
+    unit_m : float
+        Length of the file's unit, metres.
+
+    Raises
+    ------
+    InputError
+        If a value is missing, two joints have one name, a name is blank or has blanks in it, or the frames
+        are not even in time.
+    ValueError
+        If there is not one root at the front, or the order is none.
+
+    Notes
+    -----
+    Six decimals of the unit and of a degree. Joints stand depth first, each chain to its end. BVH knows no
+    start: the first frame's time is lost. A joint at the end of a chain without a tip gets one of length
+    zero, because many readers want one. Where the middle angle is 90 degrees the other two are not unique;
+    the last is then written as zero.
+    """
+    shape = posed.hierarchy
+    if list(shape.parents).count(NO_PARENT) != 1 or sorted(order) != ["X", "Y", "Z"]:
+        raise ValueError(
+            f"expected one root and an order of X, Y and Z, found parents {shape.parents}, order {order!r}"
+        )
+    frame_time_s = _check(path, posed)
+    sequence = _depth_first(shape.parents)
+    head = ["HIERARCHY", *_lines(shape, sequence, order, unit_m), "MOTION"]
+    head += [f"Frames: {len(posed.time_s)}", f"Frame Time: {frame_time_s:.9g}"]
+    values = np.concatenate(
+        [posed.translation / unit_m, _angles_deg(posed.parent_from_joint, order)], axis=-1
+    )
+    rows = values[:, sequence].reshape(len(values), 6 * len(sequence))
+    with atomic(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
+        stream.write("\n".join(head) + "\n")
+        np.savetxt(stream, rows, fmt="%.6f")
+
+
+def _check(path, posed):
+    """Check what BVH can hold; return the frame time, zero where there are not two frames."""
+    joints = posed.hierarchy.joints
+    bad = [name for at, name in enumerate(joints) if name.split() != [name] or name in joints[:at]]
+    if bad:
+        raise InputError(
+            f"{path}: expected names of joints that differ, without blanks, found {bad[0]!r}; rename it"
+        )
+    whole = np.isfinite(posed.translation).all(axis=2)
+    whole &= np.isfinite(posed.parent_from_joint).all(axis=(2, 3))
+    if not whole.all():
+        frame, joint = np.argwhere(~whole)[0]
+        raise InputError(
+            f"{path}: expected a place and a rotation of every joint in every frame, found none of "
+            f"{joints[joint]!r} in frame {frame}; BVH cannot hold gaps: fill them first"
+        )
+    time_s = posed.time_s
+    if len(time_s) < 2:
+        return 0.0
+    frame_time_s = (time_s[-1] - time_s[0]) / (len(time_s) - 1)
+    away = np.abs(time_s - time_s[0] - np.arange(len(time_s)) * frame_time_s).max()
+    if not (away <= EVEN_S and frame_time_s > 0):
+        raise InputError(
+            f"{path}: expected frames even in time within {EVEN_S * 1000:g} ms, found one "
+            f"{away * 1000:.3g} ms away; resample them first"
+        )
+    return float(frame_time_s)
+
+
+def _depth_first(parents):
+    """Return the joints in the order in which BVH names them: each chain to its end."""
+    children = {}
+    for joint, parent in enumerate(parents):
+        children.setdefault(int(parent), []).append(joint)
+    waiting, sequence = list(children[NO_PARENT]), []
+    while waiting:
+        sequence.append(waiting.pop())
+        waiting += reversed(children.get(sequence[-1], []))
+    return sequence
+
+
+def _lines(shape, sequence, order, unit_m):
+    """Yield the lines of the hierarchy."""
+    channels = " ".join(
+        [f"{axis}position" for axis in "XYZ"] + [f"{axis}rotation" for axis in order]
+    )
+    inner = set(shape.parents.tolist())
+    open_joints = []
+    for joint in sequence:
+        while open_joints and open_joints[-1] != shape.parents[joint]:
+            open_joints.pop()
+            yield INDENT * len(open_joints) + "}"
+        indent = INDENT * len(open_joints)
+        yield f"{indent}{'JOINT' if open_joints else 'ROOT'} {shape.joints[joint]}"
+        yield f"{indent}{{"
+        yield f"{indent}{INDENT}OFFSET {_three(shape.offsets[joint] / unit_m)}"
+        yield f"{indent}{INDENT}CHANNELS 6 {channels}"
+        open_joints.append(joint)
+        if joint not in inner or shape.joints[joint] in shape.ends:
+            tip = shape.ends.get(shape.joints[joint], NO_TIP) / unit_m
+            yield from (f"{indent}{INDENT}{line}" for line in ("End Site", "{"))
+            yield f"{indent}{INDENT * 2}OFFSET {_three(tip)}"
+            yield f"{indent}{INDENT}}}"
+    while open_joints:
+        open_joints.pop()
+        yield INDENT * len(open_joints) + "}"
+
+
+def _three(values):
+    return " ".join(f"{value:.6f}" for value in values)
+
+
+def _angles_deg(rotations, order):
+    """Return the angles of (T, J, 3, 3) rotations in the order of their channels, (T, J, 3) degrees."""
+    if not len(rotations):
+        return np.empty(rotations.shape[:3])
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Gimbal lock", category=UserWarning)
+        turns = Rotation.from_matrix(rotations.reshape(-1, 3, 3))
+        return turns.as_euler(order, degrees=True).reshape(rotations.shape[:3])

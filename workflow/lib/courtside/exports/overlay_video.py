@@ -1,0 +1,273 @@
+"""A take's video with what the network saw and what the 3D skeleton says it should have seen."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from courtside.geometry import cameras as camera_models
+from courtside.study.errors import InputError
+
+BRIDGED_S = 1.0  # a face unseen for longer, or for longer at an end, is not guessed
+LINE = 1 / 540  # of the picture's height
+LETTER = 1 / 1400  # size of the letters, of the picture's shorter side
+UNDER = 1.6  # the 3D skeleton is so much thicker than what is drawn over it
+FURTHEST_PX = 10_000  # from the picture's corner: OpenCV draws no further
+COARSE = 1 / 60  # of the picture's height: cells that surroundings are reduced to
+BODY = 0.18  # of a person's extent: how wide the body is around its bones
+DETECTED, REPROJECTED, NOT_USED = "detected", "3D skeleton", "view not used"
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """What is drawn on the pictures of one camera, frame by frame.
+
+    Attributes
+    ----------
+    camera : str
+    own_s, reference_s : (T,) float
+        Time of each frame on the camera's own and on the reference clock, seconds.
+    detected, reprojected : (P, T, J, 2) float
+        Px; NaN where missing.
+    used : (P, T, J) bool
+        Whether the 3D point rests on what this camera detected.
+    faces : (F, T, K, 2) float
+        Joints of all faces that may be in the picture, px, gaps bridged.
+    bones : tuple of (int, int)
+    """
+
+    camera: str
+    own_s: np.ndarray
+    reference_s: np.ndarray
+    detected: np.ndarray
+    reprojected: np.ndarray
+    used: np.ndarray
+    faces: np.ndarray
+    bones: tuple
+
+
+def track(camera, view, assigned, clock, points, skeleton):
+    """Gather what is drawn on one camera's pictures.
+
+    Parameters
+    ----------
+    camera : Camera
+    view : Keypoints2D
+        All tracklets: faces of bystanders are hidden as well.
+    assigned : Keypoints2D
+        The same frames by person, in the order of `points.person_id`.
+    clock : courtside.records.sync.Clock
+    points : Keypoints3D
+    skeleton : Skeleton
+
+    Returns
+    -------
+    track : Track
+        The 3D skeleton at each frame's own time, between neighbouring points; none before and after them.
+
+    Raises
+    ------
+    ValueError
+        If `points` do not rest on this camera, or persons or frames do not fit.
+    """
+    if camera.name not in points.cameras or assigned.xy.shape[0] != len(points.person_id):
+        raise ValueError(f"{camera.name}: points and 2D keypoints of other cameras or persons")
+    if not np.array_equal(view.time_s, assigned.time_s):
+        raise ValueError(f"{camera.name}: persons at other frames than tracklets")
+    reference_s = clock.to_reference(view.time_s)
+    reprojected = camera_models.project(camera, between(points.time_s, points.xyz, reference_s))
+    at = np.interp(reference_s, points.time_s, np.arange(len(points.time_s))).round().astype(int)
+    column = points.cameras.tolist().index(camera.name)
+    face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
+    faces = np.concatenate([view.xy[:, :, face], reprojected[:, :, face]])
+    return Track(
+        camera.name,
+        view.time_s,
+        reference_s,
+        assigned.xy,
+        reprojected,
+        points.accepted[..., column][:, at],
+        np.array([bridged(view.time_s, one) for one in faces]).reshape(-1, *faces.shape[1:]),
+        tuple((skeleton.index(start), skeleton.index(stop)) for start, stop in skeleton.bones),
+    )
+
+
+def between(time_s, xyz, wanted_s):
+    """Return places at other times, on the straight line between neighbouring frames.
+
+    Parameters
+    ----------
+    time_s : (T,) float
+    xyz : (P, T, J, 3) float
+    wanted_s : (W,) float
+
+    Returns
+    -------
+    xyz : (P, W, J, 3) float
+        NaN where a neighbour is missing, and outside the times but for half a frame.
+    """
+    step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else 0.0
+    inside = (wanted_s >= time_s[0] - step_s / 2) & (wanted_s <= time_s[-1] + step_s / 2)
+    place = np.interp(wanted_s, time_s, np.arange(len(time_s)))
+    place = np.where(np.abs(place - place.round()) < 1e-3, place.round(), place)
+    low, high = np.floor(place).astype(int), np.ceil(place).astype(int)
+    share = (place - low)[:, None, None]
+    found = (1 - share) * xyz[:, low] + share * xyz[:, high]
+    return np.where(inside[:, None, None], found, np.nan)
+
+
+def bridged(time_s, xy):
+    """Fill short gaps in paths, so that a face stays hidden while it is not seen.
+
+    Parameters
+    ----------
+    time_s : (T,) float
+    xy : (T, K, 2) float
+        Px; NaN where unseen.
+
+    Returns
+    -------
+    xy : (T, K, 2) float
+        Straight lines over gaps, and the nearest known place before the first and after the last; NaN
+        where no frame within 1 s knows the joint.
+    """
+    result = np.array(xy, dtype=float)
+    for joint in range(xy.shape[1]):
+        known = np.flatnonzero(np.isfinite(xy[:, joint]).all(axis=1))
+        if not len(known):
+            continue
+        after = np.searchsorted(time_s[known], time_s).clip(0, len(known) - 1)
+        before = (np.searchsorted(time_s[known], time_s, side="right") - 1).clip(0)
+        away_s = np.minimum(
+            np.abs(time_s[known[after]] - time_s), np.abs(time_s[known[before]] - time_s)
+        )
+        for axis in range(2):
+            filled = np.interp(time_s, time_s[known], xy[known, joint, axis])
+            result[:, joint, axis] = np.where(away_s <= BRIDGED_S, filled, np.nan)
+    return result
+
+
+def only_persons(image, persons, bones):
+    """Return a picture that is sharp at some persons only, so that nobody else in it can be recognised.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+    persons : (n, J, 2) float
+        Joints, px; NaN where unknown. Where nobody is known nothing is left sharp.
+    bones : sequence of (int, int)
+
+    Returns
+    -------
+    image : (H, W, 3) uint8
+        A new picture. Surroundings are reduced to 60 cells along the height, then drawn smoothly.
+
+    Notes
+    -----
+    No detector is asked who else is there: those in the background are the ones that it misses.
+    """
+    height, width = image.shape[:2]
+    cell = max(1.0, height * COARSE)
+    cells = max(1, round(width / cell)), max(1, round(height / cell))
+    small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
+    result = cv2.resize(small, (width, height), interpolation=cv2.INTER_LINEAR)
+    sharp = np.zeros((height, width), np.uint8)
+    for xy in persons:
+        known = _drawable(xy)
+        if known.any():
+            wide = max(2, round(BODY * np.ptp(xy[known], axis=0).max()))
+            _sticks(sharp, xy[None], bones, 255, wide, wide // 2)
+    cv2.copyTo(image, sharp, result)
+    return result
+
+
+def pictures(frames, track, *, colours, hide_faces, keep_background=False):
+    """Draw on pictures as they come; no more than one is held.
+
+    Parameters
+    ----------
+    frames : iterable of (float, (H, W, 3) uint8)
+        Time on the camera's own clock and picture, BGR.
+    track : Track
+    colours : (3,) of (int, int, int)
+        BGR of detected joints, of the 3D skeleton, and of views that were not used.
+    hide_faces : callable or None
+        Takes a picture and the joints of each face (F, K, 2), returns a picture without the faces; None
+        leaves everything as it is.
+    keep_background : bool
+        Whether what is around the persons stays sharp where faces are hidden: for videos in which nobody
+        else is to be seen.
+
+    Yields
+    ------
+    image : (H, W, 3) uint8
+        BGR, as many as `frames`; an odd height or width grows by a pixel, as H.264 wants.
+
+    Raises
+    ------
+    InputError
+        If a frame's time is not one that `track` knows: a face might show.
+    """
+    step_s = np.median(np.diff(track.own_s)) if len(track.own_s) > 1 else 1.0
+    for time_s, image in frames:
+        at = int(np.abs(track.own_s - time_s).argmin())
+        if abs(track.own_s[at] - time_s) > step_s / 4:
+            raise InputError(
+                f"camera {track.camera}: expected 2D keypoints for the frame at {time_s:.4f} s, found the "
+                f"nearest at {track.own_s[at]:.4f} s; detect the pose in this video again"
+            )
+        if hide_faces is not None:
+            persons = np.concatenate([track.detected[:, at], track.reprojected[:, at]])
+            image = image if keep_background else only_persons(image, persons, track.bones)
+            image = hide_faces(image, track.faces[:, at])
+        yield _drawn(image, track, at, colours)
+
+
+def _drawn(image, track, at, colours):
+    height, width = image.shape[:2]
+    odd = height % 2, width % 2
+    image = cv2.copyMakeBorder(image, 0, odd[0], 0, odd[1], cv2.BORDER_REPLICATE)
+    thick = max(1, round(height * LINE))
+    detected, reprojected = track.detected[:, at], track.reprojected[:, at]
+    _sticks(image, reprojected, track.bones, colours[1], round(UNDER * thick), 3 * thick)
+    _sticks(image, detected, track.bones, colours[0], thick, 2 * thick)
+    apart = ~track.used[:, at] & np.isfinite(detected + reprojected).all(axis=-1)
+    for start, stop in zip(detected[apart], reprojected[apart], strict=True):
+        cv2.line(image, _px(start), _px(stop), colours[2], thick, cv2.LINE_AA)
+    _caption(image, track, at, colours)
+    return image
+
+
+def _drawable(xy):
+    return np.isfinite(xy).all(axis=1) & (np.abs(xy) < FURTHEST_PX).all(axis=1)
+
+
+def _sticks(image, persons, bones, colour, thick, radius):
+    for xy in persons:
+        inside = _drawable(xy)
+        for start, stop in bones:
+            if inside[start] and inside[stop]:
+                cv2.line(image, _px(xy[start]), _px(xy[stop]), colour, thick, cv2.LINE_AA)
+        for joint in xy[inside]:
+            cv2.circle(image, _px(joint), radius, colour, -1, cv2.LINE_AA)
+
+
+def _px(place):
+    return tuple(int(value) for value in np.round(place))
+
+
+def _caption(image, track, at, colours):
+    """Write camera, time and colours into the upper left corner, on a dark ground."""
+    words = [f"{track.camera}  {track.reference_s[at]:.3f} s  frame {at}"]
+    names = DETECTED, REPROJECTED, NOT_USED
+    scale = max(0.4, min(image.shape[:2]) * LETTER)
+    thick, line = max(1, round(scale * 1.4)), round(32 * scale)
+    white = (255, 255, 255)
+    texts = [*zip(words, [white], strict=True), *zip(names, colours, strict=True)]
+    font = cv2.FONT_HERSHEY_SIMPLEX
+    width = max(cv2.getTextSize(text, font, scale, thick)[0][0] for text, _ in texts)
+    corner = image[: line * len(texts) + line // 2, : width + line]
+    corner[:] = corner // 4
+    for row, (text, colour) in enumerate(texts, start=1):
+        place = line // 2, row * line
+        cv2.putText(image, text, place, font, scale, colour, thick, cv2.LINE_AA)

@@ -1,0 +1,170 @@
+"""A project folder that Pose2Sim opens: cameras, 2D and 3D keypoints, settings; and its TRC files back.
+
+Pose2Sim sorts the folders of 2D keypoints by the last number in their names and takes the cameras of the
+calibration in the file's order, so the names carry that order. Its frames are those of the uniform times of
+the 3D keypoints: the clocks of the cameras are already taken into account.
+"""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import tomli_w
+
+from courtside.exports import markers, opensim, trc
+from courtside.geometry import cameras as camera_files
+from courtside.records import reasons
+from courtside.records.keypoints import Keypoints3D
+from courtside.study.errors import InputError
+from courtside.study.files import atomic_folder
+
+# Skeletons that Pose2Sim knows under a name of its own, points in the same order.
+MODELS = {
+    "blazepose33": "BLAZEPOSE",
+    "body25": "BODY_25",
+    "body25b": "BODY_25B",
+    "halpe26": "HALPE_26",
+    "coco17": "COCO_17",
+}
+OWN = "COURTSIDE"
+SOURCE = "Courtside"
+LEAST_VIEWS = 2  # of a point in a file that does not say how many
+
+
+def write_project(folder, cameras, views, points, *, skeleton):
+    """Write a project of one take.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Replaced as a whole; its name begins the names of Pose2Sim's own results.
+    cameras : list of Camera
+    views : dict of str to (xy, score)
+        By camera, at the times of `points`: (P, T, J, 2) px and (P, T, J); persons as in `points`.
+    points : Keypoints3D
+    skeleton : str
+        Name of the joints' skeleton.
+
+    Raises
+    ------
+    ValueError
+        If a camera has no view, or a view other frames, persons or joints than the points.
+    """
+    shape = points.xyz.shape[:3]
+    for camera in cameras:
+        if camera.name not in views or views[camera.name][0].shape != (*shape, 2):
+            raise ValueError(f"expected keypoints {shape} of camera {camera.name}")
+    named = replace(points, joints=np.array(markers.names(list(points.joints))))
+    with atomic_folder(folder) as made:
+        camera_files.write_toml(made / "calibration" / "Calib.toml", cameras, source=SOURCE)
+        for number, camera in enumerate(cameras, start=1):
+            _write_2d(made / "pose", f"{camera.name}_{number:02d}", *views[camera.name])
+        for person, name in enumerate(points.person_id):
+            trc.write(made / "pose-3d" / f"{Path(folder).name}_{name}.trc", named, person)
+        opensim.write_markers(made / "kinematics" / f"Markers_{OWN}.xml", list(points.joints))
+        with (made / "Config.toml").open("wb") as stream:
+            tomli_w.dump(_settings(points, skeleton), stream)
+
+
+def _write_2d(folder, name, xy, score):
+    folder = folder / f"{name}_json"
+    folder.mkdir(parents=True)
+    seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
+    table = np.concatenate([xy, score[..., None]], axis=-1)
+    table = np.where(seen[..., None], table, 0.0).round(4)
+    for frame in range(xy.shape[1]):
+        people = [
+            {"person_id": [person], "pose_keypoints_2d": table[person, frame].ravel().tolist()}
+            for person in range(len(xy))
+        ]
+        text = json.dumps({"version": 1.3, "people": people})
+        (folder / f"{name}_{frame:06d}.json").write_text(text, encoding="utf-8")
+
+
+def _settings(points, skeleton):
+    """Return what Pose2Sim needs to triangulate and filter these keypoints; all else is its default."""
+    rate = points.rate_hz
+    pose = {"pose_model": MODELS.get(skeleton, OWN)}
+    if skeleton not in MODELS:
+        children = [
+            {"name": n, "id": at} for at, n in enumerate(markers.names(list(points.joints)))
+        ]
+        pose[OWN] = {"name": "Root", "id": "None", "children": children}
+    return {
+        "project": {
+            "multi_person": len(points.person_id) > 1,
+            "frame_rate": round(rate) if np.isclose(rate, round(rate), atol=1e-3) else rate,
+            "frame_range": "all",
+        },
+        "pose": pose,
+        "triangulation": {
+            "reproj_error_threshold_triangulation": 15,
+            "likelihood_threshold_triangulation": 0.3,
+            "min_cameras_for_triangulation": 2,
+            "interp_if_gap_smaller_than": 20,
+            "interpolation": "linear",
+            "fill_large_gaps_with": "nan",
+            "show_interp_indices": False,
+            "handle_LR_swap": False,
+            "undistort_points": True,  # our cameras have lenses
+            "make_c3d": False,
+        },
+        "filtering": {"type": "butterworth", "display_figures": False, "make_c3d": False},
+    }
+
+
+def read_takes(files, skeleton, *, model):
+    """Read 3D keypoints that another program found, one TRC file for each person.
+
+    Parameters
+    ----------
+    files : dict of str to path
+        By person.
+    skeleton : courtside.records.skeleton.Skeleton
+        Its joints are looked for among the markers, under Pose2Sim's names or their own.
+    model : str
+        What the keypoints are called.
+
+    Returns
+    -------
+    points : Keypoints3D
+        In the file's frame with z up; covariances unknown, without views.
+
+    Raises
+    ------
+    InputError
+        If a file is no TRC file, has none of the joints, or other times than the first one.
+    """
+    found, times, first = [], None, None
+    for path in files.values():
+        names, _, time_s, xyz = trc.read(path)
+        places = markers.joints_of(names, skeleton.joints)
+        if not any(place is not None for place in places):
+            raise InputError(
+                f"{path}: expected markers of skeleton {skeleton.name} such as "
+                f"{markers.name(skeleton.joints[0])}, found {', '.join(names[:5])}; name their skeleton"
+            )
+        times, first = (time_s, path) if times is None else (times, first)
+        if len(time_s) != len(times) or not np.allclose(time_s, times, atol=1e-4):
+            raise InputError(f"{path}: expected the times of {first}, found others; cut both alike")
+        found.append([np.full((len(xyz), 3), np.nan) if k is None else xyz[:, k] for k in places])
+    return _points(np.array(found).swapaxes(1, 2), list(files), times, skeleton, model)
+
+
+def _points(xyz, persons, time_s, skeleton, model):
+    there = np.isfinite(xyz).all(axis=-1)
+    return Keypoints3D(
+        cameras=np.array([], dtype=str),
+        model=model,
+        joints=np.array(skeleton.joints),
+        person_id=np.array(persons),
+        time_s=time_s,
+        xyz=np.where(there[..., None], xyz, np.nan),
+        covariance_2d=np.full((*xyz.shape, 3), np.nan),
+        covariance_camera=np.full((*xyz.shape, 3), np.nan),
+        n_views=np.where(there, LEAST_VIEWS, 0),
+        reproj_error_px=np.empty((*there.shape, 0)),
+        accepted=np.empty((*there.shape, 0), dtype=bool),
+        reason=np.where(there, reasons.OK, reasons.UNSEEN).astype(np.uint8),
+    )

@@ -1,0 +1,81 @@
+"""Which joints of each skeleton stand for the common ones: six pairs of limb joints, and derived ones."""
+
+from itertools import groupby
+
+import pandas as pd
+
+SIDES = ("left", "right")
+
+
+def limbs(skeletons):
+    """Return the parts, without side, that all skeletons have as limb joints, in the first one's order."""
+    pairs = [_parts(skeleton) for skeleton in skeletons]
+    return [part for part in pairs[0] if all(part in other for other in pairs)]
+
+
+def _parts(skeleton):
+    named = [joint.partition("_") for joint in skeleton.groups["limbs"]]
+    return list(dict.fromkeys(part for _, _, part in named))
+
+
+def rows(skeletons, table):
+    """Return the map, one row for each common joint and skeleton.
+
+    Parameters
+    ----------
+    skeletons : list of courtside.records.skeleton.Skeleton
+    table : courtside.records.derived.DerivedJoints
+        Derived joints without a definition for each of the skeletons are left out.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        common; skeleton; numbers, joints, device_names, weights: tuples, of the skeleton's joints that stand
+        for it; definition: empty for a joint that the skeleton has itself; same: whether all skeletons share
+        the definition.
+    """
+    found = []
+    for part in limbs(skeletons):
+        for skeleton in skeletons:
+            joints = [f"{side}_{part}" for side in SIDES]
+            found.append(_row(part, skeleton, joints, (1.0, 1.0), "", True))
+    for name, by_skeleton in table.joints.items():
+        if not all(skeleton.name in by_skeleton for skeleton in skeletons):
+            continue
+        used = [by_skeleton[skeleton.name] for skeleton in skeletons]
+        for skeleton, definition in zip(skeletons, used, strict=True):
+            weights = table.definitions[definition].weights
+            about = skeleton, list(weights), tuple(weights.values())
+            found.append(_row(name, *about, definition, len(set(used)) == 1))
+    return pd.DataFrame(found)
+
+
+def _row(common, skeleton, joints, weights, definition, same):
+    numbers = tuple(skeleton.index(joint) for joint in joints)
+    called = skeleton.device_names()
+    return {
+        "common": common,
+        "skeleton": skeleton.name,
+        "numbers": numbers,
+        "joints": tuple(joints),
+        "device_names": tuple(called[number] for number in numbers),
+        "weights": tuple(weights),
+        "definition": definition,
+        "same": same,
+    }
+
+
+def cell(row):
+    """Return a row of `rows` in short: numbers, names where the device has its own, `*` if computed."""
+    if not row["definition"]:
+        pairs = zip(row["numbers"], row["joints"], row["device_names"], strict=True)
+        return ", ".join(f"{n}" if own == name else f"{n} {own}" for n, name, own in pairs)
+    pairs = list(zip(row["weights"], row["numbers"], strict=True))
+    terms = []
+    for weight, group in groupby(pairs, key=lambda pair: pair[0]):
+        members = [f"{number}" for _, number in group]
+        inner = "+".join(members)
+        if weight != 1.0:
+            inner = f"{weight:g}({inner})" if len(members) > 1 else f"{weight:g} × {inner}"
+        terms.append(inner)
+    return " + ".join(terms) + (" *" if len(pairs) > 1 else "")

@@ -1,0 +1,145 @@
+"""The wrists' paths from T-pose to clap, seen from above, against the arcs that they could follow.
+
+The arms turn about the shoulders: the circle of radius 1 about the navel, which the wrists leave from, is no
+path that straight arms can follow. The subject's own arcs have their centres at the shoulders.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from courtside.study.errors import InputError
+
+PLANE = [0, 2]  # x to the left hand, z forwards
+SIDES = ("left", "right")
+
+
+@dataclass(frozen=True, eq=False)
+class Arc:
+    """One wrist's path and its own arc, in the x-z plane of the body, units.
+
+    Attributes
+    ----------
+    side : str
+    time_s : (n,) float
+        On the reference clock.
+    path : (n, 2) float
+        x and z of the wrist; NaN where missing.
+    shoulder : (2,) float
+        Centre of the arc: the shoulder in the T-pose.
+    radius : float
+        Of the arc: from shoulder to wrist in the T-pose.
+    """
+
+    side: str
+    time_s: np.ndarray
+    path: np.ndarray
+    shoulder: np.ndarray
+    radius: float
+
+    @property
+    def off_arc(self):
+        """Distance of the path to the own arc, (n,) units; positive outside."""
+        return np.linalg.norm(self.path - self.shoulder, axis=1) - self.radius
+
+    @property
+    def off_circle(self):
+        """Distance of the path to the circle of radius 1, (n,) units; positive outside."""
+        return np.linalg.norm(self.path, axis=1) - 1.0
+
+    @property
+    def meeting(self):
+        """Place (2,) on the own arc where both hands could meet, in the middle; NaN if out of reach."""
+        aside = self.radius**2 - self.shoulder[0] ** 2
+        return np.array([0.0, self.shoulder[1] + np.sqrt(aside) if aside >= 0 else np.nan])
+
+
+def arcs(body):
+    """Return the arcs of both wrists from the T-pose's end to the first clap after it.
+
+    Parameters
+    ----------
+    body : courtside.records.body_motion.BodyMotion
+
+    Returns
+    -------
+    arcs : list of Arc
+        Left, right.
+
+    Raises
+    ------
+    InputError
+        If no clap follows the T-pose.
+    """
+    start_s, stop_s = body.tpose_s
+    later = body.clap_s[body.clap_s > stop_s]
+    if not len(later):
+        raise InputError(
+            f"{body.source}: expected a clap after the T-pose of {start_s:.2f} to {stop_s:.2f} s, found "
+            f"claps at {', '.join(f'{t:.2f}' for t in body.clap_s) or 'no time'}; choose another T-pose"
+        )
+    still = (body.time_s >= start_s) & (body.time_s <= stop_s)
+    moving = (body.time_s >= stop_s) & (body.time_s <= later[0])
+    found = []
+    for side in SIDES:
+        shoulder, wrist = (body.joint(f"{side}_{part}")[:, PLANE] for part in ("shoulder", "wrist"))
+        centre = np.nanmedian(shoulder[still], axis=0)
+        radius = float(np.linalg.norm(np.nanmedian(wrist[still], axis=0) - centre))
+        found.append(Arc(side, body.time_s[moving], wrist[moving], centre, radius))
+    return found
+
+
+def paths(found):
+    """Return the points of arcs as a table: side, time_s, x, z, off_arc, off_circle; body units."""
+    tables = [
+        pd.DataFrame(
+            {
+                "side": arc.side,
+                "time_s": arc.time_s,
+                "x": arc.path[:, 0],
+                "z": arc.path[:, 1],
+                "off_arc": arc.off_arc,
+                "off_circle": arc.off_circle,
+            }
+        )
+        for arc in found
+    ]
+    return pd.concat(tables, ignore_index=True)
+
+
+def distortion(found):
+    """Return how far the paths are from their own arcs, one row per wrist, body units.
+
+    Parameters
+    ----------
+    found : list of Arc
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        side; n; shoulder_x, shoulder_z, radius: of the own arc; meeting_z: where it crosses the middle;
+        mean_signed, mean_distance, p95_distance: of the path's points to the own arc; mean_off_circle: to
+        the circle of radius 1; end_radius: distance of the last known point to the origin.
+    """
+    rows = []
+    for arc in found:
+        off, circle = (values[np.isfinite(values)] for values in (arc.off_arc, arc.off_circle))
+        row = {
+            "side": arc.side,
+            "n": len(off),
+            "shoulder_x": arc.shoulder[0],
+            "shoulder_z": arc.shoulder[1],
+            "radius": arc.radius,
+            "meeting_z": arc.meeting[1],
+        }
+        if len(off):
+            row |= {
+                "mean_signed": off.mean(),
+                "mean_distance": np.abs(off).mean(),
+                "p95_distance": np.percentile(np.abs(off), 95),
+                "mean_off_circle": np.abs(circle).mean(),
+                "end_radius": 1.0 + circle[-1],
+            }
+        rows.append(row)
+    return pd.DataFrame(rows)

@@ -1,0 +1,286 @@
+"""The body's own frame and unit, from a T-pose: the same for every device, whatever its axes and its scale.
+
+Origin: the point that stands for the navel (derived joint `pelvis_thorax`). y: to the head, along the trunk.
+x: from the right wrist to the left one, square to y. z = x cross y: forwards. Unit: half the distance of the
+wrists along x, which is their distance in the x-z plane.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from courtside.geometry.similarity import Sim3
+from courtside.motion import tpose as tposes
+from courtside.study.errors import InputError
+
+ORIGIN = "pelvis_thorax"
+# ASSUME: the middle of the shoulders shows where the head is. It has one definition in every skeleton; the
+# head itself is another point for each (ears, eyes, base of the skull), and nods.
+TOP = "mid_shoulder"
+TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
+HEADS = (("left_ear", "right_ear"), ("head",), ("left_eye", "right_eye"), ("nose",))
+FORWARDS = (  # pairs of joints, the second in front of the first
+    ("left_heel", "left_foot_index"),
+    ("right_heel", "right_foot_index"),
+    ("left_ankle", "left_toe"),
+    ("right_ankle", "right_toe"),
+    ("left_ankle", "left_toes"),
+    ("right_ankle", "right_toes"),
+    ("left_ear", "nose"),
+    ("right_ear", "nose"),
+)
+LEAST_FORWARD = 0.02  # units: less says nothing
+NEAR = 4.0  # median distances from the median: further is an outlier
+SMALLEST_M = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Anchors:
+    """The points that carry the frame, as weights of a device's joints.
+
+    Attributes
+    ----------
+    origin, top : (J,) float
+        They sum to 1.
+    """
+
+    origin: np.ndarray
+    top: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class BodyFrame:
+    """The frame of one T-pose of one device.
+
+    Attributes
+    ----------
+    body_from_device : Sim3
+        Metres of the device to units of the body.
+    tpose : courtside.motion.tpose.TPose
+    residuals : dict of str to float or None
+        unit_m: metres in a unit, the scale factor's inverse. elbow_left_deg, elbow_right_deg: bend of the
+        arms. level_deg: angle of the line of the wrists from square to y, positive with the left one higher.
+        wrist_height_difference_m: left less right, along y. stillness_m: root mean square, per axis, of the
+        wrists about their median. unit_spread_percent, origin_spread_m, frame_spread_deg: standard
+        deviations of the unit, origin (per axis) and axes (angle) from frame to frame. head_deg: angle
+        between y and the line from the origin to the head. forward: how far toes or nose are in front, units;
+        None where the device has neither. n_frames: with all joints known.
+    """
+
+    body_from_device: Sim3
+    tpose: tposes.TPose
+    residuals: dict
+
+    def as_dict(self):
+        """Return all numbers for JSON."""
+        transform = self.body_from_device
+        return {
+            "scale_per_m": transform.scale,
+            "rotation": transform.rotation.tolist(),
+            "translation": transform.translation.tolist(),
+            "tpose": self.tpose.as_dict(),
+            "residuals": self.residuals,
+        }
+
+
+def anchors(table, skeleton, joints, *, top=TOP):
+    """Return the anchors of a skeleton.
+
+    Parameters
+    ----------
+    table : courtside.records.derived.DerivedJoints
+    skeleton : str
+        As the table names it.
+    joints : sequence of str
+    top : str
+        The derived joint towards which y points.
+
+    Raises
+    ------
+    InputError
+        If the table has no definition for this skeleton.
+    """
+    return Anchors(table.weights(skeleton, ORIGIN, joints), table.weights(skeleton, top, joints))
+
+
+def axes(origin, top, left_wrist, right_wrist):
+    """Return the body's axes and unit, for each of any number of poses.
+
+    Parameters
+    ----------
+    origin, top, left_wrist, right_wrist : (..., 3) float
+        Metres, in the device's frame.
+
+    Returns
+    -------
+    body_from_device : (..., 3, 3) float
+        Rotation; its rows are x, y, z of the body in the device's frame.
+    unit_m : (...) float
+        Half the distance of the wrists, seen along y.
+    """
+    y = _unit(top - origin)
+    across = left_wrist - right_wrist
+    across = across - (across * y).sum(axis=-1, keepdims=True) * y
+    x = _unit(across)
+    rotation = np.stack([x, y, np.cross(x, y)], axis=-2)
+    return rotation, np.linalg.norm(across, axis=-1) / 2
+
+
+def at_tpose(motion, carried_by, tpose):
+    """Return the frame of a T-pose.
+
+    Parameters
+    ----------
+    motion : courtside.records.device_motion.DeviceMotion
+    carried_by : Anchors
+    tpose : courtside.motion.tpose.TPose
+        Of this motion.
+
+    Returns
+    -------
+    frame : BodyFrame
+        Of the joints' means over the T-pose, outliers left out.
+
+    Raises
+    ------
+    InputError
+        If joints are missing throughout, or toes and nose are behind: left and right are exchanged, or the
+        device's axes are left-handed.
+    """
+    xyz = motion.xyz[tpose.frames]
+    names = [str(name) for name in motion.joints]
+    used = (carried_by.origin != 0) | (carried_by.top != 0) | np.isin(names, tposes.JOINTS)
+    whole = np.isfinite(xyz[:, used]).all(axis=(1, 2))
+    if not whole.any():
+        raise InputError(
+            f"{motion.source}: expected arms and trunk in the T-pose of {tpose.start_s:.2f} to "
+            f"{tpose.stop_s:.2f} s, found no frame with all of them; choose another T-pose"
+        )
+    middle = _middle(xyz)
+    points = _carried(middle, names, carried_by)
+    rotation, unit_m = axes(*points)
+    scale = float(1 / unit_m)
+    transform = Sim3(scale, rotation, -scale * rotation @ points[0])
+    forward = _forward(transform.points(middle), names)
+    if forward is not None and forward < -LEAST_FORWARD:
+        raise InputError(
+            f"{motion.source}: expected toes or nose in front at the T-pose of {tpose.start_s:.2f} s, found "
+            f"them {-forward:.2f} units behind; left and right are exchanged, or the axes are left-handed"
+        )
+    residuals = _arms(middle, names, transform) | _spread(xyz[whole], names, carried_by, rotation)
+    head = _head_deg(transform.points(middle), names)
+    residuals |= {"head_deg": head, "forward": forward, "n_frames": int(whole.sum())}
+    return BodyFrame(transform, tpose, {"unit_m": float(unit_m)} | residuals)
+
+
+def fixed(motion, frame):
+    """Return the joints in the frame of the T-pose, which stays where it was, (T, J, 3) units."""
+    return frame.body_from_device.points(motion.xyz)
+
+
+def following(motion, frame):
+    """Return the joints in a frame that goes with the trunk.
+
+    Parameters
+    ----------
+    motion : courtside.records.device_motion.DeviceMotion
+    frame : BodyFrame
+        Of a T-pose of this motion.
+
+    Returns
+    -------
+    xyz : (T, J, 3) float
+        Units; NaN throughout where a shoulder or hip is missing.
+
+    Notes
+    -----
+    In every frame shoulders and hips are brought nearest to where they were in the T-pose, by a rotation and
+    a shift (Kabsch 1976); the unit stays. The line of the wrists cannot carry the axes here: hands meet.
+    """
+    xyz = fixed(motion, frame)
+    names = list(motion.joints)
+    trunk = xyz[:, [names.index(name) for name in TRUNK]]
+    rest = np.nanmedian(trunk[frame.tpose.frames], axis=0)
+    known = np.isfinite(trunk).all(axis=(1, 2))
+    moved = np.full(xyz.shape, np.nan)
+    if known.any():
+        middle, rest_middle = trunk[known].mean(axis=1, keepdims=True), rest.mean(axis=0)
+        left, _, right = np.linalg.svd(
+            np.einsum("ji,tjk->tik", rest - rest_middle, trunk[known] - middle)
+        )
+        left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
+        moved[known] = (xyz[known] - middle) @ (left @ right).transpose(0, 2, 1) + rest_middle
+    return moved
+
+
+def _middle(xyz):
+    """Return the mean (J, 3) over frames of what lies near the median: steadier than the median alone."""
+    known = np.isfinite(xyz).all(axis=2).any(axis=0)
+    middle = np.full(xyz.shape[1:], np.nan)
+    there = xyz[:, known]
+    median = np.nanmedian(there, axis=0)
+    off = np.abs(there - median)
+    near = off <= NEAR * np.nanmedian(off, axis=0) + SMALLEST_M
+    middle[known] = np.nanmean(np.where(near, there, np.nan), axis=0)
+    return middle
+
+
+def _carried(xyz, names, carried_by):
+    """Return origin, top, left and right wrist (..., 3) of joints (..., J, 3)."""
+    parts = []
+    for weights in (carried_by.origin, carried_by.top):
+        used = np.flatnonzero(weights)
+        parts.append(np.einsum("j,...jk->...k", weights[used], xyz[..., used, :]))
+    wrists = [xyz[..., names.index(f"{side}_wrist"), :] for side in tposes.SIDES]
+    return (*parts, *wrists)
+
+
+def _arms(middle, names, transform):
+    body = transform.points(middle)
+    at = {name: body[names.index(name)] for name in tposes.JOINTS}
+    found = {}
+    for side in tposes.SIDES:
+        upper = _unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
+        fore = _unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
+        found[f"elbow_{side}_deg"] = float(np.degrees(np.arccos(np.clip(upper @ fore, -1, 1))))
+    across = at["left_wrist"] - at["right_wrist"]
+    found["level_deg"] = float(np.degrees(np.arcsin(across[1] / np.linalg.norm(across))))
+    found["wrist_height_difference_m"] = float(across[1] / transform.scale)
+    return found
+
+
+def _spread(xyz, names, carried_by, rotation):
+    points = _carried(xyz, names, carried_by)
+    rotations, units_m = axes(*points)
+    turned = Rotation.from_matrix(rotations @ rotation.T).magnitude()
+    wrists = np.stack(points[2:])
+    about = wrists - np.median(wrists, axis=1, keepdims=True)
+    return {
+        "stillness_m": float(np.sqrt(np.mean(about**2))),
+        "unit_spread_percent": float(100 * units_m.std() / units_m.mean()),
+        "origin_spread_m": float(np.sqrt(points[0].var(axis=0).mean())),
+        "frame_spread_deg": float(np.degrees(np.sqrt(np.mean(turned**2)))),
+    }
+
+
+def _head_deg(body, names):
+    for head in HEADS:
+        if all(name in names for name in head):
+            way = _unit(np.mean([body[names.index(name)] for name in head], axis=0))
+            if np.isfinite(way).all():
+                return float(np.degrees(np.arccos(np.clip(way[1], -1, 1))))
+    return None
+
+
+def _forward(body, names):
+    """Return by how much toes and nose are in front, units; None where none is known."""
+    pairs = [pair for pair in FORWARDS if all(name in names for name in pair)]
+    ahead = np.array([body[names.index(b), 2] - body[names.index(a), 2] for a, b in pairs])
+    ahead = ahead[np.isfinite(ahead)]
+    return float(np.median(ahead)) if len(ahead) else None
+
+
+def _unit(vectors):
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 0, length, np.nan)

@@ -1,0 +1,230 @@
+"""The fit of a correction to vision: rounds of weighted least squares, with all sizes estimated too."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from courtside.motion import heading_drift, rotation_vectors, slow_splines, vision_noise
+from courtside.motion.body_segments import segments_of
+from courtside.motion.segment_model import Frames, Model
+from courtside.records.hierarchy import forward
+
+CHUNK = 500  # frames whose derivatives are held at once
+SAMPLES = 6  # draws, to tell how much of a correction the data determine
+SEED = 5
+PRIOR_COEFFICIENTS = 5.0  # that the stated size of a correction counts for
+RANGE = (0.02, 4.0)  # of the stated size, that the estimated one may take
+PAD_S = 1.0  # of the splines beyond the recording: the clock may shift
+FIRST_ROUNDS = 2  # with the stated sizes
+
+
+class Fit:
+    """State of the fit of one take.
+
+    Parameters
+    ----------
+    posed : PosedHierarchy
+        Performed frames only, times on the reference clock.
+    seen : courtside.motion.inertial_correction.Seen
+        What vision tells.
+    up : (3,) float
+    lag_s : float
+        Standard deviation of the clocks' offset.
+    offsets_m : dict of str to (3,) float
+        Known offsets of vision's joints.
+    settings : courtside.motion.inertial_correction.Settings
+    """
+
+    def __init__(self, posed, seen, up, lag_s, offsets_m, settings):
+        self.posed, self.seen, self.up, self.settings = posed, seen, up, settings
+        self.segments = segments_of(posed.hierarchy, seen.source)
+        observed = [list(posed.hierarchy.joints).index(joint) for joint in seen.joints]
+        self.model = Model(posed.hierarchy, self.segments, observed, up)
+        self._align()
+        start, stop = posed.time_s[0] - PAD_S, posed.time_s[-1] + PAD_S
+        self.basis = slow_splines.basis_over(start, stop, settings.knot_s)
+        self.coefficients = np.zeros((self.basis.n, self.model.n_slow))
+        self._slow_prior()
+        self._fixed_prior(lag_s, offsets_m)
+        self.fixed = self.fixed_mean.copy()
+        self.rate_hz = 1 / np.median(np.diff(seen.time_s))
+        self.rms_change_m, self.noise = [], None
+
+    def _align(self):
+        """Turn and place vision's joints into the device's world, and the device by its drifting heading."""
+        xyz, world = forward(self.posed)
+        time_s, seen_s = self.posed.time_s, self.seen.time_s
+        device = _linear(time_s, xyz[:, self.model.observed], seen_s)
+        window = self.settings.window_s
+        self.alignment = heading_drift.estimate(
+            seen_s, device, self.seen.xyz, self.up, window_s=window
+        )
+        heading = self.alignment.heading_at(time_s)
+        turn = rotation_vectors.matrices(heading[:, None] * self.up)[:, None]
+        root = heading_drift.turn_path(xyz[:, 0], heading, self.up)
+        placed = root[:, None] + (turn @ (xyz - xyz[:, :1])[..., None])[..., 0]
+        self.translation = self.posed.translation.copy()
+        self.centre = root.mean(axis=0)
+        self.translation[:, 0] = root - self.centre
+        self.facing = rotation_vectors.matrices(facings(turn[:, 0] @ world[:, 0], self.up))
+        self.local = self.facing.swapaxes(1, 2)[:, None] @ turn @ world
+        observed = placed[:, self.model.observed] - self.centre
+        self.velocity = np.gradient(observed, time_s, axis=0)
+        vision = self.seen.xyz @ self.alignment.vision_from_device
+        self.place = np.nanmedian(vision - _linear(time_s, observed, seen_s), axis=(0, 1))
+        self.vision = vision - self.place
+
+    def _slow_prior(self):
+        settings = self.settings
+        kinds = [self.segments.kind(name) for name in self.segments.names]
+        names = [kind for kind in kinds for _ in range(3)] + ["heading"] + ["shift"] * 3
+        sizes = {kind: np.radians(size) for kind, size in settings.turn_deg.items()}
+        sizes |= {"heading": np.radians(settings.heading_deg), "shift": settings.shift_m}
+        memory = dict.fromkeys(kinds, settings.turn_memory_s)
+        memory |= {"heading": settings.heading_memory_s, "shift": settings.shift_memory_s}
+        self.kinds = {
+            kind: np.flatnonzero(np.array(names) == kind) for kind in dict.fromkeys(names)
+        }
+        self.stated = {kind: sizes[kind] for kind in self.kinds}
+        self.size = dict(self.stated)
+        band = {tau: slow_splines.precision(self.basis, tau) for tau in set(memory.values())}
+        self.band = np.stack([band[memory[name]] for name in names], axis=2)  # (K, 4, P)
+
+    def _fixed_prior(self, lag_s, offsets_m):
+        settings, layout = self.settings, self.model.fixed
+        deviation, self.fixed_mean = np.zeros(self.model.n_fixed), np.zeros(self.model.n_fixed)
+        kinds = [self.segments.kind(name) for name in self.segments.names]
+        mounts = [settings.mount_deg[kind] for kind in kinds]
+        deviation[layout["mount"]] = np.radians(np.repeat(mounts, 3))
+        deviation[layout["stretch"]] = [
+            settings.body
+            if name == "body"
+            else settings.uneven
+            if "diff" in name
+            else settings.stretch
+            for name in self.segments.stretches
+        ]
+        deviation[layout["offset"]] = settings.offset_m
+        deviation[layout["bias"]] = settings.bias_m
+        deviation[layout["tilt"]] = np.radians(settings.tilt_deg)
+        deviation[layout["place"]] = settings.place_m
+        deviation[layout["lag"]] = max(lag_s, 1e-6)
+        known = [offsets_m.get(joint, np.zeros(3)) for joint in self.seen.joints]
+        self.fixed_mean[layout["offset"]] = np.concatenate(known)
+        self.fixed_precision = deviation**-2
+
+    def run(self):
+        """Fit: in each round the noise, one step of Gauss and Newton, and the sizes of corrections."""
+        rng = np.random.default_rng(SEED)
+        self.first = before = self.predicted()
+        for number in range(1, self.settings.rounds + 1):
+            self.round = number
+            residual = (self.vision - before) / self.seen.sigma_m[..., None]
+            estimate = vision_noise.stated if number <= FIRST_ROUNDS else vision_noise.estimate
+            self.noise = estimate(residual, self.rate_hz, self.settings.correlation_s)
+            solution = self._step(before)
+            if number > FIRST_ROUNDS:
+                self._resize(solution, rng)
+            after = self.predicted()
+            self.rms_change_m.append(float(np.sqrt(np.mean((after - before) ** 2))))
+            before = after
+            if number > 2 * FIRST_ROUNDS and self.rms_change_m[-1] < self.settings.tolerance_m:
+                break
+        self.last, self.border_covariance = before, solution.border_covariance
+
+    def frames(self, part=slice(None)):
+        """Return the uncorrected skeleton at vision's times, by the clocks' shift as found so far."""
+        wanted = self.seen.time_s[part] + self.fixed[self.model.fixed["lag"]]
+        time_s = self.posed.time_s
+        return Frames(
+            rotation_vectors.between(time_s, self.facing, wanted),
+            rotation_vectors.between(time_s, self.local, wanted),
+            _linear(time_s, self.translation, wanted),
+            _linear(time_s, self.velocity, wanted),
+        )
+
+    def slow_at(self, time_s):
+        """Return the slow parameters (T, P) at times of the reference clock."""
+        return self.basis.evaluate(self.coefficients, time_s)
+
+    def predicted(self):
+        """Return where vision should see the joints, (N, D, 3) metres, in the device's centred world."""
+        slow = self.slow_at(self.seen.time_s)
+        return np.concatenate(
+            [self.model.places(self.frames(part), slow[part], self.fixed) for part in self._parts()]
+        )
+
+    def _parts(self):
+        n = len(self.seen.time_s)
+        return [slice(start, min(start + CHUNK, n)) for start in range(0, n, CHUNK)]
+
+    def _step(self, predicted):
+        first, values = self.basis.at(self.seen.time_s)
+        slow = self.slow_at(self.seen.time_s)
+        white = self.noise.whitening() / self.seen.sigma_m[..., None, None]
+        residual = np.nan_to_num(self.vision - predicted)
+        white = np.nan_to_num(white)
+        sums = None
+        for part in self._parts():
+            _, by_slow, by_fixed = self.model.linear(self.frames(part), slow[part], self.fixed)
+            rows = len(by_slow)
+            by_slow = (white[part] @ by_slow).reshape(rows, -1, self.model.n_slow)
+            by_fixed = (white[part] @ by_fixed).reshape(rows, -1, self.model.n_fixed)
+            left = (white[part] @ residual[part][..., None]).reshape(rows, -1, 1)
+            across = np.concatenate([by_fixed, left], axis=2)
+            per_frame = by_slow.swapaxes(1, 2) @ by_slow
+            vector = by_slow.swapaxes(1, 2) @ across
+            found = slow_splines.gather(self.basis, first[part], values[part], per_frame, vector)
+            flat = by_fixed.reshape(-1, self.model.n_fixed)
+            found = (*found, flat.T @ across.reshape(len(flat), -1))
+            sums = found if sums is None else [a + b for a, b in zip(sums, found, strict=True)]
+        return self._solve(*sums)
+
+    def _solve(self, blocks, border, fixed):
+        scale = self._inverse_squares()
+        diagonal = np.arange(self.model.n_slow)
+        blocks[:, :, diagonal, diagonal] += self.band * scale
+        right = border[..., -1] - scale * slow_splines.times(self.band, self.coefficients)
+        matrix = fixed[:, :-1] + np.diag(self.fixed_precision)
+        rest = fixed[:, -1] - self.fixed_precision * (self.fixed - self.fixed_mean)
+        solution = slow_splines.solve(blocks, right, border[..., :-1], matrix, rest)
+        self.coefficients = self.coefficients + solution.inner
+        self.fixed = self.fixed + solution.border
+        return solution
+
+    def _inverse_squares(self):
+        scale = np.zeros(self.model.n_slow)
+        for kind, columns in self.kinds.items():
+            scale[columns] = self.size[kind] ** -2
+        return scale
+
+    def _resize(self, solution, rng):
+        """Estimate how large each kind of slow correction is.
+
+        MacKay 1992: its energy over the number of coefficients that the data determine.
+        """
+        draws = solution.samples(SAMPLES, rng)
+        energy = np.sum(
+            self.coefficients * slow_splines.times(self.band, self.coefficients), axis=0
+        )
+        free = np.mean(
+            [np.sum(draw * slow_splines.times(self.band, draw), axis=0) for draw in draws], axis=0
+        )
+        for kind, columns in self.kinds.items():
+            stated = self.stated[kind]
+            known = self.basis.n * len(columns) - free[columns].sum() / self.size[kind] ** 2
+            squared = energy[columns].sum() + PRIOR_COEFFICIENTS * stated**2
+            squared /= max(known, 0.0) + PRIOR_COEFFICIENTS
+            self.size[kind] = float(np.clip(np.sqrt(squared), *(stated * np.array(RANGE))))
+
+
+def facings(rotations, up):
+    """Return the part about the vertical of rotations (T, 3, 3), as rotation vectors (T, 3)."""
+    quaternion = Rotation.from_matrix(rotations).as_quat()
+    angle = 2 * np.arctan2(quaternion[:, :3] @ up, quaternion[:, 3])
+    return np.unwrap(angle)[:, None] * up
+
+
+def _linear(time_s, values, wanted_s):
+    before, share = rotation_vectors.places(time_s, wanted_s)
+    share = share.reshape((-1,) + (1,) * (values.ndim - 1))
+    return values[before] * (1 - share) + values[before + 1] * share

@@ -1,0 +1,253 @@
+"""Lift the 2D joints of a colour picture into space by the depth camera beside it."""
+
+import numpy as np
+
+from courtside.geometry import cameras
+from courtside.motion.depth_samples import TRUNK, Sampler, Sampling
+from courtside.records import reasons
+from courtside.records.device_motion import DeviceMotion
+
+# How deep a joint lies behind the skin that a camera sees, metres, from any side; the radius of the limb
+# there. ASSUME: limbs are round: half of circumference / pi of adults' medians in ANSUR II (Gordon et al.
+# 2014: wrist 0.17, elbow about 0.27, ankle 0.23, knee about 0.38 m), rounded to 5 mm; shoulder and hip
+# about half the depth of the chest and pelvis at their place. Joints of the face lie on the skin.
+# Measured values of a session should replace these.
+SKIN_TO_JOINT_M = {
+    "shoulder": 0.05,
+    "elbow": 0.04,
+    "wrist": 0.025,
+    "hip": 0.09,
+    "knee": 0.055,
+    "ankle": 0.035,
+    "pinky": 0.01,
+    "index": 0.01,
+    "thumb": 0.01,
+    "heel": 0.03,
+    "foot_index": 0.02,
+    "ear": 0.01,
+    "neck": 0.06,
+    "head_top": 0.08,
+}
+ON_SKIN = ("nose", "eye", "eye_inner", "eye_outer", "mouth")
+LEAST_RADIUS_M = 0.02
+LAG = 0.75  # of the colour frames' interval: an older or newer depth picture shows another pose
+BONE_TOLERANCE, BONE_TOLERANCE_M = 0.25, 0.06  # of its length, and at the least
+FEWEST = 10  # frames that tell a bone's length
+FROM_BODY_M = {True: 0.4, False: 1.1}  # a joint of the trunk, and another, from the trunk's depth
+COVERED_M = 0.05  # a limb's skin and what is seen at a joint that it covers agree to this
+
+
+def lift_take(source, view, depth_frames, rig, *, bones, baseline_m, skin_m=None, sampling=None):
+    """Lift the joints of one person over a take.
+
+    Parameters
+    ----------
+    source : str
+        Name of the result: `d415-depth`.
+    view : Keypoints2D
+        One person (P = 1), its times on the recording's clock, increasing.
+    depth_frames : iterable of (float, (h, w) uint16)
+        Time and depth, in order of time; one is held at a time.
+    rig : DepthRecording
+        Or anything with its `colour`, `depth`, `colour_from_depth`, `depth_unit_m`.
+    bones : sequence of (str, str)
+        Pairs of joints whose distance is constant.
+    baseline_m : float
+        Between the imagers that depth comes from; for the noise.
+    skin_m : dict of str to float, optional
+        How deep each joint lies behind the skin, by its name or its name without side; `SKIN_TO_JOINT_M`
+        where absent.
+    sampling : Sampling, optional
+
+    Returns
+    -------
+    motion : DeviceMotion
+        In the colour camera's axes (x right, y down, z forward), metres. The reason is `NO_DEPTH` where
+        there is no depth or another part of the body is in front, else that of the 2D joint.
+    sigma_m : (T, J) float
+        Standard deviation along the viewing ray by the noise of the depth alone.
+
+    Raises
+    ------
+    ValueError
+        If the view has not one person, its times do not increase or a joint is not in `skin_m`.
+
+    Notes
+    -----
+    Each joint has up to three candidate surfaces. Of these the nearest is taken whose joint keeps the
+    lengths of the bones (medians over the take), from the trunk outwards. A joint without one is missing:
+    what covers it is seen.
+    """
+    if len(view.xy) != 1 or (np.diff(view.time_s) <= 0).any():
+        raise ValueError("expected keypoints of one person at increasing times")
+    names = list(map(str, view.joints))
+    sampling = sampling or Sampling()
+    skin = by_joint(names, SKIN_TO_JOINT_M if skin_m is None else skin_m)
+    is_trunk = np.isin(names, TRUNK)
+    radius_m = np.maximum(skin, LEAST_RADIUS_M)
+    sampler = Sampler(rig, radius_m, is_trunk, baseline_m, sampling)
+    xy = np.where((view.reason[0] == reasons.OK)[..., np.newaxis], view.xy[0], np.nan)
+    z, z_body = _sampled(sampler, xy, view.time_s, depth_frames)
+    joints_at = _behind_skin(rig.colour, xy, z, skin)
+    chain = _chain(names, bones, is_trunk)
+    lengths = _lengths(joints_at[:, :, 0], chain)
+    xyz = np.full((*xy.shape[:2], 3), np.nan)
+    depth = np.full(xy.shape[:2], np.nan)
+    radius_px = radius_m * rig.colour.K[0, 0]
+    for t in range(len(xy)):
+        chosen = _choose(joints_at[t], z[t], z_body[t], chain, lengths, is_trunk)
+        _uncover(chosen, xy[t], z[t], radius_px, chain, is_trunk)
+        for joint, surface in chosen.items():
+            xyz[t, joint], depth[t, joint] = joints_at[t, joint, surface], z[t, joint, surface]
+    missing = np.isnan(xyz[..., 0]) & (view.reason[0] == reasons.OK)
+    motion = DeviceMotion(
+        source=source,
+        kind="rgbd",
+        joints=np.array(names),
+        time_s=np.asarray(view.time_s, dtype=float),
+        xyz=xyz,
+        reason=np.where(missing, reasons.NO_DEPTH, view.reason[0]).astype(np.uint8),
+        performed=np.ones(len(xy), dtype=bool),
+    )
+    return motion, sampler.sigma_z(depth)
+
+
+def by_joint(names, table):
+    """Return the table's value of each joint (J,), by its name or its name without side.
+
+    Raises
+    ------
+    ValueError
+        If a joint is not in the table.
+    """
+    plain = [name.removeprefix("left_").removeprefix("right_") for name in names]
+    table = dict.fromkeys(ON_SKIN, 0.0) | dict(table)
+    missing = [n for n, p in zip(names, plain, strict=True) if n not in table and p not in table]
+    if missing:
+        raise ValueError(f"expected a depth behind the skin of every joint, missing {missing}")
+    return np.array([table.get(n, table.get(p)) for n, p in zip(names, plain, strict=True)])
+
+
+def nearest_frames(times_s, frames, most_s):
+    """Yield for each time the frame taken nearest to it.
+
+    Parameters
+    ----------
+    times_s : (T,) float
+        Increasing.
+    frames : iterable of (float, object)
+        In order of time.
+    most_s : float
+        A frame farther off is none.
+
+    Yields
+    ------
+    frame : object or None
+    """
+    frames = iter(frames)
+    before, after = None, next(frames, None)
+    for time_s in times_s:
+        while after is not None and after[0] <= time_s:
+            before, after = after, next(frames, None)
+        near = [frame for frame in (before, after) if frame is not None]
+        best = min(near, key=lambda frame: abs(frame[0] - time_s), default=None)
+        close = best is not None and abs(best[0] - time_s) <= most_s
+        yield best[1] if close else None
+
+
+def _sampled(sampler, xy, times_s, depth_frames):
+    """Return the surfaces (T, J, 3) and the depth of the body (T,), metres."""
+    z, z_body = np.full((*xy.shape[:2], 3), np.nan), np.full(len(xy), np.nan)
+    interval_s = np.median(np.diff(times_s)) if len(times_s) > 1 else 1.0
+    for t, depth in enumerate(nearest_frames(times_s, depth_frames, LAG * interval_s)):
+        if depth is not None:
+            z[t], z_body[t] = sampler.surfaces(xy[t], depth)
+    return z, z_body
+
+
+def _behind_skin(colour, xy, z, skin):
+    """Return where the joints are (T, J, 3 surfaces, 3): behind the skin along the viewing ray."""
+    plane = cameras.undistort(colour, xy)
+    ray = np.concatenate([plane, np.ones((*plane.shape[:2], 1))], axis=-1)
+    along = z[..., np.newaxis] * ray[:, :, np.newaxis]
+    unit = ray / np.linalg.norm(ray, axis=-1, keepdims=True)
+    return along + (skin[:, np.newaxis] * unit)[:, :, np.newaxis]
+
+
+def _chain(names, bones, is_trunk):
+    """Return (joint, parent or None) from the trunk outwards; every joint once."""
+    neighbours = {k: [] for k in range(len(names))}
+    for a, b in bones:
+        if a in names and b in names:
+            neighbours[names.index(a)].append(names.index(b))
+            neighbours[names.index(b)].append(names.index(a))
+    trunk = [int(k) for k in np.flatnonzero(is_trunk)]
+    parents = dict.fromkeys(trunk)
+    for start in [None, *range(len(names))]:
+        if start is not None:
+            parents.setdefault(start, None)
+        queue = list(parents) if start is None else [start]
+        while queue:
+            joint = queue.pop(0)
+            for other in neighbours[joint]:
+                if other not in parents:
+                    parents[other] = joint
+                    queue.append(other)
+    return list(parents.items())
+
+
+def _lengths(xyz, chain):
+    """Return the length of the bone from each joint to its parent, metres, by the medians over the take."""
+    lengths = {}
+    for joint, parent in chain:
+        if parent is None:
+            continue
+        found = np.linalg.norm(xyz[:, joint] - xyz[:, parent], axis=-1)
+        if np.count_nonzero(np.isfinite(found)) >= FEWEST:
+            lengths[joint] = float(np.nanmedian(found))
+    return lengths
+
+
+def _choose(joints_at, z, z_body, chain, lengths, is_trunk):
+    """Return the surface that is each joint's, by joint; none for those that have none."""
+    chosen = {}
+    for joint, parent in chain:
+        surfaces = [k for k in range(z.shape[1]) if np.isfinite(joints_at[joint, k, 2])]
+        limit = FROM_BODY_M[bool(is_trunk[joint])]
+        surfaces = [k for k in surfaces if abs(z[joint, k] - z_body) <= limit]
+        if is_trunk[joint]:  # what is in front of the trunk is not the trunk
+            surfaces.sort(key=lambda k, joint=joint: abs(z[joint, k] - z_body))
+        if parent in chosen and joint in lengths:
+            anchor, length = joints_at[parent, chosen[parent]], lengths[joint]
+            slack = max(BONE_TOLERANCE * length, BONE_TOLERANCE_M)
+            off = {k: abs(np.linalg.norm(joints_at[joint, k] - anchor) - length) for k in surfaces}
+            surfaces = [k for k in surfaces if off[k] <= slack]
+        if surfaces:
+            chosen[joint] = surfaces[0]
+    return chosen
+
+
+def _uncover(chosen, xy, z, radius_px, chain, is_trunk):
+    """Leave out joints of the trunk where a limb lies over them in the picture and is what is seen there."""
+    limbs = [
+        (a, b) for a, b in chain if b in chosen and a in chosen and not (is_trunk[a] or is_trunk[b])
+    ]
+    for joint in [k for k in chosen if is_trunk[k]]:
+        for a, b in limbs:
+            along = xy[b] - xy[a]
+            share = np.clip((xy[joint] - xy[a]) @ along / max(along @ along, 1e-9), 0, 1)
+            z_limb = (1 - share) * z[a, chosen[a]] + share * z[b, chosen[b]]
+            wide = (1 - share) * radius_px[a] + share * radius_px[b]
+            over = np.linalg.norm(xy[a] + share * along - xy[joint]) <= wide / z_limb
+            if over and abs(z_limb - z[joint, chosen[joint]]) <= COVERED_M:
+                chosen.pop(joint)
+                break
+
+
+def summary(motion, sigma_m):
+    """Return a line for the log: how many joints have depth, and how exact it is."""
+    seen = np.isin(motion.reason, (reasons.OK, reasons.NO_DEPTH))
+    lifted = np.count_nonzero(motion.reason == reasons.OK) / max(np.count_nonzero(seen), 1)
+    known = sigma_m[np.isfinite(sigma_m)]
+    sigma_mm = 1000 * np.median(known) if len(known) else np.nan
+    return f"{motion.source}: {lifted:.1%} of the joints seen have depth, noise {sigma_mm:.1f} mm"

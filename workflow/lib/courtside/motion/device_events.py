@@ -1,0 +1,73 @@
+"""What each source of a take shows: T-poses and claps, by its own clock."""
+
+from dataclasses import dataclass
+
+from courtside.motion import claps as clapping
+from courtside.motion import tpose as tposes
+from courtside.study.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Events:
+    """T-poses and claps of one source, on its own clock."""
+
+    tposes: list
+    claps: list
+
+
+def events(motion, alone=False):
+    """Return the `Events` of a source.
+
+    Parameters
+    ----------
+    motion : DeviceMotion
+    alone : bool
+        No other device needs them: what is not there is left out.
+
+    Raises
+    ------
+    InputError
+        If it has no T-pose, or no clap after one.
+    """
+    spells, claps = [], []
+    try:
+        spells = tposes.find(motion)
+        claps = clapping.find(motion, spells)
+    except InputError:
+        if not alone:
+            raise
+    return Events(spells, claps)
+
+
+def shown(motions, devices):
+    """Return the `Events` of all sources of a take.
+
+    Parameters
+    ----------
+    motions : list of DeviceMotion
+    devices : dict of str to str
+        The device of each source.
+
+    Returns
+    -------
+    happened : dict of str to Events
+        By source. Of the sources of one device one must show a clap: they have one clock. A device that is
+        alone needs none.
+
+    Raises
+    ------
+    InputError
+        If a device among others shows no T-pose and clap in any of its sources.
+    """
+    happened, faults = {}, {}
+    for motion in motions:
+        try:
+            happened[motion.source] = events(motion)
+        except InputError as error:
+            faults[motion.source] = error
+            happened[motion.source] = events(motion, alone=True)
+    clapped = {devices[source] for source, each in happened.items() if each.claps}
+    for source, error in faults.items():
+        if devices[source] not in clapped and len(set(devices.values())) > 1:
+            raise error
+    return happened

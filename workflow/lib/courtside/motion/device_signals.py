@@ -1,0 +1,150 @@
+"""What the motion of a body looks like to every device, whatever its axes, its place and its scale.
+
+Distances of joints, which nothing changes; and, where a T-pose has given axes, places of the limbs against
+the trunk: they keep apart what a camera sees well and what it guesses, height and width from depth.
+"""
+
+import numpy as np
+
+from courtside.motion import bodyframe, smooth_tracks
+from courtside.motion import tpose as tposes
+
+SMOOTH_S = 0.03  # standard deviation of the Gaussian, at least
+SMOOTH_STEPS = 0.85  # of the longest frame interval: less would draw offsets to half frames
+SLOW_S = 0.2  # what changes slower than this is taken off: depth errs by where a body stands
+LIMBS = tuple(
+    f"{side}_{p}" for p in ("elbow", "wrist", "knee", "ankle") for side in ("left", "right")
+)
+TRUNK = tuple(f"{side}_{p}" for p in ("shoulder", "hip") for side in ("left", "right"))
+CLIP = 6.0  # signals count up to this many times their usual size
+PAIRS = (
+    ("left_wrist", "right_wrist"),
+    ("left_wrist", "left_shoulder"),
+    ("right_wrist", "right_shoulder"),
+    ("left_wrist", "left_hip"),
+    ("right_wrist", "right_hip"),
+    ("left_wrist", "right_hip"),
+    ("right_wrist", "left_hip"),
+    ("left_elbow", "right_elbow"),
+    ("left_ankle", "right_ankle"),
+    ("left_knee", "right_knee"),
+    ("left_ankle", "left_hip"),
+    ("right_ankle", "right_hip"),
+    ("left_ankle", "right_hip"),
+    ("right_ankle", "left_hip"),
+    ("left_knee", "right_hip"),
+    ("right_knee", "left_hip"),
+)
+
+
+class Signals:
+    """Loss of two devices from the products of their signals, as `clock_adjustment.adjust` asks for.
+
+    Parameters
+    ----------
+    first, second : courtside.records.device_motion.DeviceMotion
+    axes : (2, 3, 3) float, optional
+        Rows are the same three directions in the frame of each. Without them only distances are compared.
+    """
+
+    def __init__(self, first, second, axes=None):
+        step_s = max(float(np.median(np.diff(each.time_s))) for each in (first, second))
+        sigma_s = max(SMOOTH_S, SMOOTH_STEPS * step_s)
+        names = set(first.joints.tolist()) & set(second.joints.tolist())
+        pairs = [pair for pair in PAIRS if names.issuperset(pair)]
+        values = [_distances(each, pairs) for each in (first, second)]
+        if axes is not None:
+            limbs = [name for name in LIMBS if name in names]
+            values = [
+                _places(each, limbs, rows) for each, rows in zip((first, second), axes, strict=True)
+            ]
+        self.tracks = [
+            _track(each, value, sigma_s)
+            for each, value in zip((first, second), values, strict=True)
+        ]
+        self.weight = np.ones(values[0].shape[1])
+
+    def sampled(self, own):
+        """Return value, slope and bend (T, K) of both devices where their clocks show `own` (2, T)."""
+        both = [
+            [part[0, :, :, 0] for part in smooth_tracks.sample(track, time_s)]
+            for track, time_s in zip(self.tracks, own, strict=True)
+        ]
+        known = np.isfinite(both[0][0]) & np.isfinite(both[1][0])
+        return [[np.where(known, part, 0.0) for part in one] for one in both]
+
+    def correlation(self, own):
+        """Return the correlation of each signal (K,) where the clocks show `own` (2, T); 0 where unknown."""
+        first, second = (one[0] for one in self.sampled(own))
+        size = np.sqrt((first**2).sum(axis=0) * (second**2).sum(axis=0))
+        return (first * second).sum(axis=0) / np.where(size > 0, size, np.inf)
+
+    def weigh(self, own):
+        """Give each signal the weight of its share of common motion to noise, at clocks about right."""
+        common = np.clip(self.correlation(own), 0.0, 0.99)
+        self.weight = common / (1 - common**2)
+
+    def terms(self, own):
+        """Return slope, curvature and steepness (T,) of minus the products, by the second one's offset."""
+        (value_a, slope_a, bend_a), (value_b, slope_b, bend_b) = self.sampled(own)
+        slope = -0.5 * (value_a * slope_b - slope_a * value_b) @ self.weight
+        curvature = -0.25 * (value_a * bend_b - 2 * slope_a * slope_b + bend_a * value_b)
+        steep = 0.5 * (slope_a**2 + slope_b**2)
+        return {(0, 1): (slope, curvature @ self.weight, steep @ self.weight)}
+
+
+def common_axes(motions, spells):
+    """Return three directions in the frames of two devices, such that noise in one says nothing of another.
+
+    Parameters
+    ----------
+    motions : sequence of two DeviceMotion
+    spells : sequence of two courtside.motion.tpose.TPose
+        Of the same T-pose: the body's axes join the devices' frames.
+
+    Returns
+    -------
+    axes : (2, 3, 3) float
+        Rows are directions in each device's frame: the principal axes of the noise of both at rest. So the
+        depth of a camera is kept apart from width and height wherever it stood.
+    """
+    rows, noise = [], np.zeros((3, 3))
+    for motion, spell in zip(motions, spells, strict=True):
+        at = {name: motion.joint(name)[spell.frames] for name in tposes.JOINTS}
+        still = {name: np.nanmedian(path, axis=0) for name, path in at.items()}
+        hips, shoulders = (still[f"left_{p}"] + still[f"right_{p}"] for p in ("hip", "shoulder"))
+        axes, unit_m = bodyframe.axes(
+            hips / 2, shoulders / 2, still["left_wrist"], still["right_wrist"]
+        )
+        for name, path in at.items():
+            off = (path[np.isfinite(path).all(axis=1)] - still[name]) @ axes.T / unit_m
+            noise += off.T @ off / max(1, len(off))
+        rows.append(axes)
+    _, own = np.linalg.eigh(noise)
+    return np.array([own.T @ axes for axes in rows])
+
+
+def _distances(motion, pairs):
+    distances = [
+        np.linalg.norm(motion.joint(one) - motion.joint(other), axis=1) for one, other in pairs
+    ]
+    return np.stack(distances, axis=1)
+
+
+def _places(motion, limbs, rows):
+    """Return the places of limbs against the trunk along three directions, (T, 3 L)."""
+    trunk = np.mean([motion.joint(name) for name in TRUNK], axis=0)
+    places = [(motion.joint(name) - trunk) @ rows.T for name in limbs]
+    return np.concatenate(places, axis=1)
+
+
+def _track(motion, values, sigma_s):
+    """Return signals (T, K) of a device as a Track (1, T, K, 1), of usual size 1."""
+    values = np.where(motion.performed[:, None], values, np.nan)[None, :, :, None]
+    fast = smooth_tracks.build(motion.time_s, values, sigma_s)
+    slow = smooth_tracks.build(motion.time_s, values, SLOW_S)
+    values = fast.values - slow.values
+    usual = np.nanstd(values, axis=1, keepdims=True)
+    usual = np.where(np.isfinite(usual) & (usual > 0), usual, 1.0)
+    squeezed = CLIP * np.tanh(values / (CLIP * usual))
+    return smooth_tracks.Track(fast.start_s, fast.step_s, squeezed)

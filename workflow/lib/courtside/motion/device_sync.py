@@ -1,0 +1,256 @@
+"""Clocks of the devices of a take: the offset from claps, the drift from all the motion between them."""
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.motion import clap_pairs, clock_adjustment, device_signals
+from courtside.motion.device_signals import Signals
+from courtside.records.sync import Clock
+from courtside.study.errors import InputError
+
+PRIOR_DRIFT = 100e-6  # ASSUME: standard deviation of devices' drifts; quartz runs within 200 ppm
+# ASSUME: a network or an inertial suit errs with the pose, and that seems to move the motion in time.
+MOTION_BIAS_S = 0.005
+LEAST_CORRELATION = 0.3  # of the motions, median over the signals, for them to say anything
+HOPELESS = 10.0  # a drift less sure than so many priors is not sought
+DISAGREE = 3.0  # standard deviations between clap and motion that are worth a word
+MAX_UNCERTAINTY_S = 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What is known of one source's clock.
+
+    Attributes
+    ----------
+    clock : Clock
+        Against the reference source: events shown at its own time are the same events. It holds whatever
+        delay the device has.
+    claps : list of (Clap, Clap)
+        Pairs, of the reference and of this source.
+    clap_offset_s, clap_uncertainty_s : float
+        By the claps alone with this clock's drift, at their mean time.
+    clap_drift_ppm, clap_drift_uncertainty_ppm : float
+        By the claps alone; NaN with fewer than two.
+    motion_offset_s, motion_uncertainty_s : float
+        By the motion alone, at the middle of what both recorded.
+    motion_drift_ppm, motion_drift_uncertainty_ppm : float
+    disagree_s : float
+        Offset by the motion less that by the claps, at one time.
+    latency_s, latency_uncertainty_s : float
+        The device's stated delay. Its clock as such is off by `clock.offset_s` less this delay (if the
+        reference has none).
+    """
+
+    clock: Clock
+    claps: list
+    clap_offset_s: float = np.nan
+    clap_uncertainty_s: float = np.nan
+    clap_drift_ppm: float = np.nan
+    clap_drift_uncertainty_ppm: float = np.nan
+    motion_offset_s: float = np.nan
+    motion_uncertainty_s: float = np.nan
+    motion_drift_ppm: float = np.nan
+    motion_drift_uncertainty_ppm: float = np.nan
+    disagree_s: float = np.nan
+    latency_s: float = 0.0
+    latency_uncertainty_s: float = 0.0
+
+
+def synchronise(motions, happened, *, devices=None, known=None, latency=None):
+    """Find the clock of every source against the first one's.
+
+    Parameters
+    ----------
+    motions : list of DeviceMotion
+        The first is the reference.
+    happened : dict of str to Events
+        Of each source, reference included.
+    devices : dict of str to str, optional
+        The device of each source: those of one device share its clock. Each its own by default.
+    known : dict of str to Clock, optional
+        Clocks against the reference that are known already; they are taken as they are.
+    latency : dict of str to (float, float), optional
+        Stated delay of a source and its standard deviation, s. It is reported, not taken off: places must
+        be compared at the times of the same event.
+
+    Returns
+    -------
+    found : dict of str to Found
+        `found[source].clock`; of the reference, its status is `reference`.
+
+    Raises
+    ------
+    InputError
+        If the claps of a source cannot be paired with those of the reference, or leave its clock uncertain.
+    """
+    reference, *others = motions
+    devices, known, latency = devices or {}, known or {}, latency or {}
+    found = {reference.source: Found(Clock(status="reference", note="the take's clock"), [])}
+    for motion in others:
+        if motion.source in known:
+            found[motion.source] = Found(known[motion.source], [])
+        elif _device(devices, motion) == _device(devices, reference):
+            said = Clock(note="one device with the reference: one clock")
+            found[motion.source] = Found(said, [])
+        elif not happened[motion.source].claps:
+            said = Clock(status="unknown", note="no clap of its own", uncertainty_s=np.inf)
+            found[motion.source] = Found(said, [])
+        else:
+            found[motion.source] = _against(reference, motion, happened)
+    shared = _shared(found, [m for m in others if m.source not in known], devices)
+    return {
+        source: Found(**(vars(one) | _stated(latency.get(source))))
+        for source, one in shared.items()
+    }
+
+
+def _stated(latency):
+    return dict(zip(("latency_s", "latency_uncertainty_s"), latency or (0.0, 0.0), strict=True))
+
+
+def _device(devices, motion):
+    return devices.get(motion.source, motion.source)
+
+
+def _shared(found, motions, devices):
+    """Give the sources of one device the surest of their clocks."""
+    surest = {}
+    for motion in motions:
+        device = _device(devices, motion)
+        best = surest.get(device, motion.source)
+        own, other = (found[source].clock.uncertainty_s for source in (motion.source, best))
+        surest[device] = motion.source if own < other else best
+    taken = {motion.source: surest[_device(devices, motion)] for motion in motions}
+    return {source: found[taken.get(source, source)] for source in found}
+
+
+def _against(reference, motion, happened):
+    """Find the clock of one source against another."""
+    where = f"{motion.source} against {reference.source}"
+    claps = happened[reference.source].claps, happened[motion.source].claps
+    signals = Signals(reference, motion)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
+        pairs = clap_pairs.pair(*claps, _likeness(signals, reference, motion), where)
+        spells = happened[reference.source].tposes, happened[motion.source].tposes
+        chosen = [spell[clap.tpose] for spell, clap in zip(spells, pairs[0], strict=True)]
+        axes = device_signals.common_axes((reference, motion), chosen)
+        signals = Signals(reference, motion, axes)
+        moved = _by_motion(signals, reference, motion, clap_pairs.offset_s(pairs))
+    return _joined(pairs, moved, reference, where)
+
+
+def _likeness(signals, reference, motion):
+    """Return a function of an offset: how alike the motions are with it, a correlation."""
+
+    def likeness(offset_s):
+        time_s = _both(reference, motion, offset_s)
+        if len(time_s) < 2:
+            return -1.0
+        return float(np.median(signals.correlation(np.stack([time_s, time_s + offset_s]))))
+
+    return likeness
+
+
+def _both(reference, motion, offset_s):
+    """Return uniform times of the reference at which both ran."""
+    step_s = float(np.median(np.diff(reference.time_s)))
+    start = max(reference.time_s[0], motion.time_s[0] - offset_s)
+    stop = min(reference.time_s[-1], motion.time_s[-1] - offset_s)
+    return start + step_s * np.arange(max(0, int((stop - start) / step_s)))
+
+
+def _by_motion(signals, reference, motion, offset_s):
+    """Return the clock that the whole motion gives, `clock_adjustment.Adjusted`, or None."""
+    time_s = _both(reference, motion, offset_s)
+    if len(time_s) < 2:
+        return None
+    own = np.stack([time_s, time_s + offset_s])
+    if np.median(signals.correlation(own)) < LEAST_CORRELATION:
+        return None
+    for _ in range(2):
+        signals.weigh(own)
+        adjusted = clock_adjustment.adjust(
+            signals.terms, [0.0, own[1, 0] - time_s[0]], time_s, np.array([0, 2])
+        )
+        if not adjusted.covariance[3, 3] < (HOPELESS * PRIOR_DRIFT) ** 2:
+            return None
+        own = np.stack([time_s, adjusted.own(1, time_s)])
+    return adjusted
+
+
+def _joined(pairs, moved, reference, where):
+    """Join claps and motion: offset, the motion's own bias, and drift, by least squares."""
+    at_s = np.array([first.time_s for first, _ in pairs])
+    apart_s = np.array([second.time_s - first.time_s for first, second in pairs])
+    sigma_s = np.array([np.hypot(*(clap.uncertainty_s for clap in pair)) for pair in pairs])
+    centre_s = moved.centre_s if moved else float(at_s.mean())
+    rows = np.column_stack([np.ones(len(pairs)), np.zeros(len(pairs)), at_s - centre_s])
+    information = np.diag([0.0, MOTION_BIAS_S**-2, PRIOR_DRIFT**-2])
+    moments = np.zeros(3)
+    information += (rows / sigma_s[:, None] ** 2).T @ rows
+    moments += rows.T @ (apart_s / sigma_s**2)
+    if moved:
+        rows = np.array([[1.0, 1, 0], [0, 0, 1]])
+        inverse = np.linalg.inv(moved.covariance[2:, 2:])
+        information += rows.T @ inverse @ rows
+        moments += rows.T @ inverse @ [moved.offset_s[1], moved.drift[1]]
+    covariance = np.linalg.inv(information)
+    state = covariance @ moments
+    ends = reference.time_s[[0, -1]] - centre_s
+    lever = np.stack([np.ones(2), np.zeros(2), ends], axis=1)
+    spread_s = float(np.sqrt(np.einsum("ni,ij,nj->n", lever, covariance, lever).max()))
+    numbers = _alone(pairs, at_s, apart_s, sigma_s, moved, state, centre_s)
+    if spread_s > MAX_UNCERTAINTY_S:
+        raise InputError(
+            f"{where}: expected claps and motion that place its clock within "
+            f"{1e3 * MAX_UNCERTAINTY_S:.0f} ms, found {1e3 * spread_s:.0f} ms with {len(pairs)} clap(s) at "
+            f"{', '.join(f'{t:.2f}' for t in at_s)} s; clap again at the end, or give its offset_s"
+        )
+    clock = Clock(
+        offset_s=float(state[0] - state[2] * centre_s),
+        drift_ppm=float(1e6 * state[2]),
+        uncertainty_s=spread_s,
+        drift_uncertainty_ppm=float(1e6 * np.sqrt(covariance[2, 2])),
+        status="found",
+        note=_note(pairs, moved, numbers),
+    )
+    return Found(clock, pairs, **numbers)
+
+
+def _alone(pairs, at_s, apart_s, sigma_s, moved, state, centre_s):
+    """Return what claps and motion say by themselves."""
+    weight = sigma_s**-2 / (sigma_s**-2).sum()
+    mean_s = float(weight @ at_s)
+    spread = float(np.sqrt((sigma_s**-2 * (at_s - mean_s) ** 2).sum()))
+    numbers = {
+        "clap_offset_s": float(weight @ apart_s),
+        "clap_uncertainty_s": float((sigma_s**-2).sum() ** -0.5),
+    }
+    if len(pairs) > 1:
+        slope = float((sigma_s**-2 * (at_s - mean_s)) @ apart_s) / spread**2
+        numbers |= {"clap_drift_ppm": 1e6 * slope, "clap_drift_uncertainty_ppm": 1e6 / spread}
+    if moved:
+        by_clap = numbers["clap_offset_s"] + state[2] * (centre_s - mean_s)
+        numbers |= {
+            "motion_offset_s": float(moved.offset_s[1]),
+            "motion_uncertainty_s": float(np.sqrt(moved.covariance[2, 2])),
+            "motion_drift_ppm": float(1e6 * moved.drift[1]),
+            "motion_drift_uncertainty_ppm": float(1e6 * np.sqrt(moved.covariance[3, 3])),
+            "disagree_s": float(moved.offset_s[1] - by_clap),
+        }
+    return numbers
+
+
+def _note(pairs, moved, numbers):
+    line = f"{len(pairs)} clap(s) paired"
+    if not moved:
+        return f"{line}; the motions are too little alike to say more"
+    line += f"; motion is {1e3 * numbers['disagree_s']:+.1f} ms from them"
+    spread = (numbers["clap_uncertainty_s"], numbers["motion_uncertainty_s"], MOTION_BIAS_S)
+    if abs(numbers["disagree_s"]) > DISAGREE * np.linalg.norm(spread):
+        line += ", more than both allow: look at the wrist distance"
+    return line

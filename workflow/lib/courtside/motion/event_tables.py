@@ -1,0 +1,112 @@
+"""Tables of the wrists' distance, of T-poses and claps, and of what each device's clock rests on."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.motion import claps as clapping
+from courtside.motion import tpose as tposes
+from courtside.records.sync import Clock
+from courtside.study.errors import InputError
+
+EVENT_COLUMNS = [
+    "source",
+    "event",
+    "number",
+    "time_s",
+    "own_time_s",
+    "uncertainty_s",
+    "used",
+    "why",
+]
+
+
+def wrists(motions, clocks=None):
+    """Return the distance of the wrists over time.
+
+    Parameters
+    ----------
+    motions : list of DeviceMotion
+    clocks : dict of str to Clock, optional
+        Of each source against the reference; without one time_s is the source's own.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        source, time_s: on the reference clock, own_time_s, distance_m: in space, empty where missing.
+    """
+    clocks = clocks or {}
+    parts = [
+        pd.DataFrame(
+            {
+                "source": motion.source,
+                "time_s": clocks.get(motion.source, Clock()).to_reference(motion.time_s),
+                "own_time_s": motion.time_s,
+                "distance_m": np.where(motion.performed, clapping.wrist_distance(motion), np.nan),
+            }
+        )
+        for motion in motions
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def events(motions, clocks=None):
+    """Return T-poses, claps, and times at which hands come together without a clap, as they are found.
+
+    Parameters
+    ----------
+    motions : list of DeviceMotion
+    clocks : dict of str to Clock, optional
+        As for `wrists`.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        source; event: `tpose_start`, `tpose_stop`, `clap` or `none`; number: of the T-pose, from 1;
+        time_s: on the reference clock; own_time_s; uncertainty_s: of claps; used: whether it is a clap to go
+        by or belongs to a T-pose; why: if not used. A source without a T-pose has one row that says so:
+        nothing is raised.
+    """
+    clocks = clocks or {}
+    rows = [row for motion in motions for row in _events(motion)]
+    table = pd.DataFrame(rows, columns=EVENT_COLUMNS)
+    table["time_s"] = [
+        float(clocks.get(source, Clock()).to_reference(own_s))
+        for source, own_s in zip(table["source"], table["own_time_s"], strict=True)
+    ]
+    return table
+
+
+def _events(motion):
+    try:
+        spells = tposes.find(motion)
+    except InputError as error:
+        spells, why = [], str(error)
+        yield {"source": motion.source, "event": "none", "used": False, "why": why}
+    for number, spell in enumerate(spells, 1):
+        for name, at_s in (("tpose_start", spell.start_s), ("tpose_stop", spell.stop_s)):
+            about = {"source": motion.source, "event": name, "number": number}
+            yield about | {"own_time_s": at_s, "used": True, "why": ""}
+    for candidate in clapping.candidates(motion, spells):
+        row = {"source": motion.source, "event": "none", "used": False, "why": candidate.why}
+        row["own_time_s"] = candidate.time_s
+        if candidate.clap:
+            row |= {"event": "clap", "number": candidate.clap.tpose + 1, "used": True}
+            row["uncertainty_s"] = candidate.clap.uncertainty_s
+        yield row
+
+
+def checks(found):
+    """Return what each clock rests on: one row per source, the numbers of `device_sync.Found`.
+
+    Parameters
+    ----------
+    found : dict of str to courtside.motion.device_sync.Found
+    """
+    rows = []
+    for source, one in found.items():
+        clock = {key: getattr(one.clock, key) for key in ("offset_s", "drift_ppm", "uncertainty_s")}
+        rest = {key: value for key, value in vars(one).items() if key not in ("clock", "claps")}
+        about = {"source": source, "status": one.clock.status, **clock}
+        about["drift_uncertainty_ppm"] = one.clock.drift_uncertainty_ppm
+        rows.append(about | {"n_claps": len(one.claps)} | rest)
+    return pd.DataFrame(rows)

@@ -1,0 +1,79 @@
+"""One person of one camera: who it is, and the body that the network guesses by itself."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.records import reasons
+from courtside.records.device_motion import DeviceMotion
+
+
+def main_person(view):
+    """Return the keypoints of the person nearest to the camera in each frame, as one tracklet.
+
+    Parameters
+    ----------
+    view : Keypoints2D
+        With any number of tracklets.
+
+    Returns
+    -------
+    view : Keypoints2D
+        With one (P = 1); unseen where there is nobody.
+
+    Notes
+    -----
+    The nearest is the one whose joints span most of the picture: single-view sessions have one subject.
+    """
+    n_people, n_frames, n_joints = view.score.shape
+    if n_people == 0:
+        empty = np.full((1, n_frames, n_joints), np.nan)
+        unseen = np.full(empty.shape, reasons.UNSEEN, dtype=view.reason.dtype)
+        return replace(
+            view,
+            xy=np.repeat(empty[..., np.newaxis], 2, axis=-1),
+            score=empty,
+            reason=unseen,
+            xyz_in_body=np.repeat(empty[..., np.newaxis], 3, axis=-1),
+        )
+    known = np.isfinite(view.xy)
+    low = np.where(known, view.xy, np.inf).min(axis=2)
+    high = np.where(known, view.xy, -np.inf).max(axis=2)
+    span = np.where(high >= low, high - low, -1.0).max(axis=-1)
+    who = span.argmax(axis=0)
+    at = np.arange(n_frames)
+    fields = ("xy", "score", "reason", "xyz_in_body")
+    return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in fields})
+
+
+def landmarks(source, view, time_s=None):
+    """Return the network's own metric body of the main person as a motion.
+
+    Parameters
+    ----------
+    source : str
+        Name of the result: `d415-rgb`.
+    view : Keypoints2D
+        With any number of tracklets and `xyz_in_body`.
+    time_s : (T,) float, optional
+        Times on the device's clock; the view's where absent.
+
+    Returns
+    -------
+    motion : DeviceMotion
+        About the centre of the hips, axes as in cam (x right, y down, z forward), metres.
+    """
+    person = main_person(view)
+    xyz, reason = person.xyz_in_body[0], person.reason[0]
+    seen = np.isfinite(xyz).all(axis=-1)
+    return DeviceMotion(
+        source=source,
+        kind="rgb",
+        joints=np.asarray(person.joints),
+        time_s=np.asarray(person.time_s if time_s is None else time_s, dtype=float),
+        xyz=np.where(seen[..., np.newaxis], xyz, np.nan),
+        reason=np.where(seen, reasons.OK, np.where(reason == 0, reasons.UNSEEN, reason)).astype(
+            np.uint8
+        ),
+        performed=np.ones(len(xyz), dtype=bool),
+    )

@@ -1,0 +1,292 @@
+"""Errors of one source of motion against another that counts as true, and where they come from."""
+
+from dataclasses import replace
+from itertools import combinations
+from math import factorial
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import minimize_scalar
+
+from courtside.geometry import similarity
+
+ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
+PARTS = ("origin", "scale", "rotation", "time")
+LONGEST_S = 0.1  # no value is interpolated over a longer gap
+MOST_SHIFT_S = 0.3
+SEARCHED = 400  # frames or somewhat more
+FEWEST_JOINTS = 4  # of a frame, for it to be aligned by itself
+ROOT = ("left_hip", "right_hip")
+
+
+def at_times(time_s, xyz, wanted_s):
+    """Return joints at other times, between neighbouring frames.
+
+    Parameters
+    ----------
+    time_s : (T,) float
+    xyz : (T, J, 3) float
+    wanted_s : (U,) float
+
+    Returns
+    -------
+    xyz : (U, J, 3) float
+        NaN outside the span, beside a missing value, and in gaps longer than `LONGEST_S`.
+
+    Notes
+    -----
+    A cubic through the two frames before and the two after (Catmull & Rom 1974), taken as evenly spaced; a
+    straight line where the outer ones are missing.
+    """
+    wanted_s = np.asarray(wanted_s, float)
+    right = np.clip(np.searchsorted(time_s, wanted_s), 1, len(time_s) - 1)
+    span = time_s[right] - time_s[right - 1]
+    share = (wanted_s - time_s[right - 1]) / span
+    # A time that is a frame's own needs no neighbour.
+    share = np.where(np.abs(share - np.rint(share)) < 1e-9, np.rint(share), share)
+    share = np.where((share >= 0) & (share <= 1) & (span <= LONGEST_S), share, np.nan)[
+        :, None, None
+    ]
+    before, after = xyz[right - 1], xyz[right]
+    first, last = xyz[np.maximum(right - 2, 0)], xyz[np.minimum(right + 1, len(xyz) - 1)]
+    bend = (share - 1) * (first - 2 * before + after) - share * (before - 2 * after + last)
+    bend = share * (1 - share) / 2 * bend
+    whole = (right > 1) & (right < len(xyz) - 1)
+    usable = whole[:, None, None] & np.isfinite(bend).all(axis=-1, keepdims=True)
+    mixed = before * (1 - share) + after * share + np.where(usable, bend, 0.0)
+    return np.where(share == 0, before, np.where(share == 1, after, mixed))
+
+
+def shared(source, reference):
+    """Return the names of the joints that two sources have in common, in the source's order."""
+    known = set(map(str, reference.joints))
+    return [str(name) for name in source.joints if str(name) in known]
+
+
+def matched(source, reference, *, form="fixed", shift_s=0.0):
+    """Return both motions at the source's times, in millimetres of the reference's unit.
+
+    Parameters
+    ----------
+    source, reference : courtside.records.body_motion.BodyMotion
+    form : str
+        `fixed` or `following`.
+    shift_s : float
+        Added to the source's times.
+
+    Returns
+    -------
+    measured, true : (T, M, 3) float
+        mm; NaN where missing. The source is in its own units first, so that its scale is already taken from
+        its T-pose.
+    """
+    names = shared(source, reference)
+    own = getattr(source, form)[:, [list(source.joints).index(name) for name in names]]
+    other = getattr(reference, form)[:, [list(reference.joints).index(name) for name in names]]
+    true = at_times(reference.time_s, other, source.time_s + shift_s)
+    to_mm = 1000 * reference.unit_m
+    return own * to_mm, true * to_mm
+
+
+def errors(source, reference):
+    """Return the errors of a source in every alignment.
+
+    Parameters
+    ----------
+    source, reference : courtside.records.body_motion.BodyMotion
+
+    Returns
+    -------
+    names : list of str, length M
+        Joints of both.
+    errors : dict of str to (T, M, 3) float
+        mm. body_frame: in the frame of the T-pose, nothing else aligned. trunk_frame: in the frame that goes
+        with the trunk. root_relative: body_frame, less the error of the middle of the hips in each frame.
+        procrustes_take: after one similarity for the whole take; procrustes_frame: after one per frame.
+    """
+    names = shared(source, reference)
+    measured, true = matched(source, reference)
+    moving, truth = matched(source, reference, form="following")
+    root = (measured - true)[:, [names.index(name) for name in ROOT]].mean(axis=1, keepdims=True)
+    return names, {
+        "body_frame": measured - true,
+        "trunk_frame": moving - truth,
+        "root_relative": measured - true - root,
+        "procrustes_take": _procrustes(measured[None], true[None])[0],
+        "procrustes_frame": _procrustes(measured, true),
+    }
+
+
+def _procrustes(measured, true):
+    """Return errors (B, ..., 3) after a similarity for each of B sets of points; NaN of sets too poor."""
+    rest = np.full(measured.shape, np.nan)
+    for at, (one, other) in enumerate(zip(measured, true, strict=True)):
+        known = np.isfinite(one).all(axis=-1) & np.isfinite(other).all(axis=-1)
+        a, b = one[known], other[known]
+        if len(a) < FEWEST_JOINTS or similarity.is_collinear(a) or similarity.is_collinear(b):
+            continue
+        rest[at] = similarity.umeyama(a, b).points(one) - other
+    return rest
+
+
+def table(names, errors_mm, true_known):
+    """Summarise errors: one row for each alignment and joint, and for all joints.
+
+    Parameters
+    ----------
+    names : list of str, length M
+    errors_mm : dict of str to (T, M, 3) float
+    true_known : (T, M) bool
+        Where the reference has a value: what misses is counted there.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        alignment, joint, n, missing_percent; bias_x_mm, bias_y_mm, bias_z_mm: mean error along the body's
+        axes; bias_mm: its length; sd_mm: root mean square about it; rmse_mm: its square is bias_mm's and
+        sd_mm's together; median_mm and p95_mm of the distances.
+    """
+    groups = {name: [at] for at, name in enumerate(names)} | {"all": list(range(len(names)))}
+    rows = [
+        {"alignment": alignment, "joint": joint, **_row(error[:, at], true_known[:, at])}
+        for alignment, error in errors_mm.items()
+        for joint, at in groups.items()
+    ]
+    return pd.DataFrame(rows)
+
+
+def _row(error, true_known):
+    known = np.isfinite(error).all(axis=-1) & true_known
+    row = {"n": int(known.sum()), "missing_percent": np.nan}
+    if true_known.any():
+        row["missing_percent"] = 100 * (1 - known.sum() / true_known.sum())
+    if not known.any():
+        return row
+    error = error[known]
+    bias, distance = error.mean(axis=0), np.linalg.norm(error, axis=-1)
+    return row | {
+        **{f"bias_{axis}_mm": bias[k] for k, axis in enumerate("xyz")},
+        "bias_mm": np.linalg.norm(bias),
+        "sd_mm": np.sqrt(np.mean(np.sum((error - bias) ** 2, axis=-1))),
+        "rmse_mm": np.sqrt(np.mean(distance**2)),
+        "median_mm": np.median(distance),
+        "p95_mm": np.percentile(distance, 95),
+    }
+
+
+def split(source, reference, *, form="fixed"):
+    """Split the mean squared error of a source into parts that add up.
+
+    Parameters
+    ----------
+    source, reference : courtside.records.body_motion.BodyMotion
+    form : str
+        `fixed` or `following`.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        part: origin, scale, rotation, time, remainder, all; mean_square_mm2: they add up to that of all;
+        percent of all; and of the fit of everything at once its value, empty where there is none: origin's
+        shift in mm, scale's factor, rotation's angle in degrees, time's shift in seconds (added to the
+        source's times).
+
+    Notes
+    -----
+    For every subset of the four corrections (one shift in space, one scale, one rotation, one shift in time
+    for the whole take) the mean squared error that is left when all of the subset are fitted together is
+    found. A part's share is the mean, over all orders of taking corrections, of what it takes off when its
+    turn comes (Lindeman, Merenda & Gold 1980; Shapley 1953): no order is preferred, none is negative, and
+    with the remainder, what all four leave, they add up to the whole. Rotation and scale are about the
+    origin, or about the middle of all points where the origin may shift. All subsets are judged by the same
+    frames: those that the reference covers at every shift tried.
+    """
+    fits = {}
+    inside = _covered(source, reference, form)
+    shift_s = _best_shift(source, reference, form, inside, PARTS)
+    for size in range(len(PARTS) + 1):
+        for subset in combinations(PARTS, size):
+            if "time" in subset and size < len(PARTS):
+                at_s = _best_shift(source, reference, form, inside, subset)
+            else:
+                at_s = shift_s if "time" in subset else 0.0
+            fits[frozenset(subset)] = _fit(source, reference, form, inside, at_s, subset)
+    total, left = fits[frozenset()][0], fits[frozenset(PARTS)]
+    shares = {
+        part: _share(part, {subset: fit[0] for subset, fit in fits.items()}) for part in PARTS
+    }
+    values = left[1] | {"time": shift_s}
+    shares |= {"remainder": left[0], "all": total}
+    return pd.DataFrame(
+        [
+            {
+                "part": part,
+                "mean_square_mm2": share,
+                "percent": 100 * share / total if total else np.nan,
+                "value": values.get(part, np.nan),
+            }
+            for part, share in shares.items()
+        ]
+    )
+
+
+def _share(part, left):
+    """Return the mean of what a part takes off over all orders."""
+    others = [other for other in PARTS if other != part]
+    share = 0.0
+    for size in range(len(others) + 1):
+        weight = factorial(size) * factorial(len(others) - size) / factorial(len(PARTS))
+        for subset in combinations(others, size):
+            share += weight * (left[frozenset(subset)] - left[frozenset((*subset, part))])
+    return share
+
+
+def _covered(source, reference, form):
+    """Return the values (T, M) that both know at every shift in time that may be tried."""
+    known = np.ones((len(source.time_s), len(shared(source, reference))), bool)
+    for shift_s in np.arange(-MOST_SHIFT_S, MOST_SHIFT_S + 0.01, LONGEST_S / 2):
+        measured, true = matched(source, reference, form=form, shift_s=shift_s)
+        known &= np.isfinite(measured + true).all(axis=-1)
+    return known
+
+
+def _best_shift(source, reference, form, inside, subset):
+    """Return the shift in time that leaves least when the other corrections of a subset are fitted too."""
+    # Some of the frames are enough to find it.
+    every = slice(None, None, max(1, len(source.time_s) // SEARCHED))
+    thin = {key: getattr(source, key)[every] for key in ("time_s", "fixed", "following")}
+    some, inside = replace(source, **thin), inside[every]
+
+    def left(shift_s):
+        return _fit(some, reference, form, inside, shift_s, subset)[0]
+
+    coarse = np.linspace(-MOST_SHIFT_S, MOST_SHIFT_S, 25)
+    at_s = coarse[int(np.argmin([left(shift_s) for shift_s in coarse]))]
+    step_s = coarse[1] - coarse[0]
+    limits = max(at_s - step_s, -MOST_SHIFT_S), min(at_s + step_s, MOST_SHIFT_S)
+    found = minimize_scalar(left, bounds=limits, method="bounded", options={"xatol": 1e-5})
+    # No shift at all must not be worse than the one found.
+    return float(found.x) if found.fun < left(0.0) else 0.0
+
+
+def _fit(source, reference, form, inside, shift_s, subset):
+    """Return (mean squared error left, values) of a subset of corrections at one shift in time."""
+    measured, true = matched(source, reference, form=form, shift_s=shift_s)
+    good = inside & np.isfinite(true).all(axis=-1)
+    a, b = measured[good], true[good]
+    if not len(a):
+        return np.nan, {}
+    zero = np.zeros(3)
+    middle_a, middle_b = (a.mean(axis=0), b.mean(axis=0)) if "origin" in subset else (zero, zero)
+    a, b = a - middle_a, b - middle_b
+    rotation = np.eye(3)
+    if "rotation" in subset:
+        left, _, right = np.linalg.svd(b.T @ a)
+        left[:, 2] *= np.linalg.det(left @ right)
+        rotation = left @ right
+    turned = a @ rotation.T
+    scale = float((turned * b).sum() / (a * a).sum()) if "scale" in subset else 1.0
+    rest = float(np.mean(np.sum((scale * turned - b) ** 2, axis=-1)))
+    angle = np.degrees(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
+    shift = float(np.linalg.norm(middle_b - scale * rotation @ middle_a))
+    return rest, {"origin": shift, "scale": scale, "rotation": float(angle)}

@@ -1,0 +1,282 @@
+"""T-poses found in the motion of any device: arms straight out to the sides, square to the trunk, still.
+
+All is measured by the body alone, because devices differ in what axis is up. Single frames of a network's
+depth are too noisy for an arm to look straight: joints are medians over a third of a second.
+"""
+
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+
+from courtside.motion import filtering
+from courtside.study.errors import InputError
+
+MEDIAN_S = 0.35  # joints are medians over that
+STILL_S = 0.5  # speeds are differences over that
+LEAST_S = 0.5  # a T-pose lasts so long at least
+APART_S = 0.3  # spells with less between them are one
+STRAIGHT_DEG = 35.0  # an elbow bends less
+LEVEL_DEG = 20.0  # each arm is that near to square to the trunk
+SIDEWAYS_DEG = 35.0  # and that near to the line of the shoulders
+SPEED_PER_S = 0.4  # half wrist spans per second, of each wrist against the trunk
+LIMITS = {
+    "bend_deg": STRAIGHT_DEG,
+    "level_deg": LEVEL_DEG,
+    "sideways_deg": SIDEWAYS_DEG,
+    "speed_per_s": SPEED_PER_S,
+}
+HELD = 21  # frames of a rest pose that is held
+SIDES = ("left", "right")
+JOINTS = tuple(f"{side}_{part}" for part in ("shoulder", "elbow", "wrist", "hip") for side in SIDES)
+
+
+@dataclass(frozen=True)
+class TPose:
+    """One spell of T-pose.
+
+    Attributes
+    ----------
+    start_s, stop_s : float
+        First and last frame, on the device's own clock.
+    first, stop : int
+        Its frames are `first <= frame < stop`.
+    bend_deg : float
+        Of the elbows: 0 with shoulder, elbow and wrist in line; median over the spell, the worse arm.
+    level_deg : float
+        Of the arms from square to the trunk, likewise.
+    sideways_deg : float
+        Of the arms from the line of the shoulders, seen along the trunk, likewise.
+    speed_per_s : float
+        Of the wrists against the trunk, half wrist spans per second, likewise.
+    cost : float
+        Mean square of these four over their limits: what says which spell is best.
+    """
+
+    start_s: float
+    stop_s: float
+    first: int
+    stop: int
+    bend_deg: float
+    level_deg: float
+    sideways_deg: float
+    speed_per_s: float
+    cost: float
+
+    @property
+    def frames(self):
+        """The spell as a slice of the device's frames."""
+        return slice(self.first, self.stop)
+
+    def as_dict(self):
+        """Return the numbers for JSON."""
+        return asdict(self)
+
+
+def find(motion, *, least_s=LEAST_S, limits=None):
+    """Find all T-poses of a take.
+
+    Parameters
+    ----------
+    motion : courtside.records.device_motion.DeviceMotion
+        Frames that nobody performed are passed over.
+    least_s : float
+        Of stillness.
+    limits : dict of str to float, optional
+        In place of some of `LIMITS`.
+
+    Returns
+    -------
+    tposes : list of TPose
+        In order of time, one or more.
+
+    Raises
+    ------
+    InputError
+        If there is none; the line says what came nearest, and when.
+    """
+    limits = LIMITS | (limits or {})
+    measures = measure(motion)
+    over = np.stack([measures[key] / limit for key, limit in limits.items()])
+    good = (over <= 1).all(axis=0)
+    spells = [
+        (first, stop)
+        for first, stop in _joined(filtering.runs(good), motion.time_s)
+        if motion.time_s[stop - 1] - motion.time_s[first] >= least_s
+    ]
+    if not spells:
+        raise InputError(_nearest(motion, measures, over, good, limits, least_s))
+    return [_tpose(motion.time_s, measures, limits, *spell) for spell in spells]
+
+
+def rest(motion, *, limits=None):
+    """Return the T-pose of the frames that nobody performed: the rest pose of a device's own model.
+
+    It gives unit and axes of a take without a T-pose, in the frame that goes with the trunk; where the body
+    stood is not in it.
+
+    Parameters
+    ----------
+    motion : courtside.records.device_motion.DeviceMotion
+        One run of frames at its beginning that nobody performed.
+    limits : dict of str to float, optional
+        In place of some of `LIMITS`.
+
+    Raises
+    ------
+    InputError
+        If there are no such frames, or they show another pose.
+    """
+    limits = LIMITS | (limits or {})
+    runs = filtering.runs(~motion.performed)
+    if not len(runs):
+        raise InputError(f"{motion.source}: expected a rest pose, found none; film a T-pose")
+    first, stop = runs[0]
+    held = np.repeat(motion.xyz[first : first + 1], HELD, axis=0)
+    performed = np.ones(HELD, dtype=bool)
+    still = replace(motion, time_s=np.arange(HELD) * 0.1, xyz=held, performed=performed)
+    middle = {key: float(values[HELD // 2]) for key, values in measure(still).items()}
+    over = [key for key, limit in limits.items() if not middle[key] <= limit]
+    if over:
+        found = ", ".join(f"{key} {middle[key]:.2g}" for key in over)
+        raise InputError(f"{motion.source}: expected a rest pose with level arms, found {found}")
+    cost = float(np.mean([(middle[key] / limit) ** 2 for key, limit in limits.items()]))
+    start_s, stop_s = (float(motion.time_s[at]) for at in (first, stop - 1))
+    return TPose(start_s, stop_s, int(first), int(stop), cost=cost, **middle)
+
+
+def best(tposes):
+    """Return the T-pose of least cost."""
+    return min(tposes, key=lambda tpose: tpose.cost)
+
+
+def measure(motion):
+    """Measure how near every frame is to a T-pose.
+
+    Parameters
+    ----------
+    motion : courtside.records.device_motion.DeviceMotion
+
+    Returns
+    -------
+    measures : dict of str to (T,) float
+        The keys of `LIMITS`, as `TPose` has them, the worse of both sides; NaN where a joint is missing or
+        the frame was not performed.
+    """
+    names = list(motion.joints)
+    missing = [name for name in JOINTS if name not in names]
+    if missing:
+        raise InputError(
+            f"{motion.source}: expected the joints {list(JOINTS)} to find a T-pose, missing: {missing}; "
+            "correct the device's joint map"
+        )
+    step_s = float(np.median(np.diff(motion.time_s))) if len(motion.time_s) > 1 else 1.0
+    xyz = np.where(motion.performed[:, None, None], motion.xyz, np.nan)
+    smooth = _medians(xyz[:, [names.index(name) for name in JOINTS]], MEDIAN_S / step_s)
+    at = dict(zip(JOINTS, np.moveaxis(smooth, 1, 0), strict=True))
+    up = _unit(sum(at[f"{s}_shoulder"] - at[f"{s}_hip"] for s in SIDES))
+    line = _level(at["left_shoulder"] - at["right_shoulder"], up)
+    half_m = np.linalg.norm(at["left_wrist"] - at["right_wrist"], axis=1, keepdims=True) / 2
+    sides = [_arm(at, side, up, line * (1 if side == "left" else -1)) for side in SIDES]
+    middle = smooth[:, [JOINTS.index(f"{s}_{p}") for p in ("shoulder", "hip") for s in SIDES]].mean(
+        axis=1
+    )
+    reach = max(1, round(STILL_S / step_s / 2))
+    speeds = [
+        _speed((at[f"{side}_wrist"] - middle) / half_m, reach, 2 * reach * step_s) for side in SIDES
+    ]
+    measures = {key: np.maximum(sides[0][key], sides[1][key]) for key in sides[0]}
+    return measures | {"speed_per_s": np.maximum(*speeds)}
+
+
+def _arm(at, side, up, outwards):
+    upper = _unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
+    fore = _unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
+    whole = _unit(at[f"{side}_wrist"] - at[f"{side}_shoulder"])
+    return {
+        "bend_deg": _degrees(_dot(upper, fore)),
+        "level_deg": np.abs(90 - _degrees(_dot(whole, up))),
+        "sideways_deg": _degrees(_dot(_level(whole, up), outwards)),
+    }
+
+
+def _medians(values, length):
+    """Return running medians (T, J, 3) over about `length` frames, where more than half of them are known."""
+    half = max(0, int(length // 2))
+    ends = np.full((half, *values.shape[1:]), np.nan)
+    windows = np.lib.stride_tricks.sliding_window_view(
+        np.concatenate([ends, values, ends]), 2 * half + 1, axis=0
+    )
+    known = np.isfinite(windows).all(axis=2).sum(axis=-1) > half
+    medians = np.full(values.shape, np.nan)
+    medians[known] = np.nanmedian(windows.transpose(0, 1, 3, 2)[known], axis=1)
+    return medians
+
+
+def _speed(path, reach, span_s):
+    """Return the speed (T,) of a path (T, 3) over the frames before and after, NaN at the ends."""
+    speed = np.full(len(path), np.nan)
+    if len(path) > 2 * reach:
+        apart = np.linalg.norm(path[2 * reach :] - path[: -2 * reach], axis=1)
+        speed[reach:-reach] = apart / span_s
+    return speed
+
+
+def _dot(first, second):
+    return np.einsum("ti,ti->t", first, second)
+
+
+def _unit(vectors):
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 0, length, np.nan)
+
+
+def _level(vectors, up):
+    """Return directions without their part along the trunk."""
+    return _unit(vectors - _dot(vectors, up)[:, None] * up)
+
+
+def _degrees(cosine):
+    return np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+
+
+def _joined(runs, time_s):
+    """Join runs of frames with hardly anything between them."""
+    joined = []
+    for first, stop in runs:
+        if joined and time_s[first] - time_s[joined[-1][1] - 1] < APART_S:
+            joined[-1] = (joined[-1][0], stop)
+        else:
+            joined.append((first, stop))
+    return joined
+
+
+def _tpose(time_s, measures, limits, first, stop):
+    spell = slice(first, stop)
+    middle = {key: float(np.nanmedian(measures[key][spell])) for key in limits}
+    cost = float(np.mean([(middle[key] / limit) ** 2 for key, limit in limits.items()]))
+    return TPose(
+        start_s=float(time_s[first]),
+        stop_s=float(time_s[stop - 1]),
+        first=int(first),
+        stop=int(stop),
+        cost=cost,
+        **middle,
+    )
+
+
+def _nearest(motion, measures, over, good, limits, least_s):
+    words = ", ".join(f"{key} <= {limit:g}" for key, limit in limits.items())
+    line = f"{motion.source}: expected a T-pose ({words}, for {least_s:g} s), found none"
+    worst = np.where(np.isfinite(over).all(axis=0), over.max(axis=0), np.inf)
+    if not np.isfinite(worst).any():
+        return f"{line}, nor a frame with both arms and the trunk; film a T-pose before the clap"
+    runs = filtering.runs(good)
+    if len(runs):
+        first, stop = max(runs, key=lambda run: motion.time_s[run[1] - 1] - motion.time_s[run[0]])
+        lasts = motion.time_s[stop - 1] - motion.time_s[first]
+        found = f"the longest lasts {lasts:.2f} s at {motion.time_s[first]:.2f} s"
+    else:
+        at = int(worst.argmin())
+        nearest = ", ".join(f"{key} {measures[key][at]:.2g}" for key in limits)
+        found = f"the nearest is at {motion.time_s[at]:.2f} s with {nearest}"
+    return f"{line}; {found}; film a T-pose before the clap"

@@ -1,0 +1,1 @@
+"""Web pages of one file each that ask for nothing outside themselves."""

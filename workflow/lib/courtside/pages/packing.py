@@ -1,0 +1,121 @@
+"""Arrays as short text for a page: whole numbers, written as changes over time, deflated, base64."""
+
+import base64
+import zlib
+
+import numpy as np
+
+STEP_M = 0.001  # of a stored position: it errs by half of this at most
+REACH_M = 32.0  # from the middle; what is further away is not drawn
+LEAST, MOST = 1e-5, 10.0  # of a size on the logarithmic scale, in its own unit
+LEVELS = 254  # of that scale, so that neighbours differ by 5.6 %; 0 is unknown
+ANGLES = 255  # steps of a half turn
+
+
+def integers(values):
+    """Pack whole numbers that change little along the last axis.
+
+    Parameters
+    ----------
+    values : (..., T) int
+        Within the range of int16.
+
+    Returns
+    -------
+    text : str
+        Base64 of a zlib stream of the changes along the last axis, modulo 2^16, each spread over two
+        planes: all low bytes, then all high ones. The first value of each row is a change from 0.
+
+    Raises
+    ------
+    ValueError
+        If a value is beyond int16.
+    """
+    values = np.asarray(values)
+    if values.size and (values.min() < -(1 << 15) or values.max() >= 1 << 15):
+        raise ValueError(f"expected int16, found {values.min()} to {values.max()}")
+    changes = np.diff(values.astype(np.int32), axis=-1, prepend=0) & 0xFFFF
+    planes = np.concatenate([(changes & 0xFF).ravel(), (changes >> 8).ravel()]).astype(np.uint8)
+    return base64.b64encode(zlib.compress(planes.tobytes(), 6)).decode("ascii")
+
+
+def positions(xyz, middle):
+    """Pack positions in whole millimetres about a middle.
+
+    Parameters
+    ----------
+    xyz : (P, T, J, 3) float
+        Metres; NaN where missing.
+    middle : (3,) float
+        Metres.
+
+    Returns
+    -------
+    text : str
+        `integers` of (P, J, 3, T); a missing value repeats the one before it.
+    known : (P, T, J) bool
+        Which joints are there: all three numbers, none further than 32 m from the middle.
+    """
+    offset_m = np.asarray(xyz, dtype=float) - middle
+    known = (np.abs(np.where(np.isfinite(offset_m), offset_m, np.inf)) <= REACH_M).all(axis=-1)
+    steps = np.round(np.where(known[..., None], offset_m, 0) / STEP_M).astype(np.int32)
+    return integers(_held(np.moveaxis(steps, 1, -1), np.moveaxis(known, 1, -1)[:, :, None])), known
+
+
+def _held(values, known):
+    """Repeat the last known value along the last axis where there is none; 0 before the first."""
+    at = np.where(known, np.arange(values.shape[-1]), 0)
+    at = np.broadcast_to(np.maximum.accumulate(at, axis=-1), values.shape)
+    return np.take_along_axis(values, at, axis=-1)
+
+
+def sizes(values):
+    """Put positive numbers on the logarithmic scale.
+
+    Parameters
+    ----------
+    values : (...) float
+        Between 1e-5 and 10; what is beyond is put at the end of the scale.
+
+    Returns
+    -------
+    levels : (...) int
+        1 to 255: `LEAST * (MOST / LEAST) ** ((level - 1) / 254)`, within 2.8 % of the value; 0 where NaN.
+    """
+    values = np.asarray(values, dtype=float)
+    known = np.isfinite(values)
+    share = np.log(np.clip(np.where(known, values, 1), LEAST, MOST) / LEAST) / np.log(MOST / LEAST)
+    return np.where(known, 1 + np.round(LEVELS * share), 0).astype(int)
+
+
+def ellipsoids(covariance):
+    """Put covariances into six small numbers that always give a covariance back.
+
+    Parameters
+    ----------
+    covariance : (..., 3, 3) float
+        Square metres; NaN where unknown.
+
+    Returns
+    -------
+    levels : (..., 6) int
+        `sizes` of the standard deviations along x, y, z (metres), then three angles in steps of pi / 255.
+        With a, b, c these angles, the rows (1, 0, 0), (cos a, sin a, 0) and (cos b, sin b cos c, sin b sin c)
+        are the Cholesky factor of the correlations. All 0 where unknown.
+
+    Notes
+    -----
+    The angles of Rapisarda, Brigo & Mercurio 2007, Parameterizing correlations: whatever the rounding, no
+    ellipsoid gets an imaginary axis.
+    """
+    covariance = np.asarray(covariance, dtype=float)
+    known = np.isfinite(covariance).all(axis=(-2, -1))
+    covariance = np.where(known[..., None, None], covariance, np.eye(3))
+    sigma = np.sqrt(np.maximum(np.diagonal(covariance, axis1=-2, axis2=-1), LEAST**2))
+    related = np.clip(covariance / (sigma[..., :, None] * sigma[..., None, :]), -1, 1)
+    a, b = np.arccos(related[..., 0, 1]), np.arccos(related[..., 0, 2])
+    beside = np.maximum(np.sin(a) * np.sin(b), 1e-9)
+    rest = np.clip((related[..., 1, 2] - np.cos(a) * np.cos(b)) / beside, -1, 1)
+    angles = np.round(np.stack([a, b, np.arccos(rest)], axis=-1) / np.pi * ANGLES)
+    levels = np.concatenate([sizes(sigma), angles.astype(int)], axis=-1)
+    return np.where(known[..., None], levels, 0)

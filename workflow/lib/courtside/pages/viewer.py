@@ -1,0 +1,191 @@
+"""The 3D viewer of a take: court, cameras, skeletons of several methods over time, in one HTML file.
+
+Drawn on a 2D canvas by scripts of our own (`assets/viewer_*.js`), not by a library: a take is some hundred
+lines and dots, no surface hides another, and a canvas opens at once and asks for no graphics processor.
+Plotly would weigh 4.7 MB a page; three.js 0.7 MB, and WebGL, which remote desktops and lab computers
+often lack.
+
+In the browser `courtside.viewer` says and does what tests and curious people need: `ready` (a promise),
+`state()` (time, frame, speed, colours, shown layers, picked joint), `seek(time_s)`, `play()`, `pause()`,
+`position(layer, person, joint, frame)` in metres, `covariance(...)` in square metres, `drawn()` (places of
+the joints in the canvas, px) and `opened_ms` (from the start of loading to the first picture).
+"""
+
+import numpy as np
+
+from courtside.geometry import cameras as camera_models
+from courtside.pages import page, viewer_layers
+
+LARGEST_BYTES = 7_500_000  # of all layers; the rest of the page is some 60 kB
+LEFT, RIGHT, MIDDLE = "#0072B2", "#D55E00", "#666666"  # as in the figures
+LAYER_COLOURS = ["#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0072B2", "#D55E00"]
+FRUSTUM_SHARE, FRUSTUM_M = (
+    0.06,
+    (0.3, 1.2),
+)  # length of cameras' pyramids: of their distance, and limits
+PERCENTILES = (0.5, 99.5)  # of the joints' places, that the first view shows
+ROOM_M = 1.0  # of grid around them where there is no court
+ASSETS = ("viewer_data.js", "viewer_camera.js", "viewer_draw.js", "viewer_panel.js", "viewer.js")
+
+
+def build(title, layers, cameras=(), court=None, notes=()):
+    """Return the page of a take.
+
+    Parameters
+    ----------
+    title : str
+        Such as session and take; any text.
+    layers : sequence of Layer
+        Methods to lay over one another, in the order of their switches; the frames of the first are those
+        that the slider and the keys step through.
+    cameras : sequence of Camera
+    court : Court or None
+        Without one a grid of 1 m is drawn.
+    notes : sequence of str
+        Lines below the picture, such as what a layer is.
+
+    Returns
+    -------
+    page : str
+        HTML, to be written by `page.write`. Where the layers would be larger than 7.5 MB, only every second,
+        fourth ... frame is kept, and the page says so.
+
+    Raises
+    ------
+    ValueError
+        If there is no layer, or two have one name.
+    """
+    names = [layer.name for layer in layers]
+    if not names or len(set(names)) < len(names):
+        raise ValueError(f"expected layers with names that differ, found {names}")
+    low, high = extent(layers)
+    middle = (low + high) / 2
+    contents, every = _within(layers, middle)
+    if every > 1:
+        notes = [*notes, f"To keep the page small, one frame of {every} is in it."]
+    scene = {
+        "middle": middle,
+        "low": low,
+        "high": high,
+        "cameras": _frusta(cameras, middle),
+        "court": drawn_court(court) if court else None,
+        "grid": [] if court else grid(low, high),
+        "colours": {"left": LEFT, "right": RIGHT, "middle": MIDDLE, "layers": LAYER_COLOURS},
+        "notes": list(notes),
+    }
+    body = (page.ASSETS / "viewer.html").read_text(encoding="utf-8")
+    return page.build(
+        title,
+        body.replace("TITLE", page.text(title)),
+        css=["viewer.css"],
+        js=ASSETS,
+        data={"scene": scene, "layers": contents},
+    )
+
+
+def _within(layers, middle):
+    every = 1
+    while True:
+        contents = [viewer_layers.packed(layer, middle, every) for layer in layers]
+        size = sum(len(text) for one in contents for text in one.values() if isinstance(text, str))
+        if size <= LARGEST_BYTES or all(len(one["time_s"]) < 2 for one in contents):
+            return contents, every
+        every *= 2
+
+
+def extent(layers):
+    """Return the corners low and high (3,) of a box that holds nearly all joints, metres."""
+    known = np.concatenate([layer.xyz.reshape(-1, 3) for layer in layers])
+    known = known[np.isfinite(known).all(axis=1)]
+    if not len(known):
+        known = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 2.0]])
+    low, high = np.percentile(known, PERCENTILES, axis=0)
+    return low, high
+
+
+def _frusta(cameras, middle):
+    if not cameras:
+        return []
+    distances = [np.linalg.norm(camera.centre_in_world - middle) for camera in cameras]
+    length_m = float(np.clip(FRUSTUM_SHARE * np.median(distances), *FRUSTUM_M))
+    return [frustum(camera, length_m) for camera in cameras]
+
+
+def frustum(camera, length_m):
+    """Return what is drawn of a camera.
+
+    Parameters
+    ----------
+    camera : Camera
+    length_m : float
+        How far its pyramid reaches along its axis.
+
+    Returns
+    -------
+    drawn : dict
+        `name`; `centre`, `forward` and four `corners` (clockwise from the top left of its picture) in the
+        world, metres; `focal` over the picture's shorter side.
+    """
+    width, height = camera.size
+    xy = np.array(
+        [[-0.5, -0.5], [width - 0.5, -0.5], [width - 0.5, height - 0.5], [-0.5, height - 0.5]]
+    )
+    # A pinhole's corners where the lens model knows no direction for the picture's.
+    pinhole = (xy - camera.K[:2, 2]) / np.diag(camera.K)[:2]
+    normalised = camera_models.undistort(camera, xy)
+    normalised = np.where(np.isfinite(normalised), normalised, pinhole)
+    in_cam = length_m * np.column_stack([normalised, np.ones(4)])
+    rotation = camera.cam_from_world[:, :3]
+    return {
+        "name": camera.name,
+        "centre": camera.centre_in_world,
+        "forward": rotation[2],
+        "corners": in_cam @ rotation + camera.centre_in_world,
+        "focal": float(np.diag(camera.K)[:2].mean() / min(camera.size)),
+    }
+
+
+def drawn_court(court):
+    """Return what is drawn of a court: polygons of floor and lines, and lines of net and posts, metres.
+
+    Parameters
+    ----------
+    court : Court
+    """
+    rectangles = np.vstack([[0, 0, *court.size_m], court.lines_m.reshape(-1, 4)])
+    floor, *lines = [
+        [[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]]
+        for x0, y0, x1, y1 in rectangles.tolist()
+    ]
+    return {"floor": floor, "lines": lines, "net": _net(court.net) if court.net else []}
+
+
+def _net(net):
+    y, (left, right) = net["y_m"], net["x_m"]
+    post, mid = net["post_height_m"], net["mid_height_m"]
+    middle = (left + right) / 2
+    top = [[left, y, post], [middle, y, mid], [right, y, post]]
+    drawn = [{"points": top, "width": 2.5, "alpha": 0.8}]
+    drawn += [
+        {"points": [[x, y, 0], [x, y, post]], "width": 3, "alpha": 0.8} for x in (left, right)
+    ]
+    for share in np.linspace(0.25, 0.75, 3).tolist():
+        row = [[x, y, share * z] for x, y, z in top]
+        drawn.append({"points": row, "width": 0.7, "alpha": 0.3})
+    for x in np.linspace(left, right, 14)[1:-1].tolist():
+        height = mid + (post - mid) * abs(x - middle) / (right - middle)
+        drawn.append({"points": [[x, y, 0], [x, y, height]], "width": 0.7, "alpha": 0.3})
+    return drawn
+
+
+def grid(low, high):
+    """Return the lines of a grid of 1 m on the floor around a box, list of two points each, metres.
+
+    Parameters
+    ----------
+    low, high : (3,) float
+        Corners of the box.
+    """
+    (x0, y0), (x1, y1) = np.floor(low[:2] - ROOM_M).tolist(), np.ceil(high[:2] + ROOM_M).tolist()
+    along_y = [[[x, y0, 0], [x, y1, 0]] for x in np.arange(x0, x1 + 0.5).tolist()]
+    return along_y + [[[x0, y, 0], [x1, y, 0]] for y in np.arange(y0, y1 + 0.5).tolist()]

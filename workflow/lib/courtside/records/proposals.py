@@ -1,0 +1,65 @@
+"""Proposed court points, to be confirmed by a person before anything uses them: one CSV row each."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.records import tables
+
+COLUMNS = (
+    "camera", "point", "frame_idx", "x_px", "y_px", "sigma_px", "confidence", "reason",
+)  # fmt: skip
+STATIC = 0  # frame_idx of the static picture
+WHAT = "a table of proposed court points"
+
+
+def write(path, proposals, points):
+    """Write proposals, and why there are none for the other points.
+
+    Parameters
+    ----------
+    path : str or Path
+    proposals : dict of str to courtside.devices.court_proposals.Proposals
+        By camera.
+    points : sequence of str, length P
+    """
+    rows = [
+        [camera, point, STATIC, *found.xy[at], found.sigma_px[at], found.confidence[at], reason]
+        for camera, found in proposals.items()
+        for at, (point, reason) in enumerate(zip(points, found.reason, strict=True))
+    ]
+    tables.write(path, pd.DataFrame(rows, columns=COLUMNS))
+
+
+def read(path, cameras, points):
+    """Read proposals as a page for clicking shows them.
+
+    Parameters
+    ----------
+    path : str or Path
+    cameras : sequence of str
+    points : sequence of str
+        Of the court.
+
+    Returns
+    -------
+    proposals : dict of str to dict of str to dict
+        By camera and point: `x`, `y`, `sigma_px`; without those of which there is only a reason.
+
+    Raises
+    ------
+    InputError
+        If the file is no such table, or speaks of other cameras or points.
+    """
+
+    def fault(table):
+        if list(table.columns) != list(COLUMNS):
+            return f"found the columns {', '.join(table.columns)}"
+        odd = sorted({*table["camera"]} - {*cameras} | {*table["point"]} - {*points})
+        return f"found unknown cameras or points: {', '.join(map(str, odd))}" if odd else ""
+
+    table = tables.read(path, WHAT, fault, dtype={"camera": str, "point": str})
+    given = table[np.isfinite(table["x_px"]) & np.isfinite(table["y_px"])]
+    found = {camera: {} for camera in cameras}
+    for row in given.itertuples():
+        found[row.camera][row.point] = {"x": row.x_px, "y": row.y_px, "sigma_px": row.sigma_px}
+    return found

@@ -1,0 +1,274 @@
+"""The first draft of a session's file, from recordings whose roles were guessed."""
+
+import json
+import re
+
+import yaml
+
+from courtside.study import configuration, file_names, yaml_files
+from courtside.study.errors import InputError
+
+MARK = "# guess:"
+PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
+BOARD = "inner_corners: [7, 4], square_m: 0.06"
+
+
+def text(guess, *, title, folder, court="badminton"):
+    """Write a session's file as text, every guess marked by `# guess:`.
+
+    Parameters
+    ----------
+    guess : courtside.study.session_guess.Guess
+    title : str
+        Of the session, one line.
+    folder : str
+        That of the recordings, as paths in the file begin; clicked court points are expected in it.
+    court : str
+        A court of config/courts, or `none`.
+
+    Returns
+    -------
+    text : str
+        YAML that the schema of sessions accepts.
+
+    Raises
+    ------
+    InputError
+        If there is no recording to make a session of.
+    """
+    if not guess.walks and not guess.takes and not guess.static:
+        raise InputError(
+            f"{folder}: expected videos or photos of a session, found {_what_is_there(guess)}; put the "
+            "videos of the fixed cameras and of the walk there"
+        )
+    measured = guess.calibration is None and bool(guess.cameras)
+    lines = [
+        f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists all keys.",
+        f"description: {_quoted(title)}  {MARK} one line for captions: the gym, the day, the layout",
+        f"court: {court if measured else 'none'}  {MARK} none, or a file of config/courts",
+    ]
+    if guess.takes:
+        lines += [
+            "subjects:",
+            f"  p1: {{}}  {MARK} pseudonyms, with height_m: 1.74, mass_kg: 66, sex: m, hand: right",
+        ]
+    lines += [
+        *_cameras(guess),
+        *_walks(guess),
+        *_places(guess, folder, measured and court != "none"),
+    ]
+    lines += [*_takes(guess), *_unused(guess)]
+    return "\n".join(lines) + "\n"
+
+
+def write(path, content):
+    """Write a drafted session, never over a file that is there.
+
+    Parameters
+    ----------
+    path : Path
+        config/sessions/<session>.yaml.
+    content : str
+        From `text`.
+
+    Raises
+    ------
+    InputError
+        If the file exists, or its name is none that a session may have.
+    """
+    if not configuration.NAME.fullmatch(path.stem) or path.stem in configuration.RESERVED:
+        raise InputError(
+            f"{path.stem}: expected a session's name of a-z, 0-9, _ and -, none of {configuration.RESERVED}, "
+            "found another; give one by --name"
+        )
+    try:
+        with path.open("x", encoding="utf-8") as stream:
+            stream.write(content)
+    except FileExistsError:
+        raise InputError(
+            f"{path}: expected no file of that name, found one and left it; give another by --name"
+        ) from None
+    faults = configuration.schema_faults(yaml_files.read(path), "session", path)
+    if faults:
+        path.unlink()
+        raise ValueError(f"the draft does not hold its own schema: {faults[0]}")
+
+
+def to_check(guess, path, court_points):
+    """List what a user should look at after drafting, in order.
+
+    Parameters
+    ----------
+    guess : courtside.study.session_guess.Guess
+    path : str or Path
+        Of the draft.
+    court_points : str
+        Where clicked court points are expected.
+
+    Returns
+    -------
+    lines : list of str
+    """
+    lines = [f"Look at {path}: every line with `{MARK}`, and what stands under `not used`."]
+    lines += [f"Odd: {line}" for line in _odd(guess)]
+    if guess.calibration is None and guess.court_points is None and guess.cameras:
+        lines.append(f"Click the court points: they are expected in {court_points}.")
+    if not guess.walks and guess.calibration is None:
+        lines.append("No walk was found: the cameras will rest on clicked court points alone.")
+    lines.append(f"Name the session in config/config.yaml: `sessions: [{path.stem}]`.")
+    lines.append("`snakemake -n` lists what will be made; `snakemake` makes it.")
+    return lines
+
+
+def _cameras(guess):
+    if not guess.cameras:
+        return ["cameras: {}"]
+    lines = [f"cameras:  {MARK} one name for each physical camera"]
+    calibrated = guess.calibration.cameras if guess.calibration else {}
+    for camera in guess.cameras:
+        keys, remarks = _pictures(guess, camera)
+        for more in _calibrated(guess, camera, calibrated):
+            keys += more[:1]
+            remarks += more[1:]
+        remark = f"  {MARK} {'; '.join(remarks)}" if remarks else ""
+        lines.append(f"  {_quoted(camera)}: {{{', '.join(keys)}}}{remark}")
+    return lines
+
+
+def _pictures(guess, camera):
+    """Return the keys of a camera's own recordings, and remarks."""
+    keys, remarks = [], []
+    if camera in guess.static:
+        keys.append(f"static: {_quoted(guess.static[camera].path)}")
+        remarks.append(_described(guess.static[camera]))
+    if camera in guess.stand_ins:
+        remarks = ["no recording of the empty court found, this take stands in for it"]
+    if camera in guess.boards:
+        keys.append(f"chessboard: {{images: {_quoted(guess.boards[camera].path)}, {BOARD}}}")
+        remarks.append("the chessboard's inner corners and the length of a square")
+    return keys, remarks
+
+
+def _calibrated(guess, camera, calibrated):
+    """Yield the keys that a camera needs to match the calibration, each with a remark."""
+    if not calibrated:
+        return
+    theirs = next((n for n in calibrated if n == camera or file_names.name(n, "") == camera), None)
+    theirs = theirs or next((n for n in calibrated if file_names.alike(n.lower(), camera)), None)
+    if theirs is None:
+        names = ", ".join(_quoted(name) for name in calibrated)
+        yield f"name_in_calibration: {_quoted(camera)}", f"one of {names} is its name there"
+        return
+    if theirs != camera:
+        yield f"name_in_calibration: {_quoted(theirs)}", "the same name there"
+    size = next((t[camera].size for t in guess.takes.values() if camera in t), None)
+    if size and tuple(size) != tuple(calibrated[theirs]):
+        width, height = calibrated[theirs]
+        crop_px = f"crop_px: [0, 0, {size[0]}, {size[1]}]"
+        yield crop_px, f"which part of the calibrated {width}x{height} px the video shows"
+
+
+def _walks(guess):
+    lines = [f"walks:  {MARK} recordings by the camera that was carried past the others"] * bool(
+        guess.walks
+    )
+    for name, recording in guess.walks.items():
+        key = "images" if recording.kind == "photos" else "video"
+        lines.append(
+            f"  {_quoted(name)}: {{{key}: {_quoted(recording.path)}}}  # {_described(recording)}"
+        )
+    return lines
+
+
+def _places(guess, folder, clicked):
+    if guess.calibration:
+        return [f"calibration: {{file: {_quoted(guess.calibration.path)}}}"]
+    if not clicked:
+        return []
+    remark = "" if guess.court_points else "  # not there yet: click them, see config/README.md"
+    return [f"court_points: {_quoted(court_points(guess, folder))}{remark}"]
+
+
+def court_points(guess, folder):
+    """Return the path of the clicked court points, there or not."""
+    return guess.court_points.path if guess.court_points else f"{folder}/court_points.csv"
+
+
+def _takes(guess):
+    lines = [f"takes:  {MARK} recordings that belong together"] * bool(guess.takes)
+    for name, take in guess.takes.items():
+        lines += [f"  {_quoted(name)}:", "    videos:"]
+        for camera in (camera for camera in guess.cameras if camera in take):
+            recording = take[camera]
+            path = f"{_quoted(camera)}: {_quoted(recording.path)}"
+            lines.append(f"      {path}  # {_described(recording)}")
+        lines += _devices(guess, name)
+    return lines
+
+
+def _devices(guess, take):
+    lines, names = [], set()
+    for device, recording in ((d, r) for name, d, r in guess.devices if name == take):
+        names.add(name := file_names.distinct(device, names))
+        lines.append(
+            f"      {name}: {{file: {_quoted(recording.path)}}}  {MARK} whom it follows: subject"
+        )
+    return ["    devices:", *lines] if lines else []
+
+
+def _unused(guess):
+    lines = [f"#   {json.dumps(r.path)}: {_one_line(why)}" for r, why in guess.unused]
+    lines += [
+        f"#   {json.dumps(r.path)}: {d} of no take" for take, d, r in guess.devices if not take
+    ]
+    return ["# not used:", *lines] if lines else []
+
+
+def _described(recording):
+    size = "" if recording.size is None else f"{recording.size[0]}x{recording.size[1]}"
+    if recording.kind == "video":
+        rate = "one frame" if recording.rate_hz is None else f"{recording.rate_hz:.4g} Hz"
+        return ", ".join([size, rate, f"{recording.duration_s:.1f} s"])
+    return (
+        f"{recording.n_photos} photos, {size}" if recording.kind == "photos" else f"photo, {size}"
+    )
+
+
+def _odd(guess):
+    """Yield what a user may want to know of sizes, rates and lengths."""
+    for camera in guess.cameras:
+        films = [take[camera] for take in guess.takes.values() if camera in take]
+        sizes = sorted({r.size for r in [*films, *filter(None, [guess.static.get(camera)])]})
+        if len(sizes) > 1:
+            yield f"camera {camera} has pictures of {' and '.join(f'{w}x{h}' for w, h in sizes)} pixels"
+    for name, take in guess.takes.items():
+        rates = {round(r.rate_hz or 0) for r in take.values()}
+        if len(rates) > 1:
+            yield f"take {name} has videos of {' and '.join(map(str, sorted(rates)))} Hz"
+        if max(r.duration_s for r in take.values()) > 2 * min(r.duration_s for r in take.values()):
+            yield f"take {name} has videos whose lengths differ more than twofold"
+    for recording in [
+        *guess.walks.values(),
+        *(r for t in guess.takes.values() for r in t.values()),
+    ]:
+        if recording.note:
+            yield f"{recording.path}: {recording.note}"
+
+
+def _what_is_there(guess):
+    if not guess.unused:
+        return "none"
+    recording, why = guess.unused[0]
+    more = f" and {len(guess.unused) - 1} more" if len(guess.unused) > 1 else ""
+    return f"{recording.path} ({_one_line(why)}){more}"
+
+
+def _one_line(why):
+    return " ".join(str(why).split())
+
+
+def _quoted(value):
+    """Return a text as a YAML scalar that is read as text, within brackets too."""
+    if PLAIN.fullmatch(value) and yaml.safe_load(value) == value:
+        return value
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,146 @@
+"""What a stereo depth camera makes of true depth: noise that grows with its square, steps, and holes."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+FIELD_PX = 256  # by how much the field of noise is larger than the picture
+JUMP_PX = 1.0  # of disparity between neighbours: an edge
+MOST = np.iinfo(np.uint16).max
+BLOTCH_PX = 1.5  # standard deviation of the window that makes holes hang together
+
+
+@dataclass(frozen=True)
+class DepthErrors:
+    """How a depth camera errs; see `depth_camera.DepthCamera`.
+
+    Attributes
+    ----------
+    focal_baseline : float
+        f b: focal length in px of the depth frames times the baseline in metres.
+    subpixel_px, correlation_px, unit_m, edge_px, edge_holes, holes : float
+    range_m : (float, float)
+    """
+
+    focal_baseline: float
+    subpixel_px: float
+    correlation_px: float
+    unit_m: float
+    range_m: tuple
+    edge_px: float
+    edge_holes: float
+    holes: float
+
+    def sigma_m(self, depth_m):
+        """Return the standard deviation of depth, z^2 s / (f b), metres."""
+        return np.asarray(depth_m) ** 2 * self.subpixel_px / self.focal_baseline
+
+
+class Sensor:
+    """Turns true depth into frames.
+
+    Parameters
+    ----------
+    errors : DepthErrors
+    size : (int, int)
+        Width and height of the frames.
+    rng : numpy.random.Generator
+        Of two fields, of which each frame takes other windows: noise, and where holes are.
+    """
+
+    def __init__(self, errors, size, rng):
+        self.errors = errors
+        shape = size[1] + FIELD_PX, size[0] + FIELD_PX
+        self._noise = _field(rng, shape, errors.correlation_px)
+        rank = np.argsort(np.argsort(_field(rng, shape, BLOTCH_PX), axis=None))
+        self._chance = (rank.reshape(shape) / rank.size).astype(np.float32)
+
+    def measured(self, depth_m, rng):
+        """Measure a frame.
+
+        Parameters
+        ----------
+        depth_m : (h, w) float32
+            True depth; inf where nothing is.
+        rng : numpy.random.Generator
+            Of this frame.
+
+        Returns
+        -------
+        depth : (h, w) uint16
+            In units of the camera; 0: a hole.
+        """
+        errors = self.errors
+        disparity = np.float32(errors.focal_baseline) / depth_m
+        none = hidden(disparity)
+        chance = _window(self._chance, depth_m.shape, rng)
+        none |= chance < np.where(edges(disparity, errors.edge_px), errors.edge_holes, errors.holes)
+        noisy = disparity + np.float32(errors.subpixel_px) * _window(
+            self._noise, depth_m.shape, rng
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.float32(errors.focal_baseline) / noisy
+        none |= ~((found >= errors.range_m[0]) & (found <= errors.range_m[1]))
+        steps = np.rint(np.where(none, 0, found) / errors.unit_m)
+        return np.where(steps > MOST, 0, steps).astype(np.uint16)
+
+
+def hidden(disparity_px):
+    """Return what the right imager does not see, for something nearer is before it there.
+
+    Parameters
+    ----------
+    disparity_px : (h, w) float
+        By how much each point of the left picture is farther left in the right one.
+
+    Returns
+    -------
+    hidden : (h, w) bool
+        Beside the left edges of near things, and along the left edge of the picture.
+    """
+    column = np.arange(disparity_px.shape[1], dtype=np.float32) - disparity_px
+    # Of points further to the right, the leftmost place in the right picture.
+    later = np.minimum.accumulate(column[:, ::-1], axis=1)[:, ::-1]
+    covered = np.zeros(disparity_px.shape, bool)
+    covered[:, :-1] = column[:, :-1] >= later[:, 1:]
+    return covered | (column < -0.5)
+
+
+def edges(disparity_px, reach_px):
+    """Return where depth jumps within a reach.
+
+    Parameters
+    ----------
+    disparity_px : (h, w) float
+    reach_px : float
+
+    Returns
+    -------
+    edges : (h, w) bool
+    """
+    jumps = np.zeros(disparity_px.shape, np.uint8)
+    across = np.abs(np.diff(disparity_px, axis=1)) > JUMP_PX
+    down = np.abs(np.diff(disparity_px, axis=0)) > JUMP_PX
+    jumps[:, 1:] |= across
+    jumps[:, :-1] |= across
+    jumps[1:] |= down
+    jumps[:-1] |= down
+    reach = int(np.ceil(reach_px))
+    x, y = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    disc = (np.hypot(x, y) <= reach_px).astype(np.uint8)
+    return cv2.dilate(jumps, disc).astype(bool)
+
+
+def _field(rng, shape, sigma_px):
+    """Return noise (H, W) float32 of mean 0 and deviation 1 that is alike over a window."""
+    field = rng.standard_normal(shape, dtype=np.float32)
+    if sigma_px > 0:
+        field = gaussian_filter(field, sigma_px, mode="wrap")
+    return (field - field.mean()) / field.std()
+
+
+def _window(field, shape, rng):
+    top, left = rng.integers(0, FIELD_PX + 1, 2)
+    return field[top : top + shape[0], left : left + shape[1]]

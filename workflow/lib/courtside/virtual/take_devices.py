@@ -1,0 +1,162 @@
+"""Devices of a take: what its settings say of them, their recordings, and their truth."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from courtside.devices import bag_writer
+from courtside.records import take_truth
+from courtside.study import log
+from courtside.virtual import capture, crews, depth_camera, hall, inertial, presets
+from courtside.virtual.renderer import Renderer
+
+KINDS = {"rgbd": depth_camera.DepthCamera, "inertial": inertial.InertialSuit}
+DEVICES = 4  # of a take's streams of random numbers, after those of `takes`
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """What devices recorded.
+
+    Attributes
+    ----------
+    inertial : dict of str to courtside.records.hierarchy.PosedHierarchy
+        By device: what is still to be written.
+    truth : dict of str to take_truth.DeviceTruth
+    """
+
+    inertial: dict
+    truth: dict
+
+
+def build(name, settings, players):
+    """Make a device of what a take says of it.
+
+    Parameters
+    ----------
+    name : str
+    settings : dict
+        `kind`, a key of KINDS, and what that takes.
+    players : collection of str
+
+    Returns
+    -------
+    device : depth_camera.DepthCamera or inertial.InertialSuit
+
+    Raises
+    ------
+    ValueError
+        If the kind, a key, a value or the subject is none.
+    """
+    kind = settings.get("kind")
+    if kind not in KINDS:
+        raise ValueError(f"expected a kind of {sorted(KINDS)} for device {name}, found {kind!r}")
+    known = {part.name for part in fields(KINDS[kind])}
+    strange = sorted(set(settings) - known - {"kind"})
+    if strange:
+        raise ValueError(f"expected keys of device {name} of {sorted(known)}, found {strange}")
+    device = KINDS[kind](**{key: value for key, value in settings.items() if key != "kind"})
+    if device.subject not in {None, *players}:
+        raise ValueError(
+            f"expected a subject of {sorted(players)} for device {name}, found {device.subject!r}"
+        )
+    return device
+
+
+class Stage:
+    """A hall with athletes and the depth cameras before them; in each process one.
+
+    Parameters
+    ----------
+    take : takes.TakeSettings
+    settings : capture.Settings
+    court : courtside.geometry.courts.Court
+    athletes : dict of str to athlete.Athlete
+    """
+
+    def __init__(self, take, settings, court, athletes):
+        self._take = take
+        preset = presets.PRESETS[settings.preset]
+        scene = hall.build(preset, court, crews.stream(settings.seed, capture.HALL))
+        renderer = Renderer(scene)
+        self._recorders = {}
+        for at, (name, device) in enumerate(take.made_devices().items()):
+            if isinstance(device, depth_camera.DepthCamera):
+                colour, depth = device.place(name, athletes[subject(device, athletes)])
+                seed = crews.stream(take.seed, DEVICES, at)
+                self._recorders[name] = depth_camera.Recorder(
+                    device, colour, depth, renderer, list(athletes.values()), seed
+                )
+
+    def frame(self, name, index, time_s):
+        """Return frame `index` of a depth camera, colour and depth, at a time of the athletes."""
+        return self._recorders[name].frame(index, time_s)
+
+
+def subject(device, athletes):
+    """Return the name of whom a device follows."""
+    return device.subject or next(iter(athletes))
+
+
+def record(take, settings, court, athletes, folder, *, threads=1):
+    """Let all devices of a take record.
+
+    Parameters
+    ----------
+    take : takes.TakeSettings
+    settings : capture.Settings
+    court : courtside.geometry.courts.Court
+    athletes : dict of str to athlete.Athlete
+    folder : Path
+        Gets `{device}.bag` of each depth camera.
+    threads : int
+        Processes that render; the files do not depend on it.
+
+    Returns
+    -------
+    recorded : Recorded
+    """
+    truth, worn, filmed = {}, {}, {}
+    for at, (name, device) in enumerate(take.made_devices().items()):
+        person = subject(device, athletes)
+        if isinstance(device, inertial.InertialSuit):
+            found = inertial.record(
+                athletes[person],
+                take.frame_times(name) + take.start_s,
+                device.rate_hz,
+                device.errors(),
+                crews.generator(take.seed, DEVICES, at),
+            )
+            worn[name], latency_s = found.posed, found.latency_s
+            kind, pose = "inertial", found.device_from_world
+        else:
+            filmed[name] = device.place(name, athletes[person])
+            kind, latency_s, pose = "rgbd", 0.0, filmed[name][0].cam_from_world
+        clock = take.clock(name)
+        truth[name] = take_truth.DeviceTruth(
+            kind, person, clock["offset_s"], clock["drift_ppm"], latency_s, pose
+        )
+    if filmed:
+        with crews.crew(Stage, (take, settings, court, athletes), threads) as call:
+            for name, sensors in filmed.items():
+                _write_bag(folder / f"{name}.bag", take, name, sensors, call)
+    return Recorded(worn, truth)
+
+
+def _write_bag(path, take, name, sensors, call):
+    device = take.made_devices()[name]
+    colour, depth = sensors
+    times_s = take.frame_times(name) + take.start_s
+    frames = call("frame", [(name, index, time_s) for index, time_s in enumerate(times_s)])
+    own_s = np.arange(len(times_s)) / device.rate_hz
+    shown = log.progress(zip(own_s, frames, strict=True), len(own_s), f"{name}: frames")
+    about = bag_writer.Device(baseline_m=device.baseline_m, rate_hz=round(device.rate_hz))
+    bag_writer.write(
+        path,
+        colour,
+        depth,
+        device.colour_from_depth,
+        device.depth_unit_m,
+        ((own, *pair) for own, pair in shown),
+        device=about,
+    )

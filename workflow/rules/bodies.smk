@@ -1,0 +1,58 @@
+"""Sources of a take in one body frame: T-pose, unit, clocks; inertial ones corrected by vision.
+
+Inputs: device motions and clocks. Outputs: results/{session}/takes/{take}/ devices (corrected), body.
+Steps: correct_inertial, align_bodies, measure_arcs.
+"""
+
+
+rule correct_inertial:
+    input:
+        bvh=lambda w: device_of(w).file,
+        skeleton=CONFIG / "skeletons" / "mocopi27.yaml",
+        vision=lambda w: sources_of(w, corrected=False)[vision_of(w)][0],
+        sync=f"{TAKE}/sync/devices.{{model}}.json",
+    output:
+        bvh=f"{TAKE}/devices/{{device}}-corrected.{{model}}.bvh",
+        motion=f"{TAKE}/devices/{{device}}-corrected.{{model}}.npz",
+        report=f"{TAKE}/devices/{{device}}-corrected.{{model}}.json",
+    log:
+        "results/{session}/logs/correct_inertial/{take}.{device}.{model}.log",
+    benchmark:
+        "results/{session}/benchmarks/correct_inertial/{take}.{device}.{model}.tsv"
+    params:
+        code=code("correct_inertial.py"),
+        step=correction_parameters,
+    script:
+        "../scripts/correct_inertial.py"
+
+
+rule align_bodies:
+    input:
+        devices=source_files,
+        sync=f"{TAKE}/sync/devices.{{model}}.json",
+        derived=CONFIG / "derived_joints.yaml",
+    output:
+        body=f"{TAKE}/body/{{source}}.{{model}}.npz",
+        frame=f"{TAKE}/body/{{source}}.{{model}}.json",
+    log:
+        "results/{session}/logs/align_bodies/{take}.{source}.{model}.log",
+    params:
+        code=code("align_bodies.py"),
+        step=lambda w: {"skeleton": sources_of(w)[w.source][1], "devices": clock_owners(w)},
+    script:
+        "../scripts/align_bodies.py"
+
+
+rule measure_arcs:
+    input:
+        bodies=body_files_of,
+    output:
+        paths=f"{TAKE}/body/arcs.{{model}}.paths.csv",
+        distortion=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
+    log:
+        "results/{session}/logs/measure_arcs/{take}.{model}.log",
+    params:
+        code=code("measure_arcs.py"),
+        step=step("measure_arcs"),
+    script:
+        "../scripts/measure_arcs.py"

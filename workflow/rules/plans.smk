@@ -1,0 +1,24 @@
+"""Sessions that are only planned: how exact they will be, before anybody goes.
+
+Inputs: config/plans/{plan}.yaml. Outputs: results/plans/{plan}/.
+Steps: plan_session.
+"""
+
+
+rule plan_session:
+    input:
+        plan=CONFIG / "plans" / "{plan}.yaml",
+        court=planned_court,
+    output:
+        **plan_figure("growth"),
+        **plan_figure("map"),
+    log:
+        "results/plans/logs/plan_session/{plan}.log",
+    params:
+        code=code("plan_session.py"),
+        step={
+            "heights_m": STUDY.parameters["draw_error_map"]["heights_m"],
+            "adjust": STUDY.parameters["adjust_network"],
+        },
+    script:
+        "../scripts/plan_session.py"

@@ -1,0 +1,43 @@
+"""Build the page for clicking: static pictures, court, earlier clicks and proposals -> one HTML file."""
+
+from courtside.geometry import courts
+from courtside.pages import clicking_page, page
+from courtside.records import clicks, proposals
+from courtside.study import log
+
+
+def main(
+    pictures, court_yaml, page_html, *, session, names, targets, jpeg_quality, clicks_csv=None,
+    proposals_csv=None, take_pictures=(), take_frames=(),
+):  # fmt: skip
+    court = courts.read(court_yaml)
+    clicked = clicks.read(clicks_csv, names, court.points) if clicks_csv else {}
+    proposed = proposals.read(proposals_csv, names, court.points) if proposals_csv else {}
+    frames = [
+        clicking_page.frame(
+            name,
+            path,
+            jpeg_quality=jpeg_quality,
+            clicks=clicking_page.by_point(clicked.get(name), court.points),
+            proposals=proposed.get(name, {}),
+        )
+        for name, path in zip(names, pictures, strict=True)
+    ]
+    for path, (take, camera, frame_idx) in zip(take_pictures, take_frames, strict=True):
+        which = {"take": take, "frame_idx": frame_idx}
+        frames.append(clicking_page.frame(camera, path, jpeg_quality=jpeg_quality, **which))
+    page.write(page_html, clicking_page.build(session, court, frames, targets=targets))
+    log.logger.info("%s: %d pictures", page_html, len(frames))
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.pictures,
+        snakemake.input.court,
+        snakemake.output.page,
+        clicks_csv=snakemake.input.get("clicks"),
+        proposals_csv=snakemake.input.get("proposals"),
+        take_pictures=snakemake.input.get("take_pictures", ()),
+        **snakemake.params.settings,
+    )

@@ -1,0 +1,43 @@
+"""Put a take into one HTML file to look around in: skeletons of several methods, cameras, court -> page.
+
+`layers` says, for each file of `paths.layers`, its `name`, the index of its skeleton in `paths.skeletons`,
+and whether it is `shown` at first; of a device also the `person`, its `source` in `paths.clocks`, and
+whether it is to be `placed` onto the first layer.
+"""
+
+from courtside.geometry import cameras, courts
+from courtside.pages import page, viewer, viewer_layers
+from courtside.records import skeleton, sync
+from courtside.study import log
+
+
+def main(paths, html, *, title, layers, notes=()):
+    skeletons = [skeleton.read(path) for path in paths.skeletons]
+    _, clocks = sync.read(paths.clocks) if paths.clocks else ("", {})
+    made = []
+    for path, said in zip(paths.layers, layers, strict=True):
+        layer = viewer_layers.read(
+            path,
+            said["name"],
+            skeletons[said["skeleton"]],
+            person=said.get("person", ""),
+            clock=clocks.get(said.get("source")),
+            shown=said["shown"],
+        )
+        made.append(viewer_layers.placed(layer, made[0]) if said.get("placed") else layer)
+    court = courts.read(paths.court) if paths.court else None
+    seen = cameras.read_toml(paths.cameras) if paths.cameras else ()
+    content = viewer.build(title, made, seen, court, notes)
+    page.write(html, content)
+    log.logger.info("%s: %d layers, %.1f MB", html, len(made), len(content) / 1e6)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.html,
+        title=snakemake.params.title,
+        layers=snakemake.params.layers,
+        notes=snakemake.params.get("notes", ()),
+    )

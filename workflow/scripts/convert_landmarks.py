@@ -1,0 +1,22 @@
+"""Convert the network's own metric body in one camera: 2D keypoints -> the motion of one more source."""
+
+from courtside.motion import single_view
+from courtside.records import device_motion, frame_times, keypoints
+from courtside.study import log
+
+
+def main(pose2d_npz, device_npz, frames_csv=None, *, source):
+    view = keypoints.read_2d(pose2d_npz)
+    if frames_csv:
+        view = frame_times.on_device_clock(view, frames_csv)
+    device_motion.write(device_npz, single_view.landmarks(source, view))
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.pose2d,
+        snakemake.output.device,
+        snakemake.input.get("frames"),
+        source=snakemake.params.source,
+    )

@@ -1,0 +1,54 @@
+"""Correct a mocopi recording by vision: BVH, a camera's skeleton, clocks -> corrected BVH, joints, report."""
+
+from dataclasses import replace
+from math import hypot
+
+from courtside.devices import mocopi
+from courtside.exports import bvh
+from courtside.motion import inertial_correction
+from courtside.records import device_motion, skeleton, sync
+from courtside.records.hierarchy import forward
+from courtside.study import log
+from courtside.study.errors import InputError
+
+ABSENT = sync.Clock(status="unknown", note="not in the file")
+
+
+def main(bvh_file, skeleton_yaml, vision_npz, sync_json, out, *, device, vision_device, sigma_m):
+    names = skeleton.read(skeleton_yaml)
+    motion, posed = mocopi.read(bvh_file, names, source=device)
+    vision = device_motion.read(vision_npz)
+    _, clocks = sync.read(sync_json)
+    used = {name: clocks.get(name, ABSENT) for name in (device, vision_device)}
+    if fault := sync.fault_line(sync_json, used):
+        raise InputError(fault)
+    own, theirs = used[device], used[vision_device]
+    corrected, report = inertial_correction.correct(
+        replace(posed, time_s=own.to_reference(posed.time_s)),
+        replace(vision, time_s=theirs.to_reference(vision.time_s)),
+        sigma_m=sigma_m,
+        lag_s=hypot(own.uncertainty_s, theirs.uncertainty_s),
+        performed=motion.performed,
+    )
+    time_s = own.from_reference(corrected.time_s)
+    corrected = replace(corrected, time_s=time_s)
+    order = [corrected.hierarchy.joints.index(joint) for joint in motion.joints]
+    xyz = forward(corrected)[0][:, order]
+    motion = replace(motion, source=f"{device}-corrected", time_s=time_s, xyz=xyz)
+    device_motion.write(out.motion, motion)
+    bvh.write(out.bvh, _renamed(corrected, names))
+    report.write(out.report)
+
+
+def _renamed(posed, names):
+    called = dict(zip(names.joints, names.device_names(), strict=True))
+    joints = tuple(called[joint] for joint in posed.hierarchy.joints)
+    ends = {called[joint]: tip for joint, tip in posed.hierarchy.ends.items()}
+    return replace(posed, hierarchy=replace(posed.hierarchy, joints=joints, ends=ends))
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    given = snakemake.input
+    files = given.bvh, given.skeleton, given.vision, given.sync
+    main(*files, snakemake.output, **snakemake.params.step)

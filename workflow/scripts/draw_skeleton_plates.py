@@ -1,0 +1,28 @@
+"""Draw the skeletons of all sources in the T-pose: body motions, skeletons, derived joints -> figure, CSV."""
+
+from courtside.figures import joint_map, skeleton_plates, style
+from courtside.records import body_motion, derived, skeleton
+from courtside.study import log
+
+
+def main(body_npz, skeleton_yaml, derived_yaml, pdf, png, csv, *, skeletons, kinds):
+    known = [skeleton.read(path) for path in skeleton_yaml]
+    bodies = [body_motion.read(path) for path in body_npz]
+    rows = joint_map.rows(known, derived.read(derived_yaml))
+    plates = skeleton_plates.plates(bodies, known, skeletons, kinds)
+    drawing = skeleton_plates.draw(plates, rows)
+    style.save(drawing, skeleton_plates.table(plates, rows), pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.get("bodies", []),
+        snakemake.input.skeletons,
+        snakemake.input.derived,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        skeletons=snakemake.params.skeletons,
+        kinds=snakemake.params.kinds,
+    )

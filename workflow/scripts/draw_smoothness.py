@@ -1,0 +1,23 @@
+"""Draw smoothness against accuracy: distortion of takes, errors where a truth is known -> figure, CSV."""
+
+from courtside.figures import smooth_accurate, style
+from courtside.study import log
+
+
+def main(distortion_csv, errors_csv, truth_csv, pdf, png, csv, *, labels, kinds):
+    rows = smooth_accurate.read(distortion_csv, labels, errors_csv, truth_csv)
+    style.save(smooth_accurate.draw(rows, kinds=kinds), rows, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.distortion,
+        snakemake.input.get("errors", []),
+        snakemake.input.get("truth", []),
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        labels=snakemake.params.labels,
+        kinds=snakemake.params.kinds,
+    )

@@ -1,0 +1,24 @@
+"""Draw the errors of all sources and what they are made of: errors, parts -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.figures import source_parts, style
+from courtside.study import log
+
+
+def main(errors_csv, parts_csv, pdf, png, csv, *, kinds):
+    errors, parts = pd.read_csv(errors_csv), pd.read_csv(parts_csv)
+    drawing = source_parts.draw(errors, parts, kinds=kinds)
+    style.save(drawing, source_parts.table(errors, parts), pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.errors,
+        snakemake.input.parts,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        kinds=snakemake.params.kinds,
+    )

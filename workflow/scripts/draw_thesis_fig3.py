@@ -1,0 +1,27 @@
+"""Draw figure 3.1 or 3.2 of the thesis: the paths of one source's wrists, their distortion -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.figures import style, thesis_fig3
+from courtside.study import log
+
+
+def main(paths_csv, distortion_csv, truth_csv, pdf, png, csv, *, source, kinds):
+    paths, distortion = pd.read_csv(paths_csv), pd.read_csv(distortion_csv)
+    truth = pd.read_csv(truth_csv) if truth_csv else None
+    drawing = thesis_fig3.draw(paths, distortion, source, kinds=kinds, truth=truth)
+    style.save(drawing, thesis_fig3.table(paths, distortion, [source]), pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.paths,
+        snakemake.input.distortion,
+        snakemake.input.get("truth"),
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        source=snakemake.params.source,
+        kinds=snakemake.params.kinds,
+    )

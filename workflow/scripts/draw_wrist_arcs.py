@@ -1,0 +1,26 @@
+"""Draw the wrists' arcs of all sources side by side: paths, distortion -> figure, CSV."""
+
+import pandas as pd
+
+from courtside.figures import style, thesis_fig3
+from courtside.study import log
+
+
+def main(paths_csv, distortion_csv, truth_csv, pdf, png, csv, *, kinds):
+    paths, distortion = pd.read_csv(paths_csv), pd.read_csv(distortion_csv)
+    truth = pd.read_csv(truth_csv) if truth_csv else None
+    drawing = thesis_fig3.draw_all(paths, distortion, kinds=kinds, truth=truth)
+    style.save(drawing, thesis_fig3.table(paths, distortion), pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.paths,
+        snakemake.input.distortion,
+        snakemake.input.get("truth"),
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        kinds=snakemake.params.kinds,
+    )

@@ -1,0 +1,24 @@
+"""Draw the distance of the wrists with T-poses and claps: tables of wrists and events -> figure, CSV."""
+
+from courtside.figures import style, wrist_distance
+from courtside.study import log
+
+
+def main(wrists_csv, events_csv, pdf, png, csv, *, aligned, kinds):
+    wrists, events = wrist_distance.read(wrists_csv, events_csv)
+    events = wrist_distance.table(wrists, events, aligned=aligned)
+    drawing = wrist_distance.draw(wrists, events, kinds=kinds, aligned=aligned)
+    style.save(drawing, events, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.wrists,
+        snakemake.input.events,
+        snakemake.output.pdf,
+        snakemake.output.png,
+        snakemake.output.csv,
+        aligned=snakemake.params.aligned,
+        kinds=snakemake.params.kinds,
+    )

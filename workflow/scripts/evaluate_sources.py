@@ -1,0 +1,60 @@
+"""Evaluate the sources of one take against its truth: body motions, truth -> errors and their parts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from courtside.motion import arcs, bodies, bodyframe, smoothness, source_errors
+from courtside.records import body_motion, derived, tables, take_truth
+from courtside.records.device_motion import DeviceMotion
+from courtside.study import log
+
+
+def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_hz):
+    true = true_motion(take_truth.read(truth_npz), person)
+    table = derived.read(derived_yaml)
+    carried_by = bodyframe.anchors(table, derived.RIG, true.joints)
+    errors, parts, paths, distortion = [], [], [], []
+    for body in map(body_motion.read, body_npz):
+        reference = bodies.counterpart(true, carried_by, body.tpose_s)
+        names, found = source_errors.errors(body, reference)
+        _, expected = source_errors.matched(body, reference)
+        known = np.isfinite(expected).all(axis=-1)
+        errors.append(source_errors.table(names, found, known).assign(source=body.source))
+        for form in ("fixed", "following"):
+            part = source_errors.split(body, reference, form=form)
+            parts.append(part.assign(source=body.source, frame=form))
+        swept = arcs.arcs(replace(reference, clap_s=body.clap_s))
+        paths.append(arcs.paths(swept).assign(source=body.source))
+        row = arcs.distortion(swept).assign(source=body.source, unit_m=reference.unit_m)
+        distortion.append(row.assign(sparc=smoothness.of_arcs(reference, swept, sparc_rate_hz)))
+    made = (
+        (out.errors, errors),
+        (out.parts, parts),
+        (out.paths, paths),
+        (out.distortion, distortion),
+    )
+    for path, rows in made:
+        rows = pd.concat(rows, ignore_index=True)
+        tables.write(path, rows.set_index("source").reset_index(), labels)
+
+
+def true_motion(truth, person):
+    xyz = truth.xyz[list(map(str, truth.person_id)).index(person)]
+    complete = np.ones(len(truth.time_s), dtype=bool)
+    reason = np.zeros(xyz.shape[:2], dtype=np.uint8)
+    return DeviceMotion("truth", "cameras", truth.joints, truth.time_s, xyz, reason, complete)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.bodies,
+        snakemake.input.truth,
+        snakemake.input.derived,
+        snakemake.output,
+        labels=snakemake.params.labels,
+        person=snakemake.params.person,
+        **snakemake.params.step,
+    )

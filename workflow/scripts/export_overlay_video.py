@@ -1,0 +1,44 @@
+"""Burn detections, 3D skeleton and time into a camera's video: video, 2D, people, clocks, 3D -> MP4."""
+
+from courtside.devices import video, video_writer
+from courtside.exports import overlay_video
+from courtside.figures import close_ups, style
+from courtside.geometry import cameras
+from courtside.records import keypoints, people, skeleton, sync
+from courtside.study import log
+
+COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
+
+
+def main(paths, mp4, camera, *, blur_faces, trim_s, crf, effort, keep_background):
+    known = {one.name: one for one in cameras.read_toml(paths.cameras)}
+    view, (_, clocks) = keypoints.read_2d(paths.pose2d), sync.read(paths.sync)
+    track = overlay_video.track(
+        known[camera],
+        view,
+        people.read(paths.people).assigned(view),
+        clocks[camera],
+        keypoints.read_3d(paths.pose3d),
+        skeleton.read(paths.skeleton),
+    )
+    start_s, stop_s = trim_s or (None, None)
+    rate_hz = video.probe(paths.video, stop_s=stop_s).rate_hz
+    frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
+    hide = close_ups.hide_faces if blur_faces else None
+    drawn = overlay_video.pictures(
+        frames, track, colours=COLOURS, hide_faces=hide, keep_background=keep_background
+    )
+    said = log.progress(drawn, len(track.own_s), f"{camera}: frames")
+    video_writer.write_video(mp4, said, rate_hz, crf=crf, effort=effort)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.mp4,
+        snakemake.wildcards.camera,
+        blur_faces=snakemake.params.blur_faces,
+        trim_s=snakemake.params.trim_s,
+        **snakemake.params.step,
+    )

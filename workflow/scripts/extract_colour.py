@@ -1,0 +1,31 @@
+"""Extract the colour of a depth camera's recording: recording -> video, its frames' times, colour camera."""
+
+from courtside.devices import depth_recordings, video_writer
+from courtside.geometry import cameras
+from courtside.records import frame_times
+from courtside.study import log
+
+
+def main(recording, video, frames_csv, camera_toml, *, device, crf):
+    found = depth_recordings.read(recording, device)
+    for remark in found.remarks:
+        log.logger.warning("%s: %s", device, remark)
+    index = found.colour_index()
+    table = frame_times.FrameTimes(index.time_s, index.number)
+    pictures = log.progress(found.colour_frames(), len(index.time_s), f"{device}: frames")
+    images = (image for _, image in pictures)
+    video_writer.write_video(video, images, table.rate_hz, crf=crf)
+    frame_times.write(frames_csv, table)
+    cameras.write_toml(camera_toml, [found.colour], source=f"recorded by {device}")
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.recording,
+        snakemake.output.video,
+        snakemake.output.frames,
+        snakemake.output.camera,
+        device=snakemake.wildcards.device,
+        **snakemake.params.step,
+    )

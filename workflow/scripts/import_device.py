@@ -1,0 +1,25 @@
+"""Import the skeleton that a device gives by itself: mocopi's BVH, Nuitrack's JSON or CSV -> its motion."""
+
+from courtside.devices import mocopi, nuitrack
+from courtside.records import device_motion, skeleton
+from courtside.study import log
+
+
+def main(recording, skeleton_yaml, motion_npz, *, device, kind):
+    joints = skeleton.read(skeleton_yaml)
+    if kind == "inertial":
+        motion, _ = mocopi.read(recording, joints, source=device)
+    else:
+        motion = nuitrack.read(recording, joints.joints, device)
+    device_motion.write(motion_npz, motion)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.recording,
+        snakemake.input.skeleton,
+        snakemake.output.motion,
+        device=snakemake.wildcards.device,
+        kind=snakemake.params.kind,
+    )

@@ -1,0 +1,34 @@
+"""Lift the 2D joints of a depth camera's colour: recording, 2D keypoints -> the device's motion."""
+
+from courtside.devices import depth_recordings
+from courtside.motion import depth_lift, depth_samples, single_view
+from courtside.records import device_motion, frame_times, keypoints, skeleton
+from courtside.study import log
+
+
+def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, **sampling):
+    recording = depth_recordings.read(paths.recording, device)
+    view = frame_times.on_device_clock(keypoints.read_2d(paths.pose2d), paths.frames)
+    motion, sigma_m = depth_lift.lift_take(
+        source,
+        single_view.main_person(view),
+        log.progress(recording.depth_frames(), None, f"{device}: depth pictures"),
+        recording,
+        bones=skeleton.read(paths.skeleton).bones,
+        baseline_m=depth_recordings.baseline(recording, baseline_m),
+        skin_m=skin_m,
+        sampling=depth_samples.Sampling(**sampling),
+    )
+    log.logger.info("%s", depth_lift.summary(motion, sigma_m))
+    device_motion.write(device_npz, motion)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input,
+        snakemake.output.device,
+        device=snakemake.wildcards.device,
+        source=snakemake.params.source,
+        **snakemake.params.step,
+    )

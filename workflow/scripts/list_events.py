@@ -1,0 +1,16 @@
+"""List what each device shows, by its own clock: device motions -> wrist distance, T-poses, claps."""
+
+from courtside.motion import event_tables
+from courtside.records import device_motion, tables
+from courtside.study import log
+
+
+def main(device_npz, wrists_csv, events_csv):
+    motions = [device_motion.read(path) for path in device_npz]
+    tables.write(wrists_csv, event_tables.wrists(motions))
+    tables.write(events_csv, event_tables.events(motions))
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(snakemake.input.devices, snakemake.output.wrists, snakemake.output.events)

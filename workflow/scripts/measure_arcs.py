@@ -1,0 +1,29 @@
+"""Measure the wrists' arcs from T-pose to clap: body motions -> paths, distortion, smoothness."""
+
+import pandas as pd
+
+from courtside.motion import arcs, smoothness
+from courtside.records import body_motion, tables
+from courtside.study import log
+
+
+def main(body_npz, paths_csv, distortion_csv, *, sparc_rate_hz):
+    paths, rows = [], []
+    for body in map(body_motion.read, body_npz):
+        found = arcs.arcs(body)
+        paths.append(arcs.paths(found).assign(source=body.source))
+        row = arcs.distortion(found).assign(source=body.source, unit_m=body.unit_m)
+        rows.append(row.assign(sparc=smoothness.of_arcs(body, found, sparc_rate_hz)))
+    for path, parts in ((paths_csv, paths), (distortion_csv, rows)):
+        table = pd.concat(parts, ignore_index=True)
+        tables.write(path, table.set_index("source").reset_index())
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.bodies,
+        snakemake.output.paths,
+        snakemake.output.distortion,
+        **snakemake.params.step,
+    )

@@ -1,0 +1,60 @@
+"""Predict the errors of a planned session: plan, court -> expected error against N, and over the court."""
+
+from courtside.figures import error_map, plan, style
+from courtside.geometry import courts, planned_cameras, planned_ties, planning
+from courtside.records import camera_covariance
+from courtside.sfm import model
+from courtside.study import log, plans
+from courtside.study.errors import InputError
+
+THINNING = ("min_angle_deg", "max_error_px", "max_points", "seed")
+WEIGHTS = ("tie_sigma", "click_sigma_px", "click_bias_px", "click_loss")
+
+
+def main(plan_yaml, court_yaml, growth, over_court, *, heights_m, adjust):
+    planned, court = plans.read(plan_yaml), courts.read(court_yaml)
+    fixed = [planned_cameras.camera(name, **vars(c)) for name, c in planned.cameras.items()]
+    found = predict_all(planned, fixed, court, adjust)
+    limits = {"min_points": adjust["min_points"], "target_cm": planned.target_cm}
+    chosen, reason = planning.needed(found, **limits)
+    enough = (
+        f"{chosen.n_images} bridging images" if chosen else "not enough with any number of images"
+    )
+    log.logger.info("%s: %s", enough, reason)
+    rows = plan.table(found, chosen)
+    title = f"{planned.description}\n{enough}: {reason}"
+    style.save(plan.draw(rows, title, widest_deg=planning.WIDEST_DEG, **limits), rows, *growth)
+    drawn = chosen or [prediction for prediction in found if prediction.solution][-1]
+    names = [camera.name for camera in fixed]
+    covariance = camera_covariance.of_network(names, drawn.solution.covariance)
+    rows = error_map.table(fixed, covariance, court, heights_m)
+    title = f"{planned.description}, {drawn.n_images} bridging images"
+    style.save(error_map.draw(rows, fixed, court, title), rows, *over_court)
+
+
+def predict_all(planned, fixed, court, adjust):
+    texture = planned_ties.TEXTURES[planned.texture]
+    prior = model.lens_prior([*(camera.size for camera in fixed), planned.walk.size_px])
+    options = {key: adjust[key] for key in WEIGHTS} | {"thinning": {k: adjust[k] for k in THINNING}}
+    options |= {"seed": adjust["seed"]}
+    if planned.click_sigma_px is not None:
+        options["click_sigma_px"] = planned.click_sigma_px
+    found = []
+    for n in log.progress(planned.n_images, len(planned.n_images), "numbers of bridging images"):
+        walked = planned_cameras.walked_cameras(
+            n_images=n, seed=adjust["seed"], **vars(planned.walk)
+        )
+        about = (court, planned.hall_m, texture, prior)
+        found.append(planning.predict(fixed, walked, *about, **options))
+    if not any(prediction.solution for prediction in found):
+        raise InputError(found[-1].fault)
+    return found
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    outputs = [
+        [snakemake.output[f"{part}_{form}"] for form in ("pdf", "png", "csv")]
+        for part in ("growth", "map")
+    ]
+    main(snakemake.input.plan, snakemake.input.court, *outputs, **snakemake.params.step)

@@ -1,0 +1,39 @@
+"""Propose court points: cameras, static pictures, court -> where the points are seen, to be confirmed."""
+
+import cv2
+
+from courtside.devices import court_proposals
+from courtside.geometry import cameras, courts
+from courtside.records import proposals
+from courtside.study import log
+from courtside.study.errors import InputError
+
+
+def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_share, **options):
+    known = {camera.name: camera for camera in cameras.read_toml(cameras_toml)}
+    court, found = courts.read(court_yaml), {}
+    given = zip(names, pictures, strict=True)
+    for name, path in log.progress(given, len(names), "court points: cameras"):
+        if name not in known:
+            raise InputError(
+                f"{cameras_toml}: expected camera {name}, found {', '.join(known)}; calibrate it first"
+            )
+        image = cv2.imread(str(path))
+        cameras.check_size(known[name], image.shape[1::-1], path)
+        reach = {"search_px": search_share * image.shape[1]}
+        found[name] = court_proposals.propose(known[name], image, court, **reach, **options)
+        n = sum(not reason for reason in found[name].reason)
+        log.logger.info("%s: %d of %d points proposed", name, n, len(court.points))
+    proposals.write(proposals_csv, found, court.points)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.cameras,
+        snakemake.input.pictures,
+        snakemake.input.court,
+        snakemake.output.proposals,
+        names=snakemake.params.cameras,
+        **snakemake.params.step,
+    )

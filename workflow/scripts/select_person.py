@@ -1,0 +1,14 @@
+"""Select the person who wears devices among those of the fixed cameras: 3D keypoints -> one more source."""
+
+from courtside.records import device_motion, keypoints
+from courtside.study import log
+
+
+def main(pose3d_npz, device_npz, *, person):
+    points = keypoints.read_3d(pose3d_npz)
+    device_motion.write(device_npz, device_motion.of_person(points, person))
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(snakemake.input.pose3d, snakemake.output.device, person=snakemake.params.person)

@@ -1,0 +1,44 @@
+"""Find the devices' clocks of one take: device motions -> clocks, wrist distance, T-poses and claps."""
+
+from courtside.motion import device_events, device_sync, event_tables
+from courtside.records import device_motion, sync, tables
+from courtside.study import log
+
+
+def main(device_npz, paths, *, devices, latency):
+    motions = [device_motion.read(path) for path in device_npz]
+    happened = device_events.shown(motions, devices)
+    # The reference must clap: the first source of the first device that does.
+    first = devices[motions[0].source]
+    motions.sort(key=lambda m: (devices[m.source] != first, not happened[m.source].claps))
+    found = device_sync.synchronise(motions, happened, devices=devices, latency=latency)
+    clocks = {source: one.clock for source, one in found.items()}
+    report(clocks)
+    sync.write(paths.sync, motions[0].source, clocks)
+    tables.write(paths.wrists, event_tables.wrists(motions, clocks))
+    tables.write(paths.events, event_tables.events(motions, clocks))
+    tables.write(paths.checks, event_tables.checks(found))
+
+
+def report(clocks):
+    for source, clock in clocks.items():
+        log.logger.info(
+            "%s: %s, offset %.1f ms, drift %.0f +- %.0f ppm, uncertain by %.1f ms; %s",
+            source,
+            clock.status,
+            1e3 * clock.offset_s,
+            clock.drift_ppm,
+            clock.drift_uncertainty_ppm,
+            1e3 * clock.uncertainty_s,
+            clock.note,
+        )
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.devices,
+        snakemake.output,
+        devices=snakemake.params.devices,
+        latency=snakemake.params.step["latency_s"],
+    )
