@@ -25,6 +25,7 @@ include: "workflow/rules/bodies.smk"
 include: "workflow/rules/single_view_inputs.smk"
 include: "workflow/rules/page_inputs.smk"
 include: "workflow/rules/pages.smk"
+include: "workflow/rules/clicking.smk"
 include: "workflow/rules/plans.smk"
 include: "workflow/rules/single_view.smk"
 include: "workflow/rules/take_evaluation.smk"
@@ -60,6 +61,7 @@ rule all:
         every_comparison_of_views(),
         every_players_figure(),
         every_device_figure(),
+        every_clicking_page(),
         every_viewer(),
         every_overlay_video(),
         every_plan(),

@@ -26,6 +26,7 @@ TESTED_THROUGH = {  # parts of one thing, split for length: the tests of the who
     "tflite_tensors": "pose/test_tflite_graph.py",
     "distortion": "geometry/test_cameras.py",
     "fields": "geometry/test_calibration_files.py",
+    "take_faults": "study/test_session_faults.py",
     "bvh": "devices/test_bvh.py",  # and exports/test_bvh_export.py: two modules of this name
 }
 PER_NAME = {

@@ -2,10 +2,14 @@
 
 import ast
 import importlib
+import re
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from courtside.study import digest
 
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "workflow" / "lib"
@@ -107,24 +111,118 @@ def test_every_module_imports(path):
     assert importlib.import_module(name.removesuffix(".__init__")).__doc__
 
 
+TRUE_MODULES = ("courtside.virtual", "courtside.records.truth", "courtside.records.take_truth")
+KNOWING = ("simulate_", "evaluate_")  # rules that make truth or measure against it
+# What may rest on an evaluation: measures and drawings of it, never a method.
+SHOWING = ("evaluate_", "draw_", "tabulate_", "compare_", "all")
+
+
+def is_truth(name):
+    """Tell files that hold the truth of a simulation."""
+    return "/virtual/" in f"/{name}" and Path(name).name == "truth.npz"
+
+
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.name)
-def test_methods_see_neither_simulation_nor_truth(path):
-    used = {".".join(name.split(".")[:3]) for name in imports(path.read_text())}
-    if not path.name.startswith(("simulate_", "evaluate_")):
-        assert not [
-            n for n in used if n.startswith(("courtside.virtual", "courtside.records.truth"))
-        ]
+def test_methods_reach_neither_simulation_nor_truth(path):
+    if not path.name.startswith(KNOWING):
+        reached = digest.modules_of(path, LIBRARY)
+        assert [name for name in sorted(reached) if name.startswith(TRUE_MODULES)] == []
+        assert "truth.npz" not in path.read_text()
+
+
+def test_only_the_records_of_truth_and_the_simulation_name_its_file():
+    rooms = {path.relative_to(LIBRARY / "courtside").parts[0] for path in MODULES}
+    assert "virtual" in rooms
+    naming = [path for path in MODULES if "truth.npz" in path.read_text()]
+    assert [
+        path for path in naming if "virtual" not in path.parts and "truth" not in path.stem
+    ] == []
+
+
+def rule_blocks():
+    """Return (name, text) of every rule in the rule files, those made in a loop included."""
+    blocks = []
+    for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
+        parts = re.split(r"^ *(?:rule|checkpoint)\b", path.read_text(), flags=re.M)[1:]
+        for part in parts:
+            script = re.search(r"scripts/(\w+)\.py", part)
+            blocks.append((script.group(1) if script else part.split(":")[0].strip(), part))
+    return blocks
 
 
 def test_only_evaluations_take_truth_files():
-    rules = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
     takers = []
-    for path in rules:
-        blocks = path.read_text().split("\nrule ")[1:]
-        takers += [
-            block.split(":")[0]
-            for block in blocks
-            if any(words in block.split("output:")[0] for words in TRUTH)
-        ]
+    for name, text in rule_blocks():
+        # All but what a rule makes: its inputs, and parameters that could smuggle a path.
+        taken = re.sub(
+            r"^ *output:.*?^ *(?=log:|benchmark:|params:|script:)", "", text, flags=re.M | re.S
+        )
+        takers += [name] if any(words in taken for words in TRUTH) else []
     assert len(takers) >= 9
     assert [name for name in takers if not name.startswith("evaluate_")] == []
+
+
+@pytest.fixture(scope="module")
+def jobs(tmp_path_factory):
+    """Return (rule, inputs, outputs) of every job of the default study, planned from nothing."""
+    folder = tmp_path_factory.mktemp("empty")
+    command = [sys.executable, "-m", "snakemake", "-n", "--directory", str(folder)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return planned_jobs(done.stdout + done.stderr)
+
+
+def planned_jobs(text):
+    """Return (rule, inputs, outputs) of the jobs that a dry run lists."""
+    found = []
+    for block in re.split(r"^(?:local)?rule ", text, flags=re.M)[1:]:
+        files = {
+            key: words.split(", ")
+            for key, words in re.findall(r"^    (input|output): (.*)$", block, flags=re.M)
+        }
+        found.append((block.split(":")[0], files.get("input", []), files.get("output", [])))
+    return found
+
+
+def knowing_methods(jobs):
+    """Return the rules that take a truth file, or what was measured against one, and may not."""
+    takers = {rule for rule, inputs, _ in jobs if any(map(is_truth, inputs))}
+    measured = {
+        name for rule, _, outputs in jobs if rule.startswith("evaluate_") for name in outputs
+    }
+    showing = {rule for rule, inputs, _ in jobs if measured.intersection(inputs)}
+    return sorted(
+        {rule for rule in takers if not rule.startswith("evaluate_")}
+        | {rule for rule in showing if not rule.startswith(SHOWING)}
+    )
+
+
+def test_no_job_of_a_method_takes_truth_or_what_was_measured_against_it(jobs):
+    simulated = [out for rule, _, outputs in jobs for out in outputs if is_truth(out)]
+    assert len(jobs) > 500
+    assert len(simulated) >= 10
+    assert sum(rule.startswith("evaluate_") for rule, _, _ in jobs) > 50
+    assert knowing_methods(jobs) == []
+
+
+def test_what_rests_on_measured_errors_is_itself_no_input_of_a_method(jobs):
+    """Drawings and tables of errors end there: nothing but other drawings and tables reads them."""
+    shown = {name for rule, _, outputs in jobs if rule.startswith(SHOWING) for name in outputs}
+    readers = {rule for rule, inputs, _ in jobs if shown.intersection(inputs)}
+    assert [rule for rule in sorted(readers) if not rule.startswith(SHOWING)] == []
+
+
+def test_the_check_of_truth_bites():
+    text = """rule triangulate:
+    input: results/a/x.npz, results/virtual/a/takes/t/truth.npz
+    output: results/a/y.npz
+
+localrule filter_motion:
+    input: results/a/errors.csv
+    output: results/a/z.npz
+
+rule evaluate_take:
+    input: results/virtual/a/truth.npz
+    output: results/a/errors.csv
+"""
+    assert knowing_methods(planned_jobs(text)) == ["filter_motion", "triangulate"]

@@ -38,7 +38,11 @@ rule align_bodies:
         "results/{session}/logs/align_bodies/{take}.{source}.{model}.log",
     params:
         code=code("align_bodies.py"),
-        step=lambda w: {"skeleton": sources_of(w)[w.source][1], "devices": clock_owners(w)},
+        step=lambda w: {
+            "skeleton": sources_of(w)[w.source][1],
+            "devices": clock_owners(w),
+            "stated": list(take_of(w).clocks),
+        },
     script:
         "../scripts/align_bodies.py"
 

@@ -83,6 +83,12 @@ def each_camera(pattern):
     ]
 
 
+def models_of(imported):
+    """Return a pattern of the names of networks, or of skeletons whose keypoints other programs find."""
+    found = [name for name, m in STUDY.models.items() if (m.decoder == "imported") == imported]
+    return "|".join(found) or "none-at-all"
+
+
 def skeleton_file(wildcards):
     """Return the path of the skeleton of a job's network."""
     return CONFIG / "skeletons" / f"{STUDY.models[wildcards.model].skeleton}.yaml"

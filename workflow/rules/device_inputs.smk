@@ -6,6 +6,11 @@ Inputs: the checked configuration. Outputs: none. Steps: which files, sources an
 OF_KIND = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}  # skeletons that a device brings along
 
 
+def stated_clocks(wildcards, names):
+    """Return those clocks that a take states, of the cameras or devices named."""
+    return {name: clock for name, clock in take_of(wildcards).clocks.items() if name in names}
+
+
 def device_of(wildcards):
     """Return the `Device` that a job belongs to."""
     return take_of(wildcards).devices[wildcards.device]

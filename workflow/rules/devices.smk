@@ -101,6 +101,7 @@ rule synchronise_devices:
     params:
         code=code("synchronise_devices.py"),
         devices=lambda w: clock_owners(w, corrected=False),
+        stated=lambda w: stated_clocks(w, take_of(w).devices),
         step=step("synchronise_devices"),
     script:
         "../scripts/synchronise_devices.py"

@@ -25,6 +25,7 @@ rule synchronise_cameras:
         code=code("synchronise_cameras.py"),
         step=step("synchronise_cameras"),
         synchronised=lambda w: take_of(w).synchronised,
+        stated=lambda w: stated_clocks(w, take_of(w).videos),
     script:
         "../scripts/synchronise_cameras.py"
 
@@ -64,6 +65,8 @@ rule triangulate:
         f"results/{{session}}/logs/triangulate/{OF_FUSED}.log",
     benchmark:
         f"results/{{session}}/benchmarks/triangulate/{OF_FUSED}.tsv"
+    wildcard_constraints:
+        fusion=f"(?!trc){NAME}",
     params:
         code=code("triangulate.py"),
         step=step("triangulate"),

@@ -78,6 +78,29 @@ def every_viewer():
     ]
 
 
+def proposals_file(wildcards):
+    """Return the proposed court points of a session whose cameras are found: some points were clicked before."""
+    session = session_of(wildcards)
+    ways = [way for way in session.calibrations() if way.startswith("sfm-")]
+    if not (session.court_points and ways):
+        return []
+    return f"results/{session.name}/calibration/{ways[0]}/proposals.csv"
+
+
+def clicking_settings(wildcards):
+    """Return what the page for clicking says and saves."""
+    session = session_of(wildcards)
+    path = session.unclicked or session.court_points or f"data/{session.name}/court_points.csv"
+    targets = {"court_points.csv": path}
+    names = list(session.cameras)
+    return {"session": session.name, "names": names, "targets": targets, "jpeg_quality": None}
+
+
+def every_clicking_page():
+    """Return the pages for clicking the court points of sessions that wait for them."""
+    return [f"results/{s.name}/pages/clicking.html" for s in STUDY.sessions.values() if s.unclicked]
+
+
 def overlay_parameters(wildcards):
     """Return how videos with skeletons are written."""
     step = STUDY.parameters["export_overlay_video"]

@@ -1,7 +1,7 @@
-"""2D keypoints of each camera.
+"""2D keypoints of each camera, by a network or of another program; 3D keypoints of another program.
 
-Inputs: a take's videos, networks, backgrounds. Outputs: results/{session}/takes/{take}/pose2d/.
-Steps: detect_pose.
+Inputs: a take's videos, networks, backgrounds, JSON folders, TRC files. Outputs: results/{session}/takes/{take}/pose2d/.
+Steps: detect_pose, import_pose2d, import_pose3d.
 """
 
 
@@ -18,6 +18,8 @@ rule detect_pose:
         "results/{session}/logs/detect_pose/{take}.{model}.{camera}.log",
     benchmark:
         "results/{session}/benchmarks/detect_pose/{take}.{model}.{camera}.tsv"
+    wildcard_constraints:
+        model=models_of(imported=False),
     params:
         code=code("detect_pose.py"),
         step=step("detect_pose"),
@@ -27,3 +29,36 @@ rule detect_pose:
         max_people=followed,
     script:
         "../scripts/detect_pose.py"
+
+
+rule import_pose2d:
+    input:
+        folder=lambda w: take_of(w).pose2d[w.model][w.camera],
+        video=lambda w: take_of(w).videos[w.camera],
+        skeleton=skeleton_file,
+    output:
+        pose2d="results/{session}/takes/{take}/pose2d/{model}/{camera}.npz",
+    log:
+        "results/{session}/logs/import_pose2d/{take}.{model}.{camera}.log",
+    wildcard_constraints:
+        model=models_of(imported=True),
+    params:
+        code=code("import_pose2d.py"),
+        trim_s=lambda w: take_of(w).trim_s,
+    script:
+        "../scripts/import_pose2d.py"
+
+
+rule import_pose3d:
+    input:
+        trc=lambda w: list(take_of(w).pose3d[w.model].values()),
+        skeleton=skeleton_file,
+    output:
+        pose3d="results/{session}/takes/{take}/pose3d/imported/trc/{model}.npz",
+    log:
+        "results/{session}/logs/import_pose3d/{take}.{model}.log",
+    params:
+        code=code("import_pose3d.py"),
+        persons=lambda w: list(take_of(w).pose3d[w.model]),
+    script:
+        "../scripts/import_pose3d.py"

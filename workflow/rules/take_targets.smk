@@ -83,8 +83,14 @@ def every_shake():
 
 
 def every_kinematics():
-    """Return the measures of all takes."""
-    return each_take(
+    """Return the measures of all takes, those of other programs' skeletons included."""
+    imported = [
+        f"results/{session.name}/takes/{take.name}/kinematics/imported/trc/{skeleton}.summary.csv"
+        for session in STUDY.sessions.values()
+        for take in session.takes.values()
+        for skeleton in take.pose3d
+    ]
+    return imported + each_take(
         "results/{session}/takes/{take}/kinematics/{calibration}/{fusion}/{model}.summary.csv"
     )
 

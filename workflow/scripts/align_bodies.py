@@ -6,13 +6,15 @@ from courtside.study import log
 from courtside.study.files import write_json
 
 
-def main(device_npz, sync_json, derived_yaml, body_npz, frame_json, *, source, skeleton, devices):
+def main(
+    device_npz, sync_json, derived_yaml, body_npz, frame_json, *, source, skeleton, devices, stated
+):
     motions = {motion.source: motion for motion in map(device_motion.read, device_npz)}
     reference, found = sync.read(sync_json)
     of_device = {devices[name]: clock for name, clock in found.items()}
     clocks = {name: of_device[devices[name]] for name in motions}
     order = sorted(motions, key=lambda name: name != reference)
-    shown = device_events.shown(list(motions.values()), devices)
+    shown = device_events.shown(list(motions.values()), devices, stated)
     happened = {name: shown[name] for name in order}
     chosen = bodies.common(happened, clocks, motions)[source]
     motion, clock = motions[source], clocks[source]

@@ -8,7 +8,7 @@ from courtside.study import log
 WRIST_M_S = 12.0  # of a smash: what the uncertainty is worth in space
 
 
-def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, **options):
+def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options):
     views = [keypoints.read_2d(path) for path in pose2d_npz]
     used = None
     if cameras_toml:
@@ -19,7 +19,7 @@ def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, **options):
     if synchronised:
         clocks = sync.one_clock([view.camera for view in views])
     else:
-        clocks = camera_sync.synchronise(views, used, **options)
+        clocks = camera_sync.synchronise(views, used, **options) | sync.stated(stated)
     report(clocks)
     sync.write(sync_json, views[0].camera, clocks)
 
@@ -46,5 +46,6 @@ if __name__ == "__main__":
         snakemake.input.pose2d,
         snakemake.output.sync,
         synchronised=snakemake.params.synchronised,
+        stated=snakemake.params.stated,
         **snakemake.params.step,
     )

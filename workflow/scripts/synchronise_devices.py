@@ -5,13 +5,16 @@ from courtside.records import device_motion, sync, tables
 from courtside.study import log
 
 
-def main(device_npz, paths, *, devices, latency):
+def main(device_npz, paths, *, devices, stated, latency):
     motions = [device_motion.read(path) for path in device_npz]
-    happened = device_events.shown(motions, devices)
+    happened = device_events.shown(motions, devices, stated)
     # The reference must clap: the first source of the first device that does.
     first = devices[motions[0].source]
     motions.sort(key=lambda m: (devices[m.source] != first, not happened[m.source].claps))
-    found = device_sync.synchronise(motions, happened, devices=devices, latency=latency)
+    by_device = sync.stated(stated)
+    known = {name: by_device[owner] for name, owner in devices.items() if owner in by_device}
+    clocks = {"devices": devices, "known": known, "latency": latency}
+    found = device_sync.synchronise(motions, happened, **clocks)
     clocks = {source: one.clock for source, one in found.items()}
     report(clocks)
     sync.write(paths.sync, motions[0].source, clocks)
@@ -40,5 +43,6 @@ if __name__ == "__main__":
         snakemake.input.devices,
         snakemake.output,
         devices=snakemake.params.devices,
+        stated=snakemake.params.stated,
         latency=snakemake.params.step["latency_s"],
     )

@@ -33,6 +33,8 @@ def test_a_device_among_others_must_clap():
     _, _, mocopi, depth = take()
     with pytest.raises(InputError, match="d415-depth: expected a T-pose"):
         device_events.shown([mocopi, depth], DEVICES)
+    found = device_events.shown([mocopi, depth], DEVICES, stated=["d415"])
+    assert (len(found["mocopi"].claps), found["d415-depth"].claps) == (2, [])
 
 
 def test_a_device_that_is_alone_need_not():

@@ -83,3 +83,10 @@ def test_a_doubtful_clock_is_named_with_its_offsets():
 
 def test_what_8_ms_are_worth_at_a_smash():
     assert sync.wrist_error_mm(0.008, 12.0) == pytest.approx(96.0)
+
+
+def test_clocks_that_somebody_states_are_used():
+    found = sync.stated({"left": {"offset_s": 1.5, "uncertainty_s": 0.02}})
+    assert found["left"].usable
+    assert found["left"].to_reference(2.5) == pytest.approx(1.0)
+    assert found["left"].uncertainty_s == 0.02

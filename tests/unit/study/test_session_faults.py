@@ -94,11 +94,19 @@ def test_good_sessions_have_no_fault(root, content):
             RECORDED | {"walks": {"a": {"video": "w.mp4"}}},
             ["walks.a: expected a name that no camera has"],
         ),
-        (RECORDED | {"court_points": "q.csv"}, ["court_points: expected a file", "q.csv"]),
+        (
+            RECORDED
+            | {
+                "court_points": "q.csv",
+                "cameras": {"a": None, "b": {"static": "b.mp4"}},
+                "walks": {},
+            },
+            ["court_points: expected a file", "q.csv"],
+        ),
         (RECORDED | {"court": "none"}, ["court_points: expected none without a court"]),
         (
             without(RECORDED, "court_points"),
-            ["expected `court_points`", "click them or set court: none"],
+            ["expected `court_points`", "a page to click them on, or set court: none"],
         ),
         (
             without(without(RECORDED, "walks"), "court_points"),
@@ -152,6 +160,12 @@ def test_good_sessions_have_no_fault(root, content):
             | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"a": {"file": "a.mp4"}}}}},
             ["takes.t.devices: expected names that no camera has, found 'a'"],
         ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}}
+            | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"up": {"offset_s": 1.0}}}}},
+            ["takes.t.clocks: expected one of ['a'], found 'up'"],
+        ),
         (PLAYERS | {"views": {"two": ["side", "up"]}}, ["views.two: expected one of", "'up'"]),
         (
             RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},
@@ -180,6 +194,53 @@ def test_good_sessions_have_no_fault(root, content):
 def test_a_contradiction_is_one_line(root, content, parts):
     (line,) = find(root, content)
     assert [part for part in parts if part not in line] == []
+
+
+OTHERS = {"pose2d": {"body25b": {"a": "a.mp4", "b": "b.mp4"}}}
+
+
+@pytest.mark.parametrize(
+    ("take", "override", "parts"),
+    [
+        (
+            {"pose2d": {"spider": {"a": "a.mp4"}}},
+            {},
+            ["takes.t.pose2d: expected one of", "'spider'"],
+        ),
+        (
+            {"pose2d": {"body25b": {"up": "a.mp4"}}},
+            {},
+            ["pose2d.body25b: expected one of ['a', 'b']"],
+        ),
+        ({"pose3d": {"body25b": {"p2": "a.mp4"}}}, {}, ["pose3d.body25b: expected one of ['p1']"]),
+        (
+            {"pose3d": {"body25b": {"p1": "no.trc"}}},
+            {},
+            ["pose3d.body25b.p1: expected a file", "no.trc"],
+        ),
+    ],
+)
+def test_keypoints_of_other_programs_are_checked(root, take, override, parts):
+    (root / "skeletons").mkdir()
+    (root / "skeletons" / "body25b.yaml").touch()
+    videos = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
+    content = RECORDED | {"subjects": {"p1": None}, "takes": {"t": videos | take}}
+    (line,) = find(root, content | {"override": override})
+    assert [part for part in parts if part not in line] == []
+
+
+def test_a_take_without_the_keypoints_that_its_session_wants_is_named(root):
+    (root / "skeletons").mkdir()
+    (root / "skeletons" / "body25b.yaml").touch()
+    videos = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
+    content = RECORDED | {"subjects": {"p1": None}, "override": {"models": ["body25b"]}}
+    assert find(root, content | {"takes": {"t": videos | OTHERS}}) == []
+    (line,) = find(root, content | {"takes": {"t": videos | OTHERS, "u": videos}})
+    assert "takes.u.pose2d: expected body25b, as override.models says, found none" in line
+
+
+def test_court_points_may_be_clicked_later_where_there_are_pictures_to_click_on(root):
+    assert find(root, RECORDED | {"court_points": "q.csv"}) == []
 
 
 def test_a_session_of_devices_alone_needs_no_cameras(root):

@@ -57,13 +57,14 @@ PARAMETERS = {
 }
 
 
-def test_a_session_with_walks_names_its_recordings():
+def test_a_session_with_walks_names_its_recordings(tmp_path):
+    (tmp_path / "p.csv").touch()
     content = {
         **{"description": "d", "court": "none", "court_points": "p.csv"},
         "cameras": {"a": {"static": "a.mp4"}},
         "walks": {"w1": {"video": "w1.mp4"}, "w2": {"images": "photos"}},
     }
-    found = session_files.session("s", "s.yaml", content, {})
+    found = session_files.session("s", "s.yaml", content, {}, tmp_path)
     assert found.walks == {"w1": "w1.mp4", "w2": "photos"}
     assert (found.court, found.court_points, found.cameras["a"].static) == (None, "p.csv", "a.mp4")
     assert (found.takes, found.subjects, found.calibration_file, found.virtual) == (
@@ -152,3 +153,20 @@ def test_a_session_may_override_lists_of_methods():
         "s", "s.yaml", content, {"fusions": ["all-robust"], "models": ["m"]}
     )
     assert found.parameters == {"fusions": ["two-dlt"], "models": ["m"]}
+
+
+def test_court_points_that_nobody_has_clicked_are_waited_for(tmp_path):
+    content = {
+        "description": "d",
+        "court": "badminton",
+        "cameras": {"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}},
+        "walks": {"w": {"video": "w.mp4"}},
+        "court_points": "p.csv",
+    }
+    parameters = {"calibrations": ["sfm-n40", "known18"], "take_calibrations": ["sfm-n40"]}
+    found = session_files.session("s", "s.yaml", content, parameters, tmp_path)
+    assert (found.court_points, found.unclicked, found.calibrations()) == (None, "p.csv", [])
+    (tmp_path / "p.csv").touch()
+    found = session_files.session("s", "s.yaml", content, parameters, tmp_path)
+    assert (found.court_points, found.unclicked) == ("p.csv", None)
+    assert found.calibrations() == ["sfm-n40", "known18"]

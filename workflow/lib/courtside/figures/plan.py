@@ -59,9 +59,8 @@ def draw(rows, title, *, min_points, widest_deg, target_cm=None):
     above, angle, ties = drawing.subplots(3, 1, sharex=True, height_ratios=[2.2, 1, 1])
     walked, alone = rows[rows["n_images"] > 0], rows[rows["n_images"] == 0]
     n = walked["n_images"]
-    above.fill_between(
-        n, walked["error_p05_cm"], walked["error_p95_cm"], color=style.CYCLE[5], alpha=0.4
-    )
+    band = n, walked["error_p05_cm"], walked["error_p95_cm"]
+    above.fill_between(*band, color=style.CYCLE[5], alpha=0.4)
     above.plot(
         n,
         walked["error_median_cm"],

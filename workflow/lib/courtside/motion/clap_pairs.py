@@ -47,7 +47,7 @@ def pair(first, second, likeness, where):
         offsets = ", ".join(f"{offset_s(pairs):.2f}" for _, pairs in best)
         raise InputError(
             f"{where}: expected claps that pair in one way, found {len(best)} ways (offsets {offsets} s): "
-            f"claps at {times[1]} s against {times[0]} s; give the device's offset_s in the session file"
+            f"claps at {times[1]} s against {times[0]} s; give the device's offset_s under clocks of the take"
         )
     return best[0][1]
 

@@ -111,7 +111,10 @@ def find(motion, spells):
     found = (
         f"hands together only at {times}" if times else "no time at which the hands come together"
     )
-    raise InputError(f"{line}, found {found}; clap after the T-pose, or give the device's offset_s")
+    raise InputError(
+        f"{line}, found {found}; clap after the T-pose, or give the device's offset_s under "
+        "clocks of the take"
+    )
 
 
 def candidates(motion, spells):

@@ -39,7 +39,7 @@ def events(motion, alone=False):
     return Events(spells, claps)
 
 
-def shown(motions, devices):
+def shown(motions, devices, stated=()):
     """Return the `Events` of all sources of a take.
 
     Parameters
@@ -47,6 +47,8 @@ def shown(motions, devices):
     motions : list of DeviceMotion
     devices : dict of str to str
         The device of each source.
+    stated : collection of str
+        Devices whose clock is known: they need no clap.
 
     Returns
     -------
@@ -66,7 +68,7 @@ def shown(motions, devices):
         except InputError as error:
             faults[motion.source] = error
             happened[motion.source] = events(motion, alone=True)
-    clapped = {devices[source] for source, each in happened.items() if each.claps}
+    clapped = {devices[source] for source, each in happened.items() if each.claps} | set(stated)
     for source, error in faults.items():
         if devices[source] not in clapped and len(set(devices.values())) > 1:
             raise error

@@ -208,7 +208,8 @@ def _joined(pairs, moved, reference, where):
         raise InputError(
             f"{where}: expected claps and motion that place its clock within "
             f"{1e3 * MAX_UNCERTAINTY_S:.0f} ms, found {1e3 * spread_s:.0f} ms with {len(pairs)} clap(s) at "
-            f"{', '.join(f'{t:.2f}' for t in at_s)} s; clap again at the end, or give its offset_s"
+            f"{', '.join(f'{t:.2f}' for t in at_s)} s; clap again at the end, or give its offset_s under "
+            "clocks of the take"
         )
     clock = Clock(
         offset_s=float(state[0] - state[2] * centre_s),

@@ -71,7 +71,20 @@ def estimate(time_s, device_xyz, vision_xyz, up, *, window_s):
 
 
 def turn_path(path, heading, up):
-    """Return a path (T, 3) whose every step is turned by the heading (T,), from the same start."""
+    """Turn every step of a path by a heading, from the same start.
+
+    Parameters
+    ----------
+    path : (T, 3) float
+    heading : (T,) float
+        Radians about `up`.
+    up : (3,) float
+        Unit vector.
+
+    Returns
+    -------
+    turned : (T, 3) float
+    """
     steps = np.diff(path, axis=0)
     middle = (heading[1:] + heading[:-1]) / 2
     turned = np.einsum("tij,tj->ti", _about(up, middle), steps)

@@ -9,6 +9,7 @@ import pandas as pd
 from scipy.optimize import minimize_scalar
 
 from courtside.geometry import similarity
+from courtside.records import limbs
 
 ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
 PARTS = ("origin", "scale", "rotation", "time")
@@ -58,8 +59,11 @@ def at_times(time_s, xyz, wanted_s):
 
 
 def shared(source, reference):
-    """Return the names of the joints that two sources have in common, in the source's order."""
-    known = set(map(str, reference.joints))
+    """Return the names of the limb joints that two sources have in common, in the source's order.
+
+    Others, like eyes, are left out: not every source has them, and means over joints must be of the same.
+    """
+    known = set(map(str, reference.joints)) & set(limbs.JOINTS)
     return [str(name) for name in source.joints if str(name) in known]
 
 

@@ -14,7 +14,7 @@ FORM = "courtside sync 1"
 USABLE = ("reference", "found", "assumed")
 STATUSES = (*USABLE, "ambiguous", "unknown")
 NUMBERS = ("offset_s", "drift_ppm", "uncertainty_s", "drift_uncertainty_ppm")
-NOT_USED = "give its offset_s in the session file, or film a clap that all cameras see"
+NOT_USED = "give its offset_s under clocks of the take, or film a clap that all cameras see"
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,21 @@ def one_clock(cameras):
     first, *others = cameras
     said = Clock(note="the session says that the cameras share a clock")
     return {first: Clock(status="reference"), **dict.fromkeys(others, said)}
+
+
+def stated(numbers):
+    """Return clocks that somebody states.
+
+    Parameters
+    ----------
+    numbers : dict of str to dict
+        For a camera or device `offset_s`, perhaps `drift_ppm` and `uncertainty_s`.
+
+    Returns
+    -------
+    clocks : dict of str to Clock
+    """
+    return {name: Clock(**clock, note="stated by the session") for name, clock in numbers.items()}
 
 
 def usable(clocks):

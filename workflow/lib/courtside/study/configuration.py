@@ -7,7 +7,14 @@ from pathlib import Path
 
 import jsonschema
 
-from courtside.study import artefacts, session_faults, session_files, sessions, yaml_files
+from courtside.study import (
+    artefacts,
+    session_faults,
+    session_files,
+    sessions,
+    take_faults,
+    yaml_files,
+)
 from courtside.study.errors import InputError
 
 SCHEMAS = Path(__file__).parents[3] / "schemas"
@@ -76,7 +83,7 @@ def load(config, config_file, folder, root="."):
     if models is not None:
         for name, entry in models.items():
             faults += _model_faults(folder, name, entry, known)
-        faults += session_faults.unknown(f"{config_file}: models", _names(config, "models"), models)
+        faults += take_faults.unknown(f"{config_file}: models", _names(config, "models"), models)
     found = {}
     for name in _names(config, "sessions"):
         file = folder / "sessions" / f"{name}.yaml"
@@ -86,23 +93,33 @@ def load(config, config_file, folder, root="."):
         if content is not None:
             faults += session_faults.find(folder, file, content, known, Path(root))
             wanted = content.get("override", {}).get("models", [])
-            faults += session_faults.unknown(f"{file}: override.models", wanted, models or wanted)
+            there = [*(models or wanted), *take_faults.imported(content)]
+            faults += take_faults.unknown(f"{file}: override.models", wanted, there)
             found[name] = (file, content)
     if not faults:
         faults += session_faults.conditions(config_file, config, found)
     if faults:
         raise ConfigurationError(faults)
     return sessions.Study(
-        sessions=_sessions(config, found),
+        sessions=_sessions(config, found, root),
         artefacts=known,
-        models={name: sessions.model(name, entry) for name, entry in models.items()},
+        models=_models(models, found),
         parameters=config,
     )
 
 
-def _sessions(config, found):
+def _models(models, found):
+    """Return the networks, and the skeletons whose keypoints other programs found."""
+    imported = [name for _, content in found.values() for name in take_faults.imported(content)]
+    return {
+        **{name: sessions.imported(name) for name in imported},
+        **{name: sessions.model(name, entry) for name, entry in models.items()},
+    }
+
+
+def _sessions(config, found, root):
     """Return all `Session`s: those of the files, and the variations that conditions make of them."""
-    made = {name: session_files.session(name, *pair, config) for name, pair in found.items()}
+    made = {name: session_files.session(name, *pair, config, root) for name, pair in found.items()}
     for name in config["variations"]:
         condition = config["conditions"][name]
         made |= session_files.variations(made[condition["session"]], name, condition)

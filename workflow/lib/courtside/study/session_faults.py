@@ -2,10 +2,10 @@
 
 import re
 
+from courtside.study import take_faults
 from courtside.study.session_files import VIRTUAL
 
 EXTERNAL = "results/external/"
-RECORDINGS = ("videos", "devices")  # keys of a take that was recorded
 CALIBRATED = r"results/[^/]+/calibration/[^/]+/cameras\.toml"  # by the workflow, in another session
 
 
@@ -36,77 +36,28 @@ def find(folder, file, content, known, root):
         yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
     yield from _source_faults(file, content)
     for key, views in content.get("views", {}).items():
-        yield from unknown(f"{file}: views.{key}", views, cameras)
-    yield from unknown(f"{file}: halfbody", content.get("halfbody", {}).values(), cameras)
+        yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
+    yield from take_faults.unknown(
+        f"{file}: halfbody", content.get("halfbody", {}).values(), cameras
+    )
     paths = dict(_paths(content))
     for name, take in content.get("takes", {}).items():
         take = take or {}
-        yield from _take_faults(
+        yield from take_faults.find(
             f"{file}: takes.{name}", take, cameras, subjects, "virtual" in content
         )
         videos = take.get("videos", {})
         paths |= {f"takes.{name}.videos.{camera}": path for camera, path in videos.items()}
+        for key in ("pose2d", "pose3d"):
+            for skeleton, files in take.get(key, {}).items():
+                paths |= {f"takes.{name}.{key}.{skeleton}.{at}": path for at, path in files.items()}
         devices = take.get("devices", {})
         paths |= {
             f"takes.{name}.devices.{key}.file": value["file"] for key, value in devices.items()
         }
+    yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
-
-
-def _take_faults(where, take, cameras, subjects, virtual):
-    if virtual and ("virtual" not in take or set(RECORDINGS) & set(take)):
-        yield (
-            f"{where}: expected the key 'virtual' and not 'videos' in a virtual session, found "
-            f"{sorted(take)}; correct the take"
-        )
-    if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
-        yield (
-            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded session, found "
-            f"{sorted(take)}; correct the take"
-        )
-    if not subjects:
-        yield f"{where}: expected `subjects` in the session, found none; name the persons of the take"
-        return
-    there = take.get("subjects", subjects)
-    yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
-    yield from unknown(f"{where}.subjects", there, subjects)
-    yield from _device_faults(where, take, cameras, there)
-    yield from _filmed_faults(where, take.get("virtual"), cameras, there)
-    if take.get("steady") and not virtual:
-        for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):
-            yield (
-                f"{where}.steady: expected `static` of camera {name}, against which shake is measured, found "
-                "none; name a recording of the empty court"
-            )
-    start_s, stop_s = take.get("trim_s", (0, 1))
-    if start_s >= stop_s:
-        yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
-
-
-def _device_faults(where, take, cameras, subjects):
-    """Check the devices of a take, recorded or virtual."""
-    devices = {**take.get("devices", {}), **(take.get("virtual") or {}).get("devices", {})}
-    for name, device in devices.items():
-        named = [device["subject"]] if "subject" in device else []
-        yield from unknown(f"{where}.devices.{name}.subject", named, subjects)
-        if name in {*cameras, "cameras"}:
-            yield f"{where}.devices: expected names that no camera has, found {name!r}; rename it"
-
-
-def _filmed_faults(where, filmed, cameras, subjects):
-    """Check what a take of a virtual session is made from."""
-    if not filmed:
-        return
-    clocks = [*cameras, *filmed.get("devices", {})]
-    yield from unknown(f"{where}.virtual.cameras", filmed.get("cameras", []), cameras)
-    yield from unknown(f"{where}.virtual.clocks", filmed.get("clocks", {}), clocks)
-    yield from unknown(f"{where}.virtual.shake", filmed.get("shake", {}), cameras)
-    if set(filmed["players"]) != set(subjects):
-        yield (
-            f"{where}.virtual.players: expected each of {sorted(subjects)}, found "
-            f"{sorted(filmed['players'])}; correct one of them"
-        )
 
 
 def _paths(content):
@@ -121,8 +72,11 @@ def _paths(content):
     for name, walk in content.get("walks", {}).items():
         for key, path in (walk or {}).items():
             yield f"walks.{name}.{key}", path
-    if "court_points" in content:
-        yield "court_points", content["court_points"]
+    still = [camera for camera in content["cameras"].values() if camera and "static" in camera]
+    clicks = content.get("court_points", "")
+    clickable = len(still) == len(content["cameras"]) and not clicks.startswith(EXTERNAL)
+    if clicks and not clickable:  # else the study makes a page to click them on
+        yield "court_points", clicks
 
 
 def _source_faults(file, content):
@@ -187,8 +141,8 @@ def _court_faults(file, content):
         yield f"{file}: court_points: expected none without a court, found some; name their court"
     if content["court"] != "none" and content.get("walks") and content["cameras"] and not clicked:
         yield (
-            f"{file}: expected `court_points` for a session with a court, found none; click them or set "
-            "court: none"
+            f"{file}: expected `court_points` for a session with a court, found none; say where they are to "
+            "be saved, and the study makes a page to click them on, or set court: none"
         )
 
 
@@ -218,13 +172,15 @@ def conditions(config_file, config, found):
     found : dict
         (file, content) of each session, by name.
     """
-    faults = unknown(f"{config_file}: variations", config["variations"], config["conditions"])
+    faults = take_faults.unknown(
+        f"{config_file}: variations", config["variations"], config["conditions"]
+    )
     for name in config["variations"]:
         if name not in config["conditions"]:
             continue
         condition = config["conditions"][name]
         where, base = f"{config_file}: conditions.{name}", condition["session"]
-        faults += unknown(f"{where}.session", [base], found)
+        faults += take_faults.unknown(f"{where}.session", [base], found)
         if base in found and "virtual" not in found[base][1]:
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
         elif base in found:
@@ -242,22 +198,6 @@ def _condition_faults(where, name, condition, found):
     # Variations are sessions named after their condition.
     for taken in (own for own in found if own == name or re.fullmatch(rf"{name}-\d+", own)):
         yield f"{where}: expected a name that no session has, found session {taken!r}; rename it"
-
-
-def unknown(where, names, known):
-    """Return a fault for each name that is not known.
-
-    Parameters
-    ----------
-    where : str
-    names : iterable of str
-    known : collection of str
-    """
-    return [
-        f"{where}: expected one of {sorted(known)}, found {name!r}"
-        for name in names
-        if name not in known
-    ]
 
 
 def _path_faults(where, path, known, root):

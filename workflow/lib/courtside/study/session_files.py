@@ -6,7 +6,8 @@ from pathlib import Path
 
 from courtside.study.sessions import Device, FixedCamera, Session, Subject, Take
 
-VIRTUAL = "results/virtual"  # made by the workflow itself
+MADE = "results/"
+VIRTUAL = f"{MADE}virtual"  # made by the workflow itself
 KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
     ".bvh": "inertial",
     ".bag": "rgbd",
@@ -17,7 +18,7 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
 }
 
 
-def session(name, file, content, parameters):
+def session(name, file, content, parameters, root="."):
     """Build a `Session`.
 
     Parameters
@@ -27,7 +28,13 @@ def session(name, file, content, parameters):
         The session's YAML file, checked.
     parameters : dict
         The study's configuration, whose steps `override` in `content` changes.
+    root : str or Path
+        Where relative paths start.
     """
+    clicked = content.get("court_points")
+    unclicked = None
+    if clicked and not clicked.startswith(MADE) and not (Path(root) / clicked).exists():
+        clicked, unclicked = None, clicked
     subjects = {key: Subject(**(value or {})) for key, value in content.get("subjects", {}).items()}
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     takes = {
@@ -47,7 +54,8 @@ def session(name, file, content, parameters):
         takes=takes,
         calibration_file=content.get("calibration", {}).get("file"),
         walks=recordings.get("walks") or _walks(content.get("walks", {})),
-        court_points=recordings.get("court_points") or content.get("court_points"),
+        court_points=recordings.get("court_points") or clicked,
+        unclicked=unclicked,
         virtual=content.get("virtual"),
         condition={},
         blur_faces=content.get("blur_faces", True),
@@ -118,6 +126,9 @@ def _take(name, content, filmed, subjects):
         synchronised=content.get("synchronised", False),
         steady=content.get("steady", False),
         virtual=content.get("virtual"),
+        clocks=content.get("clocks", {}),
+        pose2d=content.get("pose2d", {}),
+        pose3d=content.get("pose3d", {}),
     )
 
 

@@ -79,6 +79,12 @@ class Take:
     virtual : dict or None
         What a take of a virtual session is made from.
     devices : dict of str to Device
+    clocks : dict of str to dict
+        Clocks of cameras and devices that are known: `offset_s`, perhaps `drift_ppm` and `uncertainty_s`.
+    pose2d : dict of str to dict of str to str
+        For a skeleton, by camera, the folder of keypoints that another program found.
+    pose3d : dict of str to dict of str to str
+        For a skeleton, by person, the TRC file of another program.
     """
 
     name: str
@@ -89,6 +95,9 @@ class Take:
     steady: bool = False
     virtual: dict | None = None
     devices: dict = field(default_factory=dict)
+    clocks: dict = field(default_factory=dict)
+    pose2d: dict = field(default_factory=dict)
+    pose3d: dict = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -119,6 +128,8 @@ class Session:
         The cameras that play `centre`, `left` and `right` in the paper's rule for three cameras.
     parameters : dict
         The steps' parameters of the study, with this session's overrides.
+    unclicked : str or None
+        Where court points are to be saved that nobody has clicked yet.
     """
 
     name: str
@@ -137,6 +148,7 @@ class Session:
     views: dict
     halfbody: dict | None
     parameters: dict
+    unclicked: str | None = None
 
     def calibration_camera_names(self):
         """Return for each camera its name in the calibration file."""
@@ -150,7 +162,7 @@ class Session:
             "file": self.calibration_file is not None,
             "known": clicked,
             "dlt": clicked,
-            "sfm": walked and bool(self.cameras),
+            "sfm": walked and bool(self.cameras) and not self.unclicked,
             "sim3": walked and clicked,
             "paper": walked and clicked,
         }
@@ -207,13 +219,16 @@ class Network:
 
 @dataclass(frozen=True)
 class Model:
-    """A 2D pose model of config/models.yaml; without `tracking` it searches the person in every frame."""
+    """A 2D pose model of config/models.yaml, or a skeleton whose keypoints another program finds.
+
+    Without `tracking` it searches the person in every frame; without networks its decoder is `imported`.
+    """
 
     name: str
     decoder: str
     skeleton: str
-    detector: Network
-    landmarks: Network
+    detector: Network | None = None
+    landmarks: Network | None = None
     input: dict = field(default_factory=dict)
     tracking: bool = True
 
@@ -242,6 +257,11 @@ class Study:
     artefacts: dict
     models: dict
     parameters: dict
+
+
+def imported(name):
+    """Return the `Model` of keypoints of another program, named after their skeleton."""
+    return Model(name=name, decoder="imported", skeleton=name)
 
 
 def model(name, content):

@@ -1,0 +1,133 @@
+"""What a take of a session gets wrong beyond its schema: recordings, devices, simulation, other programs."""
+
+RECORDINGS = ("videos", "devices")  # keys of a take that was recorded
+
+
+def imported(content):
+    """Return the skeletons whose keypoints another program found, of all takes of a session, in order."""
+    takes = [take for take in content.get("takes", {}).values() if take]
+    names = [name for take in takes for key in ("pose2d", "pose3d") for name in take.get(key, {})]
+    return list(dict.fromkeys(names))
+
+
+def of_other_programs(folder, file, content):
+    """Check keypoints of other programs: known skeletons, cameras, persons; in every take that needs them.
+
+    Parameters
+    ----------
+    folder : Path
+        config/.
+    file : Path
+        The session's.
+    content : dict
+        As its schema allows it.
+
+    Yields
+    ------
+    fault : str
+    """
+    there = sorted(path.stem for path in (folder / "skeletons").glob("*.yaml"))
+    wanted = set(content.get("override", {}).get("models", []))
+    for name, take in ((n, t) for n, t in content.get("takes", {}).items() if t):
+        subjects = take.get("subjects", content.get("subjects", {}))
+        for key, known in (("pose2d", take.get("videos", {})), ("pose3d", subjects)):
+            where = f"{file}: takes.{name}.{key}"
+            yield from unknown(where, take.get(key, {}), there)
+            for skeleton, files in take.get(key, {}).items():
+                yield from unknown(f"{where}.{skeleton}", files, known)
+        missing = wanted & set(imported(content)) - set(take.get("pose2d", {}))
+        for skeleton in sorted(missing if take.get("videos") else ()):
+            yield (
+                f"{file}: takes.{name}.pose2d: expected {skeleton}, as override.models says, found none; "
+                "name its folders"
+            )
+
+
+def find(where, take, cameras, subjects, virtual):
+    """Return what contradicts itself or the session in a take, one line each.
+
+    Parameters
+    ----------
+    where : str
+        File and take.
+    take, cameras, subjects : dict
+    virtual : bool
+        Whether the session is.
+
+    Yields
+    ------
+    fault : str
+    """
+    if virtual and ("virtual" not in take or set(RECORDINGS) & set(take)):
+        yield (
+            f"{where}: expected the key 'virtual' and not 'videos' in a virtual session, found "
+            f"{sorted(take)}; correct the take"
+        )
+    if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
+        yield (
+            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded session, found "
+            f"{sorted(take)}; correct the take"
+        )
+    if not subjects:
+        yield f"{where}: expected `subjects` in the session, found none; name the persons of the take"
+        return
+    there = take.get("subjects", subjects)
+    yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
+    yield from unknown(f"{where}.subjects", there, subjects)
+    yield from _device_faults(where, take, cameras, there)
+    recorded = [*take.get("videos", {}), *take.get("devices", {})]
+    yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
+    yield from _filmed_faults(where, take.get("virtual"), cameras, there)
+    if take.get("steady") and not virtual:
+        for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):
+            yield (
+                f"{where}.steady: expected `static` of camera {name}, against which shake is measured, found "
+                "none; name a recording of the empty court"
+            )
+    start_s, stop_s = take.get("trim_s", (0, 1))
+    if start_s >= stop_s:
+        yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
+
+
+def _device_faults(where, take, cameras, subjects):
+    """Check the devices of a take, recorded or virtual."""
+    devices = {**take.get("devices", {}), **(take.get("virtual") or {}).get("devices", {})}
+    worn = {device.get("subject", next(iter(subjects))) for device in devices.values()}
+    if len(worn) > 1:
+        yield f"{where}.devices: expected one subject for all, found {sorted(worn)}; make a take for each"
+    for name, device in devices.items():
+        named = [device["subject"]] if "subject" in device else []
+        yield from unknown(f"{where}.devices.{name}.subject", named, subjects)
+        if name in {*cameras, "cameras"}:
+            yield f"{where}.devices: expected names that no camera has, found {name!r}; rename it"
+
+
+def _filmed_faults(where, filmed, cameras, subjects):
+    """Check what a take of a virtual session is made from."""
+    if not filmed:
+        return
+    clocks = [*cameras, *filmed.get("devices", {})]
+    yield from unknown(f"{where}.virtual.cameras", filmed.get("cameras", []), cameras)
+    yield from unknown(f"{where}.virtual.clocks", filmed.get("clocks", {}), clocks)
+    yield from unknown(f"{where}.virtual.shake", filmed.get("shake", {}), cameras)
+    if set(filmed["players"]) != set(subjects):
+        yield (
+            f"{where}.virtual.players: expected each of {sorted(subjects)}, found "
+            f"{sorted(filmed['players'])}; correct one of them"
+        )
+
+
+def unknown(where, names, known):
+    """Return a fault for each name that is not known.
+
+    Parameters
+    ----------
+    where : str
+    names : iterable of str
+    known : collection of str
+    """
+    return [
+        f"{where}: expected one of {sorted(known)}, found {name!r}"
+        for name in names
+        if name not in known
+    ]
