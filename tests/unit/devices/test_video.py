@@ -1,8 +1,10 @@
 """What the study's scripts call: on drawn videos, on real ones, with OpenCV and SciPy beside it."""
 
+import gc
 import resource
 import signal
 
+import av
 import cv2
 import numpy as np
 import pytest
@@ -215,3 +217,17 @@ def test_a_real_file_cut_short_is_refused(tmp_path, name):
     path.write_bytes(data[: int(0.8 * len(data))])
     with pytest.raises(InputError, match=r"last good frame|cut short"):
         video.frame_times(path)
+
+
+def test_no_stored_frame_outlives_its_turn(constant):
+    """A frame whose side data is read refers to itself: without care all stay until garbage is collected."""
+    gc.collect()
+    gc.disable()
+    try:
+        alive = []
+        for _ in video.frames(constant):
+            alive.append(sum(isinstance(each, av.VideoFrame) for each in gc.get_objects()))
+    finally:
+        gc.enable()
+    assert len(alive) == 60
+    assert max(alive[10:]) <= max(alive[:10]) + 1

@@ -144,14 +144,16 @@ def pictures(listing, wanted, crop_px):
     InputError
         As `decode_checked`; also if the size changes or the crop lies outside.
     """
-    reformatter = VideoReformatter()
+    reformatter, matrix = VideoReformatter(), None
     shape, rest = None, iter(wanted)
     target = next(rest)
     for index, frame in decode_checked(listing, wanted[0], wanted[-1] + 1):
         if index != target:
             continue
         target = next(rest, None)
-        image = _picture(listing.path, frame, reformatter)
+        if matrix is None:  # of the whole stream; reading it keeps a frame until garbage is collected
+            matrix = display_matrix(listing.path, frame)
+        image = _picture(frame, reformatter, matrix)
         if image.shape != (shape or image.shape):
             raise InputError(
                 f"{listing.path}: expected pictures of one size, {shape[1]}x{shape[0]}, found "
@@ -161,13 +163,13 @@ def pictures(listing, wanted, crop_px):
         yield index, image if crop_px is None else _cropped(listing.path, image, crop_px)
 
 
-def _picture(path, frame, reformatter):
+def _picture(frame, reformatter, matrix):
     """Convert a stored frame into an upright BGR picture."""
     # Bicubic, as OpenCV converts: the pictures are the same to the last bit.
     stored = reformatter.reformat(
         frame, format="bgr24", interpolation=Interpolation.BICUBIC, threads=1
     ).to_ndarray()
-    x_sign, y_sign = (matrix := display_matrix(path, frame)).sum(axis=0)
+    x_sign, y_sign = matrix.sum(axis=0)
     turned = stored if matrix[0, 0] else stored.transpose(1, 0, 2)
     return np.ascontiguousarray(turned[::y_sign, ::x_sign])
 
