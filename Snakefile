@@ -36,6 +36,7 @@ include: "workflow/rules/badminton_takes.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/study_figures.smk"
 include: "workflow/rules/racket.smk"
+include: "workflow/rules/provenance.smk"
 
 
 report: "workflow/report/study.rst"
@@ -46,6 +47,16 @@ onstart:
     # ready anew each second for every job that it has started, which cost minutes in the default study.
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
+
+
+onsuccess:
+    record_provenance()
+    for line in waiting_for_clicks():
+        print(line)
+
+
+onerror:
+    record_provenance()
 
 
 rule all:

@@ -12,7 +12,7 @@ import scipy.io
 import yaml
 
 from courtside.geometry import cameras, similarity
-from courtside.records import truth
+from courtside.records import keypoints, limbs, truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
@@ -65,6 +65,49 @@ def test_photos_alone_become_a_model(gym):
     error = np.linalg.norm(similarity.umeyama(centres, real).points(centres) - real, axis=1)
     span = np.linalg.norm(real[:, None] - real, axis=-1).max()
     assert error.max() <= 0.002 * span
+
+
+@needs_real
+def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
+    walk = REAL / "walk-4cams"
+    names = [f"cam0{k}" for k in (1, 2, 3, 4)]
+    cropped = {"crop_px": [0, 0, 1080, 1920]}
+    trc = walk / "trc" / "Balancing_for_IK.trc"
+    session = {
+        "description": "OpenPose's keypoints",
+        "court": "none",
+        "subjects": {"p1": {"sex": "m"}},
+        "cameras": {name: cropped if name in names[:2] else None for name in names},
+        "calibration": {"file": str(walk / "calibration" / "Calib.qca.txt")},
+        "takes": {
+            "balancing": {
+                "synchronised": True,
+                "videos": {name: str(walk / "videos" / f"{name}.mp4") for name in names},
+                "pose2d": {
+                    "body25b": {
+                        name: str(walk / "openpose_body25b" / f"cam{k}_json")
+                        for k, name in enumerate(names, 1)
+                    }
+                },
+                "pose3d": {"body25b": {"p1": str(trc)}},
+            }
+        },
+        "override": {"models": ["body25b"], "take_figures": [], "export_stages": ["pose3d"]},
+    }
+    results = study(gym, "walk", session, calibrations=["file"], plans=[]) / "takes/balancing"
+    ours = keypoints.read_3d(results / "pose3d/file/all-robust/body25b.npz")
+    theirs = keypoints.read_3d(results / "pose3d/imported/trc/body25b.npz")
+    joints = [name for name in limbs.JOINTS if name in ours.joints and name in theirs.joints]
+    assert len(joints) == 12
+    n_frames = min(len(ours.time_s), len(theirs.time_s))
+    assert n_frames >= 99
+    places = [
+        one.xyz[0][:n_frames][:, [one.joints.tolist().index(name) for name in joints]]
+        for one in (ours, theirs)
+    ]
+    assert np.nanmedian(np.linalg.norm(places[0] - places[1], axis=-1)) < 0.02  # metres
+    measured = pd.read_csv(results / "kinematics/imported/trc/body25b.summary.csv")
+    assert set(measured["person"]) == {"p1"}
 
 
 def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_study):

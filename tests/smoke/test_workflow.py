@@ -44,6 +44,7 @@ DOWNSTREAM_OF_FILTER = {
     "evaluate_take": 2,
     "draw_three_cameras": 1,
     "tabulate_players": 1,
+    "build_viewer": 3,
 }
 DOWNSTREAM_OF_3D = {
     **DOWNSTREAM_OF_FILTER,
@@ -55,6 +56,7 @@ DOWNSTREAM_OF_3D = {
     "evaluate_round_trip": 1,
     "compare_views": 1,
     "compare_sessions": 1,
+    "export_overlay_video": 4,
     **{f"draw_{name}": 1 for name in TAKE_FIGURES + PAPER_FIGURES},
 }
 
@@ -141,7 +143,7 @@ def checksums(root):
     return {
         str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and not {"logs", "benchmarks"} & set(path.parts)
+        if path.is_file() and not {"logs", "benchmarks", "run"} & set(path.parts)
     }
 
 

@@ -101,6 +101,16 @@ def every_clicking_page():
     return [f"results/{s.name}/pages/clicking.html" for s in STUDY.sessions.values() if s.unclicked]
 
 
+def waiting_for_clicks():
+    """Return one line for each session whose court points nobody has clicked yet."""
+    return [
+        f"{s.name}: court points are not clicked yet: open results/{s.name}/pages/clicking.html in a browser, "
+        f"click them, save them as {s.unclicked}, and run snakemake again"
+        for s in STUDY.sessions.values()
+        if s.unclicked
+    ]
+
+
 def overlay_parameters(wildcards):
     """Return how videos with skeletons are written."""
     step = STUDY.parameters["export_overlay_video"]

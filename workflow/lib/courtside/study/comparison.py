@@ -1,0 +1,220 @@
+"""Two results trees file by file: bit-equal, equal within a stated tolerance, or different."""
+
+import csv
+import fnmatch
+import json
+import math
+import tomllib
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from courtside.study import files
+
+# Of no importance to what a study says: logs, seconds, this record itself.
+LEFT_OUT = {"logs", "benchmarks", "run", ".snakemake"}
+# First match wins: pattern of the path below results/, relative and absolute tolerance, why. The absolute one
+# is in the file's own unit: px of 2D keypoints, m of 3D ones and of cameras, cm of most errors.
+TOLERANCES = (
+    ("external/*", 0.0, 0.0, "pinned by checksum"),
+    ("networks/*", 0.0, 0.0, "the same weights in the same order"),
+    ("virtual/*.csv", 1e-6, 1e-6, "drawn from seeds; the last digit of sines differs"),
+    ("virtual/*.npz", 1e-6, 1e-6, "drawn from seeds; the last digit of sines differs"),
+    ("*/pose2d/*", 0.0, 0.05, "px and scores; sums of a network depend on the processor"),
+    ("*/sfm/*", 1e-3, 1e-3, "sums of many threads; feature detection depends on the processor"),
+    ("*/calibration/*", 1e-3, 1e-3, "1 mm of a camera, 0.1 % of a focal length"),
+    ("*/pose3d*/*", 0.0, 2e-3, "2 mm, of 0.05 px and of the cameras"),
+    ("*/evaluation/*", 2e-2, 2e-2, "errors are differences: 0.2 mm, or 2 %"),
+    ("*/figures/*", 2e-2, 2e-2, "the numbers drawn, as in evaluations"),
+    ("*/kinematics/*", 2e-2, 2e-2, "derivatives of positions"),
+    ("*", 1e-4, 1e-4, "all others: the last digit that tables keep"),
+)
+# Drawings and binary exports whose numbers are in the table beside them.
+TABLED = {".pdf", ".png", ".c3d"}
+# Numbers in these hold seconds of computing time, which no two runs share.
+TIMED = ("*/figures/growth.*",)
+EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
+ONLY_HERE, ONLY_THERE = "only here", "only there"
+FAULTS = (DIFFERENT, ONLY_HERE, ONLY_THERE)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How a file compares with its twin.
+
+    Attributes
+    ----------
+    name : str
+        Below the folder of results.
+    outcome : str
+    largest : float
+        Largest difference of numbers, NaN where there are none to compare.
+    """
+
+    name: str
+    outcome: str
+    largest: float = math.nan
+
+
+def compare(here, there):
+    """Return the verdict on every file of two results trees, in the order of their names.
+
+    Parameters
+    ----------
+    here, there : str or Path
+
+    Returns
+    -------
+    verdicts : list of Verdict
+    """
+    ours, theirs = _names(here), _names(there)
+    verdicts = []
+    for name in sorted(ours | theirs):
+        if name not in ours or name not in theirs:
+            verdicts.append(Verdict(name, ONLY_HERE if name in ours else ONLY_THERE))
+        else:
+            verdicts.append(verdict(name, Path(here) / name, Path(there) / name))
+    return verdicts
+
+
+def _names(folder):
+    paths = (path.relative_to(folder) for path in Path(folder).rglob("*") if path.is_file())
+    return {
+        path.as_posix()
+        for path in paths
+        if not LEFT_OUT.intersection(path.parts) and path.name != ".snakemake_timestamp"
+    }
+
+
+def tolerance(name):
+    """Return (relative, absolute) tolerance of a file by its name below the folder of results."""
+    return next(
+        (rtol, atol) for pattern, rtol, atol, _ in TOLERANCES if fnmatch.fnmatch(name, pattern)
+    )
+
+
+def verdict(name, here, there):
+    """Return how one file compares with its twin.
+
+    Parameters
+    ----------
+    name : str
+        Below the folder of results: it decides on the tolerance.
+    here, there : Path
+
+    Returns
+    -------
+    verdict : Verdict
+    """
+    if here.stat().st_size == there.stat().st_size and files.sha256(here) == files.sha256(there):
+        return Verdict(name, EQUAL)
+    if any(fnmatch.fnmatch(name, pattern) for pattern in TIMED):
+        return Verdict(name, TIMES)
+    if here.suffix in TABLED:
+        return _of_drawing(name, here, there)
+    parse = READERS.get(here.suffix)
+    if parse is None:
+        return Verdict(name, DIFFERENT)
+    try:
+        ours, theirs = parse(here), parse(there)
+    except (ValueError, KeyError, zipfile.BadZipFile, csv.Error):
+        return Verdict(name, DIFFERENT)
+    if set(ours) != set(theirs):
+        return Verdict(name, DIFFERENT)
+    return _of_values(name, ours, theirs)
+
+
+def _of_drawing(name, here, there):
+    """Return the verdict on the table beside a drawing; with the same numbers it ought to be bit-equal."""
+    tables = [path.with_suffix(".csv") for path in (here, there)]
+    if not all(path.is_file() for path in tables):
+        return Verdict(name, DIFFERENT)
+    of_table = verdict(str(Path(name).with_suffix(".csv")), *tables)
+    outcome = CLOSE if of_table.outcome == CLOSE else DIFFERENT
+    return Verdict(name, outcome, of_table.largest)
+
+
+def _of_values(name, ours, theirs):
+    rtol, atol = tolerance(name)
+    close, largest = True, math.nan
+    for key, one in ours.items():
+        one, other = np.asarray(one), np.asarray(theirs[key])
+        if one.shape != other.shape:
+            return Verdict(name, DIFFERENT)
+        if not (_is_number(one) and _is_number(other)):
+            close = close and np.array_equal(one, other)
+            continue
+        close = close and bool(np.allclose(one, other, rtol, atol, equal_nan=True))
+        gaps = np.abs(one.astype(float) - other.astype(float))
+        gaps = gaps[np.isfinite(gaps)]
+        largest = np.fmax(largest, gaps.max()) if gaps.size else largest
+    return Verdict(name, CLOSE if close else DIFFERENT, float(largest))
+
+
+def _is_number(array):
+    return array.dtype.kind in "iuf"
+
+
+def _from_npz(path):
+    with np.load(path, allow_pickle=False) as content:
+        return {key: content[key] for key in content.files}
+
+
+def _from_table(path):
+    """Return {(row, column): number or text}; an empty field is NaN, wherever it stands."""
+    delimiter = "\t" if path.suffix == ".trc" else ","
+    with path.open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.reader(stream, delimiter=delimiter))
+    return {(y, x): _value(word) for y, row in enumerate(rows) for x, word in enumerate(row)}
+
+
+def _value(word):
+    try:
+        return float(word) if word else math.nan
+    except ValueError:
+        return word
+
+
+def _from_tree(content, where=""):
+    """Return {path of keys: leaf} of nested dictionaries and lists."""
+    if isinstance(content, dict):
+        pairs = content.items()
+    elif isinstance(content, list):
+        pairs = enumerate(content)
+    else:
+        return {where: math.nan if content is None else content}
+    found = {where: type(content).__name__}
+    for key, inner in pairs:
+        found |= _from_tree(inner, f"{where}/{key}")
+    return found
+
+
+READERS = {
+    ".npz": _from_npz,
+    ".csv": _from_table,
+    ".trc": _from_table,
+    ".json": lambda path: _from_tree(json.loads(path.read_text(encoding="utf-8"))),
+    ".toml": lambda path: _from_tree(tomllib.loads(path.read_text(encoding="utf-8"))),
+}
+
+
+def table(verdicts):
+    """Return lines for people: files by kind and outcome, then all that differ or stand alone."""
+    kinds = {}
+    for each in verdicts:
+        kinds.setdefault(Path(each.name).suffix or "none", []).append(each)
+    outcomes = [EQUAL, CLOSE, DIFFERENT, TIMES, ONLY_HERE, ONLY_THERE]
+    lines = ["  ".join(["kind    ", *outcomes, "largest difference"])]
+    for kind, group in sorted(kinds.items()):
+        counts = [sum(each.outcome == outcome for each in group) for outcome in outcomes]
+        largest = np.fmax.reduce([each.largest for each in group])
+        cells = [f"{n:>{len(word)}}" for n, word in zip(counts, outcomes, strict=True)]
+        gap = "" if math.isnan(largest) else f"{largest:.3g}"
+        lines.append("  ".join([f"{kind:8}", *cells, gap]).rstrip())
+    faults = [each for each in verdicts if each.outcome in FAULTS]
+    for each in faults:
+        gap = "" if math.isnan(each.largest) else f" by up to {each.largest:.3g}"
+        lines.append(f"{each.name}: {each.outcome}{gap}")
+    return lines
