@@ -37,6 +37,10 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/study_figures.smk"
 include: "workflow/rules/racket.smk"
 include: "workflow/rules/provenance.smk"
+include: "workflow/rules/report_inputs.smk"
+include: "workflow/rules/report_figures.smk"
+include: "workflow/rules/report.smk"
+include: "workflow/rules/end_of_run.smk"
 
 
 report: "workflow/report/study.rst"
@@ -51,12 +55,12 @@ onstart:
 
 onsuccess:
     record_provenance()
-    for line in waiting_for_clicks():
-        print(line)
+    print(end_of_run(), *waiting_for_clicks(), sep="\n", file=sys.stderr)
 
 
 onerror:
     record_provenance()
+    print(end_of_run(), file=sys.stderr)
 
 
 rule all:
@@ -77,3 +81,9 @@ rule all:
         every_overlay_video(),
         every_plan(),
         every_study_figure(),
+
+
+rule report:
+    input:
+        rules.all.input,
+        rules.build_report.output,

@@ -151,7 +151,9 @@ def pictures(listing, wanted, crop_px):
         if index != target:
             continue
         target = next(rest, None)
-        if matrix is None:  # of the whole stream; reading it keeps a frame until garbage is collected
+        if (
+            matrix is None
+        ):  # of the whole stream; reading it keeps a frame until garbage is collected
             matrix = display_matrix(listing.path, frame)
         image = _picture(frame, reformatter, matrix)
         if image.shape != (shape or image.shape):

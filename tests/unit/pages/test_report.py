@@ -1,0 +1,86 @@
+"""The report as a whole, read by a parser: nothing outside, links have their places, words stay text."""
+
+from html.parser import HTMLParser
+
+import pytest
+
+import report_made
+from courtside.pages import report
+
+
+class Read(HTMLParser):
+    """Collects places, links, pictures and headings."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.places, self.links, self.pictures, self.tags = [], [], [], []
+        self.feed(page)
+
+    def handle_starttag(self, tag, attrs):
+        attrs = dict(attrs)
+        self.tags.append(tag)
+        self.places += [attrs["id"]] if "id" in attrs else []
+        self.links += [attrs["href"]] if tag == "a" else []
+        self.pictures += [attrs] if tag == "img" else []
+
+
+@pytest.fixture
+def study(tmp_path):
+    return report_made.study(tmp_path)
+
+
+def test_every_link_within_leads_somewhere(study):
+    read = Read(report.build(study))
+    inside = [link[1:] for link in read.links if link.startswith("#")]
+    assert len(inside) >= 9
+    assert [link for link in inside if link not in read.places] == []
+    assert len(set(read.places)) == len(read.places)
+
+
+def test_nothing_lies_outside(study):
+    page = report.build(study)
+    read = Read(page)
+    outside = [link for link in read.links if not link.startswith("#")]
+    assert sorted(set(outside)) == [
+        "calibration.csv",
+        "hall/figures/overlay.csv",
+        "hall/takes/smash/viewer.html",
+    ]
+    assert [one["src"][:22] for one in read.pictures] == ["data:image/png;base64,"] * 2
+    assert "http://" not in page and "https://" not in page
+    assert all(one["alt"] for one in read.pictures)
+
+
+def test_the_page_opens_with_what_was_measured(study):
+    page = report.build(study)
+    parts = [
+        "What was measured",
+        "29.33 &plusmn; 0.34 m",
+        "Take smash:",
+        "How far to trust it",
+        "Methods",
+    ]
+    places = [page.index(part, page.index("<main>")) for part in parts]
+    assert places == sorted(places)
+    assert Read(page).tags.count("h1") == Read(page).tags.count("nav") == 1
+
+
+def test_words_of_users_stay_text(tmp_path):
+    made = report_made.study(tmp_path, name=report_made.ROGUE, description=report_made.ROGUE)
+    page = report.build(made | {"title": report_made.ROGUE})
+    assert "https://example.invalid" in page  # as text
+    assert all(one["src"].startswith("data:") for one in Read(page).pictures)
+    assert Read(page).tags.count("img") == 2
+
+
+def test_a_session_of_devices_says_nothing_of_cameras(study):
+    assert "Cameras</span>" in report.build(study)
+    study["sessions"][0] |= {"files": {}, "way": None, "mapper": None}
+    assert "Cameras</span>" not in report.build(study)
+
+
+def test_a_study_without_takes_has_a_report_too(study):
+    study["sessions"][0]["takes"] = []
+    study["figures"], study["tables"] = [], []
+    page = report.build(study)
+    assert "How far to trust it" in page and "What was measured" not in page

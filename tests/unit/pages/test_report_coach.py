@@ -1,0 +1,79 @@
+"""The page for a coach: numbers as exact as they are, words that come from users stay text."""
+
+import math
+
+import pytest
+
+from courtside.pages import report_coach
+from courtside.pages.report_warnings import DOUBT, GOOD, LOOK, Warned
+from report_made import ROGUE
+
+FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_paths": []}
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "unit", "expected"),
+    [
+        (29.3274, 0.376, "m", "29.33 &plusmn; 0.38 m"),
+        (89.7463, 9.38, "degrees", "89.7 &plusmn; 9.4&deg;"),
+        (146.305, 27.6, "degrees", "146 &plusmn; 28&deg;"),
+        (-15.25, 2.86, "degrees", "&minus;15.2 &plusmn; 2.9&deg;"),
+        (1.2254, 0.0156, "m/s", "1.225 &plusmn; 0.016 m/s"),
+        (2.65, math.nan, "m/s", "2.650 m/s"),
+        (math.nan, math.nan, "m", "not known"),
+    ],
+)
+def test_numbers_are_as_exact_as_their_error(value, half, unit, expected):
+    assert report_coach.with_error(value, half, unit) == expected
+
+
+def test_a_light_says_its_colour_in_a_shape_and_a_word():
+    shapes = {level: report_coach.light(level) for level in (GOOD, LOOK, DOUBT)}
+    words = {GOOD: "Good", LOOK: "Look", DOUBT: "Doubt"}
+    assert all(words[level] in html for level, html in shapes.items())
+    assert len({html.split('hidden="true">')[1][0] for html in shapes.values()}) == 3
+
+
+def test_a_take_says_distance_speeds_and_angles():
+    measures = {
+        "neck_distance": (29.3274, 0.376, "m", True),
+        "neck_speed_mean": (1.2254, 0.0155, "m/s", True),
+        "left_knee_flexion_min": (12.8, 9.5, "degrees", False),
+        "left_knee_flexion_max": (89.7, 9.4, "degrees", False),
+    }
+    facts = FACTS | {
+        "persons": {"p1": measures},
+        "left_out": {"p1": (6, 100, {})},
+        "seconds": 24.03,
+    }
+    said = {"id": "take-x", "name": "smash", "links": [("a/viewer.html", "3D viewer")]}
+    html = report_coach.take(said, facts, [Warned(LOOK, "Camera left moved.")])
+    for words in ("29.33 &plusmn; 0.38 m", "in 24.0 s", "from 94 of 100 frames", "left knee, bend"):
+        assert words in html
+    assert 'href="a/viewer.html"' in html and "Camera left moved." in html
+    assert html.index("Look") < html.index("29.33")
+
+
+def test_the_truth_of_a_simulated_take_is_told():
+    row = {"person": "p1", "point": "neck", "distance_error_percent": -2.3}
+    facts = FACTS | {
+        "persons": {"p1": {"neck_distance": (1.0, 0.1, "m", True)}},
+        "true_paths": [row],
+    }
+    html = report_coach.take({"id": "t", "name": "t", "links": []}, facts, [])
+    assert "2.3 % too short" in html
+
+
+def test_what_is_only_worth_knowing_is_folded_away():
+    html = report_coach.warnings([Warned(LOOK, "one"), Warned(GOOD, "two")])
+    assert html.index("one") < html.index("<details>") < html.index("two")
+    assert report_coach.warnings([]) == ""
+
+
+def test_words_of_users_stay_text():
+    measures = {"neck_distance": (1.0, 0.1, ROGUE, True)}
+    facts = FACTS | {"persons": {ROGUE: measures}, "devices": [{"source": ROGUE}]}
+    said = {"id": "t", "name": ROGUE, "links": [(ROGUE, ROGUE)]}
+    html = report_coach.take(said, facts, [Warned(LOOK, ROGUE)], ROGUE)
+    html += report_coach.take(said, facts | {"persons": {}}, [])
+    assert "<img" not in html and "</script>" not in html

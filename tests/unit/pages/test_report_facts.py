@@ -1,0 +1,92 @@
+"""What the report reads: numbers as they stand in the files, and one line where a file is none."""
+
+import json
+
+import numpy as np
+import pytest
+
+import report_made
+import walker
+from courtside.pages import report_facts
+from courtside.records import reasons
+from courtside.study.errors import InputError
+
+
+def test_measures_come_with_nine_in_ten(tmp_path):
+    facts = report_facts.of_take(report_made.files_of_take(tmp_path))
+    value, half, unit, known = facts["persons"]["p1"]["neck_distance"]
+    assert (value, unit, known) == (29.3274, "m", True)
+    assert half == pytest.approx(1.645 * np.hypot(0.2, 0.05))
+    assert not facts["persons"]["p1"]["neck_speed_mean"][3]
+    assert np.isnan(facts["persons"]["p1"]["neck_speed_max"][1])
+
+
+def test_frames_that_are_left_out_are_counted(tmp_path):
+    facts = report_facts.of_take(report_made.files_of_take(tmp_path, n_frames=20))
+    assert facts["left_out"] == {"p1": (1, 20, {"uncertain": 1})}
+    assert facts["seconds"] == pytest.approx(19 / 50)
+
+
+def test_a_take_without_files_is_empty():
+    facts = report_facts.of_take({})
+    assert not any(facts.values())
+
+
+def test_joints_lost_are_counted_by_reason():
+    made = walker.points(n_frames=10, n_cameras=3)
+    wrist = list(made.joints).index("left_wrist")
+    made.xyz[:, :4, wrist] = np.nan
+    made.reason[:, :3, wrist], made.reason[:, 3, wrist] = reasons.UNSEEN, reasons.REJECTED
+    made.n_views[:, 4:, wrist] = 2
+    facts = report_facts.of_skeleton(made)
+    assert facts["joints"]["left_wrist"] == {
+        "missing": pytest.approx(0.4),
+        "reasons": {"unseen": pytest.approx(0.3), "rejected": pytest.approx(0.1)},
+        "few": 1.0,
+    }
+    assert facts["joints"]["right_ankle"] == {"missing": 0.0, "reasons": {}, "few": 0.0}
+    assert len(facts["joints"]) == 12
+    assert sum(facts["views"].values()) == pytest.approx(1.0)
+
+
+def test_cameras_that_the_others_contradict_are_seen():
+    made = walker.points(n_frames=10, n_cameras=3)
+    made.accepted[..., 1] = False
+    made.accepted[:, ::2, :, 1] = True
+    made.reproj_error_px[..., 1] = 30.0
+    made.reproj_error_px[:, ::2, :, 1] = 4.0
+    facts = report_facts.of_skeleton(made)["cameras"]
+    assert facts["c1"] == {"accepted": pytest.approx(0.5, abs=0.02), "median_px": 4.0}
+    assert facts["c0"]["accepted"] == 1.0
+
+
+def test_a_session_gives_its_qualities(tmp_path):
+    files = report_made.study(tmp_path)["sessions"][0]["files"]
+    facts = report_facts.of_session(files)
+    assert facts["quality"]["sfm-n40"]["expected_volume_rms_cm"] == 0.7
+    assert facts["model"]["n_registered"] == 42
+    assert facts["static"][0]["camera"] == "c0"
+
+
+@pytest.mark.parametrize("key", ["summary", "frames"])
+def test_a_file_that_is_none_is_named(tmp_path, key):
+    files = report_made.files_of_take(tmp_path)
+    files[key] = str(tmp_path / "c0.csv")
+    with pytest.raises(InputError, match=r"c0\.csv: expected a table"):
+        report_facts.of_take(files)
+
+
+def test_a_quality_that_is_no_json_is_named(tmp_path):
+    (tmp_path / "quality.json").write_text("{")
+    with pytest.raises(InputError, match=r"quality\.json: expected JSON"):
+        report_facts.of_session({"quality": {"file": tmp_path / "quality.json"}})
+    (tmp_path / "quality.json").write_text(json.dumps({"warnings": []}))
+    assert report_facts.of_session({"quality": {"file": tmp_path / "quality.json"}})["model"] == {}
+
+
+def test_a_table_stands_as_it_is(tmp_path):
+    (tmp_path / "t.csv").write_text('a,b\n"x, y",\n1.50,NA\n')
+    assert report_facts.whole_table(tmp_path / "t.csv") == (
+        ["a", "b"],
+        [["x, y", ""], ["1.50", "NA"]],
+    )

@@ -1,0 +1,62 @@
+"""Figures and tables of the report: headings, captions, places, and tables that hold what the file holds."""
+
+import pytest
+
+import report_made
+from courtside.pages import report_figures
+from courtside.study.errors import InputError
+
+
+@pytest.mark.parametrize(
+    ("stem", "heading", "way"),
+    [
+        ("overlay.sfm-n40.all-robust.blazepose-full", "What the network saw", "sfm-n40.all-robust"),
+        ("badminton_fig05", "Shishido & Kitahara 2020, figure 5", ""),
+        ("badminton_tab01.file.blazepose-full", "Shishido & Kitahara 2020, table 1", "file."),
+        ("thesis_fig3_1", "Homma 2023, figure 3.1", ""),
+        ("capture_speed", "Capture speed", ""),
+    ],
+)
+def test_headings_are_words(stem, heading, way):
+    found = report_figures.title(stem)
+    assert found[0].startswith(heading)
+    assert found[1].startswith(way) and bool(found[1]) == bool(way)
+
+
+def test_plans_have_headings_of_their_own():
+    assert report_figures.title("growth") != report_figures.title("growth", planned=True)
+
+
+def test_a_figure_has_its_caption_and_its_numbers(tmp_path):
+    said = report_made.study(tmp_path)["figures"][0]
+    html, png = report_figures.figure(said, "figure-3")
+    assert 'src="image:figure-3"' in html and 'width="1200" height="400"' in html
+    assert "Take smash: <em>n</em> is 17." in html
+    assert 'href="hall/figures/overlay.csv"' in html
+    assert png.startswith(b"\x89PNG")
+
+
+def test_a_picture_that_is_missing_is_named(tmp_path):
+    said = report_made.study(tmp_path)["figures"][0] | {"png": str(tmp_path / "none.png")}
+    with pytest.raises(InputError, match=r"none\.png: expected a PNG"):
+        report_figures.figure(said, "f")
+
+
+def test_figures_stand_by_session_and_take():
+    places = [("", ""), ("b", "shot"), ("a", "shot"), ("b", ""), ("planned", "")]
+    figures = [{"session": session, "take": take} for session, take in places]
+    found = list(report_figures.groups(figures, ["b", "a"]))
+    assert found == [("b", ""), ("b", "shot"), ("a", "shot"), ("", ""), ("planned", "")]
+
+
+def test_a_table_leaves_out_what_is_empty_and_escapes_the_rest(tmp_path):
+    html = report_figures.table(report_made.study(tmp_path)["tables"][0])
+    assert "<th scope='col'>error cm</th>" in html and ">empty<" not in html
+    assert "0.1235" in html and ">99<" in html and "a &lt; b" in html
+    assert "31 rows, 3 columns" in html
+    assert html.count("<tr>") == 32
+
+
+def test_places_on_the_page_have_plain_names():
+    assert report_figures.identity("figures", "players-b", "shot") == "figures.players-b.shot"
+    assert report_figures.identity("x", 'a"b c') == "x.a-b-c"

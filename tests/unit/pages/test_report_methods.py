@@ -1,0 +1,65 @@
+"""The methods: what was configured is what is said, and what was not used is not."""
+
+import copy
+
+import pytest
+
+import report_made
+from courtside.pages import report_methods
+
+
+@pytest.fixture
+def study(tmp_path):
+    return copy.deepcopy(report_made.study(tmp_path))
+
+
+def said(study):
+    return report_methods.paragraphs(study["parameters"], study["sessions"])
+
+
+def test_the_configuration_is_told(study):
+    html = said(study)
+    for words in (
+        "from 40 pictures of the walk",
+        "a ratio of 0.8",
+        "0.7 px exact per axis",
+        "network blazepose-full",
+        "<code>all-robust</code>: views are weighed",
+        "within 15 px",
+        "6 Hz (head), 10 Hz (arms)",
+        "7 Hz (head)",
+        "paths filtered at 5 Hz",
+    ):
+        assert words in html, words
+
+
+def test_another_configuration_is_told_otherwise(study):
+    study["parameters"]["filter_motion"]["cutoff_hz"] = {"head": 3}
+    study["parameters"]["triangulate"]["max_error_px"] = 9
+    study["sessions"][0] |= {"mapper": "incremental", "n_images": 12}
+    html = said(study)
+    assert "3 Hz (head)" in html and "within 9 px" in html and "from 12 pictures" in html
+    assert "incremental, Schönberger" in html and "Global structure-from-motion" not in html
+
+
+def test_sources_are_those_of_what_was_done(study):
+    html = said(study)
+    assert "Lowe" in html and "Bazarevsky" in html and "Homma" not in html
+    study["sessions"][0] |= {"way": "file", "mapper": None}
+    study["sessions"][0]["takes"][0]["files"] = {"checks": "x.csv"}
+    html = said(study)
+    assert "made elsewhere" in html and "Homma" in html
+    assert "Lowe" not in html and "Winter" not in html and "Bazarevsky" not in html
+
+
+def test_what_a_session_states_otherwise_is_said_once(study):
+    other = {**study["sessions"][0], "name": "gym"}
+    study["sessions"].append(other)
+    assert said(study).count("triangulate: {fade_px: 13}") == 1
+    assert "in hall and gym" in said(study)
+
+
+def test_names_of_users_stay_text(study):
+    study["sessions"][0] |= {"name": report_made.ROGUE, "way": report_made.ROGUE}
+    study["sessions"][0]["overrides"] = {report_made.ROGUE: {"x": report_made.ROGUE}}
+    assert "<img" not in said(study)

@@ -1,0 +1,74 @@
+"""The quality page: cameras, residuals, clocks, joints, each with the numbers of its file."""
+
+import math
+import re
+
+import report_made
+from courtside.pages import report_facts, report_quality, report_warnings
+
+
+def page(tmp_path, **changes):
+    study = report_made.study(tmp_path)
+    session = study["sessions"][0] | {"id": "quality-hall"}
+    take = session["takes"][0]
+    known = report_facts.of_take(take["files"]) | changes
+    facts = report_facts.of_session(session["files"])
+    found = [report_warnings.Warned(report_warnings.LOOK, "Calibration: odd.")]
+    return report_quality.session(session, facts, found, [(take, known, [])])
+
+
+def cells(html, first):
+    row = re.search(rf"<tr><td[^>]*>{first}</td>(.*?)</tr>", html).group(1)
+    return re.findall(r"<td[^>]*>(.*?)</td>", row)
+
+
+def test_cameras_and_residuals_are_told(tmp_path):
+    html = page(tmp_path)
+    assert "42 of 42 pictures registered, 2416 points" in re.sub(r"\s+", " ", html)
+    assert cells(html, r"sfm-n40 \(takes\)") == ["2.00", "3.00", "0.70", "0.30", "0"]
+    assert "Calibration: odd." in html
+
+
+def test_clocks_and_movement_are_told(tmp_path):
+    html = page(tmp_path)
+    assert cells(html, "c1")[:3] == ["found", "0.2000", "1.65"]
+    assert cells(html, "c0") == ["0.10", "0.0010", "300"]
+    assert "trembles by 0.01 px" in html
+
+
+def test_joints_lost_are_told_with_their_reasons(tmp_path):
+    joints = {
+        "left_wrist": {"missing": 0.25, "reasons": {"unseen": 0.2, "rejected": 0.05}, "few": None}
+    }
+    html = page(tmp_path, joints=joints)
+    assert cells(html, "left wrist") == ["25.0 %", "20.0 %", "5.0 %", "–"]
+
+
+def test_errors_of_simulated_takes_are_those_of_their_rule(tmp_path):
+    row = {"stage": "pose3d", "fusion": "all-robust", "person": "all", "joint": "limbs", "n": 9}
+    row |= {"median_mm": 46.3, "p95_mm": 107.0, "coverage_90_percent": 34.1}
+    others = [
+        row | {"fusion": "all-dlt", "median_mm": 52.2},
+        row | {"joint": "nose", "median_mm": 1.1},
+    ]
+    html = page(tmp_path, truth=[row, *others])
+    assert cells(html, "raw") == ["46", "107", "34.1 %", "9"]
+    assert ">52<" not in html and ">1<" not in html
+
+
+def test_what_is_not_known_is_a_dash():
+    assert report_quality.number(None) == report_quality.number(math.nan) == "–"
+    assert report_quality.percent(None) == "–"
+    assert report_quality.percent(0.123) == "12.3 %"
+
+
+def test_tables_scroll_by_themselves_and_escape():
+    html = report_quality.table(("a",), [(report_made.ROGUE,)], report_made.ROGUE)
+    assert html.startswith('<div class="scroll" tabindex="0" role="region"')
+    assert "<img" not in html
+    assert report_quality.table(("a",), [], "nothing") == ""
+
+
+def test_the_limits_of_the_lights_are_all_told():
+    html = report_quality.limits()
+    assert html.count("<tr>") == len(report_warnings.LIMITS) + 1

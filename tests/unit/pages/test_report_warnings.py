@@ -1,0 +1,207 @@
+"""Warnings: what is well gives none, what is not gives one that names it, as serious as it is."""
+
+import math
+
+import pytest
+
+from courtside.pages import report_warnings as warned
+from courtside.records.sync import Clock
+
+STILL = {
+    "camera": "left",
+    "shift_x_px": 0.1,
+    "shift_y_px": 0.0,
+    "zoom_percent": 0.01,
+    "n_matches": 300,
+}
+QUALITY = {"warnings": [], "left_out": {"p01": {"error_cm": 0.5}}, "expected_volume_rms_cm": 0.7}
+
+
+def level(found):
+    return None if found is None else found.level
+
+
+@pytest.mark.parametrize(
+    ("row", "expected"),
+    [
+        ({}, None),
+        ({"shift_x_px": 0.6}, warned.LOOK),
+        ({"shift_x_px": 0.8, "shift_y_px": -0.8}, warned.DOUBT),
+        ({"zoom_percent": -0.15}, warned.LOOK),
+        ({"shift_x_px": math.nan, "shift_y_px": math.nan, "zoom_percent": math.nan}, warned.LOOK),
+    ],
+)
+def test_a_camera_that_moved_is_named(row, expected):
+    found = warned.moved(STILL | row, max_shift_px=1.0, max_zoom_percent=0.2)
+    assert level(found) == expected
+    assert found is None or "left" in found.text
+
+
+@pytest.mark.parametrize(
+    ("clock", "expected"),
+    [
+        (Clock(status="reference"), None),
+        (Clock(status="assumed"), warned.GOOD),
+        (Clock(status="found", uncertainty_s=0.002), None),
+        (Clock(status="found", uncertainty_s=0.006), warned.LOOK),
+        (Clock(status="found", uncertainty_s=0.02), warned.DOUBT),
+        (Clock(status="found", uncertainty_s=math.nan), warned.LOOK),
+        (Clock(status="ambiguous"), warned.DOUBT),
+        (Clock(status="unknown"), warned.DOUBT),
+    ],
+)
+def test_an_unsure_clock_is_said(clock, expected):
+    assert level(warned.clock("back", clock)) == expected
+
+
+def test_the_price_of_a_clock_is_what_a_wrist_does_in_that_time():
+    found = warned.clock("back", Clock(status="found", uncertainty_s=0.01))
+    assert "16 ms" in found.text and "20 cm" in found.text  # 12 m/s times 16.45 ms
+
+
+@pytest.mark.parametrize(
+    ("line", "expected", "left_out"),
+    [
+        ("camera left: trembles by 0.02 px rms per axis", warned.GOOD, "steady"),
+        (
+            "camera left: knocked at 2.5 s by 15 px (0.4 deg): steady its keypoints from then on",
+            warned.LOOK,
+            "steady its",
+        ),
+        (
+            "camera left: no frame shows enough background to tell whether it shook",
+            warned.LOOK,
+            "out.",
+        ),
+    ],
+)
+def test_a_knock_is_told_without_advice_that_was_followed(line, expected, left_out):
+    found = warned.shaken(line)
+    assert found.level == expected
+    assert found.text.startswith("Camera left: ") and left_out not in found.text
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({}, []),
+        ({"left_out": {"p01": {"error_cm": 2.5}}}, [warned.LOOK]),
+        ({"expected_volume_rms_cm": 6.0}, [warned.DOUBT]),
+        ({"tie_residual_px": 1.5}, [warned.LOOK]),
+        ({"warnings": ["the lines' middles were clicked"]}, [warned.LOOK]),
+        ({"left_out": "too few points", "expected_volume_rms_cm": 0.7}, [warned.LOOK]),
+        ({"left_out": {}, "expected_volume_rms_cm": None}, [warned.LOOK]),
+    ],
+)
+def test_a_bad_calibration_is_said(change, expected):
+    assert [item.level for item in warned.calibration("sfm-n40", QUALITY | change)] == expected
+
+
+def test_the_median_of_points_that_were_left_out():
+    errors = dict(zip("abcd", (1.0, 9.0, 3.0, None), strict=True))
+    quality = {"left_out": {name: {"error_cm": error} for name, error in errors.items()}}
+    assert warned.left_out_cm(quality) == 3.0
+    assert warned.left_out_cm({"left_out": "why not"}) is None
+
+
+@pytest.mark.parametrize(("lost", "expected"), [(0, None), (6, warned.LOOK), (20, warned.DOUBT)])
+def test_pictures_without_a_place_are_counted(lost, expected):
+    found = warned.registered({"n_images": 42, "n_registered": 42 - lost})
+    assert level(found) == expected
+    assert not lost or f"{lost} of 42" in found.text
+
+
+def test_a_camera_that_the_others_contradict():
+    assert warned.contradicts("c1", {"accepted": 0.95, "median_px": 4.0}) is None
+    assert level(warned.contradicts("c1", {"accepted": 0.7, "median_px": 4.0})) == warned.LOOK
+    found = warned.contradicts("c1", {"accepted": 0.3, "median_px": 4.0})
+    assert found.level == warned.DOUBT and "70%" in found.text
+    assert level(warned.contradicts("c1", {"accepted": None, "median_px": None})) == warned.LOOK
+
+
+def joint(missing=0.0, few=0.0):
+    return {"missing": missing, "reasons": {}, "few": few}
+
+
+def test_the_joint_that_is_lost_most_often_is_named():
+    assert warned.joints({"left_knee": joint(), "left_hip": joint()}) == []
+    (found,) = warned.joints({"left_knee": joint(0.3), "left_hip": joint(0.1)})
+    assert found.level == warned.DOUBT
+    assert "20%" in found.text and "left knee (30%)" in found.text
+    (alone,) = warned.joints({"left_knee": joint(few=0.9)})
+    assert alone.level == warned.LOOK and "two cameras only" in alone.text
+    assert warned.joints({}) == []
+
+
+def test_frames_left_out_are_said_with_their_reason():
+    assert warned.frames("p1", 1, 100, {"uncertain": 1}) is None
+    found = warned.frames("p1", 30, 100, {"uncertain": 20, "one_view": 10})
+    assert found.level == warned.DOUBT
+    assert "30 of 100" in found.text and "too badly" in found.text
+    assert "one view" in warned.frames("p1", 10, 100, {"one_view": 10}).text
+
+
+def test_a_truth_outside_the_error_bar_is_said():
+    row = {"person": "m3", "point": "neck", "distance_sigma_percent": 1.0}
+    assert warned.true_path(row | {"distance_error_percent": -1.6}) is None
+    found = warned.true_path(row | {"distance_error_percent": -2.3})
+    assert found.level == warned.LOOK and "2.3 % larger" in found.text
+    assert warned.true_path(row | {"distance_error_percent": math.nan}) is None
+    assert warned.true_path(row | {"point": "mass", "distance_error_percent": 9.0}) is None
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "expected"),
+    [
+        (2.0, 0.05, None),
+        (2.0, 0.2, warned.LOOK),
+        (2.0, 0.5, warned.DOUBT),
+        (2.0, math.nan, warned.LOOK),
+        (math.nan, math.nan, warned.DOUBT),
+    ],
+)
+def test_a_distance_that_is_hardly_known_is_said(value, half, expected):
+    measures = {"neck_distance": (value, half, "m", True)}
+    assert level(warned.distance("p1", measures)) == expected
+
+
+@pytest.mark.parametrize(
+    ("row", "expected"),
+    [
+        ({"status": "reference", "uncertainty_s": 0.0}, None),
+        ({"status": "found", "uncertainty_s": 0.017}, warned.LOOK),
+        ({"status": "unknown", "uncertainty_s": math.nan}, warned.DOUBT),
+    ],
+)
+def test_clocks_of_devices(row, expected):
+    assert level(warned.device({"source": "mocopi"} | row)) == expected
+
+
+def test_the_most_serious_comes_first():
+    facts = {
+        "persons": {},
+        "movement": [STILL | {"shift_x_px": 0.6}],
+        "shake": [],
+        "clocks": {"back": Clock(status="unknown"), "left": Clock(status="assumed")},
+        "devices": [],
+        "cameras": {},
+        "joints": {},
+        "left_out": {},
+        "true_paths": [],
+    }
+    found = warned.of_take(facts, max_shift_px=1.0, max_zoom_percent=0.2)
+    assert [item.level for item in found] == [warned.DOUBT, warned.LOOK, warned.GOOD]
+    assert warned.worst(found) == warned.DOUBT
+    assert warned.worst([]) == warned.GOOD
+
+
+def test_a_session_is_judged_by_the_calibration_of_its_takes():
+    facts = {
+        "static": [STILL],
+        "quality": {"file": QUALITY | {"warnings": ["x"]}, "known8": QUALITY},
+        "model": {},
+    }
+    limits = {"max_shift_px": 1.0, "max_zoom_percent": 0.2}
+    assert warned.of_session(facts, "known8", **limits) == []
+    assert len(warned.of_session(facts, "file", **limits)) == 1
+    assert warned.of_session(facts, None, **limits) == []

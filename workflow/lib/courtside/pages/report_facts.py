@@ -1,0 +1,175 @@
+"""What the report says of a take and a session, read from the files that the study made of them."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from courtside.records import keypoints, limbs, reasons, sync, tables
+from courtside.study.errors import InputError
+
+NINE_IN_TEN = 1.645  # standard deviations that hold 90 % of normal errors
+SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
+FRAMES = ("person", "time_s", "neck_reason")
+
+
+def of_take(files):
+    """Read what is known of a take.
+
+    Parameters
+    ----------
+    files : dict
+        Paths by `summary` and `frames` (kinematics), `pose3d`, `sync`, `movement` (a list), `shake` (text),
+        `checks` (clocks of devices), `errors` and `kinematics` (against a truth); each may be missing.
+
+    Returns
+    -------
+    facts : dict
+        `persons`: {person: {measure: (value, half of 90 %, unit, whether the calibration's share is known)}};
+        `left_out`: {person: (frames without a neck, frames, {reason: frames})}; `seconds`; `joints` and
+        `cameras` as `of_skeleton` returns them; `clocks`: {camera: Clock}; `movement`: rows; `shake`: lines;
+        `devices`: rows; `truth` and `true_paths`: rows. Empty where there is no file.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or not what it should be.
+    """
+    facts = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
+    if files.get("summary"):
+        facts["persons"] = _measures(_table(files["summary"], SUMMARY))
+        frames = _table(files["frames"], FRAMES)
+        facts["left_out"] = {p: _left_out(rows) for p, rows in frames.groupby("person")}
+        facts["seconds"] = float(np.ptp(frames["time_s"])) if len(frames) else None
+    if files.get("pose3d"):
+        facts |= of_skeleton(keypoints.read_3d(files["pose3d"]))
+    facts["clocks"] = sync.read(files["sync"])[1] if files.get("sync") else {}
+    facts["movement"] = [_row(path) for path in files.get("movement", ())]
+    facts["shake"] = _lines(files["shake"]) if files.get("shake") else []
+    facts["devices"] = _rows(files, "checks", ("source", "status"))
+    facts["truth"] = _rows(files, "errors", ("stage", "fusion", "person", "joint", "median_mm"))
+    facts["true_paths"] = _rows(files, "kinematics", ("person", "point", "distance_error_percent"))
+    return facts
+
+
+def of_session(files):
+    """Read what is known of a session's cameras.
+
+    Parameters
+    ----------
+    files : dict
+        Paths by `quality`: {calibration: file}, `model` (summary of the structure from motion), `static`
+        (a list).
+
+    Returns
+    -------
+    facts : dict
+        `quality`: {calibration: content}; `model`: content, empty without; `static`: rows.
+    """
+    return {
+        "quality": {way: _json(path) for way, path in files.get("quality", {}).items()},
+        "model": _json(files["model"]) if files.get("model") else {},
+        "static": [_row(path) for path in files.get("static", ())],
+    }
+
+
+def of_skeleton(found):
+    """Return what became of the 12 limb joints of a `Keypoints3D`.
+
+    Parameters
+    ----------
+    found : courtside.records.keypoints.Keypoints3D
+
+    Returns
+    -------
+    facts : dict
+        `joints`: {joint: {`missing`: share, `reasons`: {word: share of all}, `few`: share of those placed
+        that rest on two views}}; `cameras`: {camera: {`accepted`: share of its keypoints that points rest
+        on, `median_px`: of those}}; `views`: {number of views: share}.
+    """
+    names = [str(name) for name in found.joints]
+    at = [names.index(joint) for joint in limbs.JOINTS if joint in names]
+    reason, views = found.reason[:, :, at], found.n_views[:, :, at]
+    joints = {}
+    for number, index in enumerate(at):
+        codes, lost = reason[:, :, number], np.isnan(found.xyz[:, :, index, 0])
+        placed = views[:, :, number][~lost]
+        words = {
+            reasons.WORDS[code]: float(np.mean(lost & (codes == code))) for code in set(codes[lost])
+        }
+        few = float(np.mean(placed <= 2)) if placed.size else None
+        joints[names[index]] = {"missing": float(lost.mean()), "reasons": words, "few": few}
+    return {
+        "joints": joints,
+        "cameras": {str(c): _of_camera(found, at, v) for v, c in enumerate(found.cameras)},
+        "views": {int(n): float(np.mean(views == n)) for n in np.unique(views)},
+    }
+
+
+def _of_camera(found, at, view):
+    error = found.reproj_error_px[:, :, at, view]
+    accepted, seen = found.accepted[:, :, at, view], np.isfinite(error)
+    good = error[accepted & seen]
+    return {
+        "accepted": float(accepted[seen].mean()) if seen.any() else None,
+        "median_px": float(np.median(good)) if good.size else None,
+    }
+
+
+def _measures(table):
+    found = {}
+    for row in table.itertuples():
+        whole = np.hypot(row.sigma, 0 if np.isnan(row.sigma_camera) else row.sigma_camera)
+        unit = row.unit if isinstance(row.unit, str) else ""
+        value = (float(row.value), NINE_IN_TEN * float(whole), unit, not np.isnan(row.sigma_camera))
+        found.setdefault(str(row.person), {})[row.measure] = value
+    return found
+
+
+def _left_out(rows):
+    """Return (frames without a neck, frames, why); a neck that was filled in counts as there."""
+    lost = rows["neck_reason"][~rows["neck_reason"].isin(["ok", "interpolated"])]
+    return len(lost), len(rows), {str(word): int(n) for word, n in lost.value_counts().items()}
+
+
+def _table(path, columns):
+    def fault(table):
+        missing = [name for name in columns if name not in table.columns]
+        return f"found no column {', '.join(missing)}" if missing else ""
+
+    return tables.read(path, "a table of the study", fault)
+
+
+def _rows(files, key, columns):
+    if not files.get(key):
+        return []
+    return _table(files[key], columns).to_dict("records")
+
+
+def _row(path):
+    rows = _table(path, ("camera", "shift_x_px", "shift_y_px", "zoom_percent", "n_matches"))
+    return rows.to_dict("records")[0]
+
+
+def _lines(path):
+    text = Path(path).read_text(encoding="utf-8")
+    return [line.strip() for line in text.splitlines() if line.strip()]
+
+
+def _json(path):
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: expected JSON, found: {error}; make it again") from None
+
+
+def whole_table(path):
+    """Return a CSV file as text: (names of columns, rows of strings), as it stands there.
+
+    Parameters
+    ----------
+    path : str or Path
+    """
+    table = pd.read_csv(path, dtype=str, keep_default_na=False)
+    return list(table.columns), table.values.tolist()

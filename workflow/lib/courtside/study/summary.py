@@ -1,0 +1,124 @@
+"""What a run says when it ends: what was made, where, how long it took, what to look at; or what to do."""
+
+from pathlib import Path
+
+N_NAMED = 3  # folders or files that a line names before it counts the rest
+N_FAULTS = 3
+# What a file is, by what its path must contain and how it ends; the first that fits counts.
+KINDS = (
+    ("report", "", ("report.html",)),
+    ("3D viewers", "/pages/viewer", (".html",)),
+    ("pages", "", (".html",)),
+    ("videos with skeletons", "/videos/", (".mp4",)),
+    ("figures", "/figures/", (".png",)),
+    ("figures of plans", "/plans/", (".png",)),
+    ("skeletons for other programs", "/pose3d", (".trc", ".c3d", ".bvh")),
+    ("calibrated cameras", "/calibration/", ("cameras.toml",)),
+    ("measures of takes", "/kinematics/", (".summary.csv",)),
+    ("tables of errors", "/evaluation/", (".csv",)),
+)
+
+
+def finished(made, seconds, look_at=()):
+    """Return the words at the end of a run in which everything was made.
+
+    Parameters
+    ----------
+    made : list of str
+        Paths of the files that this run made.
+    seconds : float
+        How long it took.
+    look_at : sequence of str
+        What to look at, in this order; those that do not exist are left out.
+
+    Returns
+    -------
+    text : str
+        A few lines.
+    """
+    if not made:
+        return "Courtside: everything was there already, nothing had to be made."
+    count = "1 file" if len(made) == 1 else f"{len(made)} files"
+    lines = [f"Courtside: finished, {count} made in {duration(seconds)}."]
+    lines += [f"  {len(paths)} {kind}: {_places(paths)}" for kind, paths in _by_kind(made).items()]
+    there = [path for path in look_at if Path(path.split(" ")[0]).exists()]
+    lines += [f"Look at {', '.join(there)}."] if there else []
+    return "\n".join(lines)
+
+
+def failed(faults, n_finished, n_wanted, seconds, whole_log=""):
+    """Return the words at the end of a run that stopped.
+
+    Parameters
+    ----------
+    faults : list of (str, list of str)
+        Name of each job that failed, and its log files.
+    n_finished, n_wanted : int
+        Jobs done; jobs that the run had before it.
+    seconds : float
+        How long it took.
+    whole_log : str
+        Snakemake's own log of the run.
+
+    Returns
+    -------
+    text : str
+        A few lines: what failed and why, what to do.
+    """
+    lines = [f"Courtside: stopped after {n_finished} of {n_wanted} jobs, {duration(seconds)}."]
+    for name, logs in faults[:N_FAULTS]:
+        log = next((path for path in logs if Path(path).is_file()), "")
+        why = _last_fault(log) if log else "no log of its own"
+        lines.append(f"  {name}: {why}" + (f" (whole log: {log})" if log else ""))
+    if len(faults) > N_FAULTS:
+        lines.append(f"  and {len(faults) - N_FAULTS} more jobs")
+    lines.append(
+        "What is finished is kept: mend the fault and give the same command again. If it says "
+        "that the folder "
+        "is locked and no other run is going on in it: snakemake --unlock."
+    )
+    lines += [f"Log of the run: {whole_log}"] if whole_log else []
+    return "\n".join(lines)
+
+
+def duration(seconds):
+    """Return a time in words: 42 s, 3 min 20 s, 2 h 5 min."""
+    seconds = round(seconds)
+    if seconds < 60:
+        return f"{seconds} s"
+    minutes, seconds = divmod(seconds, 60)
+    if minutes < 60:
+        return f"{minutes} min {seconds} s"
+    return f"{minutes // 60} h {minutes % 60} min"
+
+
+def _by_kind(made):
+    found = {}
+    for path in map(str, made):
+        for kind, part, endings in KINDS:
+            if part in path and path.endswith(endings):
+                found.setdefault(kind, []).append(path)
+                break
+    order = [kind for kind, _, _ in KINDS]
+    return dict(sorted(found.items(), key=lambda pair: order.index(pair[0])))
+
+
+def _places(paths):
+    """Return where files are: themselves if few, their folders otherwise."""
+    if len(paths) <= N_NAMED:
+        return ", ".join(paths)
+    folders = list(dict.fromkeys(str(Path(path).parent) for path in paths))
+    rest = len(folders) - N_NAMED
+    named = ", ".join(f"{folder}/" for folder in folders[:N_NAMED])
+    return f"{named} and {rest} more folders" if rest > 0 else named
+
+
+def _last_fault(log):
+    """Return the last error that a job's log holds, else its last line."""
+    lines = Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = [line.strip() for line in lines if line.strip()]
+    for line in reversed(lines):
+        _, mark, message = line.partition(" ERROR ")
+        if mark:
+            return message
+    return lines[-1] if lines else "its log is empty"

@@ -1,0 +1,16 @@
+"""Put what the study has made into one HTML file: measures, warnings, figures, quality, methods -> page."""
+
+from courtside.pages import page, report
+from courtside.study import log
+
+
+def main(html, *, study):
+    content = report.build(study)
+    page.write(html, content)
+    counts = f"{len(study['sessions'])} sessions, {len(study['figures'])} figures"
+    log.logger.info("%s: %s, %.1f MB", html, counts, len(content) / 1e6)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(snakemake.output.html, study=snakemake.params.study)
