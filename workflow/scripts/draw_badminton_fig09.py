@@ -1,8 +1,10 @@
 """Draw the chain from pictures to measures: 2D, 3D keypoints, videos, measures -> figure, CSV."""
 
+import numpy as np
 import pandas as pd
 
 from courtside.devices import video
+from courtside.exports import overlay_video
 from courtside.figures import badminton_fig09, close_ups, stick, style
 from courtside.geometry import courts
 from courtside.motion import round_trip
@@ -23,6 +25,7 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
         _, image = video.read_frame(one.video, one.view.time_s[at])
         if blur_faces:
             both = one.view.xy[:, at], one.reprojected(points, at)
+            image = overlay_video.only_persons(image, np.concatenate(both), joints.bone_indices())
             image = close_ups.hide_faces(image, figure.faces_of(*both))
         images[one.camera.name] = image
     court = courts.read(paths.court) if paths.get("court") else None

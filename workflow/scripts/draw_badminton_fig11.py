@@ -1,6 +1,9 @@
 """Draw detections and the reprojected skeleton of one frame: 2D, 3D keypoints, videos -> figure, CSV."""
 
+import numpy as np
+
 from courtside.devices import video
+from courtside.exports import overlay_video
 from courtside.figures import badminton_fig11, close_ups, stick, style
 from courtside.motion import round_trip
 from courtside.records import derived, footage, keypoints, skeleton
@@ -23,6 +26,7 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
         both = one.view.xy[:, at], one.reprojected(points, at)
         _, image = video.read_frame(one.video, one.view.time_s[at])
         if blur_faces:
+            image = overlay_video.only_persons(image, np.concatenate(both), joints.bone_indices())
             image = close_ups.hide_faces(image, figure.faces_of(*both))
         name = one.camera.name
         images[name], detected[name], reprojected[name] = image, *map(figure.of, both)

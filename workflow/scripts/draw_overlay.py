@@ -1,6 +1,9 @@
 """Draw detections and reprojected skeletons on pictures: 2D, people, clocks, 3D, videos -> figure, CSV."""
 
+import numpy as np
+
 from courtside.devices import video
+from courtside.exports import overlay_video
 from courtside.figures import overlay, style
 from courtside.geometry import cameras
 from courtside.motion import resampling
@@ -31,14 +34,11 @@ def main(paths, pdf, png, csv, *, n_frames, blur_faces):
 def panel(points, camera, view, own_s, film, time_s, joints, blur_faces):
     at = overlay.nearest(view, time_s)
     column = points.cameras.tolist().index(camera.name)
-    return overlay.panel(
-        video.read_frame(film, own_s[at])[1],
-        view.xy[:, at],
-        overlay.reproject(camera, points, time_s),
-        points.accepted[:, at, :, column],
-        joints,
-        blur_faces,
-    )
+    both = view.xy[:, at], overlay.reproject(camera, points, time_s)
+    image = video.read_frame(film, own_s[at])[1]
+    if blur_faces:
+        image = overlay_video.only_persons(image, np.concatenate(both), joints.bone_indices())
+    return overlay.panel(image, *both, points.accepted[:, at, :, column], joints, blur_faces)
 
 
 if __name__ == "__main__":

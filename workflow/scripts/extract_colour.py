@@ -10,9 +10,8 @@ def main(recording, video, frames_csv, camera_toml, *, device, crf):
     found = depth_recordings.read(recording, device)
     for remark in found.remarks:
         log.logger.warning("%s: %s", device, remark)
-    index = found.colour_index()
-    table = frame_times.FrameTimes(index.time_s, index.number)
-    pictures = log.progress(found.colour_frames(), len(index.time_s), f"{device}: frames")
+    table = found.colour_index()
+    pictures = log.progress(found.colour_frames(), len(table.time_s), f"{device}: frames")
     images = (image for _, image in pictures)
     video_writer.write_video(video, images, table.rate_hz, crf=crf)
     frame_times.write(frames_csv, table)

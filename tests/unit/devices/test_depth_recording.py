@@ -1,12 +1,13 @@
 import numpy as np
 import pytest
 
-from courtside.devices.depth_recording import DepthRecording, FrameIndex
+from courtside.devices.depth_recording import DepthRecording
+from courtside.records.frame_times import FrameTimes
 from depth_recordings_made import COLOUR, DEPTH, PLACED
 
 
 def recording(**changed):
-    index = FrameIndex(np.array([0.0]), np.array([1]))
+    index = FrameTimes(np.array([0.0]), np.array([1]))
     values = {"colour_from_depth": PLACED, "depth_unit_m": 0.001} | changed
     return DepthRecording(
         name="d",
@@ -20,8 +21,8 @@ def recording(**changed):
 
 
 def test_missing_frames_are_gaps_in_the_numbers():
-    assert FrameIndex(np.arange(5.0), np.array([7, 8, 10, 11, 14])).n_missing == 3
-    assert FrameIndex(np.zeros(0), np.zeros(0, int)).n_missing == 0
+    assert FrameTimes(np.arange(5.0), np.array([7, 8, 10, 11, 14])).n_missing == 3
+    assert FrameTimes(np.zeros(0), np.zeros(0, int)).n_missing == 0
 
 
 def test_separation_is_the_distance_of_the_cameras():

@@ -113,3 +113,8 @@ def test_a_bad_skeleton_is_one_line(tmp_path, old, new, named):
 def test_a_missing_skeleton_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.yaml: expected a readable YAML file"):
         skeleton.read(tmp_path / "none.yaml")
+
+
+def test_bones_are_given_by_position_too():
+    found = skeleton.read(next(path for path in FILES if path.stem == "cpm14"))
+    assert [(found.joints[a], found.joints[b]) for a, b in found.bone_indices()] == list(found.bones)

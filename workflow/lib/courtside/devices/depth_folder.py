@@ -37,8 +37,9 @@ import numpy as np
 import pandas as pd
 
 from courtside.devices import video
-from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording, FrameIndex
+from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.geometry import cameras, fields, transforms
+from courtside.records.frame_times import FrameTimes
 from courtside.study.errors import InputError
 
 VIDEOS = (".mp4", ".mkv", ".mov", ".avi")
@@ -125,7 +126,7 @@ def _pictures(folder):
 
 
 def _indices(folder, film, n_depth):
-    """Return the `FrameIndex` of colour and of depth."""
+    """Return the `FrameTimes` of colour and of depth."""
     times_s = video.frame_times(film)
     tables = [folder / "colour.csv", folder / "depth.csv"]
     given = [path.is_file() for path in tables]
@@ -138,7 +139,7 @@ def _indices(folder, film, n_depth):
             f"{folder}: expected as many depth pictures as colour frames, {len(times_s)}, found {n_depth}; "
             "add colour.csv and depth.csv that say when each was taken"
         )
-    index = FrameIndex(times_s, np.arange(n_depth))
+    index = FrameTimes(times_s, np.arange(n_depth))
     return index, index
 
 
@@ -157,7 +158,7 @@ def _table(path, n_frames):
             f"{path}: expected {n_frames} rows with rising number and time_s, one for each frame, found "
             f"{len(rows)} rows or others; correct them"
         )
-    return FrameIndex(times_s, numbers)
+    return FrameTimes(times_s, numbers)
 
 
 def _colour(film, times_s):

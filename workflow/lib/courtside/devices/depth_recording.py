@@ -13,29 +13,6 @@ DEFAULT_UNIT_M = 0.001  # what one step of a D400's depth means unless its optio
 
 
 @dataclass(frozen=True, eq=False)
-class FrameIndex:
-    """The frames of one stream.
-
-    Attributes
-    ----------
-    time_s : (T,) float
-        By the device's clock, increasing.
-    number : (T,) int
-        As the device counted them; a gap is a frame that never came.
-    """
-
-    time_s: np.ndarray
-    number: np.ndarray
-
-    @property
-    def n_missing(self):
-        """How many frames between the first and the last are missing by their numbers."""
-        if not len(self.number):
-            return 0
-        return int(self.number[-1] - self.number[0] + 1 - len(self.number))
-
-
-@dataclass(frozen=True, eq=False)
 class DepthRecording:
     """Colour and depth of one device, by its own clock.
 
@@ -54,7 +31,7 @@ class DepthRecording:
     depth_frames : callable
         Without arguments gives a new iterator of (time_s, (h, w) uint16), in order of time.
     colour_index : callable
-        Without arguments gives the `FrameIndex` of the colour frames, without decoding a picture.
+        Without arguments gives the `FrameTimes` of the colour frames, without decoding a picture.
     baseline_m : float
         Between the two imagers that the depth comes from; NaN where the recording does not say.
     remarks : tuple of str

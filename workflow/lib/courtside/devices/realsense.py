@@ -15,9 +15,10 @@ from pathlib import Path
 import numpy as np
 
 from courtside.devices import bag_images, bags, realsense_lens, realsense_text
-from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording, FrameIndex
+from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.geometry import fields, transforms
 from courtside.geometry.cameras import Camera
+from courtside.records.frame_times import FrameTimes
 from courtside.study import log
 from courtside.study.errors import InputError
 
@@ -209,7 +210,7 @@ def _pictures(followed):
 
 def _index(followed):
     rows = [(time_s, number) for time_s, number, _ in followed]
-    return FrameIndex(
+    return FrameTimes(
         np.array([time_s for time_s, _ in rows], dtype=float),
         np.array([number for _, number in rows], dtype=np.int64),
     )

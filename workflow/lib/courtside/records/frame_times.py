@@ -13,7 +13,7 @@ COLUMNS = ("frame_idx", "number", "time_s")
 
 @dataclass(frozen=True, eq=False)
 class FrameTimes:
-    """The frames of a video, which has a constant rate whatever the device's was.
+    """The frames of one stream of a device, and of the video made of them, whose rate is constant.
 
     Attributes
     ----------
@@ -25,6 +25,13 @@ class FrameTimes:
 
     time_s: np.ndarray
     number: np.ndarray
+
+    @property
+    def n_missing(self):
+        """How many frames between the first and the last are missing by their numbers."""
+        if not len(self.number):
+            return 0
+        return int(self.number[-1] - self.number[0] + 1 - len(self.number))
 
     @property
     def rate_hz(self):

@@ -44,6 +44,10 @@ class Skeleton:
         """Return what the device calls each joint, in the order of `joints`, list of str."""
         return [self.names.get(joint, joint) for joint in self.joints]
 
+    def bone_indices(self):
+        """Return the bones as pairs of positions in `joints`."""
+        return [(self.joints.index(start), self.joints.index(end)) for start, end in self.bones]
+
     def mirror(self):
         """Return for each joint the index of the same joint of the other body side, (J,) list of int.
 
