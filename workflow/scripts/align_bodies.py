@@ -1,6 +1,6 @@
 """Put one source of a take into the body frame of all: device motions, clocks -> body motion, its frame."""
 
-from courtside.motion import bodies, bodyframe, device_events
+from courtside.motion import bodyframe, common_frame, device_events
 from courtside.records import body_motion, derived, device_motion, sync
 from courtside.study import log
 from courtside.study.files import write_json
@@ -16,12 +16,12 @@ def main(
     order = sorted(motions, key=lambda name: name != reference)
     shown = device_events.shown(list(motions.values()), devices, stated)
     happened = {name: shown[name] for name in order}
-    chosen = bodies.common(happened, clocks, motions)[source]
+    chosen = common_frame.common(happened, clocks, motions)[source]
     motion, clock = motions[source], clocks[source]
     anchors = bodyframe.anchors(derived.read(derived_yaml), skeleton, motion.joints)
     frame = bodyframe.at_tpose(motion, anchors, chosen)
-    claps = bodies.claps_of(source, happened, clocks)
-    body = bodies.aligned(motion, frame, clock, claps)
+    claps = common_frame.claps_of(source, happened, clocks)
+    body = common_frame.aligned(motion, frame, clock, claps)
     log.logger.info("%s: unit %.4f m, %s", source, body.unit_m, frame.residuals)
     body_motion.write(body_npz, body)
     write_json(frame_json, frame.as_dict())

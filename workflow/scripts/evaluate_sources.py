@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from courtside.motion import arcs, bodies, bodyframe, smoothness, source_errors
+from courtside.motion import arcs, bodyframe, common_frame, smoothness, source_errors
 from courtside.records import body_motion, derived, tables, take_truth
 from courtside.records.device_motion import DeviceMotion
 from courtside.study import log
@@ -17,7 +17,7 @@ def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_h
     carried_by = bodyframe.anchors(table, derived.RIG, true.joints)
     errors, parts, paths, distortion = [], [], [], []
     for body in map(body_motion.read, body_npz):
-        reference = bodies.counterpart(true, carried_by, body.tpose_s)
+        reference = common_frame.counterpart(true, carried_by, body.tpose_s)
         names, found = source_errors.errors(body, reference)
         _, expected = source_errors.matched(body, reference)
         known = np.isfinite(expected).all(axis=-1)

@@ -117,4 +117,6 @@ def test_a_missing_skeleton_is_named(tmp_path):
 
 def test_bones_are_given_by_position_too():
     found = skeleton.read(next(path for path in FILES if path.stem == "cpm14"))
-    assert [(found.joints[a], found.joints[b]) for a, b in found.bone_indices()] == list(found.bones)
+    assert [(found.joints[a], found.joints[b]) for a, b in found.bone_indices()] == list(
+        found.bones
+    )

@@ -7,7 +7,7 @@ import pytest
 
 import device_takes
 from courtside.devices import mocopi
-from courtside.motion import bodies, bodyframe, device_events
+from courtside.motion import bodyframe, common_frame, device_events
 from courtside.records import derived, skeleton
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
@@ -31,12 +31,12 @@ def take(seed=0):
 
 def test_exact_devices_agree_in_space_and_time():
     truth, made, happened = take()
-    chosen = bodies.common(happened, CLOCKS)
+    chosen = common_frame.common(happened, CLOCKS)
     aligned = []
     for motion in made:
         frame = bodyframe.at_tpose(motion, CARRIED_BY, chosen[motion.source])
-        claps = bodies.claps_of(motion.source, happened, CLOCKS)
-        aligned.append(bodies.aligned(motion, frame, CLOCKS[motion.source], claps))
+        claps = common_frame.claps_of(motion.source, happened, CLOCKS)
+        aligned.append(common_frame.aligned(motion, frame, CLOCKS[motion.source], claps))
     rgb, mocopi = aligned
     assert mocopi.unit_m == pytest.approx(0.9 * rgb.unit_m, rel=0.005)
     for body in aligned:
@@ -71,7 +71,7 @@ def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
             )
             for source, spells in at_s.items()
         }
-        chosen = bodies.common(happened, CLOCKS)
+        chosen = common_frame.common(happened, CLOCKS)
         assert chosen["d415-rgb"].start_s == first[best].start_s
         assert chosen["mocopi"].start_s == second[best].start_s
 
@@ -80,7 +80,7 @@ def test_no_common_t_pose_is_an_error_with_the_times():
     _, _, happened = take()
     wrong = CLOCKS | {"mocopi": Clock(20.0, 0.0)}
     with pytest.raises(InputError, match=r"T-pose that all sources show.*mocopi -") as caught:
-        bodies.common(happened, wrong)
+        common_frame.common(happened, wrong)
     assert "\n" not in str(caught.value)
 
 
@@ -88,13 +88,13 @@ def test_the_counterpart_has_the_frame_of_the_same_t_pose():
     truth, made, _ = take()
     for number in (1, 2):
         span = [truth[2][f"tpose_{number}_{end}"] for end in ("start", "stop")]
-        body = bodies.counterpart(made[0], CARRIED_BY, span)
+        body = common_frame.counterpart(made[0], CARRIED_BY, span)
         assert body.tpose_s[0] == pytest.approx(span[0], abs=0.15)
         held = (body.time_s > span[0] + 0.1) & (body.time_s < span[1] - 0.1)
         wrist = np.median(body.joint("left_wrist")[held], axis=0)
         assert wrist[0] == pytest.approx(1.0, abs=0.03)
     with pytest.raises(InputError, match="check the clocks"):
-        bodies.counterpart(made[0], CARRIED_BY, [100.0, 101.0])
+        common_frame.counterpart(made[0], CARRIED_BY, [100.0, 101.0])
 
 
 def test_frames_that_nobody_performed_are_left_out():
@@ -102,14 +102,14 @@ def test_frames_that_nobody_performed_are_left_out():
     motion = made[0]
     motion.performed[:7] = False
     frame = bodyframe.at_tpose(motion, CARRIED_BY, happened["d415-rgb"].tposes[0])
-    body = bodies.aligned(motion, frame, Clock())
+    body = common_frame.aligned(motion, frame, Clock())
     assert len(body.time_s) == len(motion.time_s) - 7 == len(body.fixed) == len(body.reason)
 
 
 def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
     truth, _, happened = take()
     happened["d415-rgb"] = device_events.Events(happened["d415-rgb"].tposes, [])
-    found = bodies.claps_of("d415-rgb", happened, CLOCKS)
+    found = common_frame.claps_of("d415-rgb", happened, CLOCKS)
     np.testing.assert_allclose(found, [truth[2]["clap_1"], truth[2]["clap_2"]], atol=0.006)
 
 
@@ -122,10 +122,12 @@ def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(nam
     assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
     clocks = {"mocopi": Clock(status="reference")}
     with pytest.raises(InputError, match="T-pose"):
-        bodies.common(happened, clocks)
-    chosen = bodies.common(happened, clocks, {"mocopi": motion})["mocopi"]
+        common_frame.common(happened, clocks)
+    chosen = common_frame.common(happened, clocks, {"mocopi": motion})["mocopi"]
     carried_by = bodyframe.anchors(TABLE, "mocopi27", motion.joints)
-    body = bodies.aligned(motion, bodyframe.at_tpose(motion, carried_by, chosen), clocks["mocopi"])
+    body = common_frame.aligned(
+        motion, bodyframe.at_tpose(motion, carried_by, chosen), clocks["mocopi"]
+    )
     assert len(body.time_s) == motion.performed.sum()
     assert np.isfinite(body.following).all()
     wide = body.following[
