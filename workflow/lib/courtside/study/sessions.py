@@ -55,7 +55,7 @@ class Device:
 
     def sources(self, name):
         """Return the names of the skeletons that this device, of this name, gives."""
-        endings = {"rgb": ("-rgb",), "rgbd": ("-rgb", "-depth")}
+        endings = {"rgb": ("-rgb",), "rgbd": ("-depth", "-rgb")}
         return tuple(name + ending for ending in endings.get(self.kind, ("",)))
 
 
