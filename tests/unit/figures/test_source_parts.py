@@ -67,7 +67,7 @@ def test_parts_are_stacked_in_order_and_fill_the_bar(drawing):
     np.testing.assert_allclose([bar.get_width() for bar in bars], list(SHARES.values()))
     np.testing.assert_allclose([bar.get_x() for bar in bars], [0, 10, 30, 55, 60])
     said = axis.texts[0].get_text()
-    assert said == "100 mm rms; shift 12 mm, scale 1.050, turn 3.0°, time −20 ms"
+    assert said == "100 mm rms; shift 12 mm, scale 1.050\nturn 3.0°, time −20 ms"
 
 
 def test_a_source_that_shares_no_frame_with_the_truth_says_so():

@@ -57,7 +57,7 @@ def draw(errors, parts, *, kinds=None):
     """
     looks = source_looks.looks(errors["source"], kinds)
     joints = _joints(errors["joint"])
-    heights = [26 + (2.5 + 1.2 * len(looks)) * len(joints), 24 + 7.5 * len(looks)]
+    heights = [26 + (2.5 + 1.2 * len(looks)) * len(joints), 24 + 10 * len(looks)]
     drawing = style.figure(sum(heights))
     above, below = drawing.subfigures(2, 1, height_ratios=heights)
     _draw_errors(above, errors, looks, joints)
@@ -89,14 +89,15 @@ def _draw_errors(part, errors, looks, joints):
         axis.axhline(len(joints) - 1.5, color="#bbbbbb", linewidth=0.6)
         axis.grid(axis="x", color="#eeeeee", linewidth=0.6)
         axis.set_axisbelow(True)
-        axis.set_xlim(left=0)
+        axis.set_xscale("log")  # sources differ by more than a hundred times
+        axis.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes[0].set_yticks(range(len(joints)), [name.replace("_", " ") for name in joints])
     axes[0].set_ylim(len(joints) - 0.5, -0.5)
     axes[len(SHOWN) // 2].set_xlabel(
         "distance to the truth (mm): median, line to the 95 % quantile"
     )
     marks = [bars.mark(look.colour, marker=look.marker, label=name) for name, look in looks.items()]
-    part.legend(handles=marks, loc="outside upper center", ncols=min(6, len(marks)))
+    part.legend(handles=marks, loc="outside upper center", ncols=min(4, len(marks)))
 
 
 def _draw_parts(part, parts, looks):
@@ -134,5 +135,5 @@ def _draw_bar(axis, y, own):
     values = own["value"].mul(pd.Series({"time": MS}), fill_value=1)
     fitted = [form.format(values[name]) for name, form in VALUES.items()]
     size = np.sqrt(own.loc["all", "mean_square_mm2"])
-    said = f"{size:.0f} mm rms; {', '.join(fitted)}"
-    axis.text(0.5, y + 0.13, said.replace("-", "−"), va="top", fontsize=6.5)
+    said = f"{size:.0f} mm rms; {', '.join(fitted[:2])}\n{', '.join(fitted[2:])}"
+    axis.text(0.5, y + 0.13, said.replace("-", "−"), va="top", fontsize=6, linespacing=1.05)

@@ -64,7 +64,7 @@ def _same(spell, happened, clock):
 
 
 def claps_of(source, happened, clocks):
-    """Return the times of the claps of a take by one source: its own, else those of the first that shows any.
+    """Return the times of the claps of a take by one source: its own, and those that only others show.
 
     Parameters
     ----------
@@ -78,10 +78,13 @@ def claps_of(source, happened, clocks):
     clap_s : (C,) float
         On the reference clock.
     """
-    order = [source, *(name for name in happened if name != source)]
-    shown = next((name for name in order if happened[name].claps), source)
-    own_s = [float(clap.time_s) for clap in happened[shown].claps]
-    return clocks[shown].to_reference(np.array(own_s))
+    found = []
+    for name in (source, *(name for name in happened if name != source)):
+        own_s = np.array([float(clap.time_s) for clap in happened[name].claps])
+        for clap_s in clocks[name].to_reference(own_s):
+            if all(abs(clap_s - other) > SAME_S for other in found):
+                found.append(float(clap_s))
+    return np.array(sorted(found))
 
 
 def aligned(motion, frame, clock, clap_s=()):

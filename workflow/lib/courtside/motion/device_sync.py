@@ -10,7 +10,9 @@ from courtside.motion.device_signals import Signals
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
 
-PRIOR_DRIFT = 200e-6  # ASSUME: standard deviation of devices' drifts; of phones and suits 200 ppm is not rare
+PRIOR_DRIFT = (
+    200e-6  # ASSUME: standard deviation of devices' drifts; of phones and suits 200 ppm is not rare
+)
 # ASSUME: a network or an inertial suit errs with the pose, and that seems to move the motion in time.
 MOTION_BIAS_S = 0.005
 LEAST_CORRELATION = 0.3  # of the motions, median over the signals, for them to say anything
