@@ -27,7 +27,7 @@ def test_a_label_replaces_a_column_of_its_name(tmp_path):
 
 
 def test_nothing_is_left_of_a_table_that_cannot_be_written(tmp_path):
-    with pytest.raises(TypeError):
+    with pytest.raises(ValueError, match="float_format"):
         tables.write(tmp_path / "rows.csv", pd.DataFrame({"n": [0.5]}), float_format=3)
     assert list(tmp_path.iterdir()) == []
 
