@@ -5,6 +5,7 @@ import pytest
 from smoke.snakemake_runs import FOLDER, ROOT, run
 
 ASKED_FOR = (  # what the study makes only when it is asked for by name
+    "results/report.html",
     "results/plain-tiny/pages/clicking.html",
     "results/walk-4cams-tiny/takes/balancing/pose2sim/file/all-robust/blazepose-full",
 )

@@ -29,7 +29,7 @@ rule build_clicking_page:
         court=lambda w: court_file(session_of(w)),
         clicks=lambda w: session_of(w).court_points or [],
         proposals=proposals_file,
-        assets=sorted((LIBRARY / "courtside" / "pages" / "assets").glob("[cp]*")),
+        assets=sorted(ASSETS.glob("[cp]*")),
     output:
         page="results/{session}/pages/clicking.html",
     log:

@@ -15,6 +15,7 @@ REPOSITORY = Path(str(workflow.current_basedir)).parents[1]
 CONFIG = Path(os.path.relpath(REPOSITORY / "config"))
 SCRIPTS = REPOSITORY / "workflow" / "scripts"
 LIBRARY = REPOSITORY / "workflow" / "lib"
+ASSETS = Path(os.path.relpath(LIBRARY / "courtside" / "pages" / "assets"))
 sys.path.insert(0, str(LIBRARY))
 
 from courtside.study import configuration, digest, plans

@@ -13,7 +13,7 @@ rule build_viewer:
         cameras=viewed_cameras,
         court=viewed_court,
         clocks=device_clocks,
-        assets=sorted((LIBRARY / "courtside" / "pages" / "assets").glob("[pv]*")),
+        assets=sorted(ASSETS.glob("[pv]*")),
     output:
         html=f"{TAKE}/pages/viewer.{{model}}.html",
     log:
