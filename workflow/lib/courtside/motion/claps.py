@@ -27,6 +27,8 @@ LEVEL = 0.6  # of the arm's length: they are above or below the shoulders by tha
 STRAIGHT_DEG = 45.0  # elbows bend less on the way, median of both arms
 REBOUND_NOISE = 1.5  # standard deviations of the noise that hands must part by as well
 MOST_UNCERTAIN_S = 0.04
+TOUCHING_M = 0.14  # wrists of hands that touch, seen by any device, are not further apart
+SPEEDS_M_S = 0.5, 3.0  # of wrists that come together in a clap
 SMOOTHINGS_S = {"rgb": 0.01, "rgbd": 0.01, "cameras": 0.03, "inertial": 0.03}
 
 
@@ -240,7 +242,7 @@ def _fitted(motion, spell, number, apart, near_s):
         return Candidate(corner.time_s, None, why)
     clap = Clap(
         time_s=corner.time_s,
-        uncertainty_s=corner.uncertainty_s,
+        uncertainty_s=float(np.hypot(corner.uncertainty_s, _never_met_s(corner))),
         tpose=number,
         distance_m=corner.floor,
         speed_m_s=corner.slope,
@@ -248,6 +250,12 @@ def _fitted(motion, spell, number, apart, near_s):
         rebounds=corner.rises,
     )
     return Candidate(corner.time_s, clap, "")
+
+
+def _never_met_s(corner):
+    """Return the time, s, from where hands seem to be held to where hands touch: it hides the contact."""
+    speed = np.clip(abs(corner.slope), *SPEEDS_M_S)
+    return max(corner.floor - TOUCHING_M, 0.0) / speed
 
 
 def _parted(time_s, apart, near_s):

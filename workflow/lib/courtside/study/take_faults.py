@@ -75,7 +75,8 @@ def find(where, take, cameras, subjects, virtual):
     yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
     yield from unknown(f"{where}.subjects", there, subjects)
     yield from _device_faults(where, take, cameras, there)
-    recorded = [*take.get("videos", {}), *take.get("devices", {})]
+    made = (take.get("virtual") or {}).get("devices", {})
+    recorded = [*(cameras if virtual else take.get("videos", {})), *take.get("devices", {}), *made]
     yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
     yield from _filmed_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
