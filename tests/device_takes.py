@@ -95,3 +95,8 @@ def mocopi(rng, take, **options):
         "cutoff_hz": 6.0,
     }
     return device(rng, take, **{**given, "noise_m": (0.001,) * 3, "memory_s": 0.3, **options})
+
+
+def each_its_own(motions):
+    """Return the device of each source, where every source is a device."""
+    return {motion.source: motion.source for motion in motions}

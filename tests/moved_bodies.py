@@ -6,9 +6,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from courtside.motion.body_segments import LIMB_JOINTS
 from courtside.records.device_motion import DeviceMotion
 from courtside.records.hierarchy import Hierarchy, PosedHierarchy, forward
+from courtside.records.limbs import JOINTS as LIMB_JOINTS
 
 RATE_HZ = 60.0
 UP = np.array([0.0, 1.0, 0.0])

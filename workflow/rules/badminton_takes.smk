@@ -60,7 +60,7 @@ rule draw_badminton_fig09:
         f"results/{{session}}/logs/draw_badminton_fig09/{OF_FUSED}.log",
     params:
         code=code("draw_badminton_fig09.py"),
-        step=lambda w: stroke(w),
+        step=stroke,
         blur_faces=lambda w: session_of(w).blur_faces,
     script:
         "../scripts/draw_badminton_fig09.py"

@@ -1,7 +1,7 @@
 """Sources of a take in one body frame: T-pose, unit, clocks; inertial ones corrected by vision.
 
 Inputs: device motions and clocks. Outputs: results/{session}/takes/{take}/ devices (corrected), body.
-Steps: correct_inertial, align_bodies, measure_arcs.
+Steps: correct_inertial, choose_tpose (for all sources of a take), align_bodies, measure_arcs.
 """
 
 
@@ -26,10 +26,26 @@ rule correct_inertial:
         "../scripts/correct_inertial.py"
 
 
-rule align_bodies:
+rule choose_tpose:
     input:
         devices=source_files,
         sync=f"{TAKE}/sync/devices.{{model}}.json",
+    output:
+        chosen=f"{TAKE}/sync/tpose.{{model}}.json",
+    log:
+        "results/{session}/logs/choose_tpose/{take}.{model}.log",
+    params:
+        code=code("choose_tpose.py"),
+        step=lambda w: {"devices": clock_owners(w), "stated": list(take_of(w).clocks)},
+    script:
+        "../scripts/choose_tpose.py"
+
+
+rule align_bodies:
+    input:
+        device=lambda w: sources_of(w)[w.source][0],
+        sync=f"{TAKE}/sync/devices.{{model}}.json",
+        chosen=f"{TAKE}/sync/tpose.{{model}}.json",
         derived=CONFIG / "derived_joints.yaml",
     output:
         body=f"{TAKE}/body/{{source}}.{{model}}.npz",
@@ -38,11 +54,7 @@ rule align_bodies:
         "results/{session}/logs/align_bodies/{take}.{source}.{model}.log",
     params:
         code=code("align_bodies.py"),
-        step=lambda w: {
-            "skeleton": sources_of(w)[w.source][1],
-            "devices": clock_owners(w),
-            "stated": list(take_of(w).clocks),
-        },
+        step=lambda w: {"skeleton": sources_of(w)[w.source][1], "like": clock_source(w)},
     script:
         "../scripts/align_bodies.py"
 

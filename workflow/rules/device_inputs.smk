@@ -47,7 +47,7 @@ def trimmed(wildcards):
 def fused_file(wildcards):
     """Return the skeletons of the fixed cameras that other sources of a take are compared with."""
     session = session_of(wildcards)
-    stage = "pose3d_corrected" if has_offsets(wildcards.model) else "pose3d_filtered"
+    stage = stages_of(wildcards.model)[-1]
     way = f"{session.take_calibrations()[0]}/{session.fusions()[0]}/{wildcards.model}"
     return f"results/{wildcards.session}/takes/{wildcards.take}/{stage}/{way}.npz"
 
@@ -55,10 +55,8 @@ def fused_file(wildcards):
 def sources_of(wildcards, corrected=True):
     """Return {source: (file, skeleton, device)} of a take, the one whose clock is the reference first."""
     session, take = session_of(wildcards), take_of(wildcards)
-    folder, of_network = (
-        f"results/{session.name}/takes/{take.name}/devices",
-        skeleton_file(wildcards).stem,
-    )
+    folder = f"results/{session.name}/takes/{take.name}/devices"
+    of_network = skeleton_file(wildcards).stem
     found = {}
     if take.videos and session.take_calibrations():
         found["cameras"] = (f"{folder}/cameras.{wildcards.model}.npz", of_network, "cameras")
@@ -93,6 +91,13 @@ def worn_by(wildcards):
 def clock_owners(wildcards, corrected=True):
     """Return for each source of a take the device whose clock it has."""
     return {source: device for source, (_, _, device) in sources_of(wildcards, corrected).items()}
+
+
+def clock_source(wildcards):
+    """Return a source whose clock was found and is that of this job's source: itself, or of the same device."""
+    owner = clock_owners(wildcards)[wildcards.source]
+    found = clock_owners(wildcards, corrected=False)
+    return next(source for source, device in found.items() if device == owner)
 
 
 def vision_of(wildcards):

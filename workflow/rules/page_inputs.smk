@@ -29,7 +29,7 @@ def fused_layers(wildcards):
     """Return the layers of the fixed cameras: the last stage shown, the others to be switched on."""
     session = session_of(wildcards)
     way = f"{session.take_calibrations()[0]}/{session.fusions()[0]}/{wildcards.model}"
-    stages = [stage for stage in STAGES if stage != STAGES[-1] or has_offsets(wildcards.model)]
+    stages = stages_of(wildcards.model)
     words = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
     return [
         {

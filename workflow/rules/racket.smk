@@ -20,7 +20,7 @@ rule evaluate_racket:
         "results/{session}/benchmarks/evaluate_racket/all.tsv"
     params:
         code=code("evaluate_racket.py"),
-        settings=lambda w: racket_parameters(w),
+        settings=racket_parameters,
     script:
         "../scripts/evaluate_racket.py"
 

@@ -9,7 +9,7 @@ draw_source_errors, draw_thesis_fig3, draw_smoothness.
 rule draw_wrist_distance:
     input:
         wrists=f"{TAKE}/sync/{{clocks}}.{{model}}.wrists.csv",
-        events=lambda w: events_file(w),
+        events=events_file,
     output:
         **device_figure("wrist_distance.{clocks}", "wrist_distance"),
     log:
@@ -43,9 +43,7 @@ rule draw_wrist_arcs:
 rule draw_skeleton_plates:
     input:
         bodies=body_files_of,
-        skeletons=lambda w: [
-            CONFIG / "skeletons" / f"{name}.yaml" for name in plate_skeletons(w).values()
-        ],
+        skeletons=plate_skeletons,
         derived=CONFIG / "derived_joints.yaml",
     output:
         **device_figure("skeleton_plates", "skeleton_plates"),
@@ -78,7 +76,7 @@ rule draw_thesis_fig3:
     input:
         paths=lambda w: thesis_file(w, "paths"),
         distortion=lambda w: thesis_file(w, "distortion"),
-        truth=lambda w: thesis_truth(w),
+        truth=thesis_truth,
     output:
         **drawn(
             "results/figures/thesis_fig3_{number}",
@@ -93,7 +91,7 @@ rule draw_thesis_fig3:
     params:
         code=code("draw_thesis_fig3.py"),
         source=lambda w: STUDY.parameters["draw_thesis_fig3"]["sources"][int(w.number) - 1],
-        kinds=lambda w: all_kinds(),
+        kinds=all_kinds(),
     script:
         "../scripts/draw_thesis_fig3.py"
 

@@ -35,9 +35,9 @@ def events_file(wildcards):
 
 
 def plate_skeletons(wildcards):
-    """Return the skeletons that are drawn side by side, those of a take's own sources included."""
+    """Return the files of the skeletons that are drawn side by side, those of a take's own sources included."""
     own = [skeleton for _, skeleton, _ in sources_of(wildcards).values()]
-    return {name: name for name in (*PLATES, *own)}
+    return [CONFIG / "skeletons" / f"{name}.yaml" for name in dict.fromkeys((*PLATES, *own))]
 
 
 def true_arcs(wildcards, what):

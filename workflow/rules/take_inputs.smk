@@ -65,11 +65,7 @@ def followed(wildcards):
 
 def evaluated(wildcards):
     """Return (stage, fusion) of the skeletons of a take that are compared with the truth."""
-    session = session_of(wildcards)
-    stages = [
-        stage for stage in STAGES if stage != "pose3d_corrected" or has_offsets(wildcards.model)
-    ]
-    return list(product(stages, every_fusion(wildcards)))
+    return list(product(stages_of(wildcards.model), every_fusion(wildcards)))
 
 
 def every_fusion(wildcards):
@@ -81,6 +77,11 @@ def every_fusion(wildcards):
 def has_offsets(model):
     """Say whether anybody has estimated how a network's joints are offset."""
     return (CONFIG / "joint_offsets" / f"{model}.csv").is_file()
+
+
+def stages_of(model):
+    """Return the stages of skeletons that a network has, the last being the best."""
+    return STAGES if has_offsets(model) else STAGES[:-1]
 
 
 def true_take_file(wildcards):

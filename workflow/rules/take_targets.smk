@@ -106,7 +106,7 @@ def evaluations_of_takes(kind):
         for take in session.takes.values():
             folder = f"results/{session.name}/evaluation/takes/{take.name}"
             for way, model in product(session.take_calibrations(), session.parameters["models"]):
-                last = "pose3d_corrected" if has_offsets(model) else "pose3d_filtered"
+                last = stages_of(model)[-1]
                 found += {
                     "errors": [f"{folder}/errors/{way}.{model}.csv"],
                     "kinematics": [

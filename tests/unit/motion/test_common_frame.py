@@ -26,7 +26,7 @@ def take(seed=0):
         device_takes.device(rng, truth),
         device_takes.mocopi(rng, truth, clock=CLOCKS["mocopi"], scale=0.9, cutoff_hz=None),
     ]
-    return truth, made, {motion.source: device_events.events(motion) for motion in made}
+    return truth, made, device_events.shown(made, device_takes.each_its_own(made))
 
 
 def test_exact_devices_agree_in_space_and_time():
@@ -119,7 +119,7 @@ def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
 def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(name):
     joints = skeleton.read(CONFIG / "skeletons" / "mocopi27.yaml")
     motion, _ = mocopi.read(REAL / "mocopi" / f"{name}.bvh", joints)
-    happened = {"mocopi": device_events.events(motion, alone=True)}
+    happened = device_events.shown([motion], {"mocopi": "mocopi"})
     assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
     clocks = {"mocopi": Clock(status="reference")}
     with pytest.raises(InputError, match="T-pose"):

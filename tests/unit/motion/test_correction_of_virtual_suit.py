@@ -14,9 +14,9 @@ import mannequin
 import moved_bodies
 import performers
 from courtside.motion import inertial_correction
-from courtside.motion.body_segments import LIMB_JOINTS
 from courtside.records import skeleton
 from courtside.records.device_motion import DeviceMotion
+from courtside.records.limbs import JOINTS as LIMB_JOINTS
 from courtside.virtual import athlete, bodies, body, inertial, inertial_errors, motions
 
 pytestmark = pytest.mark.slow

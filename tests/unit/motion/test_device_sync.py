@@ -13,7 +13,7 @@ CAMERAS = {"source": "cameras", "kind": "cameras", "noise_m": (0.004,) * 3, "axe
 
 
 def solve(*motions, **options):
-    happened = {motion.source: device_events.events(motion) for motion in motions}
+    happened = device_events.shown(motions, device_takes.each_its_own(motions))
     return device_sync.synchronise(list(motions), happened, **options)
 
 
@@ -104,7 +104,7 @@ def test_a_device_without_a_clap_is_refused_by_name():
         np.tile(mocopi.xyz[:1], (300, 1, 1)), np.arange(300) / 60, "mocopi", "inertial"
     )
     with pytest.raises(InputError, match="mocopi: expected a T-pose"):
-        device_events.events(still)
+        device_events.shown([mocopi, still], {"mocopi": "suit", "mocopi-2": "suit-2"})
 
 
 def test_other_peoples_claps_do_not_pair_silently():

@@ -54,7 +54,7 @@ def test_wrists_are_as_far_apart_as_they_are():
 
 def test_checks_have_a_row_per_source():
     _, motions = devices()
-    happened = {motion.source: device_events.events(motion) for motion in motions}
+    happened = device_events.shown(motions, device_takes.each_its_own(motions))
     found = device_sync.synchronise(motions, happened, latency={"mocopi": (0.02, 0.005)})
     rows = event_tables.checks(found).set_index("source")
     assert rows.status.to_dict() == {"d415-rgb": "reference", "mocopi": "found"}

@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 import moved_bodies
 from courtside.motion import inertial_correction
-from courtside.motion.body_segments import LIMB_JOINTS
 from courtside.records.hierarchy import PosedHierarchy, forward
+from courtside.records.limbs import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
 
 SECONDS = 15.0

@@ -5,11 +5,12 @@ import pytest
 
 import moved_bodies
 from courtside.motion import body_segments, rotation_vectors, segment_model
+from courtside.records import limbs
 from courtside.records.hierarchy import forward
 
 POSED = moved_bodies.moving(1, seconds=0.1)
 N = len(POSED.time_s)
-OBSERVED = [POSED.hierarchy.joints.index(joint) for joint in body_segments.LIMB_JOINTS]
+OBSERVED = [POSED.hierarchy.joints.index(joint) for joint in limbs.JOINTS]
 MODEL = segment_model.Model(
     POSED.hierarchy, body_segments.segments_of(POSED.hierarchy), OBSERVED, moved_bodies.UP
 )
@@ -50,7 +51,7 @@ def test_a_segment_turns_alone():
     at = MODEL.segments.names.index("left_upper_arm")
     slow[:, 3 * at : 3 * at + 3] = [0.1, -0.2, 0.3]
     moved = MODEL.places(frames(), slow, fixed) - XYZ[:, OBSERVED]
-    elbow, wrist = (body_segments.LIMB_JOINTS.index(f"left_{p}") for p in ("elbow", "wrist"))
+    elbow, wrist = (limbs.JOINTS.index(f"left_{p}") for p in ("elbow", "wrist"))
     assert np.linalg.norm(moved[:, elbow], axis=1).min() > 0.01
     assert moved[:, wrist] == pytest.approx(moved[:, elbow], abs=1e-12)
     rest = np.delete(moved, [elbow, wrist], axis=1)

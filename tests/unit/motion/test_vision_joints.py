@@ -7,9 +7,7 @@ import pytest
 
 import moved_bodies
 from courtside.motion import vision_joints
-from courtside.motion.body_segments import LIMB_JOINTS
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints3D
+from courtside.records.limbs import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
 
 BODY = moved_bodies.moving(0, seconds=3.0)
@@ -53,32 +51,3 @@ def test_clocks_that_do_not_meet_are_named():
 def test_a_skeleton_without_place_is_refused():
     with pytest.raises(InputError, match="about its own hips"):
         vision_joints.observe(BODY, replace(VISION, kind="rgb"), 0.02)
-
-
-def test_cameras_become_vision():
-    n, d = 4, len(LIMB_JOINTS)
-    rng = np.random.default_rng(1)
-    xyz = rng.normal(size=(2, n, d, 3))
-    variances = np.array([1e-4, 4e-4, 9e-4])
-    covariance = np.tile(np.diag(variances), (2, n, d, 1, 1))
-    reason = np.zeros((2, n, d), int)
-    reason[1, 2, 3] = reasons.REJECTED
-    points = Keypoints3D(
-        cameras=np.array(["a", "b"]),
-        model="m",
-        joints=np.array(LIMB_JOINTS),
-        person_id=np.array(["p1", "p2"]),
-        time_s=np.arange(n) / 30,
-        xyz=xyz,
-        covariance_2d=covariance,
-        covariance_camera=covariance,
-        n_views=np.full((2, n, d), 2),
-        reproj_error_px=np.zeros((2, n, d, 2)),
-        accepted=np.ones((2, n, d, 2), bool),
-        reason=reason,
-    )
-    vision, sigma = vision_joints.of_cameras(points, "p2")
-    assert np.isnan(vision.xyz[2, 3]).all() and np.isnan(sigma[2, 3])
-    assert vision.xyz[0] == pytest.approx(xyz[1, 0])
-    assert sigma[0, 0] == pytest.approx(np.sqrt(variances.mean()))
-    assert vision.kind == "cameras"

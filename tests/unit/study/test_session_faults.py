@@ -166,6 +166,12 @@ def test_good_sessions_have_no_fault(root, content):
             | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"up": {"offset_s": 1.0}}}}},
             ["takes.t.clocks: expected one of ['a'], found 'up'"],
         ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}}
+            | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"a": {"offset_s": 1.0}}}}},
+            ["takes.t.clocks.a: expected no offset or drift of the first camera"],
+        ),
         (PLAYERS | {"views": {"two": ["side", "up"]}}, ["views.two: expected one of", "'up'"]),
         (
             RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},

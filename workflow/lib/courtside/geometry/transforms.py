@@ -44,6 +44,12 @@ def nearest_rotation(matrix):
     return rotation
 
 
+def unit(vectors):
+    """Return vectors (..., 3) at length 1; NaN where they have none."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 0, length, np.nan)
+
+
 def invert(b_from_a):
     """Return `a_from_b` (3, 4) of a rigid transform `b_from_a` (3, 4)."""
     rotation = b_from_a[:, :3].T

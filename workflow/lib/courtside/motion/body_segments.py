@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from courtside.records import limbs
 from courtside.study.errors import InputError
 
 SIDES = ("left", "right")
@@ -13,11 +14,6 @@ LIMBS = {  # segment: (joint it begins at, joint it ends at)
     "thigh": ("hip", "knee"),
     "shank": ("knee", "ankle"),
 }
-LIMB_JOINTS = tuple(
-    f"{side}_{joint}"
-    for side in SIDES
-    for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,13 +78,13 @@ def segments_of(hierarchy, where="skeleton"):
         If a joint is missing or is not below the one it should hang from.
     """
     joints = list(hierarchy.joints)
-    missing = [name for name in LIMB_JOINTS if name not in joints]
+    missing = [name for name in limbs.JOINTS if name not in joints]
     if missing:
         raise InputError(
             f"{where}: expected a joint {missing[0]}, found {', '.join(joints[:8])}, ...; "
             "name its joints by a map of config/skeletons"
         )
-    paths = {name: path(hierarchy, joints.index(name)) for name in LIMB_JOINTS}
+    paths = {name: path(hierarchy, joints.index(name)) for name in limbs.JOINTS}
     parts = _trunk(paths) | _limbs(paths, joints, where)
     share = np.zeros((len(joints), len(parts)))
     for column, members in enumerate(parts.values()):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from courtside.geometry import transforms
 from courtside.geometry.similarity import Sim3
 from courtside.motion import tpose as tposes
 from courtside.study.errors import InputError
@@ -119,10 +120,10 @@ def axes(origin, top, left_wrist, right_wrist):
     unit_m : (...) float
         Half the distance of the wrists, seen along y.
     """
-    y = _unit(top - origin)
+    y = transforms.unit(top - origin)
     across = left_wrist - right_wrist
     across = across - (across * y).sum(axis=-1, keepdims=True) * y
-    x = _unit(across)
+    x = transforms.unit(across)
     rotation = np.stack([x, y, np.cross(x, y)], axis=-2)
     return rotation, np.linalg.norm(across, axis=-1) / 2
 
@@ -241,8 +242,8 @@ def _arms(middle, names, transform):
     at = {name: body[names.index(name)] for name in tposes.JOINTS}
     found = {}
     for side in tposes.SIDES:
-        upper = _unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
-        fore = _unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
+        upper = transforms.unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
+        fore = transforms.unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
         found[f"elbow_{side}_deg"] = float(np.degrees(np.arccos(np.clip(upper @ fore, -1, 1))))
     across = at["left_wrist"] - at["right_wrist"]
     found["level_deg"] = float(np.degrees(np.arcsin(across[1] / np.linalg.norm(across))))
@@ -267,7 +268,7 @@ def _spread(xyz, names, carried_by, rotation):
 def _head_deg(body, names):
     for head in HEADS:
         if all(name in names for name in head):
-            way = _unit(np.mean([body[names.index(name)] for name in head], axis=0))
+            way = transforms.unit(np.mean([body[names.index(name)] for name in head], axis=0))
             if np.isfinite(way).all():
                 return float(np.degrees(np.arccos(np.clip(way[1], -1, 1))))
     return None
@@ -279,8 +280,3 @@ def _forward(body, names):
     ahead = np.array([body[names.index(b), 2] - body[names.index(a), 2] for a, b in pairs])
     ahead = ahead[np.isfinite(ahead)]
     return float(np.median(ahead)) if len(ahead) else None
-
-
-def _unit(vectors):
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(length > 0, length, np.nan)

@@ -128,11 +128,12 @@ def candidates(motion, spells):
     spells : list of courtside.motion.tpose.TPose
     """
     after, taken = [], []
+    bend_deg = tposes.measure(motion)["bend_deg"] if spells else None
     for number, spell in enumerate(spells):
         stop_s = spell.stop_s + MOST_S
         if number + 1 < len(spells):
             stop_s = min(stop_s, spells[number + 1].start_s)
-        judged = _after(motion, spell, number, stop_s)
+        judged = _after(motion, spell, number, stop_s, bend_deg)
         if judged:
             after.append(judged)
             taken.append((judged.time_s - 0.5, stop_s))
@@ -171,7 +172,7 @@ def _together(motion, spells):
     return starts
 
 
-def _after(motion, spell, number, stop_s):
+def _after(motion, spell, number, stop_s, bend_deg):
     """Return the Candidate after a T-pose, or None if the hands do not come together."""
     apart, time_s = separation(motion, spell), motion.time_s
     span_m = float(np.nanmedian(apart[spell.frames]))
@@ -185,7 +186,7 @@ def _after(motion, spell, number, stop_s):
     near = int(met[0] if len(met) else close[0])
     near_s = float(time_s[near])
     most_m = floor + HELD_APART * span_m if floor < TOGETHER * span_m else 0.0
-    why = _why_not(motion, spell, near, apart, most_m)
+    why = _why_not(motion, spell, near, apart, most_m) or _bent(motion, near, bend_deg)
     if why:
         return Candidate(near_s, None, why)
     return _fitted(motion, spell, number, apart, near_s)
@@ -217,10 +218,14 @@ def _why_not(motion, spell, near, apart, most_m):
         return "the hands are not in front of the chest"
     if not abs(hands @ up) < LEVEL * arm_m:
         return "the hands are too high or too low"
-    bend = tposes.measure(motion)["bend_deg"][_within(time_s, time_s[near], (-0.2, 0.1))]
-    if not (np.isfinite(bend).any() and np.nanmedian(bend) < STRAIGHT_DEG):
-        return "the arms are bent"
     return ""
+
+
+def _bent(motion, near, bend_deg):
+    """Return why arms on their way to a clap are none to go by, empty if they are."""
+    bend = bend_deg[_within(motion.time_s, motion.time_s[near], (-0.2, 0.1))]
+    straight = np.isfinite(bend).any() and np.nanmedian(bend) < STRAIGHT_DEG
+    return "" if straight else "the arms are bent"
 
 
 def _fitted(motion, spell, number, apart, near_s):

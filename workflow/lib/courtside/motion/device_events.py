@@ -15,30 +15,6 @@ class Events:
     claps: list
 
 
-def events(motion, alone=False):
-    """Return the `Events` of a source.
-
-    Parameters
-    ----------
-    motion : DeviceMotion
-    alone : bool
-        No other device needs them: what is not there is left out.
-
-    Raises
-    ------
-    InputError
-        If it has no T-pose, or no clap after one.
-    """
-    spells, claps = [], []
-    try:
-        spells = tposes.find(motion)
-        claps = clapping.find(motion, spells)
-    except InputError:
-        if not alone:
-            raise
-    return Events(spells, claps)
-
-
 def shown(motions, devices, stated=()):
     """Return the `Events` of all sources of a take.
 
@@ -63,11 +39,13 @@ def shown(motions, devices, stated=()):
     """
     happened, faults = {}, {}
     for motion in motions:
+        spells, claps = [], []
         try:
-            happened[motion.source] = events(motion)
+            spells = tposes.find(motion)
+            claps = clapping.find(motion, spells)
         except InputError as error:
             faults[motion.source] = error
-            happened[motion.source] = events(motion, alone=True)
+        happened[motion.source] = Events(spells, claps)
     clapped = {devices[source] for source, each in happened.items() if each.claps} | set(stated)
     for source, error in faults.items():
         if devices[source] not in clapped and len(set(devices.values())) > 1:

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
+from courtside.geometry import transforms
 from courtside.motion import filtering
 from courtside.study.errors import InputError
 
@@ -173,7 +174,7 @@ def measure(motion):
     xyz = np.where(motion.performed[:, None, None], motion.xyz, np.nan)
     smooth = _medians(xyz[:, [names.index(name) for name in JOINTS]], MEDIAN_S / step_s)
     at = dict(zip(JOINTS, np.moveaxis(smooth, 1, 0), strict=True))
-    up = _unit(sum(at[f"{s}_shoulder"] - at[f"{s}_hip"] for s in SIDES))
+    up = transforms.unit(sum(at[f"{s}_shoulder"] - at[f"{s}_hip"] for s in SIDES))
     line = _level(at["left_shoulder"] - at["right_shoulder"], up)
     half_m = np.linalg.norm(at["left_wrist"] - at["right_wrist"], axis=1, keepdims=True) / 2
     sides = [_arm(at, side, up, line * (1 if side == "left" else -1)) for side in SIDES]
@@ -189,9 +190,9 @@ def measure(motion):
 
 
 def _arm(at, side, up, outwards):
-    upper = _unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
-    fore = _unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
-    whole = _unit(at[f"{side}_wrist"] - at[f"{side}_shoulder"])
+    upper = transforms.unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
+    fore = transforms.unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
+    whole = transforms.unit(at[f"{side}_wrist"] - at[f"{side}_shoulder"])
     return {
         "bend_deg": _degrees(_dot(upper, fore)),
         "level_deg": np.abs(90 - _degrees(_dot(whole, up))),
@@ -225,14 +226,9 @@ def _dot(first, second):
     return np.einsum("ti,ti->t", first, second)
 
 
-def _unit(vectors):
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(length > 0, length, np.nan)
-
-
 def _level(vectors, up):
     """Return directions without their part along the trunk."""
-    return _unit(vectors - _dot(vectors, up)[:, None] * up)
+    return transforms.unit(vectors - _dot(vectors, up)[:, None] * up)
 
 
 def _degrees(cosine):

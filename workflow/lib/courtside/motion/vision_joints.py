@@ -4,9 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.motion import body_segments
-from courtside.records import reasons
-from courtside.records.device_motion import DeviceMotion
+from courtside.records import limbs
 from courtside.study.errors import InputError
 
 LEAST_FRAMES = 30
@@ -60,7 +58,7 @@ def observe(posed, vision, sigma_m):
             "hips (kind rgb); correct by a depth camera or by several cameras"
         )
     names = list(posed.hierarchy.joints)
-    joints = [name for name in body_segments.LIMB_JOINTS if name in names and name in vision.joints]
+    joints = [name for name in limbs.JOINTS if name in names and name in vision.joints]
     columns = [list(vision.joints).index(name) for name in joints]
     inside = (vision.time_s >= posed.time_s[0]) & (vision.time_s <= posed.time_s[-1])
     inside &= vision.performed
@@ -75,29 +73,3 @@ def observe(posed, vision, sigma_m):
         )
     xyz, sigma = np.where(usable[..., None], xyz, np.nan), np.where(usable, sigma, 1.0)
     return Seen(vision.source, tuple(joints), vision.time_s[inside], xyz, sigma)
-
-
-def of_cameras(points, person):
-    """Return one person's skeleton from several cameras as vision, and its standard deviations.
-
-    Parameters
-    ----------
-    points : Keypoints3D
-    person : str
-        Its identifier.
-
-    Returns
-    -------
-    vision : DeviceMotion
-        On the reference clock, in the world.
-    sigma_m : (T, J) float
-        Per axis, root mean square over axes, of the keypoints' noise; NaN where the joint is missing.
-    """
-    row = list(points.person_id).index(person)
-    reason = points.reason[row]
-    xyz = np.where((reason == reasons.OK)[..., None], points.xyz[row], np.nan)
-    variance = np.trace(points.covariance_2d[row], axis1=-2, axis2=-1) / 3
-    sigma = np.sqrt(np.where(np.isfinite(xyz).all(axis=-1), variance, np.nan))
-    every = np.ones(len(points.time_s), bool)
-    vision = DeviceMotion("cameras", "cameras", points.joints, points.time_s, xyz, reason, every)
-    return vision, sigma

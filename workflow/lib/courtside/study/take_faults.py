@@ -78,6 +78,12 @@ def find(where, take, cameras, subjects, virtual):
     made = (take.get("virtual") or {}).get("devices", {})
     recorded = [*(cameras if virtual else take.get("videos", {})), *take.get("devices", {}), *made]
     yield from unknown(f"{where}.clocks", take.get("clocks", {}), recorded)
+    first = next(iter(take.get("videos", {})), None)
+    if any(take.get("clocks", {}).get(first, {}).get(key, 0) for key in ("offset_s", "drift_ppm")):
+        yield (
+            f"{where}.clocks.{first}: expected no offset or drift of the first camera, whose clock is the "
+            "reference, found one; state the other clocks against it"
+        )
     yield from _filmed_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
         for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):

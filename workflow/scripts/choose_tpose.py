@@ -1,0 +1,37 @@
+"""Choose the T-pose that all sources of a take show best: device motions, clocks -> their spells of it, claps."""
+
+from courtside.motion import common_frame, device_events
+from courtside.records import device_motion, sync
+from courtside.study import log
+from courtside.study.files import write_json
+
+
+def main(device_npz, sync_json, chosen_json, *, devices, stated):
+    motions = {motion.source: motion for motion in map(device_motion.read, device_npz)}
+    reference, found = sync.read(sync_json)
+    of_device = {devices[name]: clock for name, clock in found.items()}
+    clocks = {name: of_device[devices[name]] for name in motions}
+    order = sorted(motions, key=lambda name: name != reference)
+    shown = device_events.shown(list(motions.values()), devices, stated)
+    happened = {name: shown[name] for name in order}
+    chosen = common_frame.common(happened, clocks, motions)
+    content = {
+        source: {
+            "tpose": spell.as_dict(),
+            "clap_s": common_frame.claps_of(source, happened, clocks).tolist(),
+        }
+        for source, spell in chosen.items()
+    }
+    for source, spell in chosen.items():
+        log.logger.info("%s: T-pose %.2f to %.2f s", source, spell.start_s, spell.stop_s)
+    write_json(chosen_json, content)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.devices,
+        snakemake.input.sync,
+        snakemake.output.chosen,
+        **snakemake.params.step,
+    )
