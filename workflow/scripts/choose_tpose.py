@@ -1,4 +1,4 @@
-"""Choose the T-pose that all sources of a take show best: device motions, clocks -> their spells of it, claps."""
+"""Choose the T-pose that all sources of a take show best: motions, clocks -> their spells of it, claps."""
 
 from courtside.motion import common_frame, device_events
 from courtside.records import device_motion, sync

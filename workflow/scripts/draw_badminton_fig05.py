@@ -3,7 +3,8 @@
 import pandas as pd
 
 from courtside.devices import video
-from courtside.figures import badminton_fig05, close_ups, style
+from courtside.figures import badminton_fig05, style
+from courtside.pose import privacy
 from courtside.records import keypoints, skeleton
 from courtside.study import log
 
@@ -22,7 +23,8 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
         view = keypoints.read_2d(pose2d)
         _, image = video.read_frame(film, view.time_s[example["frame_idx"]])
         if blur_faces:
-            image = close_ups.hide_faces(image, view.xy[:, example["frame_idx"], face])
+            persons = view.xy[:, example["frame_idx"]]
+            image = privacy.hide(image, persons, joints.bone_indices(), persons[:, face])
         images.append(image)
     shares = badminton_fig05.table(rows, layouts)
     drawing = badminton_fig05.draw(shares, layouts, chosen, images, joints.bones)

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 
 from courtside.devices import video
-from courtside.exports import overlay_video
-from courtside.figures import badminton_fig09, close_ups, stick, style
+from courtside.figures import badminton_fig09, stick, style
 from courtside.geometry import courts
 from courtside.motion import round_trip
+from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
 
@@ -25,8 +25,8 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
         _, image = video.read_frame(one.video, one.view.time_s[at])
         if blur_faces:
             both = one.view.xy[:, at], one.reprojected(points, at)
-            image = overlay_video.only_persons(image, np.concatenate(both), joints.bone_indices())
-            image = close_ups.hide_faces(image, figure.faces_of(*both))
+            everyone = np.concatenate(both)
+            image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
         images[one.camera.name] = image
     court = courts.read(paths.court) if paths.get("court") else None
     rows, cameras = badminton_fig09.table(points, seen, frame, figure), [one.camera for one in seen]

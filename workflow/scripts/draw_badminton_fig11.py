@@ -3,9 +3,9 @@
 import numpy as np
 
 from courtside.devices import video
-from courtside.exports import overlay_video
-from courtside.figures import badminton_fig11, close_ups, stick, style
+from courtside.figures import badminton_fig11, stick, style
 from courtside.motion import round_trip
+from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
 
@@ -26,8 +26,8 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
         both = one.view.xy[:, at], one.reprojected(points, at)
         _, image = video.read_frame(one.video, one.view.time_s[at])
         if blur_faces:
-            image = overlay_video.only_persons(image, np.concatenate(both), joints.bone_indices())
-            image = close_ups.hide_faces(image, figure.faces_of(*both))
+            everyone = np.concatenate(both)
+            image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
         name = one.camera.name
         images[name], detected[name], reprojected[name] = image, *map(figure.of, both)
     drawing = badminton_fig11.draw(rows, images, detected, reprojected, figure, limit_torso)

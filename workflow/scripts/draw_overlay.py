@@ -3,10 +3,10 @@
 import numpy as np
 
 from courtside.devices import video
-from courtside.exports import overlay_video
 from courtside.figures import overlay, style
 from courtside.geometry import cameras
 from courtside.motion import resampling
+from courtside.pose import privacy
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
 
@@ -37,8 +37,10 @@ def panel(points, camera, view, own_s, film, time_s, joints, blur_faces):
     both = view.xy[:, at], overlay.reproject(camera, points, time_s)
     image = video.read_frame(film, own_s[at])[1]
     if blur_faces:
-        image = overlay_video.only_persons(image, np.concatenate(both), joints.bone_indices())
-    return overlay.panel(image, *both, points.accepted[:, at, :, column], joints, blur_faces)
+        face = [joints.index(name) for name in joints.groups["face"]]
+        faces = np.concatenate([xy[:, face] for xy in both], axis=1)
+        image = privacy.hide(image, np.concatenate(both), joints.bone_indices(), faces)
+    return overlay.panel(image, *both, points.accepted[:, at, :, column], joints)
 
 
 if __name__ == "__main__":

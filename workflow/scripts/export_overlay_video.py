@@ -2,7 +2,7 @@
 
 from courtside.devices import video, video_writer
 from courtside.exports import overlay_video
-from courtside.figures import close_ups, style
+from courtside.figures import style
 from courtside.geometry import cameras
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
@@ -24,9 +24,8 @@ def main(paths, mp4, camera, *, blur_faces, trim_s, crf, effort, keep_background
     start_s, stop_s = trim_s or (None, None)
     rate_hz = video.probe(paths.video, stop_s=stop_s).rate_hz
     frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
-    hide = close_ups.hide_faces if blur_faces else None
     drawn = overlay_video.pictures(
-        frames, track, colours=COLOURS, hide_faces=hide, keep_background=keep_background
+        frames, track, colours=COLOURS, hide_faces=blur_faces, keep_background=keep_background
     )
     said = log.progress(drawn, len(track.own_s), f"{camera}: frames")
     video_writer.write_video(mp4, said, rate_hz, crf=crf, effort=effort)

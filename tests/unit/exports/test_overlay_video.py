@@ -9,7 +9,7 @@ import scene
 import walker
 from courtside.devices import video, video_writer
 from courtside.exports import overlay_video
-from courtside.figures import close_ups, style
+from courtside.figures import style
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
 
@@ -39,7 +39,7 @@ def grey_frames(camera, times_s, size=None):
     return [(float(time), np.full((height, width, 3), 90, np.uint8)) for time in times_s]
 
 
-def drawn(take, track, hide_faces=None, frames=None):
+def drawn(take, track, hide_faces=False, frames=None):
     frames = frames or grey_frames(take[0], track.own_s)
     return list(overlay_video.pictures(frames, track, colours=COLOURS, hide_faces=hide_faces))
 
@@ -94,8 +94,8 @@ def test_faces_are_hidden_also_while_nobody_sees_them(take):
     rng = np.random.default_rng(0)
     noise = rng.integers(0, 255, (camera.size[1], camera.size[0], 3), dtype=np.uint8)
     frames = [(float(time), noise) for time in view.time_s]
-    hidden = drawn(take, track, close_ups.hide_faces, frames)
-    shown = drawn(take, track, None, frames)
+    hidden = drawn(take, track, True, frames)
+    shown = drawn(take, track, False, frames)
     for at in range(N):
         x, y = np.round(view.xy[0, at, FACE].mean(axis=0)).astype(int)
         part = (slice(y - 3, y + 4), slice(x - 3, x + 4))
@@ -113,7 +113,7 @@ def test_nobody_in_the_background_can_be_recognised(take):
     rng = np.random.default_rng(0)
     noise = rng.integers(0, 255, (1080, 1920, 3), dtype=np.uint8)
     frames = [(float(track.own_s[0]), noise)]
-    hidden = drawn(take, track, close_ups.hide_faces, frames)[0]
+    hidden = drawn(take, track, True, frames)[0]
     x, y = np.round(track.detected[0, 0, WRIST]).astype(int)
     around = np.linalg.norm(
         np.stack(np.meshgrid(np.arange(1920), np.arange(1080)), axis=-1)[..., None, :]
@@ -128,16 +128,9 @@ def test_nobody_in_the_background_can_be_recognised(take):
     beside = (slice(y - 20, y - 12), slice(x - 10, x + 10))
     assert (hidden[beside] == noise[beside]).mean() > 0.5  # sharp at the person, but for lines
     kept = overlay_video.pictures(
-        frames, track, colours=COLOURS, hide_faces=close_ups.hide_faces, keep_background=True
+        frames, track, colours=COLOURS, hide_faces=True, keep_background=True
     )
     np.testing.assert_array_equal(next(kept)[away], noise[away])
-
-
-def test_without_a_person_all_is_coarse():
-    rng = np.random.default_rng(0)
-    noise = rng.integers(0, 255, (240, 320, 3), dtype=np.uint8)
-    for persons in (np.empty((0, 3, 2)), np.full((2, 3, 2), np.nan)):
-        assert detail(overlay_video.only_persons(noise, persons, [(0, 1)])) < 0.35 * detail(noise)
 
 
 def test_gaps_in_a_face_are_bridged_for_a_second():
@@ -160,7 +153,7 @@ def test_the_file_is_like_its_source(take, tmp_path):
     frames = grey_frames(camera, points.time_s, (width // 2 * 2, height // 2 * 2))
     video_writer.write_video(source, (image for _, image in frames), 50, crf=18)
     pictures = overlay_video.pictures(
-        video.frames(source), tracked(take), colours=COLOURS, hide_faces=close_ups.hide_faces
+        video.frames(source), tracked(take), colours=COLOURS, hide_faces=True
     )
     video_writer.write_video(result, pictures, video.probe(source).rate_hz, crf=18)
     before, after = video.probe(source), video.probe(result)
@@ -175,7 +168,7 @@ def test_the_file_is_like_its_source(take, tmp_path):
 def test_an_odd_picture_grows_by_a_pixel(take):
     track = tracked(take)
     frames = grey_frames(take[0], track.own_s[:1], (641, 361))
-    assert drawn(take, track, None, frames)[0].shape == (362, 642, 3)
+    assert drawn(take, track, False, frames)[0].shape == (362, 642, 3)
 
 
 def test_pictures_come_one_by_one(take):
@@ -186,14 +179,14 @@ def test_pictures_come_one_by_one(take):
             taken.append(frame[0])
             yield frame
 
-    made = overlay_video.pictures(source(), tracked(take), colours=COLOURS, hide_faces=None)
+    made = overlay_video.pictures(source(), tracked(take), colours=COLOURS, hide_faces=False)
     next(made)
     assert len(taken) == 1
 
 
 def test_a_frame_without_keypoints_stops_the_video(take):
     with pytest.raises(InputError, match=r"camera c1.*detect the pose"):
-        drawn(take, tracked(take), None, grey_frames(take[0], [0.03]))
+        drawn(take, tracked(take), False, grey_frames(take[0], [0.03]))
 
 
 def test_persons_and_cameras_must_fit(take):

@@ -48,14 +48,6 @@ def test_lines_without_both_ends_are_left_out():
     assert drawn == [[[0, 0], [1, 1]], [[5, 5], [6, 6]], [[6, 6], [7, 8]]]
 
 
-def test_faces_are_hidden_where_they_are():
-    image = np.random.default_rng(0).integers(0, 255, (200, 300, 3)).astype(np.uint8)
-    face = np.array([[100.0, 100.0], [110.0, 104.0]])
-    hidden = close_ups.hide_faces(image, [face, np.full((2, 2), np.nan)])
-    assert (hidden[98:106, 98:106] != image[98:106, 98:106]).any()
-    np.testing.assert_array_equal(hidden[:60], image[:60])
-
-
 def test_rings_are_where_the_points_are():
     axis = Figure().subplots()
     close_ups.rings(axis, [[3.0, 4.0], [5.0, 6.0]])

@@ -40,7 +40,7 @@ def drawn(monkeypatch, accepted=True, detected_offset=(200.0, 0.0)):
     xy = overlay.reproject(CAMERAS[0], record, record.time_s[6])
     image = np.zeros((1080, 1920, 3), np.uint8)
     flags = np.full(xy.shape[:2], accepted)
-    panel = overlay.panel(image, xy + detected_offset, xy, flags, walker.SKELETON, blur_faces=True)
+    panel = overlay.panel(image, xy + detected_offset, xy, flags, walker.SKELETON)
     x, y, side = overlay._extent(xy + detected_offset, xy, image)
     corner = np.array([max(0, int(x - side / 2)), max(0, int(y - side / 2))])
     return record, panel, corner
@@ -65,7 +65,7 @@ def test_red_lines_only_where_a_view_was_not_used(monkeypatch):
 def test_nobody_seen_shows_the_whole_picture():
     nothing = np.full((1, 33, 2), np.nan)
     image = np.zeros((100, 160, 3), np.uint8)
-    panel = overlay.panel(image, nothing, nothing, np.zeros((1, 33), bool), walker.SKELETON, True)
+    panel = overlay.panel(image, nothing, nothing, np.zeros((1, 33), bool), walker.SKELETON)
     assert panel.shape == image.shape
 
 

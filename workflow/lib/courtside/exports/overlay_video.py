@@ -6,15 +6,13 @@ import cv2
 import numpy as np
 
 from courtside.geometry import cameras as camera_models
+from courtside.pose import privacy, stick_drawing
 from courtside.study.errors import InputError
 
 BRIDGED_S = 1.0  # a face unseen for longer, or for longer at an end, is not guessed
 LINE = 1 / 540  # of the picture's height
 LETTER = 1 / 1400  # size of the letters, of the picture's shorter side
 UNDER = 1.6  # the 3D skeleton is so much thicker than what is drawn over it
-FURTHEST_PX = 10_000  # from the picture's corner: OpenCV draws no further
-COARSE = 1 / 60  # of the picture's height: cells that surroundings are reduced to
-BODY = 0.18  # of a person's extent: how wide the body is around its bones
 DETECTED, REPROJECTED, NOT_USED = "detected", "3D skeleton", "view not used"
 
 
@@ -147,40 +145,6 @@ def bridged(time_s, xy):
     return result
 
 
-def only_persons(image, persons, bones):
-    """Return a picture that is sharp at some persons only, so that nobody else in it can be recognised.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-    persons : (n, J, 2) float
-        Joints, px; NaN where unknown. Where nobody is known nothing is left sharp.
-    bones : sequence of (int, int)
-
-    Returns
-    -------
-    image : (H, W, 3) uint8
-        A new picture. Surroundings are reduced to 60 cells along the height, then drawn smoothly.
-
-    Notes
-    -----
-    No detector is asked who else is there: those in the background are the ones that it misses.
-    """
-    height, width = image.shape[:2]
-    cell = max(1.0, height * COARSE)
-    cells = max(1, round(width / cell)), max(1, round(height / cell))
-    small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
-    result = cv2.resize(small, (width, height), interpolation=cv2.INTER_LINEAR)
-    sharp = np.zeros((height, width), np.uint8)
-    for xy in persons:
-        known = _drawable(xy)
-        if known.any():
-            wide = max(2, round(BODY * np.ptp(xy[known], axis=0).max()))
-            _sticks(sharp, xy[None], bones, 255, wide, wide // 2)
-    cv2.copyTo(image, sharp, result)
-    return result
-
-
 def pictures(frames, track, *, colours, hide_faces, keep_background=False):
     """Draw on pictures as they come; no more than one is held.
 
@@ -191,9 +155,7 @@ def pictures(frames, track, *, colours, hide_faces, keep_background=False):
     track : Track
     colours : (3,) of (int, int, int)
         BGR of detected joints, of the 3D skeleton, and of views that were not used.
-    hide_faces : callable or None
-        Takes a picture and the joints of each face (F, K, 2), returns a picture without the faces; None
-        leaves everything as it is.
+    hide_faces : bool
     keep_background : bool
         Whether what is around the persons stays sharp where faces are hidden: for videos in which nobody
         else is to be seen.
@@ -216,10 +178,11 @@ def pictures(frames, track, *, colours, hide_faces, keep_background=False):
                 f"camera {track.camera}: expected 2D keypoints for the frame at {time_s:.4f} s, found the "
                 f"nearest at {track.own_s[at]:.4f} s; detect the pose in this video again"
             )
-        if hide_faces is not None:
+        if hide_faces and keep_background:
+            image = privacy.hide_faces(image, track.faces[:, at])
+        elif hide_faces:
             persons = np.concatenate([track.detected[:, at], track.reprojected[:, at]])
-            image = image if keep_background else only_persons(image, persons, track.bones)
-            image = hide_faces(image, track.faces[:, at])
+            image = privacy.hide(image, persons, track.bones, track.faces[:, at])
         yield _drawn(image, track, at, colours)
 
 
@@ -229,31 +192,20 @@ def _drawn(image, track, at, colours):
     image = cv2.copyMakeBorder(image, 0, odd[0], 0, odd[1], cv2.BORDER_REPLICATE)
     thick = max(1, round(height * LINE))
     detected, reprojected = track.detected[:, at], track.reprojected[:, at]
-    _sticks(image, reprojected, track.bones, colours[1], round(UNDER * thick), 3 * thick)
-    _sticks(image, detected, track.bones, colours[0], thick, 2 * thick)
+    stick_drawing.draw(image, reprojected, track.bones, colours[1], round(UNDER * thick), 3 * thick)
+    stick_drawing.draw(image, detected, track.bones, colours[0], thick, 2 * thick)
     apart = ~track.used[:, at] & np.isfinite(detected + reprojected).all(axis=-1)
     for start, stop in zip(detected[apart], reprojected[apart], strict=True):
-        cv2.line(image, _px(start), _px(stop), colours[2], thick, cv2.LINE_AA)
+        cv2.line(
+            image,
+            stick_drawing.pixel(start),
+            stick_drawing.pixel(stop),
+            colours[2],
+            thick,
+            cv2.LINE_AA,
+        )
     _caption(image, track, at, colours)
     return image
-
-
-def _drawable(xy):
-    return np.isfinite(xy).all(axis=1) & (np.abs(xy) < FURTHEST_PX).all(axis=1)
-
-
-def _sticks(image, persons, bones, colour, thick, radius):
-    for xy in persons:
-        inside = _drawable(xy)
-        for start, stop in bones:
-            if inside[start] and inside[stop]:
-                cv2.line(image, _px(xy[start]), _px(xy[stop]), colour, thick, cv2.LINE_AA)
-        for joint in xy[inside]:
-            cv2.circle(image, _px(joint), radius, colour, -1, cv2.LINE_AA)
-
-
-def _px(place):
-    return tuple(int(value) for value in np.round(place))
 
 
 def _caption(image, track, at, colours):

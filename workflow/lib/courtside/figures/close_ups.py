@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from courtside.figures import faces, style
+from courtside.figures import style
 
 MARGIN = 1.2  # of the person's extent, around it
 LARGEST_PX = 800  # longest side of what is kept of a picture
@@ -51,20 +51,6 @@ def box(xy, size, aspect=1.0):
     width, height = np.maximum(MARGIN * (high - low), LEAST_PX)
     width, height = max(width, height * aspect), max(height, width / aspect)
     return Box(*((low + high) / 2), width, height)
-
-
-def hide_faces(image, xy_of_faces):
-    """Return a picture with faces hidden.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-    xy_of_faces : sequence of (K, 2) float
-        The joints of each face; NaN are ignored.
-    """
-    for xy in xy_of_faces:
-        image = faces.blur(image, np.asarray(xy))
-    return image
 
 
 def show(axis, image, part):

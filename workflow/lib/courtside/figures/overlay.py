@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from courtside.figures import faces, style
+from courtside.figures import style
 from courtside.geometry import cameras as camera_models
 from courtside.records import reasons
 
@@ -79,7 +79,7 @@ def table(cameras, views, points, times_s):
     return pd.concat(parts, ignore_index=True)
 
 
-def panel(image, detected, reprojected, accepted, skeleton, blur_faces):
+def panel(image, detected, reprojected, accepted, skeleton):
     """Draw one picture.
 
     Parameters
@@ -90,19 +90,13 @@ def panel(image, detected, reprojected, accepted, skeleton, blur_faces):
         Pixels.
     accepted : (P, J) bool
     skeleton : Skeleton
-    blur_faces : bool
 
     Returns
     -------
     panel : (h, w, 3) uint8
         Cut out around the persons, BGR.
     """
-    face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
     width = max(1, round(_extent(detected, reprojected, image)[2] / 300))
-    if blur_faces:
-        for person in range(len(detected)):
-            both = np.concatenate([detected[person, face], reprojected[person, face]])
-            image = faces.blur(image, both)
     image = image.copy()
     for xy, colour in ((reprojected, style.REPROJECTED_BGR), (detected, style.DETECTED_BGR)):
         for person in xy:

@@ -1,0 +1,68 @@
+"""A face is gone after blurring, and nothing else has changed; nobody else can be recognised."""
+
+import numpy as np
+import pytest
+
+from courtside.pose import privacy
+
+FACE = np.array([[150.0, 100.0], [170.0, 100.0], [160.0, 115.0], [np.nan, np.nan]])
+
+
+def noise():
+    return np.random.default_rng(0).integers(0, 255, (240, 320, 3), dtype=np.uint8)
+
+
+def detail(image):
+    """Return the mean difference of neighbouring pixels."""
+    return np.abs(np.diff(image.astype(float), axis=1)).mean()
+
+
+def test_detail_is_gone_inside_and_kept_outside():
+    image = noise()
+    before = image.copy()
+    blurred = privacy.blur_face(image, FACE)
+    np.testing.assert_array_equal(image, before)
+    assert detail(blurred[101:114, 154:167]) < 0.25 * detail(before)
+    changed = (blurred != before).any(axis=2)
+    rows, columns = np.nonzero(changed)
+    assert np.hypot(rows - 107.5, columns - 160).max() < 40
+    for x, y in FACE[:3].astype(int):
+        assert changed[y - 2 : y + 3, x - 2 : x + 3].all()
+
+
+@pytest.mark.parametrize("place", [(0, 0), (319, 239), (-500, -500), (160, -3)])
+def test_faces_at_and_beyond_the_border(place):
+    image = noise()
+    blurred = privacy.blur_face(image, np.array([place, np.add(place, 9)], float))
+    assert blurred.shape == image.shape
+    assert (blurred != image).any() == (place != (-500, -500))
+
+
+def test_one_point_is_enough_and_none_changes_nothing():
+    image = noise()
+    assert (privacy.blur_face(image, np.array([[100.0, 100.0]])) != image).any()
+    np.testing.assert_array_equal(privacy.blur_face(image, np.full((3, 2), np.nan)), image)
+
+
+def test_faces_are_hidden_where_they_are():
+    image = np.random.default_rng(0).integers(0, 255, (200, 300, 3)).astype(np.uint8)
+    face = np.array([[100.0, 100.0], [110.0, 104.0]])
+    hidden = privacy.hide_faces(image, [face, np.full((2, 2), np.nan)])
+    assert (hidden[98:106, 98:106] != image[98:106, 98:106]).any()
+    np.testing.assert_array_equal(hidden[:60], image[:60])
+
+
+def test_without_a_person_all_is_coarse():
+    rng = np.random.default_rng(0)
+    noise = rng.integers(0, 255, (240, 320, 3), dtype=np.uint8)
+    for persons in (np.empty((0, 3, 2)), np.full((2, 3, 2), np.nan)):
+        assert detail(privacy.only_persons(noise, persons, [(0, 1)])) < 0.35 * detail(noise)
+
+
+def test_a_person_stays_sharp_without_a_face():
+    image = noise()
+    person = np.array([[160.0, 100.0], [160.0, 200.0]])
+    hidden = privacy.hide(image, person[None], [(0, 1)], [FACE])
+    np.testing.assert_array_equal(hidden[150:190, 158:163], image[150:190, 158:163])
+    assert detail(hidden[101:114, 154:167]) < 0.25 * detail(image)
+    assert detail(hidden[:, 220:]) < 0.35 * detail(image)

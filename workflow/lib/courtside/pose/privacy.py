@@ -1,0 +1,114 @@
+"""Pictures in which nobody can be recognised: faces hidden, what is around the persons made coarse."""
+
+import cv2
+import numpy as np
+
+from courtside.pose import stick_drawing
+
+REACH = 1.6  # of the distance from the face's centre to its furthest joint
+LEAST_SHARE = 0.012  # of the picture's height: the smallest radius
+GRAIN = 8  # mosaic cells across the face
+COARSE = 1 / 60  # of the picture's height: cells that surroundings are reduced to
+BODY = 0.18  # of a person's extent: how wide the body is around its bones
+
+
+def blur_face(image, xy_face):
+    """Return a picture with the face hidden under a mosaic.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+    xy_face : (K, 2) float
+        Joints of one face, px; NaN are ignored. Nothing changes where all are.
+
+    Returns
+    -------
+    blurred : (H, W, 3) uint8
+        A new picture.
+
+    Notes
+    -----
+    A mosaic of at most 8 cells across throws the detail away; a Gaussian could be sharpened again.
+    """
+    known = xy_face[np.isfinite(xy_face).all(axis=1)]
+    result = image.copy()
+    if not len(known):
+        return result
+    centre = (known.min(axis=0) + known.max(axis=0)) / 2
+    reach = REACH * np.linalg.norm(known - centre, axis=1).max(initial=0.0)
+    radius = int(np.ceil(max(reach, LEAST_SHARE * image.shape[0])))
+    x, y = np.round(centre).astype(int)
+    top, left = max(0, y - radius), max(0, x - radius)
+    patch = result[top : max(0, y + radius + 1), left : max(0, x + radius + 1)]
+    if not patch.size:
+        return result
+    cells = [max(1, round(GRAIN * length / (2 * radius))) for length in patch.shape[1::-1]]
+    coarse = cv2.resize(patch, cells, interpolation=cv2.INTER_AREA)
+    mosaic = cv2.resize(coarse, patch.shape[1::-1], interpolation=cv2.INTER_NEAREST)
+    rows, columns = np.mgrid[: patch.shape[0], : patch.shape[1]]
+    inside = (rows + top - y) ** 2 + (columns + left - x) ** 2 <= radius**2
+    patch[inside] = mosaic[inside]
+    return result
+
+
+def hide_faces(image, xy_of_faces):
+    """Return a picture with faces hidden.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+    xy_of_faces : sequence of (K, 2) float
+        The joints of each face; NaN are ignored.
+    """
+    for xy in xy_of_faces:
+        image = blur_face(image, np.asarray(xy))
+    return image
+
+
+def only_persons(image, persons, bones):
+    """Return a picture that is sharp at some persons only, so that nobody else in it can be recognised.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+    persons : (n, J, 2) float
+        Joints, px; NaN where unknown. Where nobody is known nothing is left sharp.
+    bones : sequence of (int, int)
+
+    Returns
+    -------
+    image : (H, W, 3) uint8
+        A new picture. Surroundings are reduced to 60 cells along the height, then drawn smoothly.
+
+    Notes
+    -----
+    No detector is asked who else is there: those in the background are the ones that it misses.
+    """
+    height, width = image.shape[:2]
+    cell = max(1.0, height * COARSE)
+    cells = max(1, round(width / cell)), max(1, round(height / cell))
+    small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
+    result = cv2.resize(small, (width, height), interpolation=cv2.INTER_LINEAR)
+    sharp = np.zeros((height, width), np.uint8)
+    for xy in persons:
+        known = stick_drawing.drawable(xy)
+        if known.any():
+            wide = max(2, round(BODY * np.ptp(xy[known], axis=0).max()))
+            stick_drawing.draw(sharp, [xy], bones, 255, wide, wide // 2)
+    cv2.copyTo(image, sharp, result)
+    return result
+
+
+def hide(image, persons, bones, xy_of_faces):
+    """Return a picture of some persons in which neither they nor anybody else can be recognised.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+    persons : (n, J, 2) float
+        As for `only_persons`.
+    bones : sequence of (int, int)
+    xy_of_faces : sequence of (K, 2) float
+        As for `hide_faces`.
+    """
+    return hide_faces(only_persons(image, persons, bones), xy_of_faces)

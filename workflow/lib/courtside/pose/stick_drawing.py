@@ -1,0 +1,39 @@
+"""Stick figures drawn into pictures."""
+
+import cv2
+import numpy as np
+
+FURTHEST_PX = 10_000  # from the picture's corner: OpenCV draws no further
+
+
+def drawable(xy):
+    """Return which joints (J, 2) px can be drawn, (J,) bool."""
+    return np.isfinite(xy).all(axis=1) & (np.abs(xy) < FURTHEST_PX).all(axis=1)
+
+
+def pixel(place):
+    """Return a place as OpenCV takes it."""
+    return tuple(int(value) for value in np.round(place))
+
+
+def draw(image, persons, bones, colour, thick, radius):
+    """Draw persons into a picture, in place.
+
+    Parameters
+    ----------
+    image : (H, W) or (H, W, 3) uint8
+    persons : sequence of (J, 2) float
+        Px; NaN where missing.
+    bones : sequence of (int, int)
+    colour : int or (int, int, int)
+        BGR.
+    thick, radius : int
+        Of bones and of joints, px.
+    """
+    for xy in persons:
+        inside = drawable(xy)
+        for start, stop in bones:
+            if inside[start] and inside[stop]:
+                cv2.line(image, pixel(xy[start]), pixel(xy[stop]), colour, thick, cv2.LINE_AA)
+        for joint in xy[inside]:
+            cv2.circle(image, pixel(joint), radius, colour, -1, cv2.LINE_AA)
