@@ -1,7 +1,8 @@
 """Draft a session's file from a folder of recordings: `python workflow/draft_session.py data/north`.
 
 A plain program, for Snakemake checks sessions before it runs. It writes config/sessions/<session>.yaml with
-every guess marked, never over a file that is there, and says what to look at next.
+every guess marked and config/<session>.yaml, the study of this session alone, never over a file that is
+there, and says what to look at next.
 """
 
 import argparse
@@ -12,7 +13,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
 from courtside.devices import survey  # noqa: E402
-from courtside.study import file_names, session_draft, session_guess  # noqa: E402
+from courtside.study import file_names, session_advice, session_draft, session_guess  # noqa: E402
 from courtside.study.errors import InputError  # noqa: E402
 
 
@@ -25,8 +26,15 @@ def main(folder, name, court, sessions):
     path = sessions / f"{name}.yaml"
     title = folder.resolve().name
     session_draft.write(path, session_draft.text(guess, title=title, folder=written, court=court))
+    study = shown(sessions.parent / f"{name}.yaml")
+    said = [f"Wrote {shown(path)}.", session_advice.write_study(study, name, guess.takes)]
     points = session_draft.court_points(guess, written)
-    return [f"Wrote {path}.", *session_draft.to_check(guess, path, points)]
+    return [*said, *session_advice.to_check(guess, shown(path), points, study)]
+
+
+def shown(path):
+    """Return a path as it is given to Snakemake: from the working directory if below it."""
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
 if __name__ == "__main__":

@@ -190,6 +190,17 @@ def test_undo_redo_nudge_hide_and_delete(open_page, make):
     assert marked(page)["back", "p01"] == moved
 
 
+def test_a_narrow_screen_opens_at_the_top(open_page, make):
+    page = open_page(make(), width=400, height=850)
+    assert page.evaluate("scrollY") == 0
+    assert page.locator("h1").bounding_box()["y"] >= 0
+    choose(page, "p18")  # far down the list
+    page.keyboard.press("b")
+    page.evaluate("scrollTo(0, 0)")
+    page.keyboard.press("n")
+    assert page.evaluate("scrollY") == 0
+
+
 def test_the_keyboard_alone_places_a_point(open_page, make):
     page = open_page(make())
     page.focus("#view")

@@ -61,7 +61,7 @@ rule draw_badminton_fig09:
     params:
         code=code("draw_badminton_fig09.py"),
         step=stroke,
-        blur_faces=lambda w: session_of(w).blur_faces,
+        blur_faces=blurred,
     script:
         "../scripts/draw_badminton_fig09.py"
 
@@ -77,7 +77,7 @@ rule draw_badminton_fig10:
     params:
         code=code("draw_badminton_fig10.py"),
         step=lambda w: {**stroke(w), "n_instants": 3},
-        blur_faces=lambda w: session_of(w).blur_faces,
+        blur_faces=blurred,
     script:
         "../scripts/draw_badminton_fig10.py"
 
@@ -92,6 +92,6 @@ rule draw_badminton_fig11:
     params:
         code=code("draw_badminton_fig11.py"),
         step=lambda w: {**stroke(w), "limit_torso": STUDY.parameters["draw_stroke"]["limit_torso"]},
-        blur_faces=lambda w: session_of(w).blur_faces,
+        blur_faces=blurred,
     script:
         "../scripts/draw_badminton_fig11.py"

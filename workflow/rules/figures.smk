@@ -21,7 +21,7 @@ rule draw_overlay:
     params:
         code=code("draw_overlay.py"),
         step=step("draw_overlay"),
-        blur_faces=lambda w: session_of(w).blur_faces,
+        blur_faces=blurred,
     script:
         "../scripts/draw_overlay.py"
 

@@ -107,7 +107,7 @@ rule correct_joints:
 
 rule export_take:
     input:
-        pose3d=f"{TAKE}/{{stage}}/{FUSED}.npz",
+        pose3d=exported,
     output:
         trc=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.trc",
         c3d=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.c3d",

@@ -91,9 +91,8 @@ def clicking_settings(wildcards):
     """Return what the page for clicking says and saves."""
     session = session_of(wildcards)
     path = session.unclicked or session.court_points or f"data/{session.name}/court_points.csv"
-    targets = {"court_points.csv": path}
-    names = list(session.cameras)
-    return {"session": session.name, "names": names, "targets": targets, "jpeg_quality": None}
+    said = {"session": session.name, "names": list(session.cameras), "jpeg_quality": None}
+    return {**said, "targets": {"court_points.csv": path}}
 
 
 def every_clicking_page():
@@ -124,6 +123,7 @@ def every_overlay_video():
         for session in STUDY.sessions.values()
         for take in session.takes.values()
         if f"{session.name}/{take.name}" in STUDY.parameters["export_overlay_video"]["takes"]
+        if agree(session, take, "pictures")
         for camera in take.videos
         for way, model in product(session.take_calibrations(), session.parameters["models"][:1])
         for path in [

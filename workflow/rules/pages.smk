@@ -47,7 +47,7 @@ rule export_overlay_video:
     params:
         code=code("export_overlay_video.py"),
         step=overlay_parameters,
-        blur_faces=lambda w: session_of(w).blur_faces,
+        blur_faces=blurred,
         trim_s=lambda w: take_of(w).trim_s,
     script:
         "../scripts/export_overlay_video.py"
@@ -55,7 +55,7 @@ rule export_overlay_video:
 
 rule export_pose2sim:
     input:
-        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
+        pose3d=exported,
         pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
         people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
         sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",

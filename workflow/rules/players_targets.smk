@@ -27,9 +27,9 @@ def every_players_figure():
         place, models = STUDY.sessions[session], STUDY.sessions[session].parameters["models"][:1]
         methods = product(place.take_calibrations(), place.fusions(), models)
         folder = f"results/{session}/takes/{take}/figures"
+        figures = shown(place, place.takes[take], [f"badminton_fig{n}" for n in ("09", "10", "11")])
         stems += [
-            f"{folder}/badminton_fig{number}.{'.'.join(method)}"
-            for method, number in product(methods, ("09", "10", "11"))
+            f"{folder}/{figure}.{'.'.join(method)}" for method, figure in product(methods, figures)
         ]
     stems += ["results/figures/badminton_fig05"] if fig05_layouts() else []
     for session, take in named_takes(STUDY.parameters["draw_three_cameras"]["takes"]):

@@ -14,12 +14,13 @@ def stroke(wildcards):
 
 
 def fig05_layouts():
-    """Return for each layout of fig 5 its session and cameras, of the sessions that the study has."""
+    """Return for each layout of fig 5 its session and cameras, of the sessions that the study has and may show."""
     wanted = STUDY.parameters["draw_badminton_fig05"]["layouts"]
     return {
-        layout: [Path(place["take"]).parent.name, place["cameras"]]
+        layout: [name, place["cameras"]]
         for layout, place in wanted.items()
-        if named_takes([place["take"]])
+        for name, take in named_takes([place["take"]])
+        if agree(STUDY.sessions[name], STUDY.sessions[name].takes[take], "pictures")
     }
 
 

@@ -5,7 +5,10 @@ Inputs: the checked configuration. Outputs: none. Steps: lists of files, by subj
 
 
 def each_take(pattern, **choices):
-    """Return `pattern` for every take of every session and every method of the study."""
+    """Return `pattern` for every take of every session and every method of the study.
+
+    A choice is a list, the name of a list among the session's parameters, or a function of session and take.
+    """
     return [
         path
         for session in STUDY.sessions.values()
@@ -14,19 +17,21 @@ def each_take(pattern, **choices):
             pattern,
             session=session.name,
             take=take.name,
-            person=take.subjects,
             **{
+                "person": take.subjects,
                 "calibration": session.take_calibrations(),
                 "fusion": session.fusions(),
                 "model": session.parameters["models"],
-                **{key: listed(session, value) for key, value in choices.items()},
+                **{key: listed(session, take, value) for key, value in choices.items()},
             },
         )
     ]
 
 
-def listed(session, value):
-    """Return a list, or the list of this name among the session's parameters."""
+def listed(session, take, value):
+    """Return a list: as it is, of this name among the session's parameters, or what a function says."""
+    if callable(value):
+        return value(session, take)
     return session.parameters[value] if isinstance(value, str) else value
 
 
@@ -48,6 +53,11 @@ def every_export():
             "results/{session}/takes/{take}/{stage}/{calibration}/{fusion}/{model}.{person}.{suffix}",
             stage="export_stages",
             suffix=["trc", "c3d", "csv"],
+            person=lambda session, take: [
+                name
+                for name in take.subjects
+                if name not in consent.refusing(session, take, "export")
+            ],
         )
     )
 
@@ -65,7 +75,7 @@ def every_figure():
     """Return the figures of all takes."""
     return each_take(
         "results/{session}/takes/{take}/figures/{figure}.{calibration}.{fusion}.{model}.{suffix}",
-        figure="take_figures",
+        figure=lambda session, take: shown(session, take, session.parameters["take_figures"]),
         suffix=FORMATS,
     )
 

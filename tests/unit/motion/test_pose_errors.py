@@ -65,6 +65,17 @@ def test_coverage_is_that_of_the_covariance_the_errors_are_drawn_from():
     assert found["rms_mm"] == pytest.approx(found["sigma_mm"], rel=0.05)
 
 
+def test_bias_and_scatter_are_told_apart():
+    rng = np.random.default_rng(1)
+    points = record(4000)
+    true = points.xyz - np.array([0.03, 0, -0.04]) - rng.normal(0, 0.02, points.xyz.shape)
+    rows = pose_errors.table(["p1"], *pose_errors.errors(points, points.joints.tolist(), true))
+    row = rows.set_index("joint").loc["left_knee"]
+    assert row["bias_mm"] == pytest.approx(50, abs=2)
+    assert row["sd_mm"] == pytest.approx(20 * np.sqrt(3), rel=0.03)
+    assert row["rms_mm"] ** 2 == pytest.approx(row["bias_mm"] ** 2 + row["sd_mm"] ** 2)
+
+
 def test_without_a_covariance_nothing_is_said_of_coverage():
     points = record()
     points = replace(points, covariance_2d=np.full((*points.xyz.shape, 3), np.nan))

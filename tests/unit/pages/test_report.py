@@ -84,3 +84,13 @@ def test_a_study_without_takes_has_a_report_too(study):
     study["figures"], study["tables"] = [], []
     page = report.build(study)
     assert "How far to trust it" in page and "What was measured" not in page
+
+
+def test_what_is_not_made_for_want_of_consent_is_said(study):
+    session = study["sessions"][0]
+    assert "Left out" not in report.build(study)
+    session["withheld"] = ["nothing is made of take rally: p2 has not agreed to analysis"]
+    session["takes"] = []
+    page = report.build({**study, "figures": []})
+    assert "Left out: nothing is made of take rally: p2 has not agreed to analysis." in page
+    assert 'href="#session.hall"' in page

@@ -32,7 +32,7 @@ def test_a_whole_session():
     assert content == {
         "description": "North",
         "court": "badminton",
-        "subjects": {"p1": {}},
+        "subjects": {"p1": {"consent": ["analysis", "pictures"]}},
         "cameras": {
             "left": {"static": "data/north/left_empty.mp4"},
             "right": {"static": "data/north/right_empty.mp4"},
@@ -156,19 +156,7 @@ def test_a_draft_that_its_schema_refuses_leaves_no_file(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_to_check_names_what_is_odd(tmp_path):
-    slow = recording("data/north/a_right.mp4", rate_hz=25.0, duration_s=60.0, size=(32, 48))
-    static = recording("data/north/right_empty.mp4"), recording("data/north/left_empty.mp4")
-    walk = recording("data/north/walk.mp4", note="frames come at irregular times")
-    guess, *_ = draft(TAKE[0], slow, *static, walk)
-    lines = session_draft.to_check(guess, tmp_path / "north.yaml", "data/north/court_points.csv")
-    said = "\n".join(lines)
-    for part in ("camera right has pictures of 32x48 and 64x48", "25 and 30 Hz", "twofold"):
-        assert part in said
-    assert "walk.mp4: frames come at irregular times" in said
-    assert "data/north/court_points.csv" in said
-    assert "sessions: [north]" in said
-    assert "No walk" not in said
-    lines = session_draft.to_check(draft(*TAKE)[0], tmp_path / "north.yaml", "c.csv")
-    assert any(line.startswith("No walk") for line in lines)
-    assert not any(line.startswith("Odd") for line in lines)
+def test_without_a_walk_takes_rest_on_the_clicked_points():
+    assert draft(*TAKE)[2]["override"] == {"take_calibrations": ["known18"]}
+    assert "override" not in draft(*TAKE, WALK)[2]
+    assert "override" not in draft(*TAKE, court="none")[2]

@@ -323,3 +323,9 @@ def test_a_session_may_not_have_the_name_of_a_variation(name):
 def test_conditions_that_are_not_run_are_not_checked():
     config = {"variations": [], "conditions": {"speed": {"session": "nowhere", "vary": {}}}}
     assert session_faults.conditions("config.yaml", config, FOUND) == []
+
+
+def test_a_name_that_no_disk_takes_is_a_file_that_is_not_there(root):
+    camera = {"static": "x" * 300}
+    (line,) = find(root, RECORDED | {"cameras": {"a": camera, "b": {"static": "b.mp4"}}})
+    assert "cameras.a.static: expected a file, found none" in line

@@ -16,7 +16,7 @@ SETS = {  # joints taken together, by what their names begin with
     "right half": ("right_",),
 }
 COLUMNS = ["person", "joint", "n", "missing_percent", "median_mm", "p95_mm", "mean_mm", "rms_mm"]
-COLUMNS += ["bias_x_mm", "bias_y_mm", "bias_z_mm", "sigma_mm"]
+COLUMNS += ["bias_x_mm", "bias_y_mm", "bias_z_mm", "bias_mm", "sd_mm", "sigma_mm"]
 COLUMNS += [f"coverage_{100 * level:.0f}_percent" for level in LEVELS]
 
 
@@ -101,9 +101,10 @@ def table(person_id, names, error, covariance):
     Returns
     -------
     rows : pandas.DataFrame
-        `COLUMNS`. missing_percent is over the frames with truth; bias is the mean error; sigma_mm the root
-        of the mean trace of the stated covariance; coverage the share of the errors that lie in their
-        stated ellipsoid, in percent, empty where no covariance is stated.
+        `COLUMNS`. missing_percent is over the frames with truth; bias is the mean error, bias_mm its
+        length, sd_mm the root mean square about it; sigma_mm the root of the mean trace of the stated
+        covariance; coverage the share of the errors that lie in their stated ellipsoid, in percent, empty
+        where no covariance is stated.
     """
     groups = {name: [names.index(name)] for name in names}
     for label, sides in SETS.items():
@@ -140,7 +141,10 @@ def _summary(error, covariance):
         "mean_mm": distance_mm.mean(),
         "rms_mm": np.sqrt(np.mean(distance_mm**2)),
     }
-    row |= {f"bias_{axis}_mm": 1000 * error[:, k].mean() for k, axis in enumerate("xyz")}
+    bias_mm = 1000 * error.mean(axis=0)
+    row |= {f"bias_{axis}_mm": bias_mm[k] for k, axis in enumerate("xyz")}
+    row["bias_mm"] = np.linalg.norm(bias_mm)
+    row["sd_mm"] = np.sqrt(max(0.0, row["rms_mm"] ** 2 - row["bias_mm"] ** 2))
     stated = np.isfinite(covariance).all(axis=(1, 2))
     if stated.any():
         trace = np.trace(covariance[stated], axis1=1, axis2=2)

@@ -9,9 +9,9 @@ from string import Template
 import cv2
 import numpy as np
 
+from courtside.devices import image_files
 from courtside.geometry import court_edges
 from courtside.pages import page
-from courtside.study.errors import InputError
 
 SCRIPTS = (
     "clicking_table.js",
@@ -90,13 +90,9 @@ def frame(camera, path, *, jpeg_quality=None, clicks=None, proposals=None, **whi
     InputError
         If the file is no picture.
     """
-    try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: expected a picture, found: {error}; make it again") from None
-    image = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR) if content else None
-    if image is None:
-        raise InputError(f"{path}: expected a PNG or JPEG picture, found none; make it again")
+    path = Path(path)
+    content = path.read_bytes() if path.is_file() else b""
+    image = image_files.decode(path, content, what="a PNG or JPEG picture", advice="make it again")
     mime = page.PNG if content.startswith(b"\x89PNG") else "image/jpeg"
     if jpeg_quality is not None:
         content = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality])[1].tobytes()

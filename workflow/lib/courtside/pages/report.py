@@ -29,9 +29,10 @@ def build(study):
     study : dict
         `title`; `parameters` (the steps as configured); `sessions`, each with `name`, `description`,
         `virtual`, `way`, `mapper`, `n_images`, `fusion`, `model`, `overrides`, `limits` (`max_shift_px`,
-        `max_zoom_percent`), `files` (of `report_facts.of_session`) and `takes`, each with `name`, `fusion`,
-        `links` and `files` (of `report_facts.of_take`); `figures` as `report_figures.figure` takes them, with
-        `session` and `take`; `tables` as `report_figures.table` takes them.
+        `max_zoom_percent`), perhaps `withheld` (lines that say what is not made for want of consent), `files`
+        (of `report_facts.of_session`) and `takes`, each with `name`, `fusion`, `links` and `files` (of
+        `report_facts.of_take`); `figures` as `report_figures.figure` takes them, with `session` and `take`;
+        `tables` as `report_figures.table` takes them.
 
     Returns
     -------
@@ -88,7 +89,9 @@ def _lead():
 def _contents(parts, known, grouped):
     inner = {
         "measured": [
-            (identity("session", s["said"]["name"]), s["said"]["name"]) for s in known if s["takes"]
+            (identity("session", s["said"]["name"]), s["said"]["name"])
+            for s in known
+            if s["takes"] or s["said"].get("withheld")
         ],
         "figures": [(_group_id(key), _group_name(key)) for key in grouped],
         "quality": [(s["said"]["id"], s["said"]["name"]) for s in known],
@@ -107,14 +110,15 @@ def _measured(known, grouped):
     made = [_glance(known)]
     for session in known:
         said = session["said"]
-        if not session["takes"]:
+        if not session["takes"] and not said.get("withheld"):
             continue
         kind = ' <span class="badge">simulated</span> ' if said["virtual"] else " "
         if session["facts"]["quality"]:
             kind += report_coach.light(report_warnings.worst(session["found"]), "Cameras")
         made.append(
             f'<h3 id="{identity("session", said["name"])}">{text(said["name"])}{kind}</h3>'
-            f"<p>{text(said['description'])}</p>{report_coach.warnings(session['found'])}"
+            f"<p>{text(said['description'])}</p>{report_coach.withheld(said.get('withheld', ()))}"
+            f"{report_coach.warnings(session['found'])}"
         )
         for take, facts, found in session["takes"]:
             key = (said["name"], take["name"])

@@ -84,6 +84,11 @@ def warnings(found):
     return made
 
 
+def withheld(lines):
+    """Return what is not made for want of consent, as an HTML paragraph; nothing where all is."""
+    return f"<p class='soft'>Left out: {text('; '.join(lines))}.</p>" if lines else ""
+
+
 def _items(found):
     if not found:
         return ""

@@ -1,13 +1,12 @@
 """What the report says of a take and a session, read from the files that the study made of them."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from courtside.records import keypoints, limbs, reasons, sync, tables
-from courtside.study.errors import InputError
+from courtside.study.files import read_json
 
 NINE_IN_TEN = 1.645  # standard deviations that hold 90 % of normal errors
 SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
@@ -68,8 +67,8 @@ def of_session(files):
         `quality`: {calibration: content}; `model`: content, empty without; `static`: rows.
     """
     return {
-        "quality": {way: _json(path) for way, path in files.get("quality", {}).items()},
-        "model": _json(files["model"]) if files.get("model") else {},
+        "quality": {way: read_json(path) for way, path in files.get("quality", {}).items()},
+        "model": read_json(files["model"]) if files.get("model") else {},
         "static": [_row(path) for path in files.get("static", ())],
     }
 
@@ -155,13 +154,6 @@ def _row(path):
 def _lines(path):
     text = Path(path).read_text(encoding="utf-8")
     return [line.strip() for line in text.splitlines() if line.strip()]
-
-
-def _json(path):
-    try:
-        return json.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: expected JSON, found: {error}; make it again") from None
 
 
 def whole_table(path):

@@ -7,9 +7,8 @@ import numpy as np
 from courtside.geometry import similarity
 from courtside.pages import packing
 from courtside.records import device_motion, keypoints, reasons
-from courtside.records.npz import DAMAGED
 from courtside.records.sync import Clock
-from courtside.study.errors import InputError
+from courtside.study.errors import DAMAGED, InputError
 
 PX = 0.01  # so that the logarithmic scale runs from 0.001 to 1000 px
 NEAR = 0.5  # of a frame: frames of two layers that far apart show the same moment

@@ -10,6 +10,7 @@ from courtside.study.errors import InputError
 
 MARK = "# guess:"
 PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
+SUBJECTS = "pseudonyms; what each agreed to (export, faces?); height_m: 1.74, mass_kg: 66, sex: m, hand: left"
 BOARD = "inner_corners: [7, 4], square_m: 0.06"
 
 
@@ -50,14 +51,14 @@ def text(guess, *, title, folder, court="badminton"):
     if guess.takes:
         lines += [
             "subjects:",
-            f"  p1: {{}}  {MARK} pseudonyms, with height_m: 1.74, mass_kg: 66, sex: m, hand: right",
+            f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}",
         ]
     lines += [
         *_cameras(guess),
         *_walks(guess),
         *_places(guess, folder, measured and court != "none"),
     ]
-    lines += [*_takes(guess), *_unused(guess)]
+    lines += [*_takes(guess), *_override(guess, measured and court != "none"), *_unused(guess)]
     return "\n".join(lines) + "\n"
 
 
@@ -92,32 +93,6 @@ def write(path, content):
     if faults:
         path.unlink()
         raise ValueError(f"the draft does not hold its own schema: {faults[0]}")
-
-
-def to_check(guess, path, court_points):
-    """List what a user should look at after drafting, in order.
-
-    Parameters
-    ----------
-    guess : courtside.study.session_guess.Guess
-    path : str or Path
-        Of the draft.
-    court_points : str
-        Where clicked court points are expected.
-
-    Returns
-    -------
-    lines : list of str
-    """
-    lines = [f"Look at {path}: every line with `{MARK}`, and what stands under `not used`."]
-    lines += [f"Odd: {line}" for line in _odd(guess)]
-    if guess.calibration is None and guess.court_points is None and guess.cameras:
-        lines.append(f"Click the court points: they are expected in {court_points}.")
-    if not guess.walks and guess.calibration is None:
-        lines.append("No walk was found: the cameras will rest on clicked court points alone.")
-    lines.append(f"Name the session in config/config.yaml: `sessions: [{path.stem}]`.")
-    lines.append("`snakemake -n` lists what will be made; `snakemake` makes it.")
-    return lines
 
 
 def _cameras(guess):
@@ -195,7 +170,8 @@ def court_points(guess, folder):
 
 
 def _takes(guess):
-    lines = [f"takes:  {MARK} recordings that belong together"] * bool(guess.takes)
+    remark = "recordings that belong together; `synchronised: true` where the cameras share a clock"
+    lines = [f"takes:  {MARK} {remark}"] * bool(guess.takes)
     for name, take in guess.takes.items():
         lines += [f"  {_quoted(name)}:", "    videos:"]
         for camera in (camera for camera in guess.cameras if camera in take):
@@ -216,6 +192,13 @@ def _devices(guess, take):
     return ["    devices:", *lines] if lines else []
 
 
+def _override(guess, clicked):
+    """Return what lets takes be measured where court points alone say where the cameras are."""
+    if guess.walks or not clicked or not guess.takes:
+        return []
+    return [f"override: {{take_calibrations: [known18]}}  {MARK} no walk was found"]
+
+
 def _unused(guess):
     lines = [f"#   {json.dumps(r.path)}: {_one_line(why)}" for r, why in guess.unused]
     lines += [
@@ -232,27 +215,6 @@ def _described(recording):
     return (
         f"{recording.n_photos} photos, {size}" if recording.kind == "photos" else f"photo, {size}"
     )
-
-
-def _odd(guess):
-    """Yield what a user may want to know of sizes, rates and lengths."""
-    for camera in guess.cameras:
-        films = [take[camera] for take in guess.takes.values() if camera in take]
-        sizes = sorted({r.size for r in [*films, *filter(None, [guess.static.get(camera)])]})
-        if len(sizes) > 1:
-            yield f"camera {camera} has pictures of {' and '.join(f'{w}x{h}' for w, h in sizes)} pixels"
-    for name, take in guess.takes.items():
-        rates = {round(r.rate_hz or 0) for r in take.values()}
-        if len(rates) > 1:
-            yield f"take {name} has videos of {' and '.join(map(str, sorted(rates)))} Hz"
-        if max(r.duration_s for r in take.values()) > 2 * min(r.duration_s for r in take.values()):
-            yield f"take {name} has videos whose lengths differ more than twofold"
-    for recording in [
-        *guess.walks.values(),
-        *(r for t in guess.takes.values() for r in t.values()),
-    ]:
-        if recording.note:
-            yield f"{recording.path}: {recording.note}"
 
 
 def _what_is_there(guess):

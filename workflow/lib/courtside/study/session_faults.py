@@ -2,8 +2,8 @@
 
 import re
 
-from courtside.study import take_faults
-from courtside.study.session_files import VIRTUAL
+from courtside.study import consent, take_faults
+from courtside.study.session_files import VIRTUAL, is_there
 
 EXTERNAL = "results/external/"
 CALIBRATED = r"results/[^/]+/calibration/[^/]+/cameras\.toml"  # by the workflow, in another session
@@ -35,6 +35,7 @@ def find(folder, file, content, known, root):
         there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
         yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
     yield from _source_faults(file, content)
+    yield from consent.faults(file, content)
     for key, views in content.get("views", {}).items():
         yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
     yield from take_faults.unknown(
@@ -46,18 +47,25 @@ def find(folder, file, content, known, root):
         yield from take_faults.find(
             f"{file}: takes.{name}", take, cameras, subjects, "virtual" in content
         )
-        videos = take.get("videos", {})
-        paths |= {f"takes.{name}.videos.{camera}": path for camera, path in videos.items()}
-        for key in ("pose2d", "pose3d"):
-            for skeleton, files in take.get(key, {}).items():
-                paths |= {f"takes.{name}.{key}.{skeleton}.{at}": path for at, path in files.items()}
-        devices = take.get("devices", {})
-        paths |= {
-            f"takes.{name}.devices.{key}.file": value["file"] for key, value in devices.items()
-        }
+        # Recordings of somebody who has withdrawn may be gone.
+        withdrawn = consent.withdrawn(subjects, "virtual" in content)
+        if not withdrawn & set(take.get("subjects", subjects)):
+            paths |= dict(_take_paths(f"takes.{name}", take))
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _take_paths(where, take):
+    """Yield (key, path) of all recordings of a take."""
+    for camera, path in take.get("videos", {}).items():
+        yield f"{where}.videos.{camera}", path
+    for key in ("pose2d", "pose3d"):
+        for skeleton, files in take.get(key, {}).items():
+            for at, path in files.items():
+                yield f"{where}.{key}.{skeleton}.{at}", path
+    for name, device in take.get("devices", {}).items():
+        yield f"{where}.devices.{name}.file", device["file"]
 
 
 def _paths(content):
@@ -204,7 +212,7 @@ def _path_faults(where, path, known, root):
     if path.startswith(f"{VIRTUAL}/") or re.fullmatch(CALIBRATED, path):
         return
     if not path.startswith(EXTERNAL):
-        if not (root / path).exists():
+        if not is_there(root / path):
             yield f"{where}: expected a file, found none at {path}; correct the path or put it there"
         return
     if known is None:

@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
+from courtside.study import consent
 from courtside.study.sessions import Device, FixedCamera, Session, Subject, Take
 
 MADE = "results/"
@@ -16,6 +17,14 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
     ".json": "nuitrack",
     ".csv": "nuitrack",
 }
+
+
+def is_there(path):
+    """Tell whether there is a file or folder; of a name that no disk takes there is none."""
+    try:
+        return path.exists()
+    except OSError:
+        return False
 
 
 def session(name, file, content, parameters, root="."):
@@ -33,14 +42,15 @@ def session(name, file, content, parameters, root="."):
     """
     clicked = content.get("court_points")
     unclicked = None
-    if clicked and not clicked.startswith(MADE) and not (Path(root) / clicked).exists():
+    if clicked and not clicked.startswith(MADE) and not is_there(Path(root) / clicked):
         clicked, unclicked = None, clicked
-    subjects = {key: Subject(**(value or {})) for key, value in content.get("subjects", {}).items()}
+    subjects = _subjects(content)
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     takes = {
         key: _take(key, value or {}, recordings.get("takes", {}).get(key), subjects)
         for key, value in content.get("takes", {}).items()
     }
+    withheld = consent.withheld(takes, subjects)
     cameras = {key: _camera(value or {}) for key, value in content["cameras"].items()}
     for key, path in recordings.get("static", {}).items():
         cameras[key] = replace(cameras[key], static=path)
@@ -51,7 +61,8 @@ def session(name, file, content, parameters, root="."):
         court=None if content["court"] == "none" else content["court"],
         subjects=subjects,
         cameras=cameras,
-        takes=takes,
+        takes={key: take for key, take in takes.items() if key not in withheld},
+        withheld=withheld,
         calibration_file=content.get("calibration", {}).get("file"),
         walks=recordings.get("walks") or _walks(content.get("walks", {})),
         court_points=recordings.get("court_points") or clicked,
@@ -96,6 +107,7 @@ def variations(base, name, content):
                 for c, v in base.cameras.items()
             },
             takes={},
+            withheld={},
             walks=files["walks"],
             court_points=files["court_points"],
             virtual={**base.virtual, "boards": False, **content.get("set", {}), **varied},
@@ -112,6 +124,15 @@ def _merged(parameters, override):
         if isinstance(value, dict)
         else override.get(key, value)
         for key, value in parameters.items()
+    }
+
+
+def _subjects(content):
+    return {
+        key: Subject(
+            **{**(value or {}), "consent": consent.stated(value or {}, "virtual" in content)}
+        )
+        for key, value in content.get("subjects", {}).items()
     }
 
 

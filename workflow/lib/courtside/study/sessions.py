@@ -2,15 +2,18 @@
 
 from dataclasses import dataclass, field
 
+from courtside.study import consent
+
 
 @dataclass(frozen=True)
 class Subject:
-    """A person under a pseudonym; None where not stated."""
+    """A person under a pseudonym; None where not stated. `consent`: words of `consent.WORDS`."""
 
     height_m: float | None = None
     mass_kg: float | None = None
     sex: str | None = None
     hand: str | None = None
+    consent: tuple = consent.UNSTATED
 
 
 @dataclass(frozen=True)
@@ -130,6 +133,8 @@ class Session:
         The steps' parameters of the study, with this session's overrides.
     unclicked : str or None
         Where court points are to be saved that nobody has clicked yet.
+    withheld : dict of str to tuple of str
+        Takes that are not among `takes`, for somebody in them has not agreed to be measured: who, by take.
     """
 
     name: str
@@ -149,6 +154,7 @@ class Session:
     halfbody: dict | None
     parameters: dict
     unclicked: str | None = None
+    withheld: dict = field(default_factory=dict)
 
     def calibration_camera_names(self):
         """Return for each camera its name in the calibration file."""

@@ -295,7 +295,9 @@
         off !== undefined && off !== null && fit.spare > 0 ? `${off.toFixed(1)} px` : ""];
       for (const words of cells) row.append(Object.assign(document.createElement("span"), { textContent: words }));
       if (fit && fit.worst && fit.worst.suspicious && fit.worst.name === item.name) row.lastChild.className = "worst";
-      if (item.name === chosen && document.activeElement === document.body) row.scrollIntoView({ block: "nearest" });
+      // Only where the list scrolls by itself: on a narrow screen the page would leave the picture.
+      const scrolls = getComputedStyle(list.closest(".side")).overflowY === "auto";
+      if (item.name === chosen && scrolls && document.activeElement === document.body) row.scrollIntoView({ block: "nearest" });
     }
   }
 

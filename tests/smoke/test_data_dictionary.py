@@ -1,0 +1,194 @@
+"""Every CSV of the study has a place in the data dictionary, and every column of it is described there."""
+
+import csv
+import re
+from fnmatch import fnmatchcase
+
+import pytest
+
+from smoke.snakemake_runs import ROOT
+
+# Parts of config/README.md: a heading (all below it), `heading | first cell` (rows of a table below it), or
+# `: words` (the paragraph that holds these words).
+FRAMES, OF_CALIBRATION = "Columns of the frame table", "Columns of the evaluation"
+MOVEMENT, TIDY = "Columns of the movement table", "Columns of the 3D CSV"
+KINEMATICS, DEVICES = "Columns of the kinematics", "Columns of the devices' tables"
+TAKES, TOGETHER = "Columns of the evaluation of takes", "Columns of tables over takes and sessions"
+FIGURES = "Columns of the figures' CSVs"
+LABELS, QUANTILES = ": say what a row is of", ": are quantiles in percent"
+SHAKE = ": `takes/<take>/shake/<camera>.csv`:"
+SOURCE = [f"{DEVICES} | all", LABELS]
+PATHS, DISTORTION = f"{DEVICES} | arcs...paths.csv", f"{DEVICES} | arcs...distortion.csv"
+EVENTS = f"{DEVICES} | .events.csv"
+
+# Where a table is described: the first pattern that fits its path below results/.
+PLACES = {
+    "virtual/*/court_points.csv": ["Clicked court points"],
+    "virtual/*/racket.csv": [": `racket.csv` of virtual takes"],
+    "plans/*/growth.csv": [f"{FIGURES} | plans/\\<plan>/growth"],
+    "plans/*/map.csv": [f"{FIGURES} | error_map"],
+    "*/calibration/*/proposals.csv": [": `calibration/<calibration>/proposals.csv`: `camera`"],
+    "*/sfm/*.csv": [": `sfm/features.csv`:"],
+    "*/frames/*.csv": [FRAMES],
+    "*/static/*.csv": [MOVEMENT],
+    "*/movement/*.csv": [MOVEMENT],
+    "*/shake/*.csv": [SHAKE],
+    "*/views/*.csv": [f"{TAKES} | views", LABELS],
+    "*/devices/*.frames.csv": [f"{DEVICES} | devices/<device>.frames.csv"],
+    "*/sync/*.wrists.csv": [f"{DEVICES} | .wrists.csv", *SOURCE],
+    "*/sync/*.checks.csv": [f"{DEVICES} | .checks.csv", *SOURCE],
+    "*/sync/*.csv": [EVENTS, *SOURCE],
+    "*/body/*.paths.csv": [PATHS, *SOURCE],
+    "*/body/*.distortion.csv": [DISTORTION, *SOURCE],
+    "*/evaluation/takes/*/sources/*.errors.csv": [f"{DEVICES} | .errors.csv", *SOURCE],
+    "*/evaluation/takes/*/sources/*.parts.csv": [f"{DEVICES} | .parts.csv", *SOURCE],
+    "*/evaluation/takes/*/sources/*.true_paths.csv": [PATHS, *SOURCE],
+    "*/evaluation/takes/*/sources/*.true_distortion.csv": [DISTORTION, *SOURCE],
+    **{
+        f"*/evaluation/takes/*/{table}/*.csv": [f"{TAKES} | {table}", LABELS]
+        for table in ("errors", "gains", "clocks", "kinematics", "detection", "round_trip")
+    },
+    "*/evaluation/racket.csv": [f"{TAKES} | evaluation/racket.csv", OF_CALIBRATION],
+    "*/evaluation/joint_offsets.*.csv": [f"{TAKES} | joint_offsets"],
+    "*/evaluation/*.csv": [OF_CALIBRATION],
+    "*/takes/*/kinematics/*.frames.csv": [KINEMATICS],
+    "*/takes/*/kinematics/*.summary.csv": [": `.summary.csv`:"],
+    "*/takes/*/kinematics/*.cutoffs.csv": [": `.cutoffs.csv`:"],
+    "*/takes/*/pose3d*/*.csv": [TIDY],
+    "figures/calibration.csv": [f"{TOGETHER} | calibration.csv", OF_CALIBRATION],
+    "figures/players.csv": [f"{TOGETHER} | players.csv", f"{TAKES} | errors", LABELS],
+    "figures/clock_errors.csv": [f"{TOGETHER} | clock_errors.csv", f"{TAKES} | clocks", LABELS],
+    "figures/agreement.pairs.csv": [f"{TOGETHER} | agreement.pairs.csv", LABELS],
+    "figures/agreement*.csv": [f"{TOGETHER} | agreement.{end}.csv" for end in ("table", "pairs")],
+    "figures/archive.csv": [f"{TOGETHER} | {end}.csv" for end in ("archive", "agreement.pairs")],
+    "figures/badminton_fig05.csv": [f"{FIGURES} | badminton_fig05", LABELS],
+    "figures/badminton_fig12.csv": [f"{FIGURES} | badminton_fig12", QUANTILES, OF_CALIBRATION],
+    "figures/smoothness.csv": [f"{FIGURES} | smoothness"],
+    "figures/thesis_fig3_?.csv": [f"{FIGURES} | thesis_fig3_1", PATHS, *SOURCE],
+    "figures/court_points.*.csv": [f"{FIGURES} | court_points"],
+    "figures/capture_*.csv": [f"{FIGURES} | capture_...", QUANTILES],
+    **{
+        f"*/figures/badminton_fig{n}.*": [f"{FIGURES} | badminton_fig{n}"]
+        for n in ("06", "08", "09", "10")
+    },
+    "*/figures/badminton_fig11.*": [
+        f"{FIGURES} | {name}" for name in ("badminton_fig11", "overlay")
+    ],
+    "*/figures/badminton_tab01.*": [f"{TAKES} | round_trip", LABELS],
+    "*/figures/kinematics.*": [KINEMATICS],
+    "*/figures/shake.*": [f"{FIGURES} | shake", SHAKE],
+    "*/figures/three_cameras.*": [f"{FIGURES} | three_cameras", f"{TAKES} | errors", LABELS],
+    "*/figures/source_errors.*": [
+        f"{FIGURES} | source_errors",
+        f"{DEVICES} | .errors.csv",
+        f"{DEVICES} | .parts.csv",
+        *SOURCE,
+    ],
+    "*/figures/wrist_arcs.*": [f"{FIGURES} | thesis_fig3_1", PATHS, *SOURCE],
+    "*/figures/wrist_distance.*": [f"{FIGURES} | wrist_distance", EVENTS, *SOURCE],
+    **{
+        f"*/figures/{name}.*": [f"{FIGURES} | {name}", QUANTILES]
+        for name in (
+            *("overlay", "skeletons", "reprojection", "visibility", "skeleton_plates"),
+            *("coverage", "error_map", "growth"),
+        )
+    },
+}
+POINTS = "(neck|centre|mass)"
+ANGLES = "((left|right)_(knee_flexion|elbow_flexion|hip_flexion|shoulder_elevation)|trunk_lean(_forward)?)"
+
+
+class Dictionary:
+    """The data dictionary, part by part."""
+
+    def __init__(self, text):
+        self.text = text
+        pieces = re.split(r"^#+ (.*)\n", text, flags=re.M)
+        self.sections = dict(zip(pieces[1::2], pieces[2::2], strict=True))
+        self.paragraphs = re.split(r"\n\n", text)
+
+    def part(self, place):
+        """Return the text of a part; nothing where there is none."""
+        heading, _, key = place.partition(" | ")
+        if heading.startswith(": "):
+            return "\n".join(p for p in self.paragraphs if heading[2:] in p)
+        section = self.sections.get(heading, "")
+        if not key:
+            return section
+        rows, inside = [], False
+        for line in section.splitlines():
+            first = line.split("|")[1].strip() if line.startswith("|") else ""
+            inside = key in re.split(r"`?, `?", first.strip("`")) if first else inside
+            rows += [line] if inside and line.startswith("|") else []
+        return "\n".join(rows)
+
+    def undescribed(self, columns, places):
+        """Return those of some columns that no part describes."""
+        text = "\n".join(map(self.part, places))
+        patterns = list(map(pattern, names(text)))
+        return [c for c in columns if not any(re.fullmatch(p, c) for p in patterns)]
+
+
+def names(text):
+    """Return the names that a text describes, those that stand for several still as written."""
+    found = re.findall(r"(\*[A-Z]+\*)?`([^`]+)`", text)
+    stem, whole = "", []
+    for lead, name in found:
+        stem = lead or (stem if name.startswith("_") else "")  # *POINT*`_x_m`, `_y_m`
+        whole.append(f"{stem}{name}")
+    for a, first, z, last in re.findall(r"`(\w*?)(\d+)(\w*)` \.\.\. `\w*?(\d+)\w*`", text):
+        whole += [f"{a}{n:0{len(first)}}{z}" for n in range(int(first), int(last) + 1)]
+    return whole
+
+
+def pattern(name):
+    """Return the regular expression of a name that may stand for several."""
+    kept = re.escape(name).replace(r"\.\.\.", r"\w+")
+    kept = re.sub(r"<\w+>", r"\\w+", kept)
+    return kept.replace(r"\*POINT\*", POINTS).replace(r"\*ANGLE\*", ANGLES)
+
+
+def faults(results, dictionary):
+    """Return what the dictionary lacks of all CSVs below a folder, and how many it was asked for."""
+    found, n_tables = set(), 0
+    for path in sorted(results.rglob("*.csv")):
+        name = path.relative_to(results).as_posix()
+        if name.startswith("external/"):
+            continue
+        n_tables += 1
+        with path.open(newline="") as stream:
+            columns = next(csv.reader(stream), [])
+        fitting = next((key for key in PLACES if fnmatchcase(name, key)), None)
+        if fitting is None:
+            found.add(f"{name}: no place in the dictionary")
+            continue
+        lacking = dictionary.undescribed(columns, PLACES[fitting])
+        found |= {f"{fitting}: {column}" for column in lacking}
+    return sorted(found), n_tables
+
+
+@pytest.fixture(scope="module")
+def dictionary():
+    return Dictionary((ROOT / "config" / "README.md").read_text())
+
+
+def test_every_part_that_tables_are_sent_to_is_there(dictionary):
+    places = {place for some in PLACES.values() for place in some}
+    assert [place for place in sorted(places) if not dictionary.part(place).strip()] == []
+
+
+def test_every_column_of_the_study_is_described(tiny_study, dictionary):
+    found, n_tables = faults(tiny_study, dictionary)
+    assert found == []
+    assert n_tables > 60
+
+
+def test_a_column_that_nobody_described_is_found(tmp_path, dictionary):
+    movement = tmp_path / "gym" / "static" / "left.csv"
+    movement.parent.mkdir(parents=True)
+    movement.write_text("camera,shift_x_px,shift_z_px\n")
+    (tmp_path / "gym" / "new.csv").write_text("a\n")
+    assert faults(tmp_path, dictionary)[0] == [
+        "*/static/*.csv: shift_z_px",
+        "gym/new.csv: no place in the dictionary",
+    ]

@@ -1,0 +1,69 @@
+"""What the rules leave out for want of consent, and what they say of it; nothing is run."""
+
+import shutil
+
+import pytest
+import yaml
+
+from smoke.snakemake_runs import ROOT, planned, run
+
+TAKE = "results/walk-4cams-tiny/takes/balancing"
+METHOD = "file.all-robust.blazepose-full"
+TRC = f"{TAKE}/pose3d/{METHOD.replace('.', '/')}.p1.trc"
+PICTURED = {"draw_overlay": 1, "export_overlay_video": 4}
+
+
+@pytest.fixture
+def gym(tmp_path):
+    """Return a function that gives a copy of the repository where the real person's consent is as said."""
+    for name in ("Snakefile", "workflow", "config", "profiles", "environment.lock"):
+        source, target = ROOT / name, tmp_path / name
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(source, target, ignore=ignored) if source.is_dir() else shutil.copy2(
+            source, target
+        )
+    (tmp_path / "tests" / "smoke").mkdir(parents=True)
+
+    def agreed(consent):
+        path = tmp_path / "config" / "sessions" / "walk-4cams-tiny.yaml"
+        session = yaml.safe_load(path.read_text())
+        session["subjects"]["p1"] = {} if consent is None else {"consent": consent}
+        path.write_text(yaml.safe_dump(session))
+        return tmp_path
+
+    return agreed
+
+
+def test_files_for_other_programs_wait_for_consent(gym):
+    jobs = planned(root=gym(None))
+    assert "export_take" not in jobs
+    assert {name: jobs[name] for name in PICTURED} == PICTURED
+    assert planned(root=gym(["analysis", "export"]))["export_take"] == 3  # raw, filtered, corrected
+
+
+def test_pictures_are_not_drawn_of_whom_they_may_not_show(gym):
+    jobs = planned(root=gym(["analysis"]))
+    assert set(PICTURED) & set(jobs) == set()
+    assert jobs["draw_skeletons"] >= 1
+
+
+def test_nothing_is_made_of_somebody_who_withdrew(gym):
+    jobs = planned(root=gym([]))
+    assert "import_cameras" in jobs  # those are nobody's
+    assert "draw_skeletons" not in jobs
+    assert jobs["detect_pose"] < planned(root=gym(None))["detect_pose"]
+
+
+@pytest.mark.parametrize(
+    ("consent", "target", "words"),
+    [
+        (["analysis"], TRC, "expected export in the consent of p1 for this file of take balancing"),
+        (["analysis"], f"{TAKE}/figures/overlay.{METHOD}.png", "expected pictures in the consent"),
+        ([], f"{TAKE}/figures/skeletons.{METHOD}.png", "nothing is made of take balancing: p1 has"),
+    ],
+)
+def test_a_file_asked_for_by_name_is_refused_in_one_line(gym, consent, target, words):
+    done = run("-n", "--", target, root=gym(consent), check=False)
+    assert done.returncode != 0
+    said = (done.stdout + done.stderr).splitlines()
+    assert sum(words in line for line in said) == 1
