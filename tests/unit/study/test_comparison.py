@@ -130,9 +130,31 @@ def test_a_drawing_is_as_close_as_its_numbers(trees, number, drawing):
     assert outcomes(trees)["gym/figures/f.pdf"] == drawing
 
 
-def test_what_nobody_can_read_must_be_bit_equal(trees):
-    (trees[1] / "gym/video.mp4").write_text("Frames")
-    assert outcomes(trees) == {"gym/video.mp4": comparison.DIFFERENT}
+@pytest.mark.parametrize(
+    ("name", "outcome"),
+    [("gym/video.mp4", comparison.OTHER_BYTES), ("networks/a.onnx", comparison.DIFFERENT)],
+)
+def test_what_nobody_can_read(trees, name, outcome):
+    for tree, text in zip(trees, ("weights", "Weights"), strict=True):
+        (tree / name).parent.mkdir(exist_ok=True)
+        (tree / name).write_text(text)
+    assert outcomes(trees) == {name: outcome}
+    assert (outcome in comparison.FAULTS) == name.startswith("networks")
+
+
+@pytest.mark.parametrize(
+    ("words", "outcome"),
+    [
+        ("ROOT hips\n1.00001  2", comparison.CLOSE),
+        ("ROOT hips 1.1 2", comparison.DIFFERENT),
+        ("ROOT Hips 1 2", comparison.DIFFERENT),
+        ("ROOT hips 1 2 3", comparison.DIFFERENT),
+    ],
+)
+def test_words_and_numbers(trees, words, outcome):
+    for tree, text in zip(trees, ("ROOT hips\n1 2\n", words), strict=True):
+        (tree / "suit.bvh").write_text(text)
+    assert outcomes(trees) == {"suit.bvh": outcome}
 
 
 def test_figures_of_run_times_are_not_compared(trees):
@@ -150,13 +172,25 @@ def test_files_of_one_tree_alone(trees):
     }
 
 
-def test_the_table_counts_by_kind_and_names_what_differs(trees):
+def test_the_table_states_tolerances_and_names_what_differs(trees):
     (trees[1] / TABLE).write_text("camera,error_cm\nleft,1.01\nright,\n")
     write(trees[1] / POSE, xyz=np.array([[2.0, np.nan, 3.0]]), reason=np.array([0, 2]))
     lines = comparison.table(comparison.compare(*trees))
     cells = {line.split()[0]: line.split()[1:] for line in lines[1:]}
-    assert cells[".csv"] == ["1", "1", "0", "0", "0", "0", "0.01"]
-    assert cells[".npz"] == ["0", "0", "1", "0", "0", "0", "1"]
+    none = ["0"] * 2
+    counts = {name: row[:7] for name, row in cells.items()}
+    assert (
+        counts
+        == {  # bit-equal, close, other bytes, run times, different, only here, only there
+            "*/evaluation/*": ["0", "1", *none, "0", *none],
+            "*/pose3d*/*": ["0", "0", *none, "1", *none],
+            "*/figures/*": ["2", "0", *none, "0", *none],
+            "*": ["1", "0", *none, "0", *none],
+            f"{POSE}:": lines[-1].split()[1:],
+        }
+    )
+    assert cells["*/evaluation/*"][7:11] == ["0.01", "0.02", "+", "0.02"]
+    assert cells["*/pose3d*/*"][7:9] == ["1", "0.002"]
     assert lines[-1] == f"{POSE}: different by up to 1"
     assert len(lines) == 1 + 4 + 1
 

@@ -97,7 +97,11 @@ def test_a_file_that_is_only_touched_changes_nothing(study):
         (
             "environment.lock",
             "numpy==1\n# new\n",
-            [f"{ALONE}: environment.lock changed", f"{FIGURE}: environment.lock changed"],
+            [
+                f"{ALONE}: environment.lock changed",
+                f"{FIGURE}: environment.lock changed",
+                "2 files: environment.lock changed",
+            ],
         ),
         (
             "results/figures/new.png",
@@ -120,14 +124,24 @@ def test_each_change_is_told_for_what_it_reaches(study, name, content, lines):
 
 def test_another_package_and_interpreter_are_told(study):
     now = verification.present(".")
-    now |= {"python": "4.0", "packages": {"numpy": "99", "extra": "1"}}
+    now |= {"python": "4.0", "platform": "Plan9", "packages": {"numpy": "99", "extra": "1"}}
     sidecar = verification.read("results/run")[0]
     old = sidecar["packages"]["numpy"]
     assert verification.changes(sidecar, now) == [
         "package extra none -> 1",
         f"package numpy {old} -> 99",
         f"Python {sidecar['python']} -> 4.0",
+        f"platform {sidecar['platform']} -> Plan9",
     ]
+
+
+def test_the_digest_of_packages_is_no_change_of_the_code(study):
+    sidecar, now = verification.read("results/run")[0], verification.present(".")
+    for script, recorded in sidecar["code"].items():
+        sidecar["code"][script] = f"{recorded}-{'0' * 64}"
+    assert verification.changes(sidecar, now) == []
+    sidecar["code"] = {script: f"{'0' * 64}-{'0' * 64}" for script in sidecar["code"]}
+    assert verification.changes(sidecar, now) == ["code of tabulate.py changed"]
 
 
 def test_each_file_is_read_once(study, monkeypatch):
@@ -164,6 +178,36 @@ def test_a_broken_sidecar_is_named(study, text):
     path.write_text(text)
     with pytest.raises(InputError, match=r"figures/f\.pdf\.json: expected"):
         verification.read("results/run")
+
+
+@pytest.mark.parametrize("key", list(verification.OF_FILE))
+def test_a_sidecar_without_a_key_is_named(study, key):
+    path = Path("results/run/provenance/figures/f.pdf.json")
+    content = json.loads(path.read_text())
+    path.write_text(json.dumps(content | {key: [3]}))
+    with pytest.raises(
+        InputError, match=rf"f\.pdf\.json: expected {key} in a sidecar, found \[3\]"
+    ):
+        verification.read("results/run")
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "http.server",
+        "pip install x",
+        "snakemake --snakefile other.smk",
+        "snakemake -s other.smk",
+        "snakemake --default-resources x",
+        "snakemake 'unclosed",
+        "",
+    ],
+)
+def test_a_record_of_another_command_is_not_run(study, command):
+    path = Path("results/run/provenance.json")
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"command": command}))
+    with pytest.raises(InputError, match="expected a command of snakemake"):
+        reported()
 
 
 def test_no_records_are_no_success(tmp_path):

@@ -5,13 +5,13 @@ import fnmatch
 import json
 import math
 import tomllib
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from courtside.study import files
+from courtside.study.errors import DAMAGED
 
 # Of no importance to what a study says: logs, seconds, this record itself.
 LEFT_OUT = {"logs", "benchmarks", "run", ".snakemake"}
@@ -33,10 +33,13 @@ TOLERANCES = (
 )
 # Drawings and binary exports whose numbers are in the table beside them.
 TABLED = {".pdf", ".png", ".c3d"}
+# What a processor's last digit changes as a whole, and whose numbers are in files that are compared: films,
+# recordings (keypoints), COLMAP's databases and models (ties, summaries), pages (tables).
+UNREAD = {".mp4", ".bag", ".db", ".bin", ".html"}
 # Numbers in these hold seconds of computing time, which no two runs share.
 TIMED = ("*/figures/growth.*",)
 EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
-ONLY_HERE, ONLY_THERE = "only here", "only there"
+OTHER_BYTES, ONLY_HERE, ONLY_THERE = "other bytes", "only here", "only there"
 FAULTS = (DIFFERENT, ONLY_HERE, ONLY_THERE)
 
 
@@ -90,9 +93,11 @@ def _names(folder):
 
 def tolerance(name):
     """Return (relative, absolute) tolerance of a file by its name below the folder of results."""
-    return next(
-        (rtol, atol) for pattern, rtol, atol, _ in TOLERANCES if fnmatch.fnmatch(name, pattern)
-    )
+    return _stated(name)[1:3]
+
+
+def _stated(name):
+    return next(row for row in TOLERANCES if fnmatch.fnmatch(name, row[0]))
 
 
 def verdict(name, here, there):
@@ -116,10 +121,10 @@ def verdict(name, here, there):
         return _of_drawing(name, here, there)
     parse = READERS.get(here.suffix)
     if parse is None:
-        return Verdict(name, DIFFERENT)
+        return Verdict(name, OTHER_BYTES if here.suffix in UNREAD else DIFFERENT)
     try:
         ours, theirs = parse(here), parse(there)
-    except (ValueError, KeyError, zipfile.BadZipFile, csv.Error):
+    except DAMAGED:
         return Verdict(name, DIFFERENT)
     if set(ours) != set(theirs):
         return Verdict(name, DIFFERENT)
@@ -170,6 +175,10 @@ def _from_table(path):
     return {(y, x): _value(word) for y, row in enumerate(rows) for x, word in enumerate(row)}
 
 
+def _from_words(path):
+    return {at: _value(word) for at, word in enumerate(path.read_text(encoding="utf-8").split())}
+
+
 def _value(word):
     try:
         return float(word) if word else math.nan
@@ -195,26 +204,44 @@ READERS = {
     ".npz": _from_npz,
     ".csv": _from_table,
     ".trc": _from_table,
+    ".bvh": _from_words,
+    ".txt": _from_words,
     ".json": lambda path: _from_tree(json.loads(path.read_text(encoding="utf-8"))),
     ".toml": lambda path: _from_tree(tomllib.loads(path.read_text(encoding="utf-8"))),
 }
 
 
 def table(verdicts):
-    """Return lines for people: files by kind and outcome, then all that differ or stand alone."""
-    kinds = {}
-    for each in verdicts:
-        kinds.setdefault(Path(each.name).suffix or "none", []).append(each)
-    outcomes = [EQUAL, CLOSE, DIFFERENT, TIMES, ONLY_HERE, ONLY_THERE]
-    lines = ["  ".join(["kind    ", *outcomes, "largest difference"])]
-    for kind, group in sorted(kinds.items()):
-        counts = [sum(each.outcome == outcome for each in group) for outcome in outcomes]
-        largest = np.fmax.reduce([each.largest for each in group])
-        cells = [f"{n:>{len(word)}}" for n, word in zip(counts, outcomes, strict=True)]
-        gap = "" if math.isnan(largest) else f"{largest:.3g}"
-        lines.append("  ".join([f"{kind:8}", *cells, gap]).rstrip())
-    faults = [each for each in verdicts if each.outcome in FAULTS]
-    for each in faults:
+    """Return lines for people: what is bit-equal and what is not, and all files that differ or stand alone.
+
+    Parameters
+    ----------
+    verdicts : list of Verdict
+
+    Returns
+    -------
+    lines : list of str
+        One for each stated tolerance: files by outcome, the largest difference, the tolerance and its reason;
+        then one for each fault.
+    """
+    outcomes = [EQUAL, CLOSE, OTHER_BYTES, TIMES, DIFFERENT, ONLY_HERE, ONLY_THERE]
+    rows = [["files", *outcomes, "largest difference", "tolerance", "because"]]
+    for pattern, rtol, atol, why in TOLERANCES:
+        group = [each for each in verdicts if _stated(each.name)[0] == pattern]
+        if group:
+            counts = [str(sum(each.outcome == outcome for each in group)) for outcome in outcomes]
+            largest = np.fmax.reduce([each.largest for each in group])
+            gap = "" if math.isnan(largest) else f"{largest:.3g}"
+            rows.append([pattern, *counts, gap, _in_words(rtol, atol), why])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    pairs = [zip(row, widths, strict=True) for row in rows]
+    lines = ["  ".join(cell.ljust(width) for cell, width in row).rstrip() for row in pairs]
+    for each in (each for each in verdicts if each.outcome in FAULTS):
         gap = "" if math.isnan(each.largest) else f" by up to {each.largest:.3g}"
         lines.append(f"{each.name}: {each.outcome}{gap}")
     return lines
+
+
+def _in_words(rtol, atol):
+    parts = [f"{atol:g}"] * bool(atol) + [f"{rtol:g} of the value"] * bool(rtol)
+    return " + ".join(parts) or "none"

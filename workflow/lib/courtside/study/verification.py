@@ -1,16 +1,22 @@
 """Which files of a study would come out otherwise now, and why, by their sidecars."""
 
-import json
 import shlex
 import subprocess
 import sys
+from collections import Counter
 from functools import cache
 from pathlib import Path
 
-from courtside.study import checksums, digest, surroundings
+from courtside.study import checksums, digest, files, surroundings
 from courtside.study.errors import InputError
 from courtside.study.provenance import FORMAT, command
 
+REPEATED = {"--directory", "--configfile", "--config"}  # options of a command that is repeated
+OF_RUN = {"command": str, "config_files": dict}  # what a record must hold
+OF_FILE = {
+    "file": str, "sha256": str, "inputs": dict, "artefacts": dict, "code": dict, "packages": dict,
+    "lock_sha256": str | None, "python": str,
+}  # fmt: skip
 DRAWN = {".pdf", ".png", ".csv"}  # in folders named figures: all have sidecars
 
 
@@ -28,16 +34,18 @@ def read(folder):
         raise InputError(
             f"{folder}: expected sidecars of results, found none; run snakemake in this folder first"
         )
-    return [_read(path) for path in paths]
+    return [_read(path, OF_FILE) for path in paths]
 
 
-def _read(path):
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise InputError(f"{path}: expected JSON, found: {error}; delete it") from None
+def _read(path, kinds):
+    content = files.read_json(path, "delete it")
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(f"{path}: expected a sidecar of format {FORMAT}; delete it")
+    for key, kind in kinds.items():
+        if key not in content or not isinstance(content[key], kind):
+            raise InputError(
+                f"{path}: expected {key} in a sidecar, found {content.get(key)!r:.80}; delete it"
+            )
     return content
 
 
@@ -90,7 +98,8 @@ def changes(sidecar, now):
             reasons += _of_file(path, recorded, now["sha256"](path))
     for script, recorded in sidecar["code"].items():
         found = now["code"](script)
-        if found != recorded:
+        # What follows a hyphen is of the lock's packages, which have reasons of their own.
+        if found is None or found != str(recorded).partition("-")[0]:
             reasons.append(f"code of {script} " + ("is gone" if found is None else "changed"))
     return reasons + _of_surroundings(sidecar, now)
 
@@ -110,8 +119,9 @@ def _of_surroundings(sidecar, now):
         old, new = sidecar["packages"].get(name, "none"), now["packages"].get(name, "none")
         if old != new:
             reasons.append(f"package {name} {old} -> {new}")
-    if sidecar["python"] != now["python"]:
-        reasons.append(f"Python {sidecar['python']} -> {now['python']}")
+    for key, word in (("python", "Python"), ("platform", "platform")):
+        if sidecar.get(key) != now[key]:
+            reasons.append(f"{word} {sidecar.get(key)} -> {now[key]}")
     return reasons
 
 
@@ -147,7 +157,7 @@ def planned(run, repository):
     InputError
         If Snakemake refuses the configuration.
     """
-    words = [sys.executable, "-m", *shlex.split(run["command"]), "--summary"]
+    words = [sys.executable, "-m", *_words(run), "--summary"]
     done = subprocess.run(words, cwd=repository, capture_output=True, text=True, check=False)
     if done.returncode:
         said = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
@@ -156,6 +166,21 @@ def planned(run, repository):
         )
     rows = [line.split("\t") for line in done.stdout.splitlines() if line.count("\t") == 5]
     return {row[0] for row in rows if row[5] == "update pending"}
+
+
+def _words(run):
+    """Return the words of a record's command: results travel, and may not name another program."""
+    try:
+        words = shlex.split(run["command"])
+    except ValueError:
+        words = []
+    options = {word for word in words if word.startswith("-")}
+    if words[:1] != ["snakemake"] or not options <= REPEATED:
+        raise InputError(
+            f"provenance.json: expected a command of snakemake with none but {sorted(REPEATED)}, found "
+            f"{run['command']!r}; delete the record and run snakemake in this folder"
+        )
+    return words
 
 
 def report(folder, root, repository):
@@ -175,15 +200,16 @@ def report(folder, root, repository):
     n_faults : int
     """
     sidecars, now = read(folder), present(repository)
-    run = _read(Path(folder) / "provenance.json")
+    run = _read(Path(folder) / "provenance.json", OF_RUN)
     changed = changed_configuration(run, now)
     anew = planned(run, repository) if changed else set()
-    lines = []
+    lines, causes = [], Counter()
     for sidecar in sidecars:
         reasons = changes(sidecar, now)
         reasons += ["configuration changed"] * (not reasons and sidecar["file"] in anew)
         lines += [f"{sidecar['file']}: {'; '.join(reasons)}"] if reasons else []
-    again = [*shlex.split(run["command"]), "--force"]
+        causes.update(reasons)
+    again = [*_words(run), "--force"]
     lines += [
         f"{name}: has no record; remake it, or delete it if the study no longer names it: "
         + command(again, name)
@@ -191,6 +217,7 @@ def report(folder, root, repository):
     ]
     n_faults = len(lines)
     lines += [f"since the last run, {line}" for line in changed]
+    lines += [f"{n} files: {cause}" for cause, n in causes.most_common() if n > 1]
     verdict = (
         f"{n_faults} would come out otherwise or have none"
         if n_faults
