@@ -12,7 +12,7 @@ import pytest
 
 from smoke.snakemake_runs import FOLDER, ROOT, TINY, planned, run
 
-KEPT = ("Snakefile", "workflow", "config", "profiles", "tests/smoke")
+KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock", "tests/smoke")
 
 
 @pytest.fixture

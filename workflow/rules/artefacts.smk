@@ -18,6 +18,7 @@ for artefact in STUDY.artefacts.values():
         params:
             code=code("fetch_artefact.py"),
             artefact=artefact.name,
+            pin=[artefact.sha256, *artefact.members.values()],  # another one is fetched anew
             external=str(CONFIG / "external.yaml"),
             mirror_folder=STUDY.parameters["mirror_folder"],
         script:

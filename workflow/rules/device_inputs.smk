@@ -28,22 +28,6 @@ def colour_file(wildcards, suffix):
     return f"results/{wildcards.session}/takes/{wildcards.take}/devices/{wildcards.device}.{suffix}"
 
 
-def video_of(wildcards):
-    """Return the video of a camera of a take, or of a device that films."""
-    take = take_of(wildcards)
-    if wildcards.camera in take.videos:
-        return take.videos[wildcards.camera]
-    if take.devices[wildcards.camera].kind == "rgb":
-        return take.devices[wildcards.camera].file
-    return f"results/{wildcards.session}/takes/{wildcards.take}/devices/{wildcards.camera}.mp4"
-
-
-def trimmed(wildcards):
-    """Return the part of a camera's video that counts; a device's counts as a whole."""
-    take = take_of(wildcards)
-    return take.trim_s if wildcards.camera in take.videos else None
-
-
 def fused_file(wildcards):
     """Return the skeletons of the fixed cameras that other sources of a take are compared with."""
     session = session_of(wildcards)

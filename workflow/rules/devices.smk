@@ -8,7 +8,8 @@ synchronise_devices, list_events (whatever happens to the clocks).
 
 rule import_device:
     input:
-        recording=lambda w: device_of(w).file,
+        recording=lambda w: whole(device_of(w).file),
+        files=lambda w: inside(device_of(w).file),
         skeleton=device_skeleton,
     output:
         motion=f"{TAKE}/devices/{{device}}.npz",
@@ -23,7 +24,8 @@ rule import_device:
 
 rule extract_colour:
     input:
-        recording=lambda w: device_of(w).file,
+        recording=lambda w: whole(device_of(w).file),
+        files=lambda w: inside(device_of(w).file),
     output:
         video=f"{TAKE}/devices/{{device}}.mp4",
         frames=f"{TAKE}/devices/{{device}}.frames.csv",
@@ -56,7 +58,8 @@ rule convert_landmarks:
 
 rule lift_depth:
     input:
-        recording=lambda w: device_of(w).file,
+        recording=lambda w: whole(device_of(w).file),
+        files=lambda w: inside(device_of(w).file),
         pose2d=f"{TAKE}/pose2d/{{model}}/{{device}}.npz",
         frames=lambda w: colour_file(w, "frames.csv"),
         skeleton=skeleton_file,

@@ -23,7 +23,8 @@ rule extract_static:
 
 rule extract_frames:
     input:
-        video=lambda w: session_of(w).walks[w.walk],
+        video=lambda w: whole(session_of(w).walks[w.walk]),
+        photos=lambda w: inside(session_of(w).walks[w.walk]),
     output:
         folder=directory("results/{session}/frames/{walk}"),
         table="results/{session}/frames/{walk}.csv",

@@ -55,11 +55,11 @@ def ties_file(wildcards):
 
 
 def board_source(wildcards):
-    """Return the folder that a camera's pictures of a chessboard come from."""
+    """Return what a camera's pictures of a chessboard come from: the folder that is simulated, or the pictures."""
     session = session_of(wildcards)
     if session.films_boards():
         return f"results/virtual/{session.name}/boards"
-    return session.cameras[wildcards.camera].chessboard["images"]
+    return inside(session.cameras[wildcards.camera].chessboard["images"])
 
 
 def lens_files(wildcards):

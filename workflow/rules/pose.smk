@@ -33,7 +33,8 @@ rule detect_pose:
 
 rule import_pose2d:
     input:
-        folder=lambda w: take_of(w).pose2d[w.model][w.camera],
+        folder=lambda w: whole(take_of(w).pose2d[w.model][w.camera]),
+        files=lambda w: inside(take_of(w).pose2d[w.model][w.camera]),
         video=lambda w: take_of(w).videos[w.camera],
         skeleton=skeleton_file,
     output:

@@ -1,0 +1,380 @@
+"""What reruns when something changes: for each cause, the rules and how many of their jobs, counted by hand.
+
+Beside test_workflow.py, which has the parameters, the modules of the library and one more N of the sweep. The
+counts follow from the rules and from the tiny study, which has `walk-4cams-tiny` (real, four cameras, three
+with a static recording, one take fused in two ways), `plain-tiny` (calibration, two mappers, one N),
+`players-tiny` (two takes of three cameras, fused in five ways, one of them drawn) and `single-view-tiny` (a
+depth camera and an inertial suit).
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from contextlib import contextmanager
+from importlib import metadata
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import yaml
+
+from courtside.study import digest
+from smoke.snakemake_runs import FOLDER, ROOT, planned, run
+
+KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock", "tests/smoke")
+RESULTS = FOLDER / "results"
+DEMO = RESULTS / "external/pose2sim/Pose2Sim/Demo_SinglePerson"
+NETWORK = RESULTS / "networks/blazepose-full/landmarks.onnx"
+SUIT = RESULTS / "virtual/single-view-tiny/takes/claps/mocopi.bvh"
+DEPTH = RESULTS / "virtual/single-view-tiny/takes/claps/d415.bag"
+CLICKS = RESULTS / "virtual/plain-tiny/court_points.csv"
+SESSIONS = Path("config/sessions")
+PLATES = {"draw_wrist_arcs": 1, "draw_skeleton_plates": 1, "draw_source_errors": 1}
+
+
+def together(*parts):
+    """Return the sum of several counts of jobs."""
+    rules = sorted({rule for part in parts for rule in part})
+    return {rule: sum(part.get(rule, 0) for part in parts) for rule in rules}
+
+
+# The real take once a camera's keypoints are new. Every way to fuse views reads the keypoints of all cameras,
+# and so does whatever shows them; the static pictures, and what was measured in them, do not.
+REAL_FUSED = {
+    "synchronise_cameras": 1,
+    "associate_people": 1,
+    "triangulate": 2,  # all-robust, two-dlt
+    "compare_views": 1,
+    "filter_motion": 1,  # two-dlt is only compared, raw
+    "correct_joints": 1,
+    "export_take": 3,  # one person, three stages
+    "measure_kinematics": 1,
+    "build_viewer": 1,
+    "export_overlay_video": 4,  # one for each camera, all with the same skeleton
+    **{
+        f"draw_{name}": 1
+        for name in ("overlay", "skeletons", "reprojection", "visibility", "kinematics")
+    },
+}
+# The virtual players once keypoints are new: two takes, and the way `two-robust` of table 1 in one of them.
+PLAYERS_FUSED = {
+    "synchronise_cameras": 2,
+    "associate_people": 2,
+    "triangulate": 2 * 5 + 1,
+    "filter_motion": 2 * 5,
+    "correct_joints": 2 * 5,
+    "measure_kinematics": 2 + 4,  # the exported way in both takes, the others where they are drawn
+    "evaluate_kinematics": 2 + 4,
+    "evaluate_take": 2,
+    "evaluate_fusions": 2 * 2,  # raw and corrected
+    "evaluate_round_trip": 1,
+    "evaluate_detection": 1,  # fig 5 is of one take
+    "build_viewer": 2,
+    "compare_sessions": 1,
+    "tabulate_players": 1,
+    "draw_three_cameras": 1,
+    "draw_shake": 1,  # of the take that is steadied, over its skeleton
+    **{f"draw_badminton_{name}": 1 for name in ("fig05", "fig09", "fig10", "fig11", "tab01")},
+}
+# The take of devices once any of its sources is new: clocks come from all of them, all else from the clocks.
+DEVICES_ALIGNED = {
+    "synchronise_devices": 1,
+    "list_events": 1,
+    "correct_inertial": 1,
+    "choose_tpose": 1,
+    "align_bodies": 4,  # colour, depth, suit, corrected suit
+    "measure_arcs": 1,
+    "evaluate_sources": 1,
+    "build_viewer": 1,
+    "draw_wrist_distance": 2,  # by each device's own clock, and by the clocks found
+    "draw_thesis_fig3": 2,
+    "draw_smoothness": 1,
+    **PLATES,
+}
+# The calibration study once the ties of both mappers are new.
+TIES = {
+    "calibrate_cameras": 1,  # sfm-n12
+    "align_cameras": 2,  # sim3-n12, paper-global-n12
+    "evaluate_calibration": 2,
+    "evaluate_racket": 1,
+    "tabulate_calibration": 1,
+    "draw_badminton_fig06": 2,
+    **{f"draw_{name}": 1 for name in ("badminton_fig08", "badminton_fig12")},
+    **{f"draw_{name}": 1 for name in ("coverage", "error_map", "growth")},
+}
+
+
+@pytest.fixture(scope="module")
+def kept(tiny_study, tmp_path_factory):
+    """Return a copy of the repository with the tiny study's results, for tests that leave it as it was."""
+    root = tmp_path_factory.mktemp("kept")
+    copy(root)
+    return root
+
+
+def copy(root, copy_file=shutil.copy2):
+    for name in KEPT:
+        source, target = ROOT / name, root / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_dir():
+            left_out = shutil.ignore_patterns("__pycache__", "locks")
+            shutil.copytree(source, target, ignore=left_out, copy_function=copy_file)
+        else:
+            copy_file(source, target)
+
+
+@contextmanager
+def changed(path, content=None):
+    """Give a file another content, or only another date, for a while."""
+    before, state = path.read_bytes(), path.stat()
+    path.write_bytes(before if content is None else content)
+    try:
+        yield
+    finally:
+        path.write_bytes(before)
+        os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
+
+
+@contextmanager
+def edited(path, old, new):
+    """Replace the one place of a text file that says `old`, for a while."""
+    text = path.read_text()
+    assert text.count(old) == 1, f"{path}: {old}"
+    with changed(path, text.replace(old, new).encode()):
+        yield
+
+
+def test_a_video_with_other_content_reruns_its_camera_and_what_joins_cameras(kept):
+    video = kept / DEMO / "videos/cam01.mp4"
+    with changed(video, video.read_bytes() + b"\0"):
+        jobs = planned(root=kept)
+    own = {"extract_static": 1, "check_movement": 1, "detect_pose": 1}
+    assert jobs == together(own, REAL_FUSED)
+
+
+def test_a_suit_recorded_anew_spares_the_depth_camera(kept):
+    with changed(kept / SUIT, (kept / SUIT).read_bytes() + b"\n"):
+        jobs = planned(root=kept)
+    assert jobs == together({"import_device": 1}, DEVICES_ALIGNED)
+
+
+def test_points_clicked_anew_spare_pictures_features_and_models(kept):
+    with changed(kept / CLICKS, (kept / CLICKS).read_bytes() + b"\n"):
+        jobs = planned(root=kept)
+    # known18, known8, known18-board, dlt8; the errors of known points are of clicks drawn anew, not of these
+    assert jobs == together({"adjust_network": 2, "resect_cameras": 4}, TIES)
+
+
+def test_raw_files_that_are_only_touched_rerun_nothing(kept):
+    assert (kept / DEPTH).stat().st_size > 100e6  # no recording is too large to be compared
+    with (
+        changed(kept / DEMO / "videos/cam01.mp4"),
+        changed(kept / DEMO / "calibration/Calib.qca.txt"),
+        changed(kept / DEPTH),
+    ):
+        assert planned(root=kept) == {}
+
+
+def test_what_is_too_large_to_be_compared_goes_by_its_date(kept):
+    with changed(kept / DEMO / "videos/cam04.mp4"):
+        jobs = planned("--max-checksum-file-size", "1000", root=kept)
+    assert jobs == together({"estimate_background": 1, "detect_pose": 1}, REAL_FUSED)
+
+
+def test_an_older_date_hides_a_change_from_snakemake_but_not_from_verify_study(kept):
+    video = kept / DEMO / "videos/cam01.mp4"
+    state = video.stat()
+    with changed(video, video.read_bytes() + b"\0"):
+        os.utime(video, ns=(state.st_atime_ns, state.st_mtime_ns))
+        assert planned(root=kept) == {}
+        told = {line.split(":")[0] for line in verify(kept) if "cam01.mp4 changed" in line}
+    folder = "results/walk-4cams-tiny/"
+    assert f"{folder}takes/balancing/figures/overlay.file.all-robust.blazepose-full.png" in told
+    assert {name for name in told if not name.startswith(folder)} <= {"results/report.html"}
+
+
+def verify(root, *words):
+    program = [sys.executable, "workflow/verify_study.py", "--directory", str(FOLDER), *words]
+    done = subprocess.run(program, cwd=root, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    return done.stdout.splitlines()
+
+
+def test_a_network_reruns_detection_and_all_that_rests_on_keypoints(kept):
+    with changed(kept / NETWORK, (kept / NETWORK).read_bytes() + b"\0"):
+        jobs = planned(root=kept)
+    cameras = {"detect_pose": 4 + 2 * 3 + 1}  # of the real take, two virtual ones, the depth camera
+    devices = {"convert_landmarks": 1, "lift_depth": 1}
+    assert jobs == together(cameras, REAL_FUSED, PLAYERS_FUSED, devices, DEVICES_ALIGNED)
+
+
+def test_a_pin_of_an_artefact_fetches_it_and_reruns_what_is_made_of_it(kept):
+    pins = kept / "config/external.yaml"
+    sha256 = yaml.safe_load(pins.read_text())["pose2sim"]["sha256"]
+    with edited(pins, sha256, sha256[::-1]):
+        jobs = planned(root=kept)
+    films = {"extract_static": 3, "check_movement": 3, "estimate_background": 1, "detect_pose": 4}
+    assert jobs == together({"fetch_pose2sim": 1, "import_cameras": 1}, films, REAL_FUSED)
+
+
+def test_a_key_of_a_session_reruns_its_steps(kept):
+    session = kept / SESSIONS / "walk-4cams-tiny.yaml"
+    with edited(session, "p1: {sex: m}", "p1: {sex: f}"):  # which masses a body has
+        assert planned(root=kept) == {"measure_kinematics": 1, "draw_kinematics": 1}
+    with edited(session, "trim_s: [0.0, 0.4]", "trim_s: [0.0, 0.3]"):
+        jobs = planned(root=kept)
+    assert jobs == together({"estimate_background": 1, "detect_pose": 4}, REAL_FUSED)
+
+
+def test_words_of_a_session_rerun_nothing(kept):
+    session = kept / SESSIONS / "players-tiny.yaml"
+    text = session.read_text().replace("Virtual players", "Two virtual players", 1)
+    with changed(session, f"# a remark\n{text}".encode()):
+        assert planned(root=kept) == {}
+
+
+def test_a_script_reruns_its_rule_and_a_remark_in_it_nothing(kept):
+    script = kept / "workflow/scripts/detect_pose.py"
+    with changed(script, script.read_bytes() + b"\n# a remark\n"):
+        assert planned(root=kept) == {}
+    drawing = kept / "workflow/scripts/draw_wrist_arcs.py"
+    with changed(drawing, drawing.read_bytes() + b"\nX = 1\n"):
+        assert planned(root=kept) == {"draw_wrist_arcs": 1}
+
+
+def test_a_package_of_the_lock_reruns_what_imports_it(kept):
+    lock = kept / "environment.lock"
+    with changed(lock, lock.read_bytes() + b"\n# compiled again\n"):
+        assert planned(root=kept) == {}
+    with edited(lock, f"\npytest=={pytest.__version__} ", "\npytest==99 "):  # no rule runs tests
+        assert planned(root=kept) == {}
+    with edited(lock, f"\nezc3d=={metadata.version('ezc3d')} ", "\nezc3d==99 "):
+        assert planned(root=kept) == {"export_take": 3}  # the only script that writes C3D
+        told = verify(kept)
+    recorded = list((kept / RESULTS / "run" / "provenance").rglob("*.json"))
+    assert sum("environment.lock changed" in line for line in told) == len(recorded) > 100
+
+
+def add_session(root, name, like, **change):
+    """Write a session like another."""
+    content = yaml.safe_load((root / SESSIONS / f"{like}.yaml").read_text())
+    content |= change
+    (root / SESSIONS / f"{name}.yaml").write_text(yaml.safe_dump(content, sort_keys=False))
+
+
+def test_sessions_that_are_added_rerun_only_the_table_that_they_share(kept):
+    add_session(kept, "walk-again", "walk-4cams-tiny")
+    virtual = yaml.safe_load((kept / SESSIONS / "plain-tiny.yaml").read_text())["virtual"]
+    boards = {"inner_corners": [7, 4], "square_m": 0.06}
+    cameras = {
+        name: {"chessboard": {"images": f"results/virtual/plain-again/boards/{name}", **boards}}
+        for name in ("side", "back")
+    }
+    add_session(kept, "plain-again", "plain-tiny", virtual={**virtual, "seed": 12}, cameras=cameras)
+    study = kept / "config/tiny.yaml"
+    with edited(study, "single-view-tiny]", "single-view-tiny, walk-again, plain-again]"):
+        jobs = planned(root=kept)
+    real = {"import_cameras": 1, "extract_static": 3, "check_movement": 3}
+    real |= {"estimate_background": 1, "detect_pose": 4, **REAL_FUSED}
+    del real["export_overlay_video"]  # the study names the takes whose videos it writes
+    found = {"simulate_plain_again": 1, "extract_static": 2, "extract_frames": 1}
+    found |= {"extract_features": 1, "match_images": 1, "map_images": 2, "adjust_network": 2}
+    found |= {"resect_cameras": 4, "calibrate_lens": 2, "evaluate_known": 1, **TIES}
+    del found["evaluate_racket"], found["draw_badminton_fig12"]  # the study names their sessions
+    assert jobs == together(real, found)
+
+
+def test_a_session_that_is_removed_reruns_nothing(kept):
+    study = kept / "config/tiny.yaml"
+    for name in ("single-view-tiny", "walk-4cams-tiny"):
+        listed = f", {name}]" if name == "single-view-tiny" else f"[{name}, "
+        with edited(study, listed, "]" if listed.endswith("]") else "["):
+            assert planned(root=kept) == {}
+
+
+def test_a_take_that_is_removed_reruns_the_tables_that_it_was_in(kept):
+    session = kept / SESSIONS / "players-tiny.yaml"
+    content = yaml.safe_load(session.read_text())
+    del content["takes"]["rally"]
+    with changed(session, yaml.safe_dump(content, sort_keys=False).encode()):
+        assert planned(root=kept) == {"tabulate_players": 1, "compare_sessions": 1}
+
+
+def test_a_fresh_checkout_over_kept_results_has_nothing_to_do(kept):
+    """All files of the repository have the date of the checkout, later than all results."""
+    checked_out = [path for path in kept.rglob("*") if is_of_the_repository(path, kept)]
+    states = {path: path.stat() for path in checked_out}
+    for path in checked_out:
+        os.utime(path)
+    try:
+        assert planned(root=kept) == {}
+    finally:
+        for path, state in states.items():
+            os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
+
+
+def is_of_the_repository(path, root):
+    parts = path.relative_to(root).parts
+    return path.is_file() and not {"results", ".snakemake"} & set(parts)
+
+
+def test_photos_in_a_folder_are_compared_one_by_one(tmp_path):
+    """Snakemake compares files; of a folder it knows only the date."""
+    for name in KEPT[:-1]:
+        copy_one = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
+        copy_one(ROOT / name, tmp_path / name)
+    photos = tmp_path / FOLDER / "data" / "hall"
+    photos.mkdir(parents=True)
+    random = np.random.default_rng(1)
+    for at in range(4):
+        picture = random.integers(0, 256, (30, 40, 3), dtype=np.uint8)
+        cv2.imwrite(str(photos / f"{at}.png"), cv2.resize(picture, (480, 360)))
+    session = {"description": "photos", "court": "none", "cameras": {}}
+    session["walks"] = {"hall": {"images": "data/hall"}}
+    (tmp_path / SESSIONS / "hall.yaml").write_text(yaml.safe_dump(session))
+    asked = ("--config", "sessions=[hall]", "--", "results/hall/frames/hall.csv")
+    run(*asked, root=tmp_path)
+    for path in (*photos.iterdir(), photos):
+        os.utime(path)
+    assert planned(*asked, root=tmp_path) == {}
+    with changed(photos / "2.png", (photos / "1.png").read_bytes()):
+        assert planned(*asked, root=tmp_path) == {"extract_frames": 1}
+    shutil.copy(photos / "1.png", photos / "5.png")
+    assert planned(*asked, root=tmp_path) == {"extract_frames": 1}
+
+
+@pytest.mark.slow
+def test_results_without_their_dates_or_records_are_repaired_by_touch(tiny_study, tmp_path):
+    """Copied with new dates in the order of copying, and without Snakemake's records of what it did."""
+    copy(tmp_path, copy_file=shutil.copy)
+    shutil.rmtree(tmp_path / FOLDER / ".snakemake")
+    assert planned(root=tmp_path) != {}
+    before = {path: path.read_bytes() for path in figures(tmp_path)}
+    run("--touch", root=tmp_path)
+    assert planned(root=tmp_path) == {}
+    assert {path: path.read_bytes() for path in figures(tmp_path)} == before
+
+
+def figures(root):
+    return [path for path in (root / RESULTS).rglob("figures/*") if path.is_file()]
+
+
+@pytest.mark.slow
+def test_every_script_is_known_to_reach_what_python_imports():
+    """What the digest of a script covers, against the modules that Python has loaded after importing it."""
+    library = ROOT / "workflow" / "lib"
+    words = (
+        "import runpy, sys; runpy.run_path(sys.argv[1]);"
+        "print(*(name for name in sys.modules if name.split('.')[0] == 'courtside'))"
+    )
+    for script in sorted((ROOT / "workflow" / "scripts").glob("*.py")):
+        done = subprocess.run(
+            [sys.executable, "-c", words, str(script)],
+            env={**os.environ, "PYTHONPATH": str(library)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert set(done.stdout.split()) <= digest.modules_of(script, library), script
