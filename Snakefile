@@ -6,9 +6,11 @@ min_version("9.27.1")
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/consent_inputs.smk"
 include: "workflow/rules/inputs.smk"
 include: "workflow/rules/take_inputs.smk"
 include: "workflow/rules/device_inputs.smk"
+include: "workflow/rules/recording_inputs.smk"
 include: "workflow/rules/targets.smk"
 include: "workflow/rules/take_targets.smk"
 include: "workflow/rules/players_targets.smk"
@@ -43,10 +45,14 @@ include: "workflow/rules/report.smk"
 include: "workflow/rules/end_of_run.smk"
 
 
+DIGESTS.save()
+
+
 report: "workflow/report/study.rst"
 
 
 onstart:
+    check_results()
     # On one machine, no limit of job starts per second: to keep it, Snakemake 9.27 looks at all jobs that are
     # ready anew each second for every job that it has started, which cost minutes in the default study.
     if workflow.local_exec:
@@ -55,12 +61,12 @@ onstart:
 
 onsuccess:
     record_provenance()
-    print(end_of_run(), *waiting_for_clicks(), sep="\n", file=sys.stderr)
+    print(end_of_run(), *waiting_for_clicks(), *left_out(), sep="\n", file=sys.stderr)
 
 
 onerror:
-    record_provenance()
     print(end_of_run(), file=sys.stderr)
+    record_provenance()
 
 
 rule all:

@@ -16,10 +16,17 @@ CONFIG = Path(os.path.relpath(REPOSITORY / "config"))
 SCRIPTS = REPOSITORY / "workflow" / "scripts"
 LIBRARY = REPOSITORY / "workflow" / "lib"
 ASSETS = Path(os.path.relpath(LIBRARY / "courtside" / "pages" / "assets"))
+LOCK = REPOSITORY / "environment.lock"
+PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
 
-from courtside.study import configuration, digest, plans
+from courtside.study import configuration, digest, plans, shortage
 from courtside.study.errors import InputError
+
+try:
+    shortage.check(Path.cwd())
+except InputError as error:
+    sys.exit(f"Error: {error}")
 
 
 configfile: str(REPOSITORY / "config" / "config.yaml")
@@ -35,6 +42,8 @@ try:
     PLANS = {name: plans.read(CONFIG / "plans" / f"{name}.yaml") for name in config["plans"]}
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
+
+DIGESTS = digest.Remembered(Path(".snakemake") / "courtside" / "code.json", PINS)
 
 
 wildcard_constraints:
@@ -57,8 +66,8 @@ wildcard_constraints:
 
 
 def code(script):
-    """Return the digest of a script and of all library code that it reaches: a change reruns the rule."""
-    return digest.code_digest(SCRIPTS / script, LIBRARY)
+    """Return the digest of a script, the code that it reaches, the packages they import: a change reruns the rule."""
+    return DIGESTS.digest(SCRIPTS / script, LIBRARY)
 
 
 def session_of(wildcards):
@@ -68,7 +77,13 @@ def session_of(wildcards):
 
 def take_of(wildcards):
     """Return the `Take` that a job belongs to."""
-    return session_of(wildcards).takes[wildcards.take]
+    session = session_of(wildcards)
+    if wildcards.take in session.withheld:
+        raise WorkflowError(
+            f"{session.file}: expected analysis in the consent of {', '.join(session.withheld[wildcards.take])}, "
+            f"found none: nothing is made of take {wildcards.take}"
+        )
+    return session.takes[wildcards.take]
 
 
 def step(name):

@@ -10,6 +10,16 @@ from courtside.study import log
 
 LIBRARY = Path(__file__).parents[3] / "workflow" / "lib"
 
+FULL = f"""
+import sys
+sys.path.insert(0, {str(LIBRARY)!r})
+from courtside.study import log
+log.to_file({{log!r}})
+log.logger.info("three of nine")
+with open("/dev/full", "w") as stream:
+    stream.write("x")
+"""
+
 
 def run(tmp_path, statement):
     script = tmp_path / "script.py"
@@ -37,6 +47,27 @@ def test_a_fault_of_the_program_keeps_its_traceback(tmp_path):
     assert done.returncode == 1
     assert "ZeroDivisionError" in text
     assert "Traceback" in text
+
+
+def test_too_little_memory_is_one_line(tmp_path):
+    done, text = run(tmp_path, "import numpy; numpy.ones(1 << 45)")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert len(text.splitlines()) == 1
+    assert "ERROR expected enough memory" in text
+
+
+def test_what_a_full_disk_keeps_from_the_log_goes_to_standard_error(tmp_path):
+    (tmp_path / "logs").mkdir()
+    (tmp_path / "logs" / "job.log").symlink_to("/dev/full")
+    done = subprocess.run(
+        [sys.executable, "-c", FULL.format(log=str(tmp_path / "logs" / "job.log"))],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1
+    assert "ERROR a result: expected room on the disk, found: No space left" in done.stderr
 
 
 def test_progress_passes_items_on_and_counts(caplog):

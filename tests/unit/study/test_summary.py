@@ -68,7 +68,15 @@ def test_a_failure_gives_the_fault_the_log_and_what_to_do(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "expected"), [("one\ntwo\n\n", "two"), ("", "its log is empty")]
+    ("content", "expected"),
+    [
+        ("one\ntwo\n\n", "two"),
+        ("", "its log is empty: it was killed, or the disk is full"),
+        (
+            "2026-01-01 10:00:00,000 INFO 3 of 9\n",
+            "it was killed, or ran out of memory; its last words: 2026-01-01 10:00:00,000 INFO 3 of 9",
+        ),
+    ],
 )
 def test_a_log_without_an_error_gives_its_last_line(tmp_path, content, expected):
     log = tmp_path / "take.log"

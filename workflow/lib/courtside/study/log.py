@@ -5,6 +5,7 @@ import sys
 import time
 from pathlib import Path
 
+from courtside.study import shortage
 from courtside.study.errors import InputError
 
 FORMAT = "%(asctime)s %(levelname)s %(message)s"
@@ -14,23 +15,33 @@ logger = logging.getLogger("courtside")
 def to_file(path):
     """Send messages, warnings and errors of this process to a log file.
 
-    An `InputError` that nothing catches becomes one line; any other error keeps its traceback.
+    An `InputError` that nothing catches becomes one line, and so does a full disk, a file that may not be
+    written, or too little memory; any other error keeps its traceback. An error that cannot be written to
+    the log, for its disk is full too, goes to standard error.
 
     Parameters
     ----------
     path : str or Path
         The log file of the job; Snakemake shows it when the job fails.
     """
+    sys.excepthook = _log_exception
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    logging.basicConfig(filename=path, filemode="w", level=logging.INFO, format=FORMAT, force=True)
+    handlers = [_LogFile(path, mode="w")]
+    logging.basicConfig(handlers=handlers, level=logging.INFO, format=FORMAT, force=True)
     logging.captureWarnings(True)
-    sys.excepthook = _log_exception
+
+
+class _LogFile(logging.FileHandler):
+    def handleError(self, record):
+        if record.levelno >= logging.ERROR:
+            print(self.format(record), file=sys.stderr)
 
 
 def _log_exception(kind, error, trace):
-    if issubclass(kind, InputError):
-        logger.error("%s", error)
+    line = str(error) if issubclass(kind, InputError) else shortage.in_words(error)
+    if line is not None:
+        logger.error("%s", line)
     else:
         logger.critical("unexpected error", exc_info=(kind, error, trace))
 

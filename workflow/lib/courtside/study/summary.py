@@ -4,6 +4,7 @@ from pathlib import Path
 
 N_NAMED = 3  # folders or files that a line names before it counts the rest
 N_FAULTS = 3
+UNFINISHED = (" INFO ", " WARNING ")  # a log that ends so tells of no fault
 # What a file is, by what its path must contain and how it ends; the first that fits counts.
 KINDS = (
     ("report", "", ("report.html",)),
@@ -121,4 +122,8 @@ def _last_fault(log):
         _, mark, message = line.partition(" ERROR ")
         if mark:
             return message
-    return lines[-1] if lines else "its log is empty"
+    if not lines:
+        return "its log is empty: it was killed, or the disk is full"
+    if any(mark in lines[-1] for mark in UNFINISHED):
+        return f"it was killed, or ran out of memory; its last words: {lines[-1]}"
+    return lines[-1]

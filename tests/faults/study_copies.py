@@ -1,0 +1,117 @@
+"""Copies of the repository to hurt, and running the tiny study in them."""
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+from courtside.study import artefacts, comparison
+from smoke.snakemake_runs import FOLDER, ROOT, TINY
+
+KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
+EXTERNAL = [ROOT / folder / "results" / "external" for folder in (".", FOLDER)]
+WRITTEN = {"results", ".snakemake", "__pycache__"}  # folders that a run may write to
+TAKE = "results/walk-4cams-tiny/takes/balancing"
+METHOD = "file/all-robust/blazepose-full"
+LEFT_OVER = re.compile(r"\..+\.[0-9a-f]{8}(\.\w+)?")
+SAME = {comparison.EQUAL, comparison.CLOSE, comparison.TIMES}
+# A few jobs of the study, one after the other and side by side, to which the smaller faults are done.
+CUT = [
+    f"{TAKE}/pose3d_filtered/{METHOD}.p1.trc",
+    f"{TAKE}/figures/skeletons.{METHOD.replace('/', '.')}.png",
+    f"{TAKE}/figures/overlay.{METHOD.replace('/', '.')}.png",
+]
+MADE_FOR_CUT = [f"{TAKE}/{stage}/{METHOD}.npz" for stage in ("pose3d", "pose3d_filtered")]
+
+
+def copy_repository(root):
+    """Copy what a study is made by; pinned artefacts that are here are packed into a mirror folder."""
+    for name in KEPT:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, root / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy2(source, root / name)
+    (root / FOLDER).mkdir(parents=True)
+    pack_mirror(root)
+
+
+def pack_mirror(root):
+    """Make a wheel of each artefact whose members are here, and pin that: nothing is fetched.
+
+    Its jobs then do what they do with a wheel of the package registry, and can be killed at it.
+    """
+    pins = root / "config" / "external.yaml"
+    text = pins.read_text(encoding="utf-8")
+    (root / "mirror").mkdir()
+    for artefact in artefacts.read(pins).values():
+        folders = [folder / artefact.name for folder in EXTERNAL]
+        whole = [f for f in folders if all((f / member).is_file() for member in artefact.members)]
+        if not whole or not artefact.requirement:
+            continue
+        name, version = artefact.requirement.split("==")
+        wheel = root / "mirror" / f"{name}-{version}-py3-none-any.whl"
+        with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
+            for member in artefact.members:
+                archive.write(whole[0] / member, member)
+        text = text.replace(artefact.sha256, sha256(wheel))
+    pins.write_text(text, encoding="utf-8")
+    tiny = root / TINY
+    mirror = f"\nmirror_folder: {root / 'mirror'}\n"
+    tiny.write_text(tiny.read_text(encoding="utf-8") + mirror, encoding="utf-8")
+
+
+def copy_study(root, target):
+    """Copy a repository with its finished study; its mirror folder is left where it is."""
+    shutil.copytree(root, target, ignore=shutil.ignore_patterns("mirror", "locks"), symlinks=True)
+    return target
+
+
+def start(root, *options, cores=2):
+    """Start the tiny study as its user does; return the process, which leads a group of its own."""
+    command = [sys.executable, "-m", "snakemake", "--directory", str(FOLDER), "--configfile"]
+    command += [str(TINY), "--cores", str(cores), *options]
+    words = tempfile.TemporaryFile()  # noqa: SIM115 -- open as long as the run; not beside the study, whose disk may be full
+    settings = {"cwd": root, "stdout": words, "stderr": subprocess.STDOUT}
+    main = subprocess.Popen(command, start_new_session=True, **settings)
+    main.words = words
+    return main
+
+
+def said(main):
+    """Return what a process of `start` has said by now."""
+    descriptor = main.words.fileno()
+    content = os.pread(descriptor, os.fstat(descriptor).st_size, 0)
+    return content.decode("utf-8", errors="replace")
+
+
+def sha256(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def raw(root):
+    """Return the checksum of every file that no run may write."""
+    paths = (path for path in sorted(root.rglob("*")) if path.is_file())
+    return {
+        str(path.relative_to(root)): sha256(path)
+        for path in paths
+        if not WRITTEN.intersection(path.relative_to(root).parts)
+    }
+
+
+def is_left_over(name):
+    """Return whether a name is one that `courtside.study.files` gives to what is not finished."""
+    return any(LEFT_OVER.fullmatch(part) for part in Path(name).parts)
+
+
+def differences(here, there):
+    """Return (files that are not the same or differ beyond the stated tolerance, names of left-overs)."""
+    verdicts = comparison.compare(here / FOLDER / "results", there / FOLDER / "results")
+    faults = [each for each in verdicts if each.outcome not in SAME]
+    left = [each.name for each in faults if is_left_over(each.name)]
+    return [each for each in faults if not is_left_over(each.name)], left

@@ -1,0 +1,198 @@
+"""What a machine does to a study: full and closed disks, too little memory, odd clocks, two runs at once."""
+
+import contextlib
+import os
+import random
+import resource
+import subprocess
+import time
+
+import psutil
+import pytest
+
+from faults import killing, study_copies
+from faults.study_copies import CUT, said, start
+from faults.tally import tries
+from smoke.conftest import ASKED_FOR
+from smoke.snakemake_runs import FOLDER, planned, run
+
+pytestmark = pytest.mark.fault
+ALL = ("--", "all", *ASKED_FOR)
+LARGEST_LOOKED_INTO = 100_000_000
+YEAR_S = 365 * 86400
+ROOM_BYTES = 60 << 20
+
+
+@contextlib.contextmanager
+def mounted(folder, *options):
+    """Mount something on a folder, or skip the test where this is not allowed."""
+    done = subprocess.run(["mount", *options, folder], capture_output=True, text=True, check=False)
+    if done.returncode:
+        pytest.skip(f"needs the right to mount: {done.stderr.strip()}")
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", folder], check=True)
+
+
+@contextlib.contextmanager
+def closed(folder):
+    """Make a folder read-only, even for root."""
+    with mounted(folder, "--bind", folder):
+        subprocess.run(["mount", "-o", "remount,ro,bind", folder], check=True)
+        yield
+
+
+@pytest.fixture
+def on_small_disk(cut, tmp_path):
+    """Return a copy of the study, with a few jobs due, on a disk of its own that has little room left."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    with mounted(disk, "-t", "tmpfs", "tmpfs"):
+        root = study_copies.copy_study(cut, disk / "study")
+        used = psutil.disk_usage(str(disk)).used
+        subprocess.run(["mount", "-o", f"remount,size={used + ROOM_BYTES}", disk], check=True)
+        yield root
+
+
+@contextlib.contextmanager
+def filled(root):
+    """Fill the disk of a study to the last byte."""
+    filler = root.parent / "filler"
+    try:
+        with contextlib.suppress(OSError), filler.open("wb", buffering=0) as stream:
+            while True:
+                stream.write(bytes(1 << 16))
+        with contextlib.suppress(OSError), filler.open("ab", buffering=0) as stream:
+            while True:
+                stream.write(b"x")
+        yield
+    finally:
+        filler.unlink()
+
+
+def first_job(main, rule):
+    """Return the job of a rule as soon as it has begun."""
+    for _, begun, _ in killing.watch(main):
+        for job in begun:
+            if job.rule == rule:
+                return job
+    raise AssertionError(said(main))
+
+
+def assert_one_line(main, *words):
+    """Check that a run failed and said why in one line, without a traceback."""
+    assert main.wait() != 0
+    text = said(main)
+    assert "Traceback" not in text, text
+    assert any(all(word in line for word in words) for line in text.splitlines()), text
+
+
+def assert_survived(root, untouched):
+    """Run the cut again: it must end with the results of the untouched run, and nothing else."""
+    main = start(root, "--", *CUT)
+    assert main.wait() == 0, said(main)
+    different, left_over = study_copies.differences(root, untouched[0])
+    assert all((root / FOLDER / name).is_file() for name in CUT)
+    assert different == []
+    assert left_over == []
+    assert planned("--", *CUT, root=root) == {}
+
+
+def test_a_disk_full_before_the_run_is_one_line(on_small_disk, untouched):
+    with tries("full disk, before the run"):
+        with filled(on_small_disk):
+            assert_one_line(
+                start(on_small_disk, "--", *CUT), "Error: ", "MB free", "free some room"
+            )
+        assert_survived(on_small_disk, untouched)
+
+
+def test_a_disk_full_during_a_job_is_one_line(on_small_disk, untouched):
+    rules = ["triangulate", "filter_motion", "export_take", "draw_skeletons", "draw_overlay"]
+    with tries("full disk, during a job", len(rules)):
+        for rule in rules:
+            main = start(on_small_disk, "--", *CUT, cores=1)
+            first_job(main, rule)
+            with filled(on_small_disk):
+                assert_one_line(main, f"  {rule}: ")
+                assert "No space left on device" in said(main) or "free or allow" in said(main)
+        assert_survived(on_small_disk, untouched)
+
+
+@pytest.mark.parametrize("name", ["results", "."])
+def test_a_closed_folder_is_one_line(cut, untouched, name):
+    folder = cut / FOLDER / name
+    with tries(f"read-only {'results' if name == 'results' else 'folder of the study'}"):
+        with closed(folder):
+            assert_one_line(start(cut, "--", *CUT), "read-only", "same command again")
+        assert_survived(cut, untouched)
+
+
+def test_too_little_memory_is_one_line(cut, untouched):
+    with tries("out of memory, during a job", 2):
+        for rule in ("draw_skeletons", "draw_overlay"):
+            main = start(cut, "--", *CUT, cores=1)
+            job = first_job(main, rule)
+            leave_no_memory(cut / FOLDER / job.log, job)
+            assert_one_line(main, f"  {rule}: ", "expected enough memory")
+        assert_survived(cut, untouched)
+
+
+def leave_no_memory(log, job):
+    """Let a job have no more memory than it has when its log begins, which is after its imports."""
+    while (
+        job.process.is_running() and not log.is_file()
+    ):  # Snakemake deletes the log of an earlier run
+        time.sleep(0.005)
+    for process in job.process.children(recursive=True):
+        limit = process.memory_info().vms
+        process.rlimit(psutil.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
+
+
+def shift(paths, seconds):
+    """Move the dates of files by some seconds, each by its own."""
+    for path in paths:
+        when_s = time.time() + seconds()
+        os.utime(path, (when_s, when_s), follow_symlinks=False)
+
+
+@pytest.mark.parametrize("years", [-20, 1])
+def test_inputs_of_another_year_are_inputs(cut, untouched, years):
+    folders = [cut / "config", cut / FOLDER / "results" / "external"]
+    files = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
+    with tries(f"inputs dated {'in the future' if years > 0 else 'long ago'}"):
+        shift(files, lambda: years * YEAR_S)
+        assert_survived(cut, untouched)
+        assert planned(*ALL, root=cut) == {}
+
+
+def test_a_clock_that_jumped_reruns_nothing(copy):
+    draw = random.Random(7)
+    files = [path for path in (copy / FOLDER / "results").rglob("*") if known_by_content(path)]
+    assert len(files) > 300
+    with tries("clock that jumped, each file by its own"):
+        shift(files, lambda: draw.uniform(0, YEAR_S))
+        assert planned(*ALL, root=copy) == {}
+
+
+def known_by_content(path):
+    """Return whether Snakemake looks into a file whose date has changed.
+
+    It does not look into folders, nor into files larger than the profile's `max-checksum-file-size`: with
+    other dates, these few make their jobs run again, which is safe.
+    """
+    of_folder = any((folder / ".snakemake_timestamp").exists() for folder in path.parents)
+    return path.is_file() and not of_folder and path.stat().st_size < LARGEST_LOOKED_INTO
+
+
+def test_of_two_runs_at_once_the_second_stops(cut, untouched):
+    with tries("two runs at once"):
+        first = start(cut, "--", *CUT)
+        first_job(first, "triangulate")
+        second = run("--", *CUT, root=cut, check=False)
+        assert second.returncode != 0
+        assert "Directory cannot be locked" in second.stdout + second.stderr
+        assert "--unlock" in second.stdout + second.stderr
+        assert first.wait() == 0, said(first)
+        assert_survived(cut, untouched)

@@ -1,0 +1,81 @@
+"""What the machine lacks, in one line: room on the disk, the right to write, memory."""
+
+import errno
+import os
+import shutil
+from pathlib import Path
+
+from courtside.study.errors import InputError
+
+LEAST_FREE_MB = 20  # below, not even Snakemake's own notes and logs are sure of their place
+FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+CLOSED = {errno.EROFS, errno.EACCES, errno.EPERM}
+NO_MEMORY = (
+    "Insufficient memory",
+    "bad_alloc",
+    "bad allocation",
+)  # of OpenCV and other C++ libraries
+AGAIN = "then give the same command again"
+
+
+def check(folder):
+    """Check that a study can write to a folder, before any work.
+
+    Parameters
+    ----------
+    folder : str or Path
+
+    Raises
+    ------
+    InputError
+        If it may not be written to, or its disk is full.
+    """
+    folder = Path(folder)
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError(
+            f"{folder}: expected a folder that can be written to, found it read-only; "
+            f"allow it, or choose another with --directory, {AGAIN}"
+        )
+    free_mb = shutil.disk_usage(folder).free / 1e6
+    if free_mb < LEAST_FREE_MB:
+        raise InputError(
+            f"{folder}: expected at least {LEAST_FREE_MB} MB free on its disk, found {free_mb:.1f} MB; "
+            f"free some room, {AGAIN}"
+        )
+
+
+def in_words(error):
+    """Return one line on an error that comes of what the machine lacks, None for any other.
+
+    Parameters
+    ----------
+    error : BaseException
+        Those that it followed are looked at too: libraries stumble over a full disk again when they tidy up.
+    """
+    while error is not None:
+        line = _of_memory(error) or _of_disk(error)
+        if line:
+            return line
+        error = error.__cause__ or error.__context__
+    return None
+
+
+def _of_memory(error):
+    text = " ".join(str(error).split())
+    if not isinstance(error, MemoryError) and not any(word in text for word in NO_MEMORY):
+        return None
+    return (
+        f"expected enough memory, found none left{text and f' ({text})'}; end other programs, or run fewer "
+        f"jobs at a time with --cores 1, {AGAIN}"
+    )
+
+
+def _of_disk(error):
+    if not isinstance(error, OSError):
+        return None
+    name = error.filename if isinstance(error.filename, str) else "a result"
+    if error.errno in FULL:
+        return f"{name}: expected room on the disk, found: {error.strerror}; free or allow some, {AGAIN}"
+    if error.errno in CLOSED:
+        return f"{name}: expected the right to use it, found: {error.strerror}; allow it, {AGAIN}"
+    return None
