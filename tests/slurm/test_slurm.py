@@ -1,0 +1,175 @@
+"""The Slurm profile: which rules it names, and the tiny study on a real Slurm (`.ci/slurm` starts one)."""
+
+import importlib.util
+import random
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+import pytest
+import yaml
+
+from courtside.study import comparison
+from smoke.snakemake_runs import FOLDER, ROOT, TINY
+
+PROFILE = ROOT / "profiles" / "slurm" / "config.yaml"
+KEPT = ("Snakefile", "workflow", "config", "profiles")
+MOST_JOBS = 15
+ONE_TAKE = "results/walk-4cams-tiny/takes/balancing"
+SKELETONS = f"{ONE_TAKE}/pose3d/file/all-robust/blazepose-full.npz"
+
+
+def rules():
+    files = (ROOT / "workflow" / "rules").glob("*.smk")
+    return {name for file in files for name in re.findall(r"^rule (\w+):", file.read_text(), re.M)}
+
+
+def profile():
+    return yaml.safe_load(PROFILE.read_text())
+
+
+def test_every_rule_is_in_a_group_and_no_other_is_named():
+    assert set(profile()["groups"]) == rules()
+    assert set(profile()["set-resources"]) < rules()
+    assert set(profile()["group-components"]) == set(profile()["groups"].values())
+
+
+def test_measured_rules_are_those_with_a_benchmark_file():
+    """But for simulations, whose rules bear names of sessions."""
+    text = "\n".join(path.read_text() for path in (ROOT / "workflow" / "rules").glob("*.smk"))
+    blocks = re.findall(r"^rule (\w+):\n(.*?)(?=^rule |^\S|\Z)", text, re.M | re.S)
+    with_file = {name for name, block in blocks if re.search(r"^ +benchmark:", block, re.M)}
+    assert with_file == set(profile()["set-resources"])
+
+
+def test_groups_of_the_default_study_do_not_wait_for_one_another(tmp_path):
+    """Snakemake refuses a group that depends on itself; needs no Slurm."""
+    named = profile()["groups"]
+    parts = [f"{group}=1000" for group in profile()["group-components"]]
+    command = [sys.executable, "-m", "snakemake", "-n", "--forceall", "--quiet", "rules"]
+    command += ["--directory", str(tmp_path), "--config", "sessions=[plain-b,players-b,walk-4cams]"]
+    command += ["variations=[]", "--groups", *(f"{rule}={group}" for rule, group in named.items())]
+    command += ["--group-components", *parts]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert re.search(r"^total +\d{3,}$", done.stdout + done.stderr, re.M)
+
+
+def answer(*command):
+    return subprocess.run(command, capture_output=True, text=True, timeout=30, check=True).stdout
+
+
+@pytest.fixture(scope="module")
+def slurm():
+    """Skip where no Slurm answers, or Snakemake cannot speak to it."""
+    if importlib.util.find_spec("snakemake_executor_plugin_slurm") is None:
+        pytest.skip("snakemake-executor-plugin-slurm is not installed (profiles/README.md)")
+    if shutil.which("sinfo") is None:
+        pytest.skip("no Slurm is installed; .ci/slurm installs one")
+    try:
+        nodes = answer("sinfo", "--noheader", "--format=%C")
+    except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
+        pytest.skip("no Slurm answers; .ci/slurm starts one")
+    return int(nodes.rpartition("/")[2])
+
+
+@pytest.fixture(scope="module")
+def copy(slurm, tiny_study, tmp_path_factory):
+    """Return a copy of the repository without results but for what is fetched from outside."""
+    root = tmp_path_factory.mktemp("slurm")
+    for name in KEPT:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, root / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy2(source, root / name)
+    shutil.copytree(tiny_study / "external", root / FOLDER / "results" / "external")
+    return root
+
+
+def started(root, cores, *options):
+    """Start Snakemake with the profile; the file of what it says is the root's `said.txt`."""
+    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "profiles/slurm"]
+    command += ["--cores", str(cores), "--slurm-init-seconds-before-status-checks", "5"]
+    command += ["--directory", str(FOLDER), "--configfile", str(TINY), *options]
+    with (root / "said.txt").open("w") as said:
+        return subprocess.Popen(command, cwd=root, stdout=said, stderr=said)
+
+
+def finish(process, root, timeout_s):
+    """Wait for Snakemake; return what it said."""
+    try:
+        status = process.wait(timeout=timeout_s)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        status = "none: too long"
+    said = (root / "said.txt").read_text()
+    assert status == 0, said
+    return said
+
+
+def slurm_jobs(said):
+    return re.findall(r"submitted with SLURM jobid (\d+)", said)
+
+
+@pytest.fixture(scope="module")
+def on_slurm(slurm, copy):
+    """Return what Snakemake said of the whole tiny study on Slurm."""
+    return finish(started(copy, slurm, "--", "all"), copy, timeout_s=1500)
+
+
+@pytest.mark.slurm
+def test_the_tiny_study_gives_the_same_results_as_on_one_machine(on_slurm, copy, tiny_study):
+    assert made(copy / FOLDER / "results"), "nothing was made"
+    verdicts = comparison.compare(copy / FOLDER / "results", tiny_study)
+    # The local study also makes what is asked for by name.
+    faults = [v for v in verdicts if v.outcome in comparison.FAULTS and not asked_for_by_name(v)]
+    assert faults == []
+    assert sum(v.outcome == comparison.EQUAL for v in verdicts) > 200
+
+
+def made(results):
+    return [path for path in results.rglob("*.npz") if "external" not in path.parts]
+
+
+def asked_for_by_name(verdict):
+    by_name = ("report.html", "pages/clicking.html", "/pose2sim/")
+    return verdict.outcome == comparison.ONLY_THERE and any(n in verdict.name for n in by_name)
+
+
+@pytest.mark.slurm
+def test_the_tiny_study_takes_few_slurm_jobs(on_slurm):
+    assert 5 < len(slurm_jobs(on_slurm)) <= MOST_JOBS
+
+
+@pytest.mark.slurm
+def test_a_cancelled_job_is_retried_and_the_run_ends_right(on_slurm, slurm, copy):
+    skeletons = copy / FOLDER / SKELETONS
+    before = skeletons.read_bytes()
+    chance = random.Random(7)
+    process = started(copy, slurm, "--forcerun", "detect_pose", "--", SKELETONS)
+    try:
+        job = running_job(process, copy)
+        time.sleep(chance.uniform(2, 8))  # in the middle of starting, or of detecting
+        answer("scancel", job)
+    except BaseException:
+        process.kill()
+        raise
+    said = finish(process, copy, timeout_s=600)
+    assert len(slurm_jobs(said)) == 2, said
+    assert "Trying to restart job" in said
+    assert skeletons.read_bytes() == before
+
+
+def running_job(process, root):
+    """Return the id of the Slurm job that Snakemake submitted, as soon as it runs."""
+    until = time.monotonic() + 120
+    while time.monotonic() < until and process.poll() is None:
+        for job in slurm_jobs((root / "said.txt").read_text()):
+            if answer("squeue", "--noheader", "--format=%T", "--job", job).strip() == "RUNNING":
+                return job
+        time.sleep(0.5)
+    raise AssertionError("no Slurm job ran:\n" + (root / "said.txt").read_text())
