@@ -33,6 +33,11 @@ PINS = {
         numpy==2.4.6 opencv-contrib-python==5.0.0.93 opt_einsum==3.4.0 pandas==3.1.1
         python-dateutil==4.0.0 scipy==1.17.1 toml==0.10.2 tqdm==4.70.1 tzdata==2026.6
     """,
+    "caliscope": """
+        caliscope==0.11.8 numpy==2.4.6 opencv-python-headless==5.0.0.93 pandas==3.1.1
+        platformdirs==4.14.7 python-dateutil==4.0.0 rtoml==0.14.0 scipy==1.17.1 tzdata==2026.6
+    """,
+    "ffmpeg": "imageio-ffmpeg==0.8.1",
     "mediapipe": f"""
         mediapipe==0.10.21 absl-py==2.5.1 attrs==26.1.0 cffi==2.1.1 flatbuffers==25.12.19 jax==0.7.1
         jaxlib==0.7.1 ml_dtypes==0.5.4 numpy==1.26.4 opencv-contrib-python==4.11.0.86
@@ -40,10 +45,13 @@ PINS = {
         sounddevice==0.5.6 {PLOTTING}
     """,
     "pose2sim": f"""
-        pose2sim==0.10.49 anytree==2.13.0 c3d==0.6.0 numpy==2.4.6 opencv-python-headless==5.0.0.93
+        pose2sim==0.10.49 anytree==2.13.0 c3d==0.6.0 filterpy==2.0.0 numpy==2.4.6
+        opencv-python-headless==5.0.0.93 patsy==1.0.3 statsmodels==0.15.0
         pandas==3.1.1 rtoml==0.14.0 scipy==1.17.1 tqdm==4.70.1 tzdata==2026.6 {PLOTTING}
     """,
 }
+THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"
+ONE_THREAD = dict.fromkeys(THREADS, "1")
 NEWEST_PYTHON = {"mediapipe": (3, 12)}  # its wheels end there
 
 
@@ -87,8 +95,7 @@ def run_method(python, script, *arguments):
     result : dict
         The last line of its output; `{"failed": reason}` where it ended with an error.
     """
-    threads = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-    environment = {**os.environ, **dict.fromkeys(threads, "1"), "MPLBACKEND": "Agg"}
+    environment = {**os.environ, **ONE_THREAD, "MPLBACKEND": "Agg"}
     command = [python, HERE / "methods" / script, *arguments]
     done = subprocess.run(
         [str(part) for part in command],
@@ -100,6 +107,14 @@ def run_method(python, script, *arguments):
     if done.returncode:
         return {"failed": (done.stderr.strip().splitlines() or ["no message"])[-1]}
     return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+def on_one_thread():
+    """Start this program anew unless its libraries were told, before they load, to use one thread."""
+    if any(os.environ.get(name) != "1" for name in ONE_THREAD):
+        sys.stdout.flush()
+        command = [sys.executable, *sys.orig_argv[1:]]
+        os.execve(sys.executable, command, {**os.environ, **ONE_THREAD})
 
 
 def _one_core():

@@ -4,6 +4,7 @@
 
 SESSION is a virtual session that the study has rendered and extracted (static pictures, frames of the walk,
 clicks, truth). Both sides get the same pictures, lens model, one lens per physical camera, and all cores;
+their processor time counts, which a busy machine changes little, and the time by the clock stands beside it;
 this project matches the pairs of its list and maps globally, COLMAP matches all pairs and maps incrementally,
 with its own default options. Errors are those of the playing volume, from the session's own clicks, after the
 alignment that each side stops at (a similarity to all court points) and after this project's adjustment of
@@ -11,15 +12,16 @@ either model.
 """
 
 import argparse
+import itertools
 import json
 import os
+import sqlite3
 import sys
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pycolmap
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
@@ -29,19 +31,22 @@ from courtside.sfm import database, features, grid, mapping, matching, model
 from courtside.study import yaml_files
 
 ROOT = Path(__file__).parents[1]
-LINE = "{:<11}{:>10}{:>10}{:>10}{:>9}{:>12}{:>12}{:>13}"
+STEPS = "features", "matching", "mapping"
+LINE = "{:<13}{:>10}{:>10}{:>10}{:>9}{:>9}{:>12}{:>10}{:>10}"
 
 
 class Watch:
-    """Seconds of each step of one side."""
+    """Processor seconds (all threads) and seconds by the clock of each step of one side."""
 
     def __init__(self):
-        self.seconds, self.last = {}, time.perf_counter()
+        self.cpu, self.wall = {}, {}
+        self._last = time.process_time(), time.perf_counter()
 
     def stop(self, step):
         """Note the seconds since the last stop as those of a step."""
-        now = time.perf_counter()
-        self.seconds[step], self.last = now - self.last, now
+        now = time.process_time(), time.perf_counter()
+        self.cpu[step], self.wall[step] = (n - m for n, m in zip(now, self._last, strict=True))
+        self._last = now
 
 
 def ours(root, groups, walked, fixed, folder, parameters):
@@ -62,7 +67,7 @@ def ours(root, groups, walked, fixed, folder, parameters):
     options = parameters["map_images"]["colmap"]["global"]
     mapping.map_images(folder / "m.db", images, folder, mapper="global", seed=0, options=options)
     watch.stop("mapping")
-    return watch.seconds
+    return watch
 
 
 def colmap(root, groups, folder):
@@ -84,7 +89,7 @@ def colmap(root, groups, folder):
         found = pycolmap.incremental_mapping(copy, root, folder)
     max(found.values(), key=lambda each: each.num_reg_images()).write_binary(str(folder))
     watch.stop("mapping")
-    return watch.seconds
+    return watch
 
 
 def errors(folder, real, court, marked, parameters):
@@ -116,6 +121,52 @@ def errors(folder, real, court, marked, parameters):
     )
 
 
+def compared_features(path, pairs=None):
+    """Return how many pairs of features are compared in some pairs of images, by default all pairs."""
+    with sqlite3.connect(path) as opened:
+        query = "SELECT name, keypoints.rows FROM images JOIN keypoints USING (image_id)"
+        counts = dict(opened.execute(query))
+    return sum(counts[a] * counts[b] for a, b in pairs or itertools.combinations(counts, 2))
+
+
+def compare(results, session, count):
+    """Return {side: seconds of each step, images registered, errors in cm} for so many bridging images."""
+    root, virtual = results / session, results / "virtual" / session
+    court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
+    real = truth.read(virtual / "truth.npz")
+    names = [camera.name for camera in real.cameras]
+    marked = clicks.read(virtual / "court_points.csv", names, list(court.points))
+    parameters = yaml_files.read(ROOT / "config" / "config.yaml")
+    whole = grid.read({"walk": root / "frames" / "walk.csv"})
+    taken = np.array(whole.choose(count, 0, "even"))
+    everything = np.ones(len(taken), dtype=bool)
+    walked = grid.Grid(np.full(len(taken), "walk"), taken, everything, everything * 1.0)
+    fixed = [image_names.static(name) for name in names]
+    groups = [features.Group(n, (f,)) for n, f in zip(names, fixed, strict=True)]
+    groups.append(features.Group("walk", tuple(taken.tolist())))
+    found = {}
+    for side in ("courtside", "colmap"):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            if side == "courtside":
+                watch = ours(root, groups, walked, fixed, folder, parameters)
+                pairs = walked.pairs(fixed)
+            else:
+                watch, pairs = colmap(root, groups, folder), None
+            compared = compared_features(folder / "f.db", pairs)
+            errors_cm = errors(folder, real, court, marked, parameters)
+        named = ("registered", "similarity_cm", "adjusted_cm")
+        wall = {f"{step}_wall": seconds for step, seconds in watch.wall.items()}
+        found[side] = {**watch.cpu, **wall, "compared": compared}
+        found[side] |= dict(zip(named, errors_cm, strict=True))
+    return found
+
+
+def total(row, steps=STEPS):
+    """Return the processor seconds of some steps together."""
+    return sum(row[step] for step in steps)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path)
@@ -123,60 +174,22 @@ def main():
     parser.add_argument("--images", type=int, default=75)
     parser.add_argument("--json", type=Path)
     chosen = parser.parse_args()
-    root, virtual = chosen.results / chosen.session, chosen.results / "virtual" / chosen.session
-    court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
-    real = truth.read(virtual / "truth.npz")
-    names = [camera.name for camera in real.cameras]
-    marked = clicks.read(virtual / "court_points.csv", names, list(court.points))
-    parameters = yaml_files.read(ROOT / "config" / "config.yaml")
-    whole = grid.read({"walk": root / "frames" / "walk.csv"})
-    taken = np.array(whole.choose(chosen.images, 0, "even"))
-    everything = np.ones(len(taken), dtype=bool)
-    walked = grid.Grid(np.full(len(taken), "walk"), taken, everything, everything * 1.0)
-    fixed = [image_names.static(name) for name in names]
-    groups = [features.Group(n, (f,)) for n, f in zip(names, fixed, strict=True)]
-    groups.append(features.Group("walk", tuple(taken.tolist())))
-    rows = {}
-    for side in ("courtside", "colmap"):
-        with tempfile.TemporaryDirectory() as temporary:
-            folder = Path(temporary)
-            if side == "courtside":
-                seconds = ours(root, groups, walked, fixed, folder, parameters)
-            else:
-                seconds = colmap(root, groups, folder)
-            found = errors(folder, real, court, marked, parameters)
-        named = ("registered", "similarity_cm", "adjusted_cm")
-        rows[side] = {**seconds, **dict(zip(named, found, strict=True))}
-    table = pd.DataFrame(rows)
-    print(
-        LINE.format(
-            "side",
-            "features",
-            "matching",
-            "mapping",
-            "total",
-            "registered",
-            "sim. cm",
-            "adjusted cm",
-        )
-    )
-    for side, row in rows.items():
-        spent = [row[step] for step in ("features", "matching", "mapping")]
-        cells = [f"{value:.1f}" for value in (*spent, sum(spent))]
+    found = compare(chosen.results, chosen.session, chosen.images)
+    print(LINE.format("CPU seconds", *STEPS, "total", "wall", "registered", "sim. cm", "adjusted"))
+    for side, row in found.items():
+        wall = total(row, [f"{step}_wall" for step in STEPS])
+        cells = [f"{value:.1f}" for value in (*(row[step] for step in STEPS), total(row), wall)]
         cells += [
             f"{row['registered']}",
             f"{row['similarity_cm']:.2f}",
             f"{row['adjusted_cm']:.2f}",
         ]
         print(LINE.format(side, *cells))
-    steps = table.loc[["features", "matching", "mapping"]].sum()
-    after = table.loc[["matching", "mapping"]].sum()
-    print(
-        f"COLMAP's seconds over this project's: {steps.colmap / steps.courtside:.2f} in all, "
-        f"{after.colmap / after.courtside:.2f} after features"
-    )
+    ratio = total(found["colmap"]) / total(found["courtside"])
+    after = total(found["colmap"], STEPS[1:]) / total(found["courtside"], STEPS[1:])
+    print(f"COLMAP's time over this project's: {ratio:.2f} in all, {after:.2f} after features")
     if chosen.json:
-        chosen.json.write_text(json.dumps(rows, indent=2) + "\n")
+        chosen.json.write_text(json.dumps(found, indent=2) + "\n")
 
 
 if __name__ == "__main__":

@@ -42,11 +42,11 @@ def ours(frames, detector, landmarks, follow):
 
 def timed(frames, detector, landmarks, follow):
     seconds, xy = [], []
-    start = time.perf_counter()
+    start = time.process_time()
     for joints in ours(frames, detector, landmarks, follow):
-        seconds.append(time.perf_counter() - start)
+        seconds.append(time.process_time() - start)
         xy.append(joints)
-        start = time.perf_counter()
+        start = time.process_time()
     return seconds, np.array(xy)
 
 

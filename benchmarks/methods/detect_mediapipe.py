@@ -19,9 +19,9 @@ def timed(frames, static):
     with mediapipe.solutions.pose.Pose(static_image_mode=static, **OPTIONS) as solution:
         solution.process(frames[0])  # warm-up: loads the networks
         for frame in frames:
-            start = time.perf_counter()
+            start = time.process_time()
             found = solution.process(frame).pose_landmarks
-            seconds.append(time.perf_counter() - start)
+            seconds.append(time.process_time() - start)
             joints = [(j.x * width, j.y * height) for j in found.landmark] if found else None
             xy.append(joints or [(np.nan, np.nan)] * 33)
     return seconds, np.array(xy)

@@ -1,7 +1,10 @@
-"""Three ways of aniposelib's `CameraGroup`, timed. Arguments: scene.npz result.npz repeats joints.
+"""Three ways of aniposelib's `CameraGroup`, timed.
+
+Arguments: scene.npz result.npz repeats joints [ransac optim].
 
 `triangulate` is warm: its first call compiles. `triangulate_ransac` (a Python loop) and `optim_points` (a
-non-linear fit over time, which may smooth) run once on fewer points, the latter on whole frames.
+non-linear fit over time, which may smooth) run once on fewer points, the latter on whole frames: `ransac`
+points and `optim` frames, 0 for not at all.
 """
 
 import json
@@ -19,9 +22,9 @@ RANSAC_POINTS, OPTIM_FRAMES = 260, 200
 def timed(function, repeats=1):
     seconds = []
     for _ in range(repeats):
-        start = time.perf_counter()
+        start = time.process_time()
         found = function()
-        seconds.append(time.perf_counter() - start)
+        seconds.append(time.process_time() - start)
     return found, seconds
 
 
@@ -33,33 +36,32 @@ def group(scene):
     return CameraGroup(views)
 
 
-def main(scene_npz, result_npz, repeats, joints):
+def optimised(cameras, xy, start, frames, joints):
+    count = frames * joints
+    clip = xy[:, :count].reshape(len(xy), frames, joints, 2)
+    guess = start[:count].reshape(frames, joints, 3)
+    options = {"constraints": [], "scale_smooth": 4, "n_deriv_smooth": 1}
+    found, seconds = timed(
+        lambda: cameras.optim_points(
+            clip, guess, reproj_error_threshold=15, verbose=False, **options
+        )
+    )
+    return found.reshape(-1, 3), seconds
+
+
+def main(scene_npz, result_npz, repeats, joints, ransac=RANSAC_POINTS, optim=OPTIM_FRAMES):
     warnings.simplefilter("ignore")
     scene = np.load(scene_npz)
     cameras, xy = group(scene), scene["xy"]
     start, _ = timed(lambda: cameras.triangulate(xy))
     whole, whole_s = timed(lambda: cameras.triangulate(xy), int(repeats))
-    cameras.triangulate_ransac(xy[:, :2])
-    ransac, ransac_s = timed(lambda: cameras.triangulate_ransac(xy[:, :RANSAC_POINTS])[0])
-    count = OPTIM_FRAMES * int(joints)
-    clip = xy[:, :count].reshape(len(xy), OPTIM_FRAMES, int(joints), 2)
-    guess = start[:count].reshape(OPTIM_FRAMES, int(joints), 3)
-    optim, optim_s = timed(
-        lambda: cameras.optim_points(
-            clip,
-            guess,
-            constraints=[],
-            scale_smooth=4,
-            n_deriv_smooth=1,
-            reproj_error_threshold=15,
-            verbose=False,
-        )
-    )
-    found = {
-        "triangulate": (whole, whole_s),
-        "triangulate_ransac": (ransac, ransac_s),
-        "optim_points": (optim.reshape(-1, 3), optim_s),
-    }
+    found = {"triangulate": (whole, whole_s)}
+    if int(ransac):
+        cameras.triangulate_ransac(xy[:, :2])
+        chosen = xy[:, : int(ransac)]
+        found["triangulate_ransac"] = timed(lambda: cameras.triangulate_ransac(chosen)[0])
+    if int(optim):
+        found["optim_points"] = optimised(cameras, xy, start, int(optim), int(joints))
     np.savez(result_npz, **{name: xyz for name, (xyz, _) in found.items()})
     print(json.dumps({n: {"seconds": s, "points": len(xyz)} for n, (xyz, s) in found.items()}))
 

@@ -1,0 +1,70 @@
+"""Zero-lag Butterworth filter of 26 joints at 60 Hz: 6 Hz, order 4, with gaps."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import machine
+import numpy as np
+import peers
+import rows
+
+import scene
+
+NAME = "filtering"
+LIMIT = "bytes of the coordinates read and written, over the memory's"
+BOUNDS = (
+    "the recursion of the filter, one number after another in each coordinate, which SciPy does in C "
+    "for all joints at once; Pose2Sim calls it once for each of 78 columns, and its outlier filter "
+    "once for each frame of each"
+)
+FRAMES = 1000
+SETTINGS = {"rate_hz": scene.RATE_HZ, "cutoff_hz": 6.0, "order": 4}
+NOISE_M, GAPS, GAP_FRAMES = 0.015, 3, 20  # per axis; of each take, in all joints
+
+
+def compare(given):
+    """Return the rows of this project and Pose2Sim."""
+    found = []
+    for times in rows.TIMES[: 2 if given.quick else None]:
+        rng = np.random.default_rng(0)
+        true = scene.body(times * FRAMES, rng).reshape(-1, scene.JOINTS, 3)
+        noisy = true + rng.normal(0, NOISE_M, true.shape)
+        for start in rng.integers(0, len(true) - GAP_FRAMES, GAPS * times):
+            noisy[start : start + GAP_FRAMES] = np.nan
+        measured = _measured({"xyz": noisy, **SETTINGS}, given)
+        ours = measured["zero_lag_points"][1]
+        found += [_row(true, times, ours, method, *one) for method, one in measured.items()]
+    return found
+
+
+def _measured(given_arrays, given):
+    """Return {method: (least seconds, coordinates)}; this project runs first and last."""
+    runs = [(None, "filter_courtside.py"), ("pose2sim", "filter_pose2sim.py"),
+            (None, "filter_courtside.py")]  # fmt: skip
+    measured = {}
+    with tempfile.TemporaryDirectory() as name:
+        noisy, result = Path(name) / "noisy.npz", Path(name) / "result.npz"
+        np.savez(noisy, **given_arrays)
+        for peer, script in runs:
+            python = peers.interpreter(peer, given.environments) if peer else sys.executable
+            said = peers.run_method(python, script, noisy, result, str(given.repeats))
+            if "failed" in said:
+                raise SystemExit(f"{script}: {said['failed']}")
+            with np.load(result) as filtered:
+                for function, each in said.items():
+                    method = f"{peer} {function}" if peer else function
+                    best_s = min([*each["seconds"], measured.get(method, (np.inf,))[0]])
+                    measured[method] = best_s, filtered[function]
+    return measured
+
+
+def _row(true, times, ours, method, cpu_s, xyz):
+    away = [1000 * np.linalg.norm(each - true, axis=-1) for each in (xyz, ours)]
+    known = np.isfinite(away[0]) & np.isfinite(away[1])
+    return rows.Row(
+        comparison=NAME, method=method, ours=xyz is ours, unit="frame", work=len(true), times=times,
+        cpu_s=cpu_s, limit_s=2 * true.nbytes / machine.measured().bytes_s,
+        error_median=np.median(away[0][known]), error_p95=np.percentile(away[0][known], 95),
+        error_ours_p95=np.percentile(away[1][known], 95), error_unit="mm",
+    )  # fmt: skip
