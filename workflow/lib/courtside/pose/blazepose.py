@@ -142,8 +142,9 @@ class BlazePoseLandmarks:
 
     def estimate(self, image, region):
         """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
-        patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)[:, :, ::-1]
-        tensor = patch.astype(np.float32)[None] / 255
+        patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)
+        patch = cv2.cvtColor(patch, cv2.COLOR_BGR2RGB)
+        tensor = np.divide(patch, np.float32(255), dtype=np.float32)[None]
         names = ["Identity", "Identity_1", "Identity_3", "Identity_4"]
         landmarks, presence, heat_maps, metric = self.network.run(names, {"input_1": tensor})
         landmarks = landmarks.reshape(39, 5).astype(float)

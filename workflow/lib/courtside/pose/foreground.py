@@ -19,7 +19,7 @@ class Foreground:
     """
 
     def __init__(self, background, min_difference):
-        self.background = _shrink(background).astype(np.int16)
+        self.background = _shrink(background)
         self.min_difference = min_difference
 
     def boxes(self, image, without=()):
@@ -27,7 +27,8 @@ class Foreground:
 
         What changed inside the boxes `without`, in the same form, is left out.
         """
-        difference = np.abs(_shrink(image).astype(np.int16) - self.background).max(axis=2)
+        blue, green, red = cv2.split(cv2.absdiff(_shrink(image), self.background))
+        difference = cv2.max(cv2.max(blue, green), red)
         mask = (difference > self.min_difference).astype(np.uint8)
         for box in without:
             x, y, width, height = (round(v / SHRINK) for v in box)

@@ -6,7 +6,6 @@ A tracklet is what certainly is one body: it ends where its tracker may have cha
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from courtside.pose import tracking
 from courtside.pose.tracking import Track
@@ -171,6 +170,9 @@ class _Crowd:
 
     def match(self, poses, keep=False):
         """Give poses to the bodies they continue, and start new bodies with the rest."""
+        # Here, for one person is followed without it: loading it takes as long as 15 frames.
+        from scipy.optimize import linear_sum_assignment
+
         old, new = ([], self.bodies) if keep else (self.bodies, [])
         bodies = list(new)
         cost = np.array(

@@ -6,6 +6,8 @@ from courtside.virtual import hands, posing
 from courtside.virtual import racket as rackets
 from courtside.virtual.mesh import Mesh, join
 
+KEPT = 1024  # times whose bones are kept, 20 kB each
+
 
 class Athlete:
     """A body, its motion and its racket.
@@ -36,7 +38,7 @@ class Athlete:
         if self.has_racket:
             self._racket = rackets.build()
             self._grip = hands.grip(body.figure, body.skeleton, self.hand)
-        self._last = None
+        self._kept = {}
 
     def mesh(self, time_s):
         """Return the surface at a time, world, metres, as a `Mesh`: body, then racket."""
@@ -66,8 +68,10 @@ class Athlete:
         return held - rackets.HELD_AT_M * way, way
 
     def _bones(self, time_s):
-        """Return stance and bones; those of the last time are kept, for several cameras see one time."""
-        if self._last is None or self._last[0] != time_s:
+        """Return stance and bones; those of the last times are kept, for several cameras see one time."""
+        if time_s not in self._kept:
+            if len(self._kept) == KEPT:
+                del self._kept[next(iter(self._kept))]
             stance = self.motion.stance(time_s)
-            self._last = time_s, (stance, posing.pose(self.body.skeleton, stance))
-        return self._last[1]
+            self._kept[time_s] = stance, posing.pose(self.body.skeleton, stance)
+        return self._kept[time_s]

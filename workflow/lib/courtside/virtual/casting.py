@@ -1,8 +1,8 @@
 """Rays against surfaces in the pixels of one picture: colours, and how much of each pixel they cover."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
-import cv2
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
@@ -18,10 +18,11 @@ MOMENTS = {
     31.0: 24,
     np.inf: 32,
 }  # of what moves no farther, px
-RAYS = len(exposure.SUBPIXELS)  # at least, of each pixel
+OFFSETS = exposure.SUBPIXELS.astype(np.float32)  # of a pixel's rays from its middle
+RAYS = len(OFFSETS)  # at least, of each pixel: every number of moments is a multiple or a divisor
+ALONG = np.array([[0, 0, 1]], np.float32)
 NEAREST_M = 0.1  # surfaces that come nearer are left out
-CELL_PX = 8  # rays are cast in the cells of that size that hold a corner, and in those round them
-BESIDE = np.ones((3, 3), np.uint8)
+NEAR_PX = 1e-3  # rays that pass a triangle nearer than that count as if they met it
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,17 +59,12 @@ def cover(screens, box, solid_m, net_m):
     shape = box[3] - box[1], box[2] - box[0]
     surface = _Surface(screens, np.array([*box[:2], 0.0]))
     parts = surface.parts()
-    row, column = np.indices(shape, np.float32).reshape(2, -1)
-    centres = np.stack([column, row, np.zeros_like(row)], axis=1)
     hall = np.asarray(solid_m, np.float32).ravel(), np.asarray(net_m, np.float32).ravel()
-    layer = np.zeros((len(row), 4), np.float32)
+    layer = np.zeros((shape[0] * shape[1], 4), np.float32)
     n_rays = max(RAYS, *parts) if parts else 0
-    for ray in range(n_rays):
-        pieces = [
-            surface.piece(parts[count], count, ray * count // n_rays, shape) for count in parts
-        ]
-        places = centres + np.float32([*exposure.SUBPIXELS[ray % RAYS], 0.0])
-        _add(layer, _hits(pieces, places), surface, hall)
+    for first in range(0, n_rays, RAYS):
+        rays = range(first, first + RAYS)
+        _add(layer, _hits(_casts(surface, parts, rays, n_rays, shape), shape), surface, hall)
     return (layer / max(n_rays, 1)).reshape(*shape, 4)
 
 
@@ -82,86 +78,152 @@ class _Surface:
         self.triangles = np.concatenate(parts)
         self.colours = np.concatenate([each.colours for each in moving]).astype(np.float32)
         self.light = np.concatenate([each.light() for each in moving])
-        self._screens, self._corner, self._made = screens, corner, {}
+        self._screens, self._corner, self._made = screens, corner[:, np.newaxis], {}
+        self._corners = np.ascontiguousarray(self.triangles.T)
         self._blur_px = np.nan_to_num(np.concatenate([screen.blur_px for screen in screens]))
 
     def at(self, share):
-        """Return the vertices (V, 3) at a moment of the exposure, in the box."""
-        return np.concatenate([screen.at(share) for screen in self._screens]) - self._corner
+        """Return the vertices (3, V) at a moment of the exposure, in the box."""
+        return np.hstack([screen.at(share).T for screen in self._screens]) - self._corner
 
     def parts(self):
-        """Return the triangles that face the camera, by how many moments they need: dict of int to (n,)."""
-        vertices = self.at(0.0)
+        """Return {number of moments: triangles to cast at so many}, those towards the camera."""
+        x, y, depth = self.at(0.0)
         with np.errstate(invalid="ignore"):
-            seen = np.isfinite(vertices).all(axis=1) & (vertices[:, 2] > NEAREST_M)
-        x, y = np.nan_to_num(vertices[:, :2]).T[:, self.triangles]
+            seen = np.isfinite(x) & np.isfinite(y) & np.isfinite(depth) & (depth > NEAREST_M)
+        if not seen.all():
+            x, y = np.nan_to_num(x), np.nan_to_num(y)
+        a, b, c = self._corners
+        xa, ya = x[a], y[a]
         # Counter-clockwise seen from outside, but pixels count downwards.
-        area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
-        shown = np.flatnonzero((area < 0) & seen[self.triangles].all(axis=1))
-        needed = np.searchsorted(list(MOMENTS), self._blur_px[self.triangles[shown]].max(axis=1))
+        towards = (x[b] - xa) * (y[c] - ya) - (x[c] - xa) * (y[b] - ya) < 0
+        if not seen.all():
+            towards &= seen[a] & seen[b] & seen[c]
+        shown = np.flatnonzero(towards)
+        farthest = np.maximum.reduce([self._blur_px[corner[shown]] for corner in (a, b, c)])
+        needed = np.searchsorted(list(MOMENTS), farthest)
         counts = np.array(list(MOMENTS.values()))[needed]
         return {int(count): shown[counts == count] for count in np.unique(counts)}
 
     def piece(self, kept, count, moment, shape):
         """Return triangles at one of so many moments of the exposure, ready for rays."""
         if (count, moment) not in self._made:
-            corners, inverse = np.unique(self.triangles[kept], return_inverse=True)
-            vertices = self.at((moment + 0.5) / count - 0.5)[corners].astype(np.float32)
-            triangles = inverse.reshape(-1, 3).astype(np.int32)
-            scene = EmbreeScene()
-            TriangleMesh(scene, vertices, triangles)
-            self._made[count, moment] = _Piece(scene, kept, _near(vertices[triangles], shape))
+            vertices = self.at((moment + 0.5) / count - 0.5).astype(np.float32)
+            corners = self._corners[:, kept]
+            near = _near(*spans(vertices, corners), shape)
+            self._made[count, moment] = _Piece(scene(vertices, corners), kept, near)
         return self._made[count, moment]
 
 
-def _near(corners, shape):
-    """Return the pixels (n,) of a box that may see triangles (F, 3, 3): whole cells of it."""
-    cells = [-(-length // CELL_PX) for length in shape]
-    occupied = np.zeros(cells, np.uint8)
-    size_px = np.ptp(corners[:, :, :2], axis=1).max(axis=1)
-    long = size_px > CELL_PX
-    points = [corners.reshape(-1, 3)]
-    if long.any():  # points all over them, no cell apart
-        n = int(np.ceil(size_px.max() / CELL_PX))
-        shares = [(i / n, j / n, (n - i - j) / n) for i in range(n + 1) for j in range(n + 1 - i)]
-        points.append((np.array(shares) @ corners[long]).reshape(-1, 3))
-    column, row, _ = (np.concatenate(points).T / CELL_PX).astype(int)
-    inside = (row >= 0) & (row < cells[0]) & (column >= 0) & (column < cells[1])
-    occupied[row[inside], column[inside]] = 1
-    whole = cv2.dilate(occupied, BESIDE).repeat(CELL_PX, axis=0).repeat(CELL_PX, axis=1)
-    return np.flatnonzero(whole[: shape[0], : shape[1]])
+def scene(vertices, corners):
+    """Make triangles ready for rays.
+
+    Parameters
+    ----------
+    vertices : (3, V) float32
+    corners : (3, F) int
+
+    Returns
+    -------
+    scene : EmbreeScene
+    """
+    ready = EmbreeScene()
+    if corners.size:
+        used = np.zeros(vertices.shape[1], bool)
+        used[corners.ravel()] = True
+        corners = (np.cumsum(used) - 1)[corners]
+        # As tuples: embreex takes them one by one, and far longer over rows of an array.
+        triangles = np.fromiter(zip(*corners.tolist(), strict=True), object, corners.shape[1])
+        TriangleMesh(ready, np.ascontiguousarray(vertices[:, used].T), triangles)
+    return ready
 
 
-def _hits(pieces, places):
-    """Return which pixels see a triangle, which one, where in it (u, v), and how far it is, each (n,)."""
-    triangle = np.full(len(places), -1)
-    where = np.full((3, len(places)), np.inf, np.float32)  # depth, u, v
-    for piece in pieces:
-        start = places[piece.pixels]
-        along = np.zeros_like(start)
-        along[:, 2] = 1
-        found = piece.scene.run(start, along, output=True)
-        nearer = (found["primID"] >= 0) & (found["tfar"] < where[0, piece.pixels])
-        pixel = piece.pixels[nearer]
-        triangle[pixel] = piece.kept[found["primID"][nearer]]
-        where[:, pixel] = [found[key][nearer] for key in ("tfar", "u", "v")]
-    pixel = np.flatnonzero(triangle >= 0)
-    depth, u, v = where[:, pixel]
-    return pixel, triangle[pixel], u, v, depth
+def spans(vertices, corners):
+    """Return where triangles begin and end, (2, 2, F): first and last; px across and down.
+
+    Parameters
+    ----------
+    vertices : (3, V) float32
+    corners : (3, F) int
+    """
+    a, b, c = (vertices[:2, corner] for corner in corners)
+    return np.stack([np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)])
+
+
+def _near(first, last, shape):
+    """Return the pixels (n,) of a box of which a ray may meet what lies in these spans (2, F)."""
+    reach = np.abs(exposure.SUBPIXELS).max(axis=0)[:, np.newaxis] + NEAR_PX
+    most = np.array(shape[::-1])[:, np.newaxis]
+    left, top = np.clip(np.ceil(first - reach), 0, most).astype(int)
+    right, bottom = np.clip(np.floor(last + reach) + 1, 0, most).astype(int)
+    width = shape[1] + 1
+    size = width * (shape[0] + 1)
+    # How many spans begin less how many end up to a pixel, across and down: above 0 inside of one.
+    rows = np.concatenate([top, bottom, top, bottom])
+    columns = np.concatenate([left, right, right, left])
+    signs = np.repeat([1.0, 1.0, -1.0, -1.0], len(top))
+    begun = np.bincount(rows * width + columns, signs, minlength=size)
+    inside = begun.reshape(-1, width).cumsum(axis=0).cumsum(axis=1)
+    return np.flatnonzero(inside[:-1, :-1])
+
+
+def _casts(surface, parts, rays, n_rays, shape):
+    """Yield what some of the rays are cast at, and which of them, as places in OFFSETS."""
+    for count, kept in parts.items():
+        moments = np.array([ray * count // n_rays for ray in rays])
+        for moment in dict.fromkeys(moments.tolist()):
+            yield surface.piece(kept, count, moment, shape), np.flatnonzero(moments == moment)
+
+
+def _hits(casts, shape):
+    """Return what rays hit: which, numbered through all pixels for each offset, and where.
+
+    Parameters
+    ----------
+    casts : iterable of (_Piece, (m,) int)
+        Of `_casts`.
+    shape : (int, int)
+        Rows and columns.
+
+    Returns
+    -------
+    ray, triangle : (n,) int
+    u, v, depth : (n,) float32
+    """
+    size = shape[0] * shape[1]
+    triangle = np.full(RAYS * size, -1)
+    where = np.full((3, RAYS * size), np.inf, np.float32)  # depth, u, v
+    for piece, chosen in casts:
+        row, column = np.divmod(piece.pixels, shape[1])
+        start = np.zeros((len(chosen), len(row), 3), np.float32)
+        start[..., 0] = column + OFFSETS[chosen, :1]
+        start[..., 1] = row + OFFSETS[chosen, 1:]
+        found = piece.scene.run(start.reshape(-1, 3), ALONG, output=True)
+        ray = (chosen[:, np.newaxis] * size + piece.pixels).ravel()
+        nearer = (found["primID"] >= 0) & (found["tfar"] < where[0, ray])
+        ray = ray[nearer]
+        triangle[ray] = piece.kept[found["primID"][nearer]]
+        where[:, ray] = [found[key][nearer] for key in ("tfar", "u", "v")]
+    ray = np.flatnonzero(triangle >= 0)
+    depth, u, v = where[:, ray]
+    return ray, triangle[ray], u, v, depth
 
 
 def _add(layer, hits, surface, hall):
     """Add what rays hit to the layer (n, 4), unless something in the hall is before it."""
-    pixel, triangle, u, v, depth = hits
+    ray, triangle, u, v, depth = hits
     solid_m, net_m = hall
-    free = depth < solid_m[pixel]
+    free = depth < solid_m[ray % len(layer)]
     if not free.all():
-        pixel, triangle, u, v, depth = (part[free] for part in (pixel, triangle, u, v, depth))
+        ray, triangle, u, v, depth = (part[free] for part in (ray, triangle, u, v, depth))
+    pixel = ray % len(layer)
     a, b, c = surface.light[surface.triangles[triangle]].T
-    colour = surface.colours[triangle] * (a + u * (b - a) + v * (c - a))[:, None]
+    colour = np.ones((len(ray), 4), np.float32)
+    colour[:, :3] = surface.colours[triangle] * (a + u * (b - a) + v * (c - a))[:, None]
     behind = depth > net_m[pixel]
     if behind.any():
-        colour[behind] *= 1 - exposure.NET_COVER
-        colour[behind] += exposure.NET_COVER * exposure.NET_BGR
-    layer[pixel, :3] += colour
-    layer[pixel, 3] += 1
+        colour[behind, :3] *= 1 - exposure.NET_COVER
+        colour[behind, :3] += exposure.NET_COVER * exposure.NET_BGR
+    ends = np.searchsorted(ray, len(layer) * np.arange(RAYS + 1))
+    for start, end in pairwise(ends):  # in no offset a pixel comes twice
+        layer[pixel[start:end]] += colour[start:end]

@@ -129,14 +129,17 @@ class Grain:
         shape = size[1] + GRAIN_PX, size[0] + GRAIN_PX, 3
         field = rng.standard_normal(shape, dtype=np.float32)
         field *= np.float32(sigma)
-        self._field = np.rint(field, out=field).astype(np.int16)
+        np.rint(field, out=field)
+        # What is lighter and what is darker: of bytes, the sum takes a third of the time.
+        self._fields = [np.clip(part, 0, 255).astype(np.uint8) for part in (field, -field)]
 
     def added(self, picture, rng):
         """Return a picture with noise, (H, W, 3) uint8."""
         top, left = rng.integers(0, GRAIN_PX + 1, 2)
         height, width = picture.shape[:2]
-        part = self._field[top : top + height, left : left + width]
-        return cv2.add(picture, part, dtype=cv2.CV_8U)
+        lighter, darker = (field[top : top + height, left : left + width] for field in self._fields)
+        noisy = cv2.add(picture, lighter)
+        return cv2.subtract(noisy, darker, dst=noisy)
 
 
 def grouped(screens):

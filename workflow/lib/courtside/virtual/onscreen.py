@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry import cameras
+from courtside.geometry import distortion
 from courtside.virtual import mesh
 
 ROUNDS = (
@@ -78,7 +78,7 @@ def follow(athlete, camera, time_s, readout_s, exposure_s):
     moving : Moving
     """
     height = camera.size[1]
-    rows = cameras.project(camera, _vertices(athlete, time_s))[:, 1]
+    rows = shown(camera, _vertices(athlete, time_s))[1]
     low, high = np.clip([np.nanmin(rows, initial=height), np.nanmax(rows, initial=0)], 0, height)
     middle_s = time_s + ((low + high) / 2 / height - 0.5) * readout_s
     half_s = (abs(high - low) / height + SLACK) * readout_s / 2 + exposure_s / 2
@@ -107,19 +107,18 @@ class Screen:
     def __init__(self, moving, camera, time_s, readout_s, exposure_s):
         self.moving, self.camera = moving, camera
         self._time_s, self._readout_s = time_s, readout_s
-        row = self._shown(moving.time_s)[:, 1]
-        middle = self._rolled(row, 0.0)
+        middle = self._rolled(self._shown(moving.time_s)[1], 0.0)
         self._shape = [middle]
         if exposure_s > 0:
-            ends = [self._rolled(middle[:, 1], share * exposure_s) for share in (-0.5, 0.5)]
+            ends = [self._rolled(middle[1], share * exposure_s) for share in (-0.5, 0.5)]
             self._shape += [ends[1] - ends[0], 2 * (ends[0] + ends[1] - 2 * middle)]
 
     @property
     def blur_px(self):
         """How far each vertex moves during the exposure, (V,); NaN where the camera sees nothing."""
         if len(self._shape) == 1:
-            return np.zeros(len(self._shape[0]))
-        return np.hypot(*self._shape[1][:, :2].T)
+            return np.zeros(self._shape[0].shape[1])
+        return np.hypot(*self._shape[1][:2])
 
     def at(self, share):
         """Return the vertices at a moment of the exposure.
@@ -135,32 +134,64 @@ class Screen:
             Px across, px down, and metres along the camera's axis; NaN where the camera sees nothing.
         """
         if len(self._shape) == 1:
-            return self._shape[0]
+            return self._shape[0].T
         middle, slope, bend = self._shape
-        return middle + share * (slope + share * bend)
+        return (middle + share * (slope + share * bend)).T
 
     def box(self, pad_px):
         """Return the part of the picture that shows the surface, as `Box` has it; None where none does."""
-        ends = np.concatenate([self.at(share)[:, :2] for share in (-0.5, 0.0, 0.5)])
-        return bounds(ends, self.camera.size, pad_px)
+        ends = np.hstack([self.at(share).T[:2] for share in (-0.5, 0.0, 0.5)])
+        return bounds(ends.T, self.camera.size, pad_px)
 
     def _rolled(self, row, later_s):
-        """Return what rows see that are exposed so much later than they are, (V, 3)."""
+        """Return what rows see that are exposed so much later than they are, (3, V)."""
         height = self.camera.size[1]
         for _ in range(ROUNDS):
             own_s = self._time_s + ((row + 0.5) / height - 0.5) * self._readout_s + later_s
             seen = self._shown(own_s)
-            change_px = np.nanmax(np.abs(seen[:, 1] - row), initial=0.0)
-            row = seen[:, 1]
+            change_px = np.fmax.reduce(np.abs(seen[1] - row), initial=0.0)
+            row = seen[1]
             if change_px < ENOUGH_PX:
                 break
         return seen
 
     def _shown(self, time_s):
-        xyz = self.moving.at(time_s)
-        rotation = self.camera.cam_from_world
-        depth = xyz @ rotation[2, :3] + rotation[2, 3]
-        return np.column_stack([cameras.project(self.camera, xyz), depth])
+        return shown(self.camera, self.moving.at(time_s))
+
+
+def shown(camera, xyz):
+    """Return where a camera sees points, and how far in front of it.
+
+    Parameters
+    ----------
+    camera : courtside.geometry.cameras.Camera
+    xyz : (V, 3) float
+        World, metres.
+
+    Returns
+    -------
+    seen : (3, V) float
+        Px across and down as `cameras.project` has them, to the last bit (NaN where the camera sees
+        nothing), and metres along the camera's axis.
+
+    Notes
+    -----
+    Coordinates stay apart, each in a row of its own: NumPy takes several times as long on pairs and triples.
+    """
+    pose = camera.cam_from_world
+    seen = np.empty((3, len(xyz)))
+    seen[2] = xyz @ pose[2, :3] + pose[2, 3]
+    flat, z = seen[:2], xyz @ pose[:, :3].T
+    x, y, z = np.add(z.T, pose[:, 3:], out=np.empty(seen.shape))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        np.divide((x, y), z, out=flat)
+        visible = (z > 0) & (np.hypot(*flat) < camera.fold_radius)
+    if not visible.all():
+        flat[:, ~visible] = np.nan
+    flat[:] = distortion.distort(camera.dist, flat.T).T
+    flat *= np.diag(camera.K)[:2, np.newaxis]
+    flat += camera.K[:2, 2:]
+    return seen
 
 
 def bounds(xy, size, pad_px):
@@ -180,9 +211,12 @@ def bounds(xy, size, pad_px):
     box : (int, int, int, int) or None
         First column, first row, and one beyond the last of each.
     """
-    xy = xy[np.isfinite(xy).all(axis=1)]
-    if not len(xy):
+    x, y = np.asarray(xy).T
+    known = np.isfinite(x) & np.isfinite(y)
+    if not known.any():
         return None
-    low = np.clip(np.floor(xy.min(axis=0)) - pad_px, 0, size).astype(int)
-    high = np.clip(np.ceil(xy.max(axis=0)) + pad_px + 1, 0, size).astype(int)
+    ends = [(part.min(), part.max()) for part in ((x, y) if known.all() else (x[known], y[known]))]
+    first, last = np.transpose(ends)
+    low = np.clip(np.floor(first) - pad_px, 0, size).astype(int)
+    high = np.clip(np.ceil(last) + pad_px + 1, 0, size).astype(int)
     return (*low.tolist(), *high.tolist()) if (high > low).all() else None

@@ -268,8 +268,7 @@ def lookup(image, x, y):
     colours : (n, 4) uint8
     """
     short = -len(x) % LOOKUP_WIDTH
-    if short:
-        x, y = np.pad(x, (0, short)), np.pad(y, (0, short))
-    shape = (-1, LOOKUP_WIDTH)
-    found = cv2.remap(image, x.reshape(shape), y.reshape(shape), cv2.INTER_LINEAR)
-    return found.reshape(-1, 4)[: found.size // 4 - short]
+    places = np.zeros((2, len(x) + short), np.float32)
+    places[0, : len(x)], places[1, : len(x)] = x, y
+    found = cv2.remap(image, *places.reshape(2, -1, LOOKUP_WIDTH), cv2.INTER_LINEAR)
+    return found.reshape(-1, 4)[: len(x)]

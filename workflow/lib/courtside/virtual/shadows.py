@@ -85,28 +85,39 @@ def cast(vertices, triangles):
     of the lamps.
     """
     every = -(-len(triangles) // MOST_TRIANGLES)
-    corners = vertices[triangles[::every]]
-    middle = corners.mean(axis=1)
-    spread = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) * (every / 2)
-    beyond_m = BEYOND_M[0] + BEYOND_M[1] * max(middle[:, 2].max(), 0)
-    low = middle[:, :2].min(axis=0) - beyond_m
-    shape = np.ceil((middle[:, :2].max(axis=0) + beyond_m - low) / CELL_M).astype(int)
+    middle, spread = _faces(vertices, triangles[::every])
+    spread *= every / 2
+    beyond_m = BEYOND_M[0] + BEYOND_M[1] * max(middle[2].max(), 0)
+    low = middle[:2].min(axis=1) - beyond_m
+    shape = np.ceil((middle[:2].max(axis=1) + beyond_m - low) / CELL_M).astype(int)
     light = np.full(shape[::-1], 1 - LAMPS[:, 2].sum(), np.float32)
-    layer = np.digitize(middle[:, 2], LAYERS_M[1:])
+    layer = np.digitize(middle[2], LAYERS_M[1:])
     for x, y, share in LAMPS:
-        towards = np.array([x, y, 1.0])
-        cover = np.abs(spread @ towards) / CELL_M**2
-        place = np.floor((middle[:, :2] - middle[:, 2:] * towards[:2] - low) / CELL_M).astype(int)
+        cover = np.abs(spread @ np.array([x, y, 1.0])) / CELL_M**2
+        place = [
+            np.floor((middle[axis] - middle[2] * way - low[axis]) / CELL_M).astype(int)
+            for axis, way in enumerate((x, y))
+        ]
         light += np.float32(share) * np.maximum(1 - _covered(place, layer, cover, shape) / 2, 0)
     return Shadow(low + CELL_M / 2, light)
 
 
+def _faces(vertices, triangles):
+    """Return the middles (3, F) of triangles, and twice their areas as vectors (F, 3)."""
+    a, b, c = (np.take(np.ascontiguousarray(vertices.T), corner, axis=1) for corner in triangles.T)
+    middle = (a + b + c) / 3
+    (ux, uy, uz), (wx, wy, wz) = b - a, c - a
+    return middle, np.stack([uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx], axis=1)
+
+
 def _covered(place, layer, cover, shape):
     """Return by how many layers of surface cells are covered (rows, columns), the higher the softer."""
-    inside = ((place >= 0) & (place < shape)).all(axis=1)
-    size = shape[0] * shape[1]
-    cell = layer[inside] * size + place[inside, 1] * shape[0] + place[inside, 0]
-    counted = np.bincount(cell, cover[inside], minlength=size * len(LAYERS_M)).astype(np.float32)
+    (x, y), size = place, shape[0] * shape[1]
+    inside = (x >= 0) & (x < shape[0]) & (y >= 0) & (y < shape[1])
+    if not inside.all():
+        x, y, layer, cover = (part[inside] for part in (x, y, layer, cover))
+    cell = layer * size + y * shape[0] + x
+    counted = np.bincount(cell, cover, minlength=size * len(LAYERS_M)).astype(np.float32)
     total = np.zeros(shape[::-1], np.float32)
     heights = [*LAYERS_M, 2 * LAYERS_M[-1] - LAYERS_M[-2]]
     for number, part in enumerate(counted.reshape(len(LAYERS_M), *shape[::-1])):
