@@ -84,6 +84,7 @@ def reported_session(session):
         "fusion": next(iter(session.fusions()), None),
         "model": session.parameters["models"][0],
         "overrides": reported_overrides(session),
+        "withheld": consent.left_out(session),
         "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
         "files": files,
         "takes": [reported_take(session, take) for take in session.takes.values()],

@@ -132,7 +132,7 @@ def test_faults_of_files_are_one_line(folder, tmp_path):
     with pytest.raises(InputError, match=r"1\.png: expected 640x480 px .* found 200x100; give"):
         chessboard.find(tmp_path, INNER)
     (tmp_path / "1.png").write_bytes(b"no picture")
-    with pytest.raises(InputError, match=r"1\.png: expected a picture, found an unreadable file"):
+    with pytest.raises(InputError, match=r"1\.png: expected a picture, found one that is damaged"):
         chessboard.find([tmp_path / "0.png", tmp_path / "1.png"], INNER)
 
 

@@ -138,3 +138,11 @@ def test_a_picture_that_is_no_depth_is_named(folder, picture):
         cv2.imwrite(str(path), picture)
     with pytest.raises(InputError, match=r"0003\.png: expected a 16-bit picture"):
         list(depth_folder.read(folder).depth_frames())
+
+
+def test_metadata_that_are_no_table_are_named(folder):
+    toml = folder / "cameras.toml"
+    head, _, _ = toml.read_text().partition("[metadata]")
+    toml.write_text('metadata = "m"\n' + head)
+    with pytest.raises(InputError, match=r"cameras\.toml: expected a table \[metadata\], found m"):
+        depth_folder.read(folder)

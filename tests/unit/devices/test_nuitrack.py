@@ -178,3 +178,13 @@ def test_a_missing_file_is_named(tmp_path):
     for name in ("a.csv", "a.json"):
         with pytest.raises(InputError, match=name):
             nuitrack.read(tmp_path / name, JOINTS, "n")
+
+
+@pytest.mark.parametrize("number", [1 << 63, 10**400])
+def test_a_user_or_time_beyond_all_numbers_is_one_line(tmp_path, number):
+    for change in ({"timestamp": number}, {"skeletons": [{"user_id": number}]}):
+        path = tmp_path / "a.json"
+        path.write_text(json.dumps([frames()[0] | change]))
+        with pytest.raises(InputError, match=r"a\.json: expected frames with timestamp") as caught:
+            nuitrack.read(path, JOINTS, "n")
+        assert "\n" not in str(caught.value)

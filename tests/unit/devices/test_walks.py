@@ -121,7 +121,7 @@ def test_photos_cut_short_are_named(tmp_path, suffix, share):
     data = path.read_bytes()
     path.write_bytes(data[: int(share * len(data))])
     with pytest.raises(
-        InputError, match=r"a\.(jpg|png): expected a photo, found .*: copy it again"
+        InputError, match=r"a\.(jpg|png): expected a photo, found .*; copy it again"
     ):
         list(walks.frames(tmp_path))
 

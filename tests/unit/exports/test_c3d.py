@@ -10,6 +10,7 @@ import pytest
 import walker
 from courtside.exports import c3d
 from courtside.study.errors import InputError
+from small_disk import limited_to
 
 
 @pytest.fixture
@@ -136,3 +137,15 @@ def test_one_frame_has_no_rate(tmp_path):
 def test_labels_differ(written):
     labels = ezc3d.c3d(str(written[1]))["parameters"]["POINT"]["LABELS"]["value"]
     assert len(set(labels)) == len(labels) == 33
+
+
+@pytest.mark.parametrize("missing", [1, 200, 4000, 12799, None])
+def test_a_file_that_the_disk_cuts_short_is_refused(written, tmp_path, missing):
+    record, path = written
+    whole = path.stat().st_size
+    room = 0 if missing is None else whole - missing
+    with limited_to(room), pytest.raises(InputError, match="a file that is not whole: free"):
+        c3d.write(tmp_path / "cut.c3d", record, 0)
+    assert [each.name for each in tmp_path.iterdir()] == ["walk.c3d"]
+    with limited_to(whole):
+        c3d.write(tmp_path / "fits.c3d", record, 0)

@@ -348,3 +348,37 @@ def test_renaming_picks_and_orders():
 def test_renaming_to_nothing_is_refused(names, message):
     with pytest.raises(InputError, match=message):
         calibration_files.rename(named("Cam 1", "Cam 2"), names)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('name = "left"', "name = 0x" + "f" * 6000),
+        ("fisheye = false", "fisheye = " + "[" * 5000),
+        ("fisheye = false", "fisheye = " + "9" * 5000),
+        ("distortions = [", "distortions = [1e308, "),
+        ("size = [", "size = [1" + "0" * 400 + ", "),
+        ("translation = [", "translation = [1e200, "),
+    ],
+)
+def test_numbers_and_brackets_without_end_are_one_line(tmp_path, old, new):
+    camera = cameras.Camera("left", (1920, 1080), K, DIST, np.column_stack([ROTATION, TRANSLATION]))
+    path = tmp_path / "a.toml"
+    cameras.write_toml(path, [camera], source="test")
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    for read in (cameras.read_toml, calibration_files.read):
+        with pytest.raises(InputError, match=r"a\.toml: ") as caught:
+            read(path)
+        assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("small", [1e-320, 1e-100, 0.0])
+def test_a_coefficient_of_next_to_nothing_is_none(small):
+    pose = np.column_stack([ROTATION, TRANSLATION])
+    found = cameras.Camera("left", (1920, 1080), K, [-0.2, 0.01, 0, 0, small], pose)
+    plain = cameras.Camera("left", (1920, 1080), K, [-0.2, 0.01, 0, 0, 0], pose)
+    assert (
+        found.fold_radius == pytest.approx(plain.fold_radius) == pytest.approx(np.sqrt(2))
+    )  # 1 - 0.6 s + 0.05 s^2 = 0 at s = 2

@@ -78,3 +78,11 @@ def test_no_faulty_table_is_written(tmp_path):
     with pytest.raises(ValueError, match="reason"):
         frame_table.write(tmp_path / "walk1.csv", a_table().assign(reason="ugly"))
     assert not (tmp_path / "walk1.csv").exists()
+
+
+@pytest.mark.parametrize("name", ["../a.png", "/a.png", "a/b.png", "a\\b.png", ".."])
+def test_a_name_may_not_leave_the_folder(tmp_path, name):
+    path = tmp_path / "walk1.csv"
+    path.write_text(f"{HEADER}0,0,{name},1,1,\n")
+    with pytest.raises(InputError, match=r"walk1\.csv: .*found the name of a file elsewhere"):
+        frame_table.read(path)

@@ -134,3 +134,15 @@ def test_numpy_alone_reads_the_file(path):
     with np.load(path, allow_pickle=False) as found:
         assert str(found["format"]) == "test 1"
         np.testing.assert_array_equal(found["n"], GOOD["n"])
+
+
+def test_a_member_that_is_no_array_is_named(tmp_path, path):
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("n.txt", "3")
+    with pytest.raises(InputError, match=r"\.npz: expected keys .*n\.txt"):
+        npz.read(path, "test 1", SPEC)
+    with zipfile.ZipFile(tmp_path / "b.npz", "w") as archive:
+        for name in ("format", *SPEC):
+            archive.writestr(f"{name}.npy", "no array")
+    with pytest.raises(InputError, match=r"b\.npz: expected format"):
+        npz.read(tmp_path / "b.npz", "test 1", SPEC)

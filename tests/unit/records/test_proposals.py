@@ -61,3 +61,16 @@ def test_no_table_is_said(tmp_path):
         InputError, match="expected a table of proposed court points, found the columns a, b"
     ):
         proposals.read(path, ["left"], POINTS)
+
+
+def test_a_place_that_is_no_number_is_one_line(tmp_path):
+    path = tmp_path / "odd.csv"
+    proposals.write(path, some(), POINTS)
+    first, row, *rest = path.read_text().splitlines()
+    cells = row.split(",")
+    cells[3] = "far"
+    path.write_text("\n".join([first, ",".join(cells), *rest]))
+    with pytest.raises(
+        InputError, match=r"odd\.csv: expected a table of proposed court points.*far"
+    ):
+        proposals.read(path, ["left", "right"], POINTS)

@@ -44,7 +44,7 @@ def test_what_is_no_such_table_is_named_in_one_line(tmp_path, content):
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(
-        InputError, match=r"rows.csv: expected a table of rows, .*: delete it"
+        InputError, match=r"rows.csv: expected a table of rows, .*; delete it"
     ) as said:
         tables.read(path, "a table of rows", lambda table: "found one row only")
     assert "\n" not in str(said.value)

@@ -1,5 +1,7 @@
 """Mapping: exact matches give the exact model, the door its measured cameras, noise nothing."""
 
+from contextlib import ExitStack
+
 import numpy as np
 import pycolmap
 import pytest
@@ -8,7 +10,9 @@ import sfm_made
 
 from courtside.geometry import similarity
 from courtside.sfm import features, mapping, matching, model
+from courtside.study.errors import InputError
 from real_data import REAL, needs_real
+from small_disk import limited_to
 
 DOOR = REAL / "sfm-door"
 both_mappers = pytest.mark.parametrize("mapper", ["global", "incremental"])
@@ -183,3 +187,18 @@ def test_a_failure_is_tried_again_and_the_best_model_kept(synthetic, tmp_path, m
     assert summary["reprojection_px"] > mapping.SOUND_PX
     seeds.clear()
     assert mapping.map_images(path, names, tmp_path / "c", **options)["n_models"] == 0
+
+
+def test_a_model_that_the_disk_cuts_short_is_refused(synthetic, tmp_path, monkeypatch):
+    path, truth = synthetic
+    names, map_really = sorted(sfm_made.centres(truth)), mapping._map
+    with ExitStack() as stack:
+
+        def then_the_disk_is_full(*arguments):
+            found = map_really(*arguments)
+            stack.enter_context(limited_to(4096))
+            return found
+
+        monkeypatch.setattr(mapping, "_map", then_the_disk_is_full)
+        with pytest.raises(InputError, match=r"images.bin: expected \d+ bytes, found \d+: free"):
+            mapping.map_images(path, names, tmp_path / "cut", mapper="global", seed=0)

@@ -69,7 +69,13 @@ def test_what_is_gone_has_none_and_is_forgotten(tmp_path, video):
     assert list(json.loads(known.path.read_text())["files"]) == [str(other)]
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{", '{"format": 0}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "", "[]", "{", '{"format": 0}', '{"format": 1}', '{"format": 1, "files": []}', "[" * 100_000,
+        '{"format": 1, "files": {"a": [1]}}', '{"format": 1, "files": {"a": [1, "x", 2]}}',
+    ],
+)  # fmt: skip
 def test_a_broken_memory_is_an_empty_one(tmp_path, video, text):
     path = tmp_path / "checksums.json"
     path.write_text(text)

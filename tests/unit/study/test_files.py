@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from courtside.study import files
+from courtside.study.errors import InputError
 
 
 def test_a_file_appears_when_the_block_ends(tmp_path):
@@ -98,3 +99,14 @@ def test_a_failing_block_leaves_the_older_one(tmp_path):
         (beside / "half.png").write_text("half")
         raise RuntimeError("disk")
     assert names(path) == ["old.png"] and names(tmp_path) == ["frames"]
+
+
+def test_json_is_read_and_anything_else_is_one_line(tmp_path):
+    path = tmp_path / "a.json"
+    files.write_json(path, {"a": [1, None]})
+    assert files.read_json(path) == {"a": [1, None]}
+    for content in (b"", b"{", b"\xff\xfe", b"[" * 100_000, b"1" * 5000):
+        path.write_bytes(content)
+        with pytest.raises(InputError, match=r"a\.json: expected JSON, found: .*; do so") as caught:
+            files.read_json(path, "do so")
+        assert len(str(caught.value).splitlines()) == 1

@@ -69,3 +69,29 @@ def test_other_bytes_than_utf_8_are_one_line(tmp_path):
     (tmp_path / "f.yaml").write_bytes("a: Jörg".encode("latin-1"))
     with pytest.raises(InputError, match="expected a readable YAML file"):
         yaml_files.read(tmp_path / "f.yaml")
+
+
+LAUGHS = "a0: &a0 [x, x, x, x]\n" + "".join(
+    f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'] * 10)}]\n" for k in range(1, 12)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (LAUGHS, "aliases of aliases"),
+        ("a: &a [*a]\n", "too deep nesting"),
+        ("a: " + "[" * 200 + "]" * 200, "too deep nesting"),
+        ("a: 0x" + "f" * 6000, "thousands of digits"),
+        ("a: b\n" + "#" * (1 << 20), "1048581 characters"),
+    ],
+)
+def test_what_would_fill_time_or_memory_is_one_line_at_once(tmp_path, text, found):
+    with pytest.raises(InputError, match=rf"f\.yaml: expected .*, found .*{found}") as caught:
+        read(tmp_path, text)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_mark_that_windows_puts_first_is_left_out(tmp_path):
+    (tmp_path / "f.yaml").write_bytes(b"\xef\xbb\xbfa: 1\n")
+    assert yaml_files.read(tmp_path / "f.yaml") == {"a": 1}

@@ -6,6 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from courtside.devices import image_files
 from courtside.study.errors import InputError
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
@@ -107,7 +108,7 @@ def find(pictures, inner_corners):
         )
     paths, found, dropped, size = [], [], {}, None
     for path in _paths(pictures):
-        image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+        image = image_files.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
         size = _same_size(path, image, size)
         xy, why = _corners(image, (columns, rows))
         if why:
@@ -135,10 +136,6 @@ def _paths(pictures):
 
 
 def _same_size(path, image, size):
-    if image is None:
-        raise InputError(
-            f"{path}: expected a picture, found an unreadable file; delete or replace it"
-        )
     found = image.shape[1], image.shape[0]
     if size not in (None, found):
         raise InputError(

@@ -36,13 +36,14 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from courtside.devices import video
+from courtside.devices import image_files, video
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.geometry import cameras, fields, transforms
 from courtside.records.frame_times import FrameTimes
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 VIDEOS = (".mp4", ".mkv", ".mov", ".avi")
+EXPORT = "export depth again, without conversion"
 STANDING_STILL = np.eye(3, 4)
 
 
@@ -94,6 +95,8 @@ def read(path, name="rgbd"):
 
 def _metadata(toml):
     metadata = tomllib.loads(toml.read_text(encoding="utf-8-sig")).get("metadata", {})
+    if not isinstance(metadata, dict):
+        raise InputError(f"{toml}: expected a table [metadata], found {fields.short(metadata)}")
     where, remarks = f"{toml}: [metadata]", ()
     if "depth_unit_m" not in metadata:
         remarks = (f"no depth_unit_m in {toml}: {DEFAULT_UNIT_M} m assumed",)
@@ -144,14 +147,10 @@ def _indices(folder, film, n_depth):
 
 
 def _table(path, n_frames):
-    try:
+    with reading(path, "columns number (whole) and time_s", "correct them"):
         rows = pd.read_csv(path)
         times_s = rows["time_s"].to_numpy(dtype=float)
         numbers = rows["number"].to_numpy(dtype=np.int64)
-    except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
-        raise InputError(
-            f"{path}: expected columns number (whole) and time_s, found {fields.short(error)}; correct them"
-        ) from error
     rising = np.isfinite(times_s).all() and (np.diff(times_s) > 0).all()
     if len(rows) != n_frames or not rising or not (np.diff(numbers) > 0).all():
         raise InputError(
@@ -168,11 +167,10 @@ def _colour(film, times_s):
 
 def _depth(pictures, times_s, size):
     for path, time_s in zip(pictures, times_s.tolist(), strict=True):
-        image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
-        if image is None or image.dtype != np.uint16 or image.shape != size[::-1]:
-            found = "no picture" if image is None else f"{image.dtype} {image.shape}"
+        what = f"a 16-bit picture of one channel, {fields.times(size)} px"
+        image = image_files.read(path, cv2.IMREAD_UNCHANGED, what=what, advice=EXPORT)
+        if image.dtype != np.uint16 or image.shape != size[::-1]:
             raise InputError(
-                f"{path}: expected a 16-bit picture of one channel, {fields.times(size)} px, found {found}; "
-                "export depth again, without conversion"
+                f"{path}: expected {what}, found {image.dtype} {image.shape}; {EXPORT}"
             )
         yield time_s, image

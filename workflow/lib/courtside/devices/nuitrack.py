@@ -25,11 +25,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from courtside.geometry import fields
 from courtside.records import reasons
 from courtside.records.device_motion import DeviceMotion
 from courtside.study import log
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 COLLARS = ("left_collar", "right_collar")  # one point under two names
 SIDED = ("collar", "shoulder", "elbow", "wrist", "hand", "fingertip")
@@ -135,17 +134,12 @@ def _names(joint):
 
 def _csv(path, joints):
     """Return users (N,), times (N,) us, places (N, J, 3) and confidences (N, J)."""
-    try:
+    with reading(path, "columns timestamp, id and JOINT_<NAME>.x .y .z of each joint", EXPORT):
         rows = pd.read_csv(path, skipinitialspace=True)
         rows.columns = [str(name).strip().lower() for name in rows.columns]
         users = rows["id"].to_numpy(dtype=np.int64)
         time_us = rows["timestamp"].to_numpy(dtype=np.int64)
         xyz = np.stack([_columns(rows, joint) for joint in joints], axis=1)
-    except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
-        raise InputError(
-            f"{path}: expected columns timestamp, id and JOINT_<NAME>.x .y .z of each joint, found: "
-            f"{fields.short(error)}; {EXPORT}"
-        ) from error
     return users, time_us, xyz, np.ones(xyz.shape[:2])
 
 
@@ -160,7 +154,8 @@ def _columns(rows, joint):
 def _json(path, joints):
     """Return users (N,), times (N,) us, places (N, J, 3) and confidences (N, J)."""
     users, time_us, xyz, confidence = [], [], [], []
-    try:
+    what = "frames with timestamp and skeletons, their joints with real"
+    with reading(path, what, EXPORT):
         for frame in _frames(path):
             for skeleton in frame["skeletons"]:
                 users.append(int(skeleton.get("user_id", skeleton.get("id", 0))))
@@ -168,26 +163,16 @@ def _json(path, joints):
                 of_user = [_joint(_by_name(skeleton), joint) for joint in joints]
                 xyz.append([place for place, _ in of_user])
                 confidence.append([sure for _, sure in of_user])
-        times = np.array(time_us, dtype=np.int64)
-    except (KeyError, ValueError, TypeError, AttributeError, OverflowError) as error:
-        raise InputError(
-            f"{path}: expected frames with timestamp and skeletons, their joints with real, found: "
-            f"{type(error).__name__} {fields.short(error)}; {EXPORT}"
-        ) from error
+        numbers = np.array([users, time_us], dtype=np.int64)
     places = np.array(xyz, dtype=float).reshape(-1, len(joints), 3)
     sure = np.array(confidence, dtype=float).reshape(-1, len(joints))
-    return np.array(users, dtype=np.int64), times, places, sure
+    return *numbers, places, sure
 
 
 def _frames(path):
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: expected JSON, found {fields.short(error)}; {EXPORT}") from error
+    text = path.read_text(encoding="utf-8-sig")
     try:
         found = json.loads(text)
-    except RecursionError as error:
-        raise ValueError("brackets within brackets without end") from error
     except json.JSONDecodeError:
         found = [json.loads(line) for line in text.splitlines() if line.strip()]
     found = _lower(found)

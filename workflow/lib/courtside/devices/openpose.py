@@ -13,7 +13,7 @@ import numpy as np
 from courtside.devices import openpose_people
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints2D
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 # BODY_25 and BODY_25B have 25 points each, in another order: the 9th is the middle of the hips, or an elbow.
 MISTAKEN = ("body25", "body25b")
@@ -101,15 +101,10 @@ def _numbered(folder):
 
 def _people(path, n_joints, skeleton):
     """Return the persons of a file, (K, J, 3); NaN where a point is unseen."""
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+    with reading(path, "OpenPose's JSON, `people` with `pose_keypoints_2d`", "export it again"):
+        content = json.loads(path.read_text(encoding="utf-8-sig"))
         rows = [person["pose_keypoints_2d"] for person in content["people"]]
         table = [np.asarray(row, dtype=float) for row in rows]
-    except (OSError, UnicodeDecodeError, ValueError, KeyError, TypeError) as error:
-        raise InputError(
-            f"{path}: expected OpenPose's JSON, `people` with `pose_keypoints_2d`, found: {error!r}; "
-            "export it again"
-        ) from None
     for row in table:
         if row.shape != (3 * n_joints,):
             raise InputError(

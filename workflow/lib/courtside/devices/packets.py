@@ -141,7 +141,7 @@ def _read_listing(path):
         stored = np.array([packet[0] for packet in packets])
         order = np.argsort(stored, kind="stable")
         pts = stored[order]
-        last = max(packets)
+        last = max(packets, key=lambda packet: packet[0])
         end = last[0] + (last[2] or int(np.median(np.diff(pts, prepend=pts[0] - 1))))
         listing = Listing(
             path=path,

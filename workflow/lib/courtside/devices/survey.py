@@ -61,6 +61,7 @@ def survey(folder, *, root):
     for at, inner, names in os.walk(folder):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
         files = [Path(at) / name for name in sorted(names) if not name.startswith(".")]
+        files = [path for path in files if path.is_file()]  # a pipe would be waited for
         photos = [path for path in files if path.suffix.lower() in walks.PHOTOS + walks.UNREADABLE]
         together = len(photos) > 1 and Path(at) != folder
         if together:

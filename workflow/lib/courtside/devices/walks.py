@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from courtside.devices import video
+from courtside.devices import image_files, video
 from courtside.devices.decoding import pictures
 from courtside.devices.packets import list_packets
 from courtside.devices.still import check_light
@@ -15,6 +15,7 @@ from courtside.study.errors import InputError
 
 PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")
 UNREADABLE = (".heic", ".heif", ".avif", ".dng", ".raw", ".cr2", ".cr3", ".nef", ".arw", ".orf")
+PHOTO = "a photo"
 SMALL_PX = 320  # width of the pictures that `courtside.sfm.usable.judge` compares
 
 
@@ -172,10 +173,9 @@ def read_photo(path):
     """
     path = Path(path)
     data = path.read_bytes() if path.is_file() else b""
-    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
-    if image is None or _cut_short(data):
-        what = "one that is damaged or cut short" if data else "no file or an empty one"
-        raise InputError(f"{path}: expected a photo, found {what}: copy it again from the camera")
+    image = image_files.decode(path, data, what=PHOTO)
+    if _cut_short(data):
+        raise InputError(f"{path}: expected {PHOTO}, found one cut short; {image_files.AGAIN}")
     check_light(path, image)
     return image
 

@@ -4,6 +4,8 @@ Millimetres, because many readers take C3D points for millimetres without lookin
 z up, which POINT:X_SCREEN and Y_SCREEN say.
 """
 
+import struct
+
 import ezc3d
 import numpy as np
 
@@ -13,6 +15,8 @@ from courtside.study.files import atomic
 MM_PER_M = 1000.0
 MISSING = -1.0
 MOST_RESIDUAL_MM = 127.0  # above, other readers see a missing point; from 256 on it wraps
+BLOCK_BYTES = 512
+FIRST_DATA_BLOCK = slice(16, 18)  # where the header says in which block, from 1, the points begin
 MOST_FRAMES = 65535  # the header counts frames in 16 bits
 
 
@@ -29,7 +33,8 @@ def write(path, keypoints, person):
     Raises
     ------
     InputError
-        If the take is longer than C3D's frame counter reaches, or one frame, which has no rate.
+        If the take is longer than C3D's frame counter reaches, or one frame, which has no rate; if the disk
+        refuses the file.
 
     Notes
     -----
@@ -59,6 +64,21 @@ def write(path, keypoints, person):
     )
     with atomic(path) as temporary:
         file.write(str(temporary))
+        _check_whole(path, temporary.read_bytes(), points.size * 4)
+
+
+def _check_whole(path, content, n_bytes):
+    """Look at what only a finished file has, for ezc3d does not notice a full disk.
+
+    It fills in last where the points begin.
+    """
+    header = content[FIRST_DATA_BLOCK].ljust(2, b"\0")
+    before = BLOCK_BYTES * (struct.unpack("<H", header)[0] - 1)
+    if before < 2 * BLOCK_BYTES or len(content) < before + n_bytes:
+        raise InputError(
+            f"{path}: expected to write {n_bytes} bytes of points, found {len(content)} bytes of a file that "
+            "is not whole: free or allow the space"
+        )
 
 
 def _residuals(keypoints, person):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 from courtside.study.files import atomic
 
 WORLD_AXES = [1, 2, 0]  # TRC X, Y, Z <- world axis
@@ -81,14 +81,12 @@ def read(path):
         If the file is not a TRC file in m, cm or mm, a line has another number of values, or the header
         counts other markers or frames than there are.
     """
-    try:
+    with reading(path, "a TRC file", "export it again"):
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
         header = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
         unit, rate_hz = header["Units"].strip(), float(header["DataRate"])
         stated = {key: int(header[key]) for key in ("NumMarkers", "NumFrames")}
         joints = [name.strip() for name in lines[3].split("\t")[2:] if name.strip()]
-    except (OSError, UnicodeDecodeError, KeyError, IndexError, ValueError) as error:
-        raise InputError(f"{path}: expected a TRC file, found: {error!r}") from None
     if unit not in METRES:
         raise InputError(f"{path}: Units: expected one of {list(METRES)}, found {unit!r}")
     rows = [

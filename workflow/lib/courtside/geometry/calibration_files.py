@@ -1,7 +1,6 @@
 """Calibrations made elsewhere: Qualisys, Pose2Sim and aniposelib, Caliscope, OpenCV -> cameras."""
 
 import re
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -10,7 +9,7 @@ import cv2
 import numpy as np
 
 from courtside.geometry import cameras, fields
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 LARGEST_BYTES = 1 << 24
 FARTHEST_M = 300.0
@@ -101,17 +100,12 @@ def rename(found, names):
 
 
 def _text(path):
-    try:
+    with reading(path, f"a text file, {FORMS}", "check it"):
         if path.stat().st_size > LARGEST_BYTES:
             raise InputError(
                 f"{path}: expected a calibration, found {path.stat().st_size} bytes; give the right file"
             )
         return path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        found = fields.short(error)
-        raise InputError(
-            f"{path}: expected a text file, {FORMS}, found {found}; check it"
-        ) from error
 
 
 def _reader(text):
@@ -133,11 +127,8 @@ def _check_distance(path, camera):
 
 
 def _read_toml(path, text):
-    try:
-        content = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        found = fields.short(error)
-        raise InputError(f"{path}: expected {FORMS}, found {found} as TOML; check it") from error
+    with reading(path, f"{FORMS} (read as TOML)", "check it"):
+        content = fields.toml(text)
     tables = content.get("cameras", content)
     if not isinstance(tables, dict):
         raise InputError(
@@ -169,11 +160,8 @@ def _read_qualisys(path, text):
         raise InputError(
             f"{path}: expected plain XML, found a DOCTYPE or ENTITY; export it from QTM again"
         )
-    try:
+    with reading(path, "XML", fields.EXPORT_AGAIN):  # its ParseError is a SyntaxError
         root = ElementTree.fromstring(text)
-    except (ElementTree.ParseError, ValueError) as error:
-        found = fields.short(error)
-        raise InputError(f"{path}: expected XML, found {found}; {fields.EXPORT_AGAIN}") from error
     return [
         _from_qualisys(path, element)
         for element in root.findall("cameras/camera")

@@ -1,6 +1,5 @@
 """A calibrated camera: its model, projection both ways, and the TOML file that rules hand on."""
 
-import tomllib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -9,7 +8,7 @@ import numpy as np
 import tomli_w
 
 from courtside.geometry import distortion, fields, transforms
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 from courtside.study.files import atomic
 
 OTHER_TABLES = ("metadata", "capture_volume", "charuco", "checkerboard")  # as Pose2Sim has it
@@ -223,12 +222,8 @@ def read_toml(path):
     InputError
         If the file is not TOML or a camera is incomplete, impossible or named twice.
     """
-    try:
-        tables = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(
-            f"{path}: expected TOML, found {fields.short(error)}; {fields.EXPORT_AGAIN}"
-        ) from error
+    with reading(path, "TOML", fields.EXPORT_AGAIN):
+        tables = fields.toml(Path(path).read_text(encoding="utf-8-sig"))
     metadata = tables.get("metadata", {})
     unit = metadata.get("unit", "m") if isinstance(metadata, dict) else metadata
     metres = fields.unit_in_metres(path, unit)

@@ -4,6 +4,7 @@ import numpy as np
 
 MAX_ITERATIONS = 50
 ENTRIES = 2048
+NOTHING = 1e-30  # a coefficient so small beside the others divides them beyond what a float holds
 
 
 def distort(dist, normalised):
@@ -60,7 +61,9 @@ def fold_radius(dist):
     From there on the lens model would show one pixel for several directions.
     """
     k1, k2, _, _, k3 = dist
-    squares = np.roots([7 * k3, 5 * k2, 3 * k1, 1.0])
+    coefficients = np.array([7 * k3, 5 * k2, 3 * k1, 1.0])
+    coefficients[np.abs(coefficients) < NOTHING * np.abs(coefficients).max()] = 0.0
+    squares = np.roots(coefficients)
     real = squares.real[(np.abs(squares.imag) < 1e-9 * np.abs(squares)) & (squares.real > 0)]
     return float(np.sqrt(real.min(initial=np.inf)))
 

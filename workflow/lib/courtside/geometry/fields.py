@@ -1,10 +1,13 @@
 """The numbers of a calibration file, whatever it holds, checked and brought to one form."""
 
+import tomllib
+
 import numpy as np
 
 from courtside.geometry import transforms
 from courtside.study.errors import InputError
 
+LARGEST = 1e12  # beyond any length, pixel or coefficient of a lens
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 UNSCALED = "unscaled"  # unit of cameras of a session without a court
 EXPORT_AGAIN = "export the calibration again or mend the file"
@@ -34,9 +37,9 @@ def numbers(where, key, value, *shapes):
     """
     try:
         array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = None
-    if array is None or array.shape not in shapes or not np.isfinite(array).all():
+    if array is None or array.shape not in shapes or not (np.abs(array) <= LARGEST).all():
         expected = " or ".join("x".join(map(str, shape)) for shape in shapes)
         found = "nothing" if value is None else short(value)
         raise InputError(
@@ -111,6 +114,13 @@ def check_distinct(path, cameras):
             f"{path}: expected cameras of different names, found {names}; {EXPORT_AGAIN}"
         )
     return cameras
+
+
+def toml(text):
+    """Return the tables of a TOML text; raise an error of `study.errors.DAMAGED` where it is none."""
+    tables = tomllib.loads(text)
+    str(tables)  # of numbers of thousands of digits, and brackets without end, nothing can be said
+    return tables
 
 
 def short(value):

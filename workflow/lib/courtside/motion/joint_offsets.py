@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.records import limbs
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 BONES = {  # lines that may tell where a joint is put, of the joint's own side: (from, to)
     "shoulder": (("shoulder", "elbow"), ("elbow", "wrist")),
@@ -30,6 +30,7 @@ OUTLIER = 1.5  # times the median error: beyond, a frame loses weight (Huber)
 ROUNDS = 15
 NORMAL_MEDIAN = 1.5382  # median length of a vector of three standard normal numbers
 COLUMNS = ["joint", "vector", "share", "sigma_m", "n"]
+REMAKE = "make it anew with the rule evaluate_joint_offsets"
 
 
 def vectors(xyz, joints, side, joint):
@@ -161,16 +162,19 @@ def read(path):
     InputError
         If it is none.
     """
-    try:
+    with reading(path, "a table of joint offsets", REMAKE):
         table = pd.read_csv(path, comment="#")
         found = list(table.columns)
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: expected a table of joint offsets, found {error}") from None
-    known = {(joint, vector) for joint in limbs.LIMBS for vector in _vector_names(joint)}
-    if found != COLUMNS or not set(zip(table["joint"], table["vector"], strict=True)) <= known:
+        known = {(joint, vector) for joint in limbs.LIMBS for vector in _vector_names(joint)}
+        rows = table.reindex(columns=COLUMNS)
+        pairs = set(zip(rows["joint"], rows["vector"], strict=True))
+        numbers = rows[["share", "sigma_m"]].to_numpy(dtype=float)
+        table = table.assign(share=numbers[:, 0], sigma_m=numbers[:, 1])
+    if found != COLUMNS or not pairs <= known or not np.isfinite(numbers).all():
+        joints = sorted({str(joint) for joint, _ in pairs})
         raise InputError(
-            f"{path}: expected columns {COLUMNS} with joints of {limbs.LIMBS}, found columns {found} and "
-            f"joints {sorted(set(table.get('joint', [])))}; make it anew with the rule evaluate_joint_offsets"
+            f"{path}: expected columns {COLUMNS} with joints of {limbs.LIMBS} and numbers, found columns "
+            f"{found} and joints {joints}; {REMAKE}"
         )
     return table
 

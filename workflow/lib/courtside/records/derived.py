@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.records import reasons
 from courtside.study import yaml_files
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 SUM_TOLERANCE = 1e-9
 SEE = "see config/derived_joints.yaml"
@@ -109,7 +109,10 @@ def read(path):
         If a key is missing, weights do not sum to 1, or a joint names a definition that is not there.
     """
     content = yaml_files.read(path)
-    try:
+    what = (
+        "`definitions` with `means` and `weights`, and `joints` with a definition for each skeleton"
+    )
+    with reading(path, what, SEE):
         definitions = {
             name: Definition(
                 str(value["means"]), {joint: float(w) for joint, w in value["weights"].items()}
@@ -117,12 +120,7 @@ def read(path):
             for name, value in content["definitions"].items()
         }
         joints = {name: dict(value) for name, value in content["joints"].items()}
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(
-            f"{path}: expected `definitions` with `means` and `weights`, and `joints` with a definition for "
-            f"each skeleton, found: {error!r}; {SEE}"
-        ) from None
-    _check(path, definitions, joints)
+        _check(path, definitions, joints)
     return DerivedJoints(definitions, joints)
 
 

@@ -76,4 +76,6 @@ def _fault(table):
         return f"found kept other than 0 and 1, or a reason not of {', '.join(REASONS[1:])}"
     if np.any(table["kept"].astype(bool) != (table["reason"] == "")):
         return "found a reason beside a kept frame, or none beside another"
+    if table["name"].astype(str).str.contains(r"[/\\]|^\.").any():
+        return "found the name of a file elsewhere"
     return ""

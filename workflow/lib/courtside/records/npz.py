@@ -3,17 +3,11 @@
 Every file holds `format` (what it is, with a version) beside its arrays, and never a pickled object.
 """
 
-import zipfile
-import zlib
-
 import numpy as np
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 from courtside.study.files import atomic
 
-# What numpy, zipfile and zlib raise on damaged files.
-DAMAGED = (ValueError, OSError, EOFError, KeyError, TypeError, RuntimeError, MemoryError)
-DAMAGED += (zipfile.BadZipFile, zlib.error)
 KINDS = {"float": np.floating, "int": np.integer, "bool": np.bool_, "str": np.str_}
 
 
@@ -63,12 +57,8 @@ def read(path, form, spec):
     InputError
         If the file is not an npz of this form, or its arrays are not as stated.
     """
-    try:
-        with np.load(path, allow_pickle=False) as stored:
-            found = {key: stored[key] for key in stored.files}
-    except DAMAGED as error:
-        found = " ".join(str(error).split())
-        raise InputError(f"{path}: expected an npz file ({form}), found: {found}") from None
+    with reading(path, f"an npz file ({form})"), np.load(path, allow_pickle=False) as stored:
+        found = {key: np.asarray(stored[key]) for key in stored.files}
     stated = str(found.pop("format", "no format"))
     if stated != form:
         raise InputError(f"{path}: expected format {form!r}, found {stated!r}; make it again")

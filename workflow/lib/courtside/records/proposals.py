@@ -8,6 +8,7 @@ from courtside.records import tables
 COLUMNS = (
     "camera", "point", "frame_idx", "x_px", "y_px", "sigma_px", "confidence", "reason",
 )  # fmt: skip
+NUMBERS = ("x_px", "y_px", "sigma_px")
 STATIC = 0  # frame_idx of the static picture
 WHAT = "a table of proposed court points"
 
@@ -54,10 +55,12 @@ def read(path, cameras, points):
     def fault(table):
         if list(table.columns) != list(COLUMNS):
             return f"found the columns {', '.join(table.columns)}"
+        table[list(NUMBERS)].astype(float)  # raises for others
         odd = sorted({*table["camera"]} - {*cameras} | {*table["point"]} - {*points})
         return f"found unknown cameras or points: {', '.join(map(str, odd))}" if odd else ""
 
     table = tables.read(path, WHAT, fault, dtype={"camera": str, "point": str})
+    table = table.astype(dict.fromkeys(NUMBERS, float))
     given = table[np.isfinite(table["x_px"]) & np.isfinite(table["y_px"])]
     found = {camera: {} for camera in cameras}
     for row in given.itertuples():

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from courtside.study import yaml_files
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 SIDES = {"left_": "right_", "right_": "left_"}
 
@@ -117,7 +117,8 @@ def read(path):
         name.
     """
     content = yaml_files.read(path)
-    try:
+    what = "lists `joints` and `bones` and mappings `segments` and `groups`, bones and segments of two joints"
+    with reading(path, what, "see the files beside it"):
         skeleton = Skeleton(
             name=Path(path).stem,
             joints=tuple(content["joints"]),
@@ -126,12 +127,7 @@ def read(path):
             groups={name: tuple(joints) for name, joints in content["groups"].items()},
             names=dict(content.get("names", {}).items()),
         )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(
-            f"{path}: expected lists `joints` and `bones` and mappings `segments` and `groups`, bones and "
-            f"segments of two joints each, found: {error!r}; see the files beside it"
-        ) from None
-    _check(path, skeleton)
+        _check(path, skeleton)
     return skeleton
 
 

@@ -1,14 +1,12 @@
 """Clocks of the cameras of a take against the first camera's: JSON with what is known of each."""
 
-import json
 import math
 from dataclasses import asdict, dataclass
-from pathlib import Path
 
 import numpy as np
 
-from courtside.study.errors import InputError
-from courtside.study.files import write_json
+from courtside.study.errors import InputError, reading
+from courtside.study.files import read_json, write_json
 
 FORM = "courtside sync 1"
 USABLE = ("reference", "found", "assumed")
@@ -171,22 +169,15 @@ def read(path):
     InputError
         If the file is not one of `write`, or a number is impossible.
     """
-    try:
-        content = json.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise InputError(f"{path}: expected JSON, found: {error}; make it again") from None
+    content = read_json(path)
     if not isinstance(content, dict) or content.get("form") != FORM:
         found = content.get("form") if isinstance(content, dict) else type(content).__name__
         raise InputError(f"{path}: expected form {FORM!r}, found {found!r}; make it again")
-    try:
+    with reading(path, "a reference and its clock among cameras"):
         clocks = {camera: _clock(table) for camera, table in content["cameras"].items()}
-        reference = content["reference"]
-        clocks[reference]
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(
-            f"{path}: expected a reference and its clock among cameras, found: {error!r}; make it again"
-        ) from None
-    return reference, clocks
+        if content["reference"] not in clocks:
+            raise ValueError(f"the reference {content['reference']!r}, whose clock is missing")
+    return content["reference"], clocks
 
 
 def _clock(table):

@@ -2,8 +2,10 @@
 
 import pandas as pd
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 from courtside.study.files import atomic
+
+REMAKE = "delete it and run the study again"
 
 
 def write(path, rows, labels=None, float_format="%.6g"):
@@ -47,11 +49,9 @@ def read(path, what, fault_of, **options):
     InputError
         If the file is missing or no such table.
     """
-    try:
+    with reading(path, what, REMAKE):
         table = pd.read_csv(path, **options)
         fault = fault_of(table)
-    except (OSError, ValueError) as error:
-        fault = " ".join(str(error).split())
     if fault:
-        raise InputError(f"{path}: expected {what}, {fault}: delete it and run the study again")
+        raise InputError(f"{path}: expected {what}, {fault}; {REMAKE}")
     return table

@@ -8,6 +8,7 @@ from courtside.geometry import bundle, control_points, court_adjustment
 from courtside.geometry import network as networks
 from courtside.geometry.network import LENS
 from courtside.records import npz
+from courtside.study.errors import reading
 
 FORM = "courtside ties 1"
 SPEC = {
@@ -94,6 +95,11 @@ def write(path, record):
 def read(path):
     """Read a `Record`; an `InputError` says what is wrong with a file that is none."""
     found = npz.read(path, FORM, SPEC)
+    with reading(path, "cameras and ties that fit one another"):
+        return _record(found)
+
+
+def _record(found):
     sizes = [tuple(map(int, size)) for size in found["size"]]
     names, heights_px = tuple(map(str, found["camera"])), found["size"][:, 1]
     sfm = control_points.cameras(

@@ -10,6 +10,7 @@ import numpy as np
 
 from courtside.geometry.cameras import Camera
 from courtside.records import npz
+from courtside.study.errors import DAMAGED, reading
 
 FORM = "courtside truth 1"
 SPEC = {
@@ -120,12 +121,14 @@ def read(path):
     """
     names = _walk_names(path)
     arrays = npz.read(path, FORM, _spec(names))
-    cameras = [
-        Camera(str(name), tuple(size.tolist()), matrix, dist, pose)
-        for name, size, matrix, dist, pose in zip(
-            *(arrays[key] for key in ("camera", "size", "K", "dist", "cam_from_world")), strict=True
-        )
-    ]
+    rows = zip(
+        *(arrays[key] for key in ("camera", "size", "K", "dist", "cam_from_world")), strict=True
+    )
+    with reading(path, "cameras that can be"):
+        cameras = [
+            Camera(str(name), tuple(size.tolist()), matrix, dist, pose)
+            for name, size, matrix, dist, pose in rows
+        ]
     walks = {name: Walk(**{key: arrays[f"{name}/{key}"] for key in WALK}) for name in names}
     return Truth(cameras, walks, arrays["court_points"], arrays["court_xyz"])
 
@@ -146,6 +149,6 @@ def _walk_names(path):
     try:
         with zipfile.ZipFile(path) as stored:
             names = [name.rpartition("/")[0] for name in stored.namelist()]
-    except npz.DAMAGED:
+    except DAMAGED:
         return []
     return list(dict.fromkeys(name for name in names if name))

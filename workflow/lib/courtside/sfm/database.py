@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pycolmap
 
+from courtside.study.errors import reading
 from courtside.study.files import atomic
 
 pycolmap.logging.minloglevel = pycolmap.logging.Level.ERROR.value
@@ -42,6 +43,7 @@ def working_copy(source=None):
             pycolmap.Database.open(database).close()
         else:
             shutil.copyfile(source, database)
+            _ids(database, source)
         yield database
 
 
@@ -53,7 +55,14 @@ def fold(path):
 
 
 def image_ids(path):
-    """Return the id of each image by name, in the order of the ids."""
-    with contextlib.closing(pycolmap.Database.open(path)) as database:
+    """Return the id of each image by name, in the order of the ids; `InputError` where a file is damaged."""
+    return _ids(path, path)
+
+
+def _ids(path, where):
+    with (
+        reading(where, "a COLMAP database", "delete it and run the study again"),
+        contextlib.closing(pycolmap.Database.open(path)) as database,
+    ):
         images = sorted(database.read_all_images(), key=lambda image: image.image_id)
         return {image.name: image.image_id for image in images}

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import pycolmap
 
 from courtside.sfm import database
+from courtside.study.errors import InputError
 
 SOUND_PX = 2.0  # a model with a larger mean reprojection error has folded or lost its lenses
 
@@ -36,6 +37,11 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
     summary : dict
         Of the model: pycolmap's version, the seed that gave it, n_models, n_images, n_registered, n_points3d,
         reprojection_px, track_length.
+
+    Raises
+    ------
+    InputError
+        If the disk refuses the model.
     """
     best = None
     for at in range(max(attempts, 1)):
@@ -46,6 +52,7 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
             break
     Path(folder).mkdir(parents=True, exist_ok=True)
     best.model.write_binary(str(folder))
+    _check_whole(best.model, Path(folder))
     return {
         "mapper": mapper,
         "seed": best.seed,
@@ -57,6 +64,22 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
         "reprojection_px": _error_px(best),
         "track_length": best.model.compute_mean_track_length(),
     }
+
+
+def _check_whole(model, folder):
+    """Compare the sizes of the long files with what they must hold: COLMAP does not notice a full disk."""
+    images = [model.images[image] for image in model.reg_image_ids()]
+    n_bytes = {  # of COLMAP's documented format: identifiers, numbers, names, and what follows each
+        "images.bin": 8
+        + sum(73 + len(image.name.encode()) + 24 * len(image.points2D) for image in images),
+        "points3D.bin": 8 + 51 * model.num_points3D() + 8 * model.compute_num_observations(),
+    }
+    for name, expected in n_bytes.items():
+        found = (folder / name).stat().st_size
+        if found != expected:
+            raise InputError(
+                f"{folder / name}: expected {expected} bytes, found {found}: free or allow the space"
+            )
 
 
 class _Attempt(NamedTuple):

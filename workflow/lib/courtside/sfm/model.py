@@ -4,6 +4,8 @@ import numpy as np
 import pycolmap
 
 from courtside.geometry.network import LENS, Network
+from courtside.sfm import model_files
+from courtside.study.errors import reading
 
 HALF_PIXEL = 0.5  # COLMAP has the first pixel's corner at (0, 0), the project its centre
 LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)  # cx, cy in picture widths
@@ -28,8 +30,18 @@ def read(folder):
         Of the images.
     sizes : list of (int, int)
         Width and height, px, of each lens's pictures.
+
+    Raises
+    ------
+    InputError
+        If the files are damaged or do not belong together.
     """
-    found = pycolmap.Reconstruction(str(folder))
+    with reading(folder, "a COLMAP model", "delete it and run the study again"):
+        model_files.check(folder)
+        return _network(pycolmap.Reconstruction(str(folder)))
+
+
+def _network(found):
     images = [found.images[i] for i in sorted(found.reg_image_ids())]
     camera_ids = sorted({image.camera_id for image in images})
     cameras = [found.cameras[i] for i in camera_ids]

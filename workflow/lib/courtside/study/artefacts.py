@@ -6,15 +6,15 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-import zlib
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from courtside.study import files, yaml_files
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 LARGEST_MEMBER_BYTES = 1 << 30
+AGAIN = "delete the file and fetch it again"
 PIP_OPTIONS = [
     "--no-deps",
     "--require-hashes",
@@ -86,7 +86,7 @@ def fetch(artefact, outputs, *, mirror_folder=None):
         if found != artefact.sha256:
             raise InputError(
                 f"{source}: expected sha256 {artefact.sha256} (artefact {artefact.name}), found {found}; "
-                "delete the file and fetch it again"
+                f"{AGAIN}"
             )
         unpack(source, artefact, outputs)
 
@@ -178,10 +178,8 @@ def unpack(source, artefact, outputs):
 
 
 def _archive(source):
-    try:
+    with reading(source, "a zip file", AGAIN):
         return zipfile.ZipFile(source)
-    except (zipfile.BadZipFile, OSError) as error:
-        raise InputError(f"{source}: expected a zip file, found: {error}") from None
 
 
 def _copy_member(archive, source, member, temporary):
@@ -191,13 +189,12 @@ def _copy_member(archive, source, member, temporary):
         raise InputError(f"{source}: expected the member {member}, found none") from None
     if size > LARGEST_MEMBER_BYTES:
         raise InputError(f"{source}: member {member}: expected at most 1 GiB, found {size} bytes")
-    try:
-        with archive.open(member) as stream, temporary.open("wb") as target:
-            left = size
-            while left > 0 and (piece := stream.read(min(files.CHUNK_BYTES, left))):
-                target.write(piece)
-                left -= len(piece)
-    except (zipfile.BadZipFile, zlib.error, RuntimeError, OSError, EOFError) as error:
-        raise InputError(
-            f"{source}: member {member}: expected a whole file, found: {error}"
-        ) from None
+    with (
+        reading(f"{source}: member {member}", "a whole file", AGAIN),
+        archive.open(member) as stream,
+        temporary.open("wb") as target,
+    ):
+        left = size
+        while left > 0 and (piece := stream.read(min(files.CHUNK_BYTES, left))):
+            target.write(piece)
+            left -= len(piece)

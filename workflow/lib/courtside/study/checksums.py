@@ -1,11 +1,11 @@
 """Checksums of many large files, computed again only for a file whose size or date changed."""
 
 import hashlib
-import json
 import time
 from pathlib import Path
 
 from courtside.study import files
+from courtside.study.errors import DAMAGED
 
 FORMAT = 1
 # A file that changed a moment ago may change again within one tick of the file system's clock.
@@ -45,12 +45,15 @@ class Checksums:
 
     def _read(self):
         try:
-            content = json.loads(self.path.read_text(encoding="utf-8"))
-        except (FileNotFoundError, ValueError):
+            content = files.read_json(self.path)
+            if content["format"] != FORMAT:
+                return {}
+            return {
+                name: [int(size), int(stamp_ns), str(value)]
+                for name, (size, stamp_ns, value) in content["files"].items()
+            }
+        except DAMAGED:
             return {}
-        if not isinstance(content, dict) or content.get("format") != FORMAT:
-            return {}
-        return content["files"]
 
     def of(self, path):
         """Return the SHA-256 of a file or folder; None if there is none."""

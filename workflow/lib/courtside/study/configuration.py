@@ -1,6 +1,7 @@
 """Reading and checking all configuration at once: every fault, one line each."""
 
 import difflib
+import functools
 import re
 import sys
 from pathlib import Path
@@ -27,7 +28,8 @@ RESERVED = (
     "plans",
 )  # folders of results/ that are no session
 
-NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
+# Of folders and files of the study: none that leaves its folder, is an option or a device of Windows.
+NAME = re.compile(r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9])\Z)[a-z0-9][a-z0-9_-]{0,63}")
 # JSON Schema lets 3.0 pass for an integer, and a comparison lets nan pass for any number.
 TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
     {
@@ -46,8 +48,8 @@ class ConfigurationError(InputError):
     """All faults of a configuration; the message has one line for each."""
 
     def __init__(self, faults):
-        super().__init__("\n".join(faults))
-        self.faults = faults
+        super().__init__(*faults)
+        self.faults = self.lines
 
 
 def load(config, config_file, folder, root="."):
@@ -171,6 +173,17 @@ def schema_faults(content, schema, file):
     faults : list of str
         `file: key: expected ..., found ...`
     """
+    errors = _validator(schema).iter_errors(content)
+    return [
+        f"{file}: {line}"
+        for error in sorted(errors, key=lambda e: [str(at) for at in e.absolute_path])
+        for line in _lines(error)
+    ]
+
+
+@functools.cache
+def _validator(schema):
+    """Return what checks a kind of file; reading a schema takes longer than checking by it."""
     rules = yaml_files.read(SCHEMAS / f"{schema}.schema.yaml")
     if schema == "session":
         steps = yaml_files.read(SCHEMAS / "config.schema.yaml")
@@ -185,12 +198,7 @@ def schema_faults(content, schema, file):
             key: {"type": "array", "minItems": 1, "items": value}
             for key, value in virtual["properties"].items()
         }
-    errors = VALIDATOR(rules).iter_errors(content)
-    return [
-        f"{file}: {line}"
-        for error in sorted(errors, key=lambda e: [str(at) for at in e.absolute_path])
-        for line in _lines(error)
-    ]
+    return VALIDATOR(rules)
 
 
 def _overridable(steps):

@@ -7,6 +7,8 @@ import secrets
 import shutil
 from pathlib import Path
 
+from courtside.study.errors import reading
+
 CHUNK_BYTES = 1 << 20
 
 
@@ -67,6 +69,28 @@ def write_json(path, content):
     """Write a dictionary as a JSON file that people can read, whole or not at all."""
     with atomic(path) as temporary:
         temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+
+
+def read_json(path, advice="make it again"):
+    """Read a JSON file.
+
+    Parameters
+    ----------
+    path : str or Path
+    advice : str
+        What to do with a file that is none.
+
+    Returns
+    -------
+    content : dict, list, str, float, int, bool or None
+
+    Raises
+    ------
+    InputError
+        If it is missing or no JSON.
+    """
+    with reading(path, "JSON", advice):
+        return json.loads(Path(path).read_text(encoding="utf-8-sig"))
 
 
 def sha256(path):

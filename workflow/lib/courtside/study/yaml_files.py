@@ -4,7 +4,12 @@ from pathlib import Path
 
 import yaml
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
+
+LARGEST_BYTES = 1 << 20  # the largest that is read within seconds
+DEEPEST = 40  # levels
+MOST = 200_000  # values, those of an alias counted each time
+LARGEST = 10**4000  # Python refuses to write out longer numbers
 
 
 class _StrictLoader(yaml.SafeLoader):
@@ -46,24 +51,43 @@ def read(path):
     InputError
         One line with the line number of what is wrong.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-        content = yaml.load(text, Loader=_StrictLoader)  # a subclass of SafeLoader
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: expected a readable YAML file, found: {error}") from None
-    except yaml.YAMLError as error:
-        raise InputError(f"{path}: {_one_line(error)}") from None
-    except RecursionError:
-        raise InputError(f"{path}: expected YAML, found too deep nesting") from None
-    except (ValueError, LookupError, AttributeError) as error:
-        # PyYAML lets these through for 2026-02-30, or for !!int without a number.
-        raise InputError(f"{path}: expected dates and numbers that exist, found: {error}") from None
+    with reading(path, "a readable YAML file", "save it as UTF-8", kinds=(OSError, UnicodeError)):
+        text = Path(path).read_text(encoding="utf-8-sig")
+    if len(text) > LARGEST_BYTES:
+        raise InputError(f"{path}: expected YAML as people write it, found {len(text)} characters")
+    # PyYAML lets Python's own errors through for 2026-02-30, or for !!int without a number.
+    with reading(path, "dates and numbers that exist", "correct them"):
+        try:
+            content = yaml.load(text, Loader=_StrictLoader)  # a subclass of SafeLoader
+        except yaml.YAMLError as error:
+            raise InputError(f"{path}: {_first_line(error)}") from None
+        except RecursionError:
+            raise InputError(f"{path}: expected YAML, found too deep nesting") from None
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected keys and values, found {type(content).__name__}")
+    _check_extent(path, content)
     return content
 
 
-def _one_line(error):
+def _check_extent(path, content):
+    """Refuse what no configuration is, but aliases and hexadecimal numbers make of a few bytes."""
+    waiting, count = [(content, 1)], 0
+    while waiting:
+        value, depth = waiting.pop()
+        count += 1
+        if depth > DEEPEST or count > MOST:
+            found = "too deep nesting" if depth > DEEPEST else "aliases of aliases"
+            raise InputError(f"{path}: expected YAML as people write it, found {found}")
+        if isinstance(value, int) and abs(value) >= LARGEST:
+            raise InputError(
+                f"{path}: expected numbers that exist, found one of thousands of digits"
+            )
+        inner = value.values() if isinstance(value, dict) else value
+        if isinstance(value, dict | list | tuple | set):
+            waiting += [(part, depth + 1) for part in inner]
+
+
+def _first_line(error):
     mark = getattr(error, "problem_mark", None)
     where = f"line {mark.line + 1}: " if mark else ""
     problem = getattr(error, "problem", None) or str(error).splitlines()[0]

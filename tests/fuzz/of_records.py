@@ -1,0 +1,159 @@
+"""Formats that one rule hands to the next: npz records and tables."""
+
+import numpy as np
+import pandas as pd
+
+import networks_made
+import scene
+import walker
+from bodies_made import body
+from courtside.geometry import control_points, court_adjustment
+from courtside.pages import viewer_layers
+from courtside.records import (
+    body_motion,
+    camera_covariance,
+    device_motion,
+    frame_table,
+    frame_times,
+    keypoints,
+    people,
+    shake_table,
+    take_truth,
+    ties,
+    truth,
+)  # fmt: skip
+from courtside.sfm import grid
+from fuzz.format import Format, require
+
+RNG = np.random.default_rng(0)
+
+
+def points(folder):
+    """Write 3D keypoints."""
+    keypoints.write_3d(folder / "points.npz", walker.points(6, n_persons=2))
+
+
+def views(folder):
+    """Write 2D keypoints."""
+    view = walker.views(walker.points(6), scene.ring(1))[0]
+    keypoints.write_2d(folder / "view.npz", view)
+
+
+def motion(folder):
+    """Write the motion of a device."""
+    made = device_motion.of_person(walker.points(6), walker.points(6).person_id[0])
+    device_motion.write(folder / "motion.npz", made)
+
+
+def read_layer(path):
+    """Read a device's motion as the page of a take does."""
+    return viewer_layers.read(path, "suit", walker.SKELETON)
+
+
+def persons(folder):
+    """Write who is which tracklet."""
+    index = {"left": np.array([[0, 0, 2, 2, -1], [1, -1, 0, 0, 0]]), "right": np.zeros((2, 3), int)}
+    found = people.People("m", np.array(["p1", "p2"]), np.array([0.9, 0.5]), index)
+    people.write(folder / "people.npz", found)
+
+
+def bodies(folder):
+    """Write a motion in body axes."""
+    made = body(np.arange(5) / 30, RNG.normal(size=(5, 2, 3)), ["left_wrist", "head"])
+    body_motion.write(folder / "body.npz", made)
+
+
+def covariance(folder):
+    """Write the covariance of two cameras."""
+    root = np.random.default_rng(1).normal(size=(38, 38))
+    made = camera_covariance.of_network(["a", "b"], root @ root.T)
+    camera_covariance.write(folder / "covariance.npz", made)
+
+
+def tied(folder):
+    """Write what structure from motion says of two cameras."""
+    made = networks_made.make(2, 8)
+    fixed = networks_made.fixed_cameras(made)
+    sizes = tuple(camera.size for camera in fixed)
+    known = control_points.what_ties_say(made, [0, 1])
+    record = ties.Record(
+        outcome="", fault="", sfm_cameras=fixed, n_points_seen=[8, 5],
+        ties=court_adjustment.Ties(("side", "back"), sizes, known),
+        images=np.array(["static/side.png", "static/back.png", "frames/walk/000000.png"]),
+        centres=np.arange(9.0).reshape(3, 3), xyz=np.ones((4, 3)), residual_px=0.4,
+    )  # fmt: skip
+    ties.write(folder / "ties.npz", record)
+
+
+def session_truth(folder):
+    """Write the truth of a virtual session."""
+    poses = np.array([camera.cam_from_world for camera in scene.ring(4)])
+    matrix = np.array([[1000.0, 0, 640], [0, 1000, 360], [0, 0, 1]])
+    walk = truth.Walk(np.arange(4) / 3, matrix, np.zeros(5), poses, np.ones((4, 2)))
+    truth.write(folder / "truth.npz", scene.ring(3), {"walk1": walk}, ["p01"], np.zeros((1, 3)))
+
+
+def of_take(folder):
+    """Write the truth of a virtual take."""
+    device = take_truth.DeviceTruth("rgbd", "p1", 0.0, 0.0, 0.0, np.eye(3, 4))
+    made = take_truth.TakeTruth(
+        time_s=np.arange(5) / 30, joints=np.array(["left_wrist", "head"]),
+        person_id=np.array(["p1"]), xyz=np.zeros((1, 5, 2, 3)), racket=np.ones((1, 5, 2, 3)),
+        offset_s={"a": 0.0, "b": 0.4}, drift_ppm={"a": 0.0, "b": -35.0}, events={"p1": {"hit": 1.2}},
+        shaken={"b": np.zeros((7, 3, 4))}, devices={"d": device},
+    )  # fmt: skip
+    take_truth.write(folder / "truth.npz", made)
+
+
+def frames(folder):
+    """Write a table of extracted frames."""
+    rows = {
+        "frame_idx": [0, 6, 12, 18], "time_s": [0.0, 0.2, 0.4, np.nan],
+        "sharpness": [100.5, 20.25, 99.0, 1.0], "name": [f"{k:06d}.png" for k in (0, 6, 12, 18)],
+        "kept": [True, False, False, True], "reason": ["", "blurred", "duplicate", ""],
+    }  # fmt: skip
+    frame_table.write(folder / "walk.csv", pd.DataFrame(rows))
+
+
+def read_frames(path):
+    """Read a table of frames as the choice of images does."""
+    found = frame_table.read(path)
+    require(found["kept"].dtype == bool, "kept")
+    return grid.read({"walk": path})
+
+
+def device_times(folder):
+    """Write times of a device's frames."""
+    made = frame_times.FrameTimes(np.array([12.0, 12.033, 12.1]), np.array([5, 6, 8]))
+    frame_times.write(folder / "frames.csv", made)
+
+
+def read_times(path):
+    """Read times of frames and what follows from them."""
+    found = frame_times.read(path)
+    return found.rate_hz, found.n_missing
+
+
+def shake(folder):
+    """Write a table of shake."""
+    rows = {key: [0.0, 1.0, 2.0] for key in shake_table.DECIMALS}
+    shake_table.write(folder / "shake.csv", pd.DataFrame(rows))
+
+
+RECORDS = {
+    "points-npz": (points, keypoints.read_3d),
+    "views-npz": (views, keypoints.read_2d),
+    "motion-npz": (motion, read_layer),
+    "people-npz": (persons, people.read),
+    "body-npz": (bodies, body_motion.read),
+    "covariance-npz": (covariance, camera_covariance.read),
+    "ties-npz": (tied, ties.read),
+    "truth-npz": (session_truth, truth.read),
+    "take-truth-npz": (of_take, take_truth.read),
+}
+FORMATS = [Format(name, 350, make, read) for name, (make, read) in RECORDS.items()]
+FORMATS += [
+    Format("frames-csv", 600, frames, read_frames),
+    Format("frame-times-csv", 500, device_times, read_times),
+    Format("shake-csv", 500, shake, shake_table.read),
+]

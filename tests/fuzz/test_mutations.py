@@ -1,0 +1,18 @@
+"""All formats: each changed file gives a value or one clear line, within seconds, memory and its folder."""
+
+import pytest
+
+from fuzz import formats
+
+pytestmark = pytest.mark.fuzz
+
+SEED = 1
+
+
+@pytest.mark.parametrize("name", list(formats.FORMATS))
+def test_changed_files_end_in_a_value_or_one_line(name, watched, results):
+    result = watched.run(name, SEED, range(formats.FORMATS[name].cases))
+    results.append(result)
+    assert result.failures == [], "\n".join(result.failures)
+    assert result.cases == formats.FORMATS[name].cases
+    assert result.values and bool(result.refused) == formats.FORMATS[name].refuses

@@ -1,0 +1,81 @@
+"""The message of an error is one line whatever is put into it; damage of any kind becomes such an error."""
+
+import json
+import lzma
+import pickle
+import struct
+import tomllib
+import zlib
+
+import pytest
+
+from courtside.study import errors
+from courtside.study.errors import InputError
+
+
+def test_a_plain_message_stays_as_it_is():
+    text = "My  Gym/a.csv: expected 3 µm, found '½'; correct it"
+    assert str(InputError(text)) == text
+
+
+@pytest.mark.parametrize(
+    "letter", ["\n", "\r", "\t", "\x00", "\x1b[2J", "\u2028", "\ud800", "\xa0"]
+)
+def test_what_does_not_print_is_written_out(letter):
+    message = str(InputError(f"a: found {letter} here"))
+    assert message.isprintable()
+    assert message.splitlines() == [message]
+    assert message.startswith("a: found \\") and message.endswith(" here")
+
+
+def test_the_middle_of_an_endless_line_is_left_out():
+    message = str(InputError(f"a.csv: found {'x' * 100_000}; correct it"))
+    assert len(message) < errors.LONGEST
+    assert message.startswith("a.csv: found xxx") and message.endswith("xxx; correct it")
+
+
+def test_several_faults_are_a_line_each():
+    error = InputError("a: 1", "b: 2\n3")
+    assert str(error).splitlines() == error.lines == ["a: 1", "b: 2\\n3"]
+    assert str(pickle.loads(pickle.dumps(InputError("a: 1")))) == "a: 1"
+
+
+def fail(name):
+    return {
+        "json": lambda: json.loads("[" * 100_000),
+        "toml": lambda: tomllib.loads("a = " + "[" * 100_000),
+        "number": lambda: f"{16**6000}",
+        "zlib": lambda: zlib.decompress(b"x"),
+        "lzma": lambda: lzma.decompress(b"xxx"),
+        "struct": lambda: struct.unpack("<I", b""),
+        "key": lambda: {}["a"],
+        "file": lambda: open("/nowhere/at all"),  # noqa: PTH123
+        "attribute": lambda: [].get("a"),
+    }[name]()
+
+
+@pytest.mark.parametrize(
+    "name", ["json", "toml", "number", "zlib", "lzma", "struct", "key", "file", "attribute"]
+)
+def test_damage_of_any_kind_becomes_one_line(name):
+    with (
+        pytest.raises(InputError, match=r"^a\.x: expected a thing, found: .+; mend it$") as caught,
+        errors.reading("a.x", "a thing", "mend it"),
+    ):
+        fail(name)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_what_is_no_damage_passes():
+    with pytest.raises(KeyboardInterrupt), errors.reading("a", "b"):
+        raise KeyboardInterrupt
+    with pytest.raises(InputError, match=r"^as it was$"), errors.reading("a", "b"):
+        raise InputError("as it was")
+    with pytest.raises(ValueError, match=r"^other$"), errors.reading("a", "b", kinds=(OSError,)):
+        raise ValueError("other")
+
+
+def test_an_error_without_words_is_named():
+    assert errors.said(MemoryError()) == "MemoryError"
+    assert errors.said(ValueError("two\n lines")) == "two lines"
+    assert len(errors.said(ValueError("x" * 9999))) == errors.SHORT
