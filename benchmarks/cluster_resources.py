@@ -19,7 +19,7 @@ import yaml
 
 MEMORY_FACTOR, SNAKEMAKE_MB, MEMORY_STEP_MB = 1.5, 500, 500
 TIME_FACTOR, START_MIN, TIME_STEP_MIN = 10, 2, 5
-# Their rules bear the names of sessions and takes, which no profile can know: simulation.smk says what they need.
+# Their rules bear the names of sessions and takes, which no profile can know: simulation.smk has their needs.
 NAMED_BY_SESSION = ("simulate_session", "simulate_take")
 LINE = "{:<22}{:>6}{:>10}{:>10}{:>8}{:>10}{:>10}"
 

@@ -1,12 +1,12 @@
-"""How long Snakemake plans a study of many sessions, and how long it needs to find that nothing is to be done.
+"""How long Snakemake plans a study of many sessions, and how long it finds nothing to do.
 
     python benchmarks/many_sessions.py [--sessions 10 100 1000] [--finished DIR] [--json OUT]
 
-In a temporary copy of the repository it writes so many sessions like `walk-4cams` (4 takes by 4 fixed cameras,
-a calibration file; all files a few bytes long) and runs `snakemake -n --quiet rules` over them: seconds, seconds
-of the processor, largest resident memory, jobs. `--finished DIR` is a folder with the finished results of the tiny
-study (tests/smoke after the tests): the time of a `snakemake -n` over it that finds nothing to do, the median of
-three.
+In a temporary copy of the repository it writes so many sessions like `walk-4cams` (4 takes by 4 fixed
+cameras, a calibration file; all files a few bytes long) and runs `snakemake -n --quiet rules` over them:
+seconds, seconds of the processor, largest resident memory, jobs. `--finished DIR` is a folder with the
+finished results of the tiny study (tests/smoke after the tests): the time of a `snakemake -n` over it that
+finds nothing to do, the median of three.
 """
 
 import argparse

@@ -112,9 +112,9 @@ def test_the_check_of_shells_bites(command, count):
 
 
 NAMES = (
-    "../x", "..", ".", "a/b", "/a", "a\\b", "a b", "$(x)", "`x`", "-rf", "--help", "a;b", "a|b", "a&b", "a>b", "~",
-    "*", "{x}", "", " ", "A", "con", "nul", "com1", "a\n", "\na", "a\nb", "a\tb", "a\x00", "\x1b[2J", "x" * 65,
-    "x" * 100_000, "сам", "ѕide", "ａ", "side\u200b", "ﬁ", "café", "\u202eedis", "٣",
+    "../x", "..", ".", "a/b", "/a", "a\\b", "a b", "$(x)", "`x`", "-rf", "--help", "a;b", "a|b", "a&b", "a>b",
+    "~", "*", "{x}", "", " ", "A", "con", "nul", "com1", "a\n", "\na", "a\nb", "a\tb", "a\x00", "\x1b[2J",
+    "x" * 65, "x" * 100_000, "сам", "ѕide", "ａ", "side\u200b", "ﬁ", "café", "\u202eedis", "٣",
 )  # fmt: skip
 SESSION = {
     "description": "a hall",
