@@ -28,10 +28,12 @@ def test_what_does_not_print_is_written_out(letter):
     assert message.startswith("a: found \\") and message.endswith(" here")
 
 
-def test_the_middle_of_an_endless_line_is_left_out():
-    message = str(InputError(f"a.csv: found {'x' * 100_000}; correct it"))
+@pytest.mark.parametrize("letter", ["x", "\x00", "\U000e0001"])
+def test_the_middle_of_an_endless_line_is_left_out(letter):
+    message = str(InputError(f"a.csv: found {letter * 100_000}; correct it"))
     assert len(message) < errors.LONGEST
-    assert message.startswith("a.csv: found xxx") and message.endswith("xxx; correct it")
+    assert message.startswith("a.csv: found ") and message.endswith("; correct it")
+    assert message.isprintable()
 
 
 def test_several_faults_are_a_line_each():

@@ -35,15 +35,21 @@ class InputError(ValueError):
 
 
 def _one_line(text):
-    text = str(text)
-    if len(text) > LONGEST:
-        text = f"{text[: LONGEST // 2]} ... {text[-LONGEST // 3 :]}"
+    text = _shortened(str(text))  # first, for a file may have been put in whole
     if text.isprintable():
         return text
-    return "".join(
-        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
-        for letter in text
+    return _shortened(
+        "".join(
+            letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+            for letter in text
+        )
     )
+
+
+def _shortened(text):
+    if len(text) <= LONGEST:
+        return text
+    return f"{text[: LONGEST // 2]} ... {text[-LONGEST // 3 :]}"
 
 
 def said(error):
