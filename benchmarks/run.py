@@ -132,10 +132,13 @@ def report_study(root):
     jobs = run_log.jobs(log) if log else []
     if jobs:
         by_log_s, by_file_s, count = run_log.seconds_in_jobs(root, jobs)
+        busy_s = sum((job.ended - job.began).total_seconds() for job in jobs)
         whole_s = (max(job.ended for job in jobs) - min(job.began for job in jobs)).total_seconds()
+        cores = run_log.cores(log)
         print(
-            f"\nLongest run: {len(jobs)} jobs in {whole_s:.0f} s. {count} of them state their own time: "
-            f"{by_file_s:.0f} s; from start to end Snakemake saw {by_log_s:.0f} s."
+            f"\nLongest run: {len(jobs)} jobs in {whole_s:.0f} s on {cores} cores, which is "
+            f"{cores * whole_s:.0f} s of cores; jobs took {busy_s:.0f} s from start to end.\n"
+            f"{count} jobs state their own time: {by_file_s:.0f} s; Snakemake saw {by_log_s:.0f} s of them."
         )
 
 

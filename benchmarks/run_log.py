@@ -11,6 +11,7 @@ STAMP = re.compile(r"^\[(\w{3} \w{3} +\d+ [\d:]{8} \d{4})\]$")
 BEGINS = re.compile(r"^(?:local)?(?:rule|checkpoint) (\w+):$")
 NUMBER = re.compile(r"^ {4}jobid: (\d+)$")
 BENCHMARK = re.compile(r"^ {4}benchmark: (.+)$")
+CORES = re.compile(r"^Provided cores: (\d+)", re.M)
 ENDS = re.compile(r"^Finished jobid: (\d+) ")
 
 
@@ -56,6 +57,12 @@ def longest(folder):
     """Return the log of the run with the most jobs, or None."""
     logs = sorted(Path(folder).glob("*.snakemake.log"))
     return max(logs, key=lambda log: len(jobs(log)), default=None)
+
+
+def cores(log):
+    """Return how many cores a run was given, 1 where its log does not say."""
+    said = CORES.search(Path(log).read_text(errors="replace"))
+    return int(said[1]) if said else 1
 
 
 def stages(root):

@@ -33,7 +33,7 @@ def compare(given):
         for start in rng.integers(0, len(true) - GAP_FRAMES, GAPS * times):
             noisy[start : start + GAP_FRAMES] = np.nan
         measured = _measured({"xyz": noisy, **SETTINGS}, given)
-        ours = measured["zero_lag_points"][1]
+        ours = measured[rows.OURS][1]
         found += [_row(true, times, ours, method, *one) for method, one in measured.items()]
     return found
 
@@ -53,7 +53,7 @@ def _measured(given_arrays, given):
                 raise SystemExit(f"{script}: {said['failed']}")
             with np.load(result) as filtered:
                 for function, each in said.items():
-                    method = f"{peer} {function}" if peer else function
+                    method = f"{peer} {function}" if peer else rows.OURS
                     best_s = min([*each["seconds"], measured.get(method, (np.inf,))[0]])
                     measured[method] = best_s, filtered[function]
     return measured

@@ -32,6 +32,9 @@ rule make:
 """
 
 
+SNAKEMAKE = [sys.executable, "-m", "snakemake", "--cores", "1", "--quiet", "all"]
+
+
 def compare(given):
     """Return the rows of Snakemake, the loop, and a second call that has nothing to do."""
     found = []
@@ -39,9 +42,11 @@ def compare(given):
         count = times * JOBS
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
+            (folder / "make.py").write_text(SCRIPT.format(output="snakemake.output[0]"))
+            (folder / "Snakefile").write_text(SNAKEFILE.format(count=count))
             spent = {"loop of scripts": _loop_s(folder, count)}
-            spent["snakemake"] = _snakemake_s(folder, count)
-            spent["snakemake, nothing to do"] = _snakemake_s(folder, count)
+            for method in ("snakemake", "snakemake, nothing to do"):
+                spent[method] = _children_s(SNAKEMAKE, folder)
         least_s = spent["loop of scripts"]
         found += [
             rows.Row(NAME, method, method == "snakemake", "job", count, times, cpu_s, least_s)
@@ -58,18 +63,10 @@ def _loop_s(folder, count):
     return sum(_children_s(command, folder) for command in commands)
 
 
-def _snakemake_s(folder, count):
-    (folder / "make.py").write_text(SCRIPT.format(output="snakemake.output[0]"))
-    (folder / "Snakefile").write_text(SNAKEFILE.format(count=count))
-    return _children_s(
-        [sys.executable, "-m", "snakemake", "--cores", "1", "--quiet", "all"], folder
-    )
-
-
 def _children_s(command, folder):
     """Return the processor time of a command and of all that it starts, s."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    environment = {**os.environ, "SNAKEMAKE_PROFILE": ""}
+    environment = {key: os.environ[key] for key in os.environ if key != "SNAKEMAKE_PROFILE"}
     done = subprocess.run(
         [str(part) for part in command], cwd=folder, env=environment, capture_output=True, text=True
     )

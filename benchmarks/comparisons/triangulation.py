@@ -28,7 +28,7 @@ def compare(given):
     for times in rows.TIMES[: 2 if given.quick else None]:
         made = scene.spoiled(frames=times * FRAMES)
         measured = _measured(made, times, given)
-        ours = measured["triangulate_robust"][1]
+        ours = measured[rows.OURS][1]
         found += [_row(made, times, ours, method, *one) for method, one in measured.items()]
     return found
 
@@ -56,7 +56,7 @@ def _measured(made, times, given):
                 raise SystemExit(f"{script}: {said['failed']}")
             with np.load(result) as points:
                 for function, each in said.items():
-                    method = f"{peer} {function}" if peer else function
+                    method = f"{peer} {function}" if peer else rows.OURS
                     best_s = min([*each["seconds"], measured.get(method, (np.inf,))[0]])
                     measured[method] = best_s, points[function]
     return measured
