@@ -21,9 +21,9 @@ MADE = [
 def test_what_was_made_is_counted_by_kind():
     lines = summary.finished(MADE, 200.4).splitlines()
     assert lines[0] == "Courtside: finished, 13 files made in 3 min 20 s."
-    assert "  5 figures: results/hall/takes/smash/figures/, results/figures/" in lines
-    assert "  1 3D viewers: results/hall/takes/smash/pages/viewer.net.html" in lines
-    assert "  1 calibrated cameras: results/hall/calibration/sfm-n40/cameras.toml" in lines
+    assert "  figures (5): results/hall/takes/smash/figures/, results/figures/" in lines
+    assert "  3D viewers (1): results/hall/takes/smash/pages/viewer.net.html" in lines
+    assert "  calibrated cameras (1): results/hall/calibration/sfm-n40/cameras.toml" in lines
     assert not any("features.db" in line for line in lines)
 
 

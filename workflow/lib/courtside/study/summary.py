@@ -7,7 +7,7 @@ N_FAULTS = 3
 UNFINISHED = (" INFO ", " WARNING ")  # a log that ends so tells of no fault
 # What a file is, by what its path must contain and how it ends; the first that fits counts.
 KINDS = (
-    ("report", "", ("report.html",)),
+    ("reports", "", ("report.html",)),
     ("3D viewers", "/pages/viewer", (".html",)),
     ("pages", "", (".html",)),
     ("videos with skeletons", "/videos/", (".mp4",)),
@@ -41,7 +41,7 @@ def finished(made, seconds, look_at=()):
         return "Courtside: everything was there already, nothing had to be made."
     count = "1 file" if len(made) == 1 else f"{len(made)} files"
     lines = [f"Courtside: finished, {count} made in {duration(seconds)}."]
-    lines += [f"  {len(paths)} {kind}: {_places(paths)}" for kind, paths in _by_kind(made).items()]
+    lines += [f"  {kind} ({len(paths)}): {_places(paths)}" for kind, paths in _by_kind(made).items()]
     there = [path for path in look_at if Path(path.split(" ")[0]).exists()]
     lines += [f"Look at {', '.join(there)}."] if there else []
     return "\n".join(lines)
