@@ -83,7 +83,7 @@ def _twice(members, at, rng):
 
 def _bomb(members, at, rng):
     name, content = members[at]
-    size = rng.choice([1 << 20, 1 << 27, 1 << 28])
+    size = rng.choice([*[1 << 20] * 20, *[1 << 24] * 9, 1 << 28])  # the last takes a second to pack
     return _packed([*members[:at], (name, content + bytes(size)), *members[at + 1 :]])
 
 

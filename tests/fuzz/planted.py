@@ -57,6 +57,11 @@ def hang(_path):
         pass
 
 
+def wait(_path):
+    """Wait for what never comes."""
+    return os.read(os.pipe()[0], 1)
+
+
 def fill(_path):
     """Take more memory than there may be."""
     return bytearray(2 << 30)
@@ -97,7 +102,7 @@ def start(_path):
 
 
 GOOD = (refuse,)
-BAD = (unnamed, lines, other, hang, fill, crash, end, escape, hidden, unpickle, start)
+BAD = (unnamed, lines, other, hang, wait, fill, crash, end, escape, hidden, unpickle, start)
 FORMATS = {
     fault.__name__: Format(fault.__name__, 2, make, faulty(fault)) for fault in (*GOOD, *BAD)
 }

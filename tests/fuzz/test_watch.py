@@ -13,6 +13,7 @@ TOLD = {
     "lines": "not one printable line",
     "other": "KeyError",
     "hang": "still reading after",
+    "wait": "still reading after 0",
     "fill": "MemoryError",
     "crash": "the process ended (status -11)",
     "end": "the process ended (status 0)",
@@ -25,7 +26,9 @@ TOLD = {
 
 @pytest.fixture(scope="module")
 def planting(tmp_path_factory):
-    made = watch.Watched(tmp_path_factory.mktemp("planted"), "fuzz.planted", limit_s=1.0)
+    made = watch.Watched(
+        tmp_path_factory.mktemp("planted"), "fuzz.planted", limit_s=1.0, sleep_s=2.0
+    )
     yield made
     made.stop()
 

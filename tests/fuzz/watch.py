@@ -18,7 +18,8 @@ from fuzz import mutations
 TESTS = Path(__file__).parents[1]
 LIBRARY = TESTS.parent / "workflow" / "lib"
 LIMIT_S = 5.0
-WALL_S = 60.0  # where others use the processor too
+SLEEP_S = 30.0  # a process that neither ends nor computes waits for something
+STARVED_S = 900.0  # one that others leave no processor
 MORE_BYTES = 1 << 30
 CASES_PER_PROCESS = 4000
 MOST_FAILURES = 25  # of a format: then its other cases are left out
@@ -70,10 +71,13 @@ class Watched:
         Whose `FORMATS` are read.
     limit_s : float
         Of the process's own time for one case.
+    sleep_s : float
+        Of time in which it does not compute.
     """
 
-    def __init__(self, folder, module="fuzz.formats", limit_s=LIMIT_S):
-        self.outside, self.module, self.limit_s = Path(folder), module, limit_s
+    def __init__(self, folder, module="fuzz.formats", *, limit_s=LIMIT_S, sleep_s=SLEEP_S):
+        self.outside, self.module = Path(folder), module
+        self.limit_s, self.sleep_s = limit_s, sleep_s
         self.formats = importlib.import_module(module).FORMATS
         self.wholes = self.outside / "wholes"
         self.inside = self.outside / "inside"
@@ -135,13 +139,14 @@ class Watched:
         self.n_read += 1
         self.process.stdin.write(f"{name}\t{path}\n".encode())
         self.process.stdin.flush()
-        if self._answer(WALL_S) != "started":
+        if self._answer(STARVED_S) != "started":
             return self._dead("did not start")
-        began_s, began = self._own_s(), time.monotonic()
+        began_s, began = self._own_s()[0], time.monotonic()
         while (answer := self._answer(TICK_S)) is None:
-            own_s = self._own_s() - began_s
-            if own_s > self.limit_s or time.monotonic() - began > WALL_S:
-                return self._dead(f"still reading after {own_s:.1f} s")
+            own_s, sleeps = self._own_s()
+            waited_s = time.monotonic() - began
+            if own_s - began_s > self.limit_s or waited_s > (self.sleep_s if sleeps else STARVED_S):
+                return self._dead(f"still reading after {own_s - began_s:.1f} s")
         if not answer:
             return self._dead("the process ended")
         what, more = json.loads(answer)
@@ -149,7 +154,7 @@ class Watched:
         escaped = sorted(set(escaped) - {"wholes", "inside", "case", "noise"})
         if escaped:
             what, more = "failure", f"wrote outside: {escaped}"
-        own_s = max(self._own_s() - began_s, 0.0) + 1 / os.sysconf("SC_CLK_TCK")
+        own_s = max(self._own_s()[0] - began_s, 0.0) + 1 / os.sysconf("SC_CLK_TCK")
         seconds = min(time.monotonic() - began, own_s)
         return ("failure", "too slow", seconds) if seconds > self.limit_s else (what, more, seconds)
 
@@ -168,7 +173,7 @@ class Watched:
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=noise,
             )  # fmt: skip
         self.n_read, self.rest = 0, b""
-        if self._answer(2 * WALL_S) != "ready":
+        if self._answer(STARVED_S) != "ready":
             raise RuntimeError(f"the worker does not start: {self._said()}")
 
     def stop(self):
@@ -207,10 +212,11 @@ class Watched:
         return line.decode()
 
     def _own_s(self):
-        """Return the seconds that the process has computed, all its threads together."""
+        """Return the seconds that the process has computed in all its threads, and whether it sleeps."""
         try:
             stat = Path(f"/proc/{self.process.pid}/stat").read_text()
         except OSError:
-            return 0.0
-        user, system = stat.rpartition(")")[2].split()[11:13]
-        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+            return 0.0, True
+        state, *fields = stat.rpartition(")")[2].split()
+        user, system = fields[10:12]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK"), state != "R"

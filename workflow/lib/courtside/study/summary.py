@@ -41,7 +41,9 @@ def finished(made, seconds, look_at=()):
         return "Courtside: everything was there already, nothing had to be made."
     count = "1 file" if len(made) == 1 else f"{len(made)} files"
     lines = [f"Courtside: finished, {count} made in {duration(seconds)}."]
-    lines += [f"  {kind} ({len(paths)}): {_places(paths)}" for kind, paths in _by_kind(made).items()]
+    lines += [
+        f"  {kind} ({len(paths)}): {_places(paths)}" for kind, paths in _by_kind(made).items()
+    ]
     there = [path for path in look_at if Path(path.split(" ")[0]).exists()]
     lines += [f"Look at {', '.join(there)}."] if there else []
     return "\n".join(lines)

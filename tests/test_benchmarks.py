@@ -1,0 +1,96 @@
+"""What the benchmarks conclude from their times: ratios, growth, limits, what a run's log says."""
+
+import sqlite3
+import sys
+from pathlib import Path
+
+import numpy as np
+import onnx
+import pytest
+
+sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
+import rows
+import run_log
+import structure_from_motion
+from comparisons import pose
+
+LOG = """Provided cores: 2
+[Sat Nov 21 16:12:02 2026]
+localrule film:
+    output: results/a/film.mp4
+    jobid: 9
+    benchmark: results/a/benchmarks/film/one.tsv
+[Sat Nov 21 16:12:05 2026]
+rule look:
+    jobid: 12
+[Sat Nov 21 16:13:02 2026]
+Finished jobid: 9 (Rule: film)
+[Sat Nov 21 16:13:05 2026]
+rule film:
+    jobid: 10
+    benchmark: results/a/benchmarks/film/two.tsv
+[Sat Nov 21 16:13:09 2026]
+Finished jobid: 12 (Rule: look)
+"""
+TSV = "s\th:m:s\tmax_rss\tcpu_time\n{}\t0:00:58\t-\t{}\n"
+
+
+@pytest.fixture
+def study(tmp_path):
+    for name, wall_s, cpu_s in (("one", 58.0, 40.0), ("two", 7.0, 5.0)):
+        path = tmp_path / "results" / "a" / "benchmarks" / "film" / f"{name}.tsv"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(TSV.format(wall_s, cpu_s))
+    (tmp_path / "run.snakemake.log").write_text(LOG)
+    return tmp_path
+
+
+def test_a_log_says_when_jobs_began_and_ended(study):
+    jobs = run_log.jobs(study / "run.snakemake.log")
+    took_s = {job.rule: (job.ended - job.began).total_seconds() for job in jobs}
+    assert took_s == {"film": 60.0, "look": 64.0}, "the second film did not end"
+    assert run_log.seconds_in_jobs(study, jobs) == (60.0, 58.0, 1), "look has no benchmark file"
+    assert run_log.cores(study / "run.snakemake.log") == 2
+
+
+def test_stages_add_up_the_benchmark_files_of_a_rule(study):
+    (stage,) = run_log.stages(study).itertuples()
+    assert (stage.rule, stage.jobs, stage.cpu_s, stage.wall_s) == ("film", 2, 45.0, 65.0)
+
+
+def test_ratios_are_between_times_per_unit_at_the_same_work():
+    ours = [
+        rows.Row("a", rows.OURS, True, "point", 100 * n, n, 1.0 * n, limit_s=0.1) for n in (1, 2)
+    ]
+    peer = [
+        rows.Row("a", "peer", False, "point", 10, 1, 2.0),
+        rows.Row("a", "peer", False, "point", 20, 2, 8.0),
+    ]
+    other = [rows.Row("b", "peer", False, "point", 10, 1, 2.0)]
+    table = rows.table([*ours, *peer, *other])
+    np.testing.assert_allclose(table["over_ours"], [1, 1, 20, 40, np.nan])
+    np.testing.assert_allclose(table["growth"], [1, 2, 1, 4, 1])
+    np.testing.assert_allclose(table["over_limit"], [10, 20, np.nan, np.nan, np.nan])
+    lines = rows.markdown(table).splitlines()
+    assert len(lines) == 2 + 3 and "| 40 | 4 at 2x |" in lines[3]
+
+
+def test_multiplications_of_a_convolution():
+    weights = onnx.numpy_helper.from_array(np.zeros((4, 3, 5, 5), np.float32), "weights")
+    value = onnx.helper.make_tensor_value_info
+    graph = onnx.helper.make_graph(
+        [onnx.helper.make_node("Conv", ["x", "weights"], ["y"], strides=[2, 2], pads=[2, 2, 2, 2])],
+        "one", [value("x", 1, [1, 3, 16, 16])], [value("y", 1, None)], [weights],
+    )  # fmt: skip
+    assert pose.multiplications(onnx.helper.make_model(graph)) == 8 * 8 * 4 * 3 * 5 * 5
+
+
+def test_every_pair_of_features_of_matched_images_is_compared(tmp_path):
+    with sqlite3.connect(tmp_path / "f.db") as made:
+        made.execute("CREATE TABLE images (image_id, name)")
+        made.execute("CREATE TABLE keypoints (image_id, rows)")
+        made.executemany("INSERT INTO images VALUES (?, ?)", enumerate("abc"))
+        made.executemany("INSERT INTO keypoints VALUES (?, ?)", enumerate((2, 3, 5)))
+    count = structure_from_motion.compared_features
+    assert count(tmp_path / "f.db") == 2 * 3 + 2 * 5 + 3 * 5
+    assert count(tmp_path / "f.db", [("a", "c")]) == 10
