@@ -1,6 +1,7 @@
 """The people who play: adults of different sex, size and build, made from MakeHuman's targets."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.optimize import brentq
@@ -70,6 +71,7 @@ BODIES = {
 DEVELOPMENT = ("m1", "f1", "m2", "f2")  # joint offsets are learned on these, and reported on others
 
 
+@cache
 def figure(folder, shape):
     """Build a bare body.
 

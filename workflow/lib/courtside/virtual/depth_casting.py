@@ -1,10 +1,8 @@
 """How far in front of a camera things are, exactly: rays against the hall and against bodies in motion."""
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 
-from courtside.virtual import exposure, filming, onscreen, rays, sampling
+from courtside.virtual import casting, exposure, filming, onscreen, rays, sampling
 
 BAND_RAYS = 1 << 16  # at a time
 NEAREST_M = 0.1  # surfaces that come nearer are left out
@@ -74,33 +72,37 @@ def of_athletes(athletes, camera, time_s, readout_s):
 
 def _cast(screens, box):
     """Return the depth in a box of the picture, (h, w)."""
-    scene, corner = EmbreeScene(), np.array([*box[:2], 0.0])
+    parts, corners, corner = [], [], np.array([*box[:2], 0.0])[:, np.newaxis]
     for screen in screens:
-        vertices, triangles = screen.at(0.0) - corner, screen.moving.triangles
-        triangles = triangles[_shown(vertices, triangles)]
-        if len(triangles):
-            vertices[:, 2] = FAR - 1 / np.maximum(vertices[:, 2], NEAREST_M)
-            used, inverse = np.unique(triangles, return_inverse=True)
-            # The scene keeps these meshes alive.
-            TriangleMesh(
-                scene, vertices[used].astype(np.float32), inverse.reshape(-1, 3).astype(np.int32)
-            )
+        vertices, triangles = screen.at(0.0).T - corner, screen.moving.triangles
+        triangles = triangles[_shown(vertices, triangles)] + sum(part.shape[1] for part in parts)
+        vertices[2] = FAR - 1 / np.maximum(vertices[2], NEAREST_M)
+        parts.append(vertices)
+        corners.append(triangles.T)
+    vertices, corners = np.hstack(parts).astype(np.float32), np.hstack(corners)
+    corners = corners[:, _met(*casting.spans(vertices, corners))]
     shape = box[3] - box[1], box[2] - box[0]
     row, column = np.indices(shape, np.float32).reshape(2, -1)
     start = np.stack([column, row, np.zeros_like(row)], axis=1)
     along = np.zeros_like(start)
     along[:, 2] = 1
-    found = scene.run(start, along, query="DISTANCE")
+    found = casting.scene(vertices, corners).run(start, along, query="DISTANCE")
     with np.errstate(divide="ignore"):
         depth = np.where(found < FAR, 1 / np.maximum(FAR - found, 1e-9), np.inf)
     return depth.astype(np.float32).reshape(shape)
 
 
 def _shown(vertices, triangles):
-    """Return which triangles are whole before the camera and face it, (F,) bool."""
+    """Return which triangles of vertices (3, V) are whole before the camera and face it, (F,) bool."""
+    (x, y, depth), (a, b, c) = vertices, triangles.T
     with np.errstate(invalid="ignore"):
-        seen = np.isfinite(vertices).all(axis=1) & (vertices[:, 2] > NEAREST_M)
-    x, y = np.nan_to_num(vertices[:, :2]).T[:, triangles]
-    # Counter-clockwise seen from outside, but pixels count downwards.
-    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
-    return (area < 0) & seen[triangles].all(axis=1)
+        seen = np.isfinite(x) & np.isfinite(y) & np.isfinite(depth) & (depth > NEAREST_M)
+        # Counter-clockwise seen from outside, but pixels count downwards.
+        area = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
+    return (area < 0) & seen[a] & seen[b] & seen[c]
+
+
+def _met(first, last):
+    """Return which triangles of these spans (2, F) may meet the ray of a pixel: many are smaller."""
+    low, high = np.ceil(first - casting.NEAR_PX), np.floor(last + casting.NEAR_PX)
+    return (low <= high).all(axis=0)

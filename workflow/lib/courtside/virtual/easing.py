@@ -11,22 +11,27 @@ def ease(x, ramp=RAMP):
     The speed rises and falls by smooth steps over the ramp, a share up to 0.5, and is constant between: its
     highest value is 1 / (1 - ramp), and the acceleration is continuous.
     """
-    x = np.clip(x, 0.0, 1.0)
-    rise, fall = np.clip(x / ramp, 0, 1), np.clip((1 - x) / ramp, 0, 1)
+    x = _between(x, 0.0, 1.0)
+    rise, fall = _between(x / ramp, 0, 1), _between((1 - x) / ramp, 0, 1)
     ramps = ramp * (_ramp_integral(rise) - _ramp_integral(fall) + 0.5)
-    return (ramps + np.clip(x - ramp, 0, 1 - 2 * ramp)) / (1 - ramp)
+    return (ramps + _between(x - ramp, 0, 1 - 2 * ramp)) / (1 - ramp)
 
 
 def step(x):
     """Return the smooth step from 0 (x <= 0) to 1 (x >= 1); its first derivative is continuous."""
-    x = np.clip(x, 0.0, 1.0)
+    x = _between(x, 0.0, 1.0)
     return x * x * (3 - 2 * x)
 
 
 def bump(x):
     """Return a hump over 0..1 of height 1, zero outside; its first derivative is continuous."""
-    x = np.clip(x, 0.0, 1.0)
+    x = _between(x, 0.0, 1.0)
     return 16 * (x * (1 - x)) ** 2
+
+
+def _between(x, low, high):
+    """Limit a number or an array; NumPy's own function takes ten times as long on a few."""
+    return np.minimum(np.maximum(x, low), high)
 
 
 def _ramp_integral(x):

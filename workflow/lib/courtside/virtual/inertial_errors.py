@@ -7,7 +7,6 @@ ankle). Everything else is guessed by the app. `inertial` says how each number a
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import signal
 
 
 @dataclass(frozen=True)
@@ -182,6 +181,9 @@ def wandering(rng, n, shape, dt_s, memory_s, *, from_zero=False):
     keep = np.exp(-dt_s / memory_s)
     steps = rng.standard_normal((n, *shape)) * np.sqrt(1 - keep**2)
     steps[0] = 0.0 if from_zero else steps[0] / np.sqrt(1 - keep**2)
+    # Here, for only suits need it: loading it takes as long as a second of film.
+    from scipy import signal
+
     return signal.lfilter([1.0], [1.0, -keep], steps, axis=0)
 
 

@@ -74,14 +74,16 @@ def normals(vertices, triangles):
     normals : (V, 3) float
         Zero where a vertex has no triangle.
     """
-    corners = np.asarray(vertices, dtype=float)[triangles]
-    faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    corner = np.asarray(triangles).ravel()
-    summed = np.stack(
-        [np.bincount(corner, np.repeat(faces[:, i], 3), len(vertices)) for i in range(3)], axis=1
-    )
-    length = np.linalg.norm(summed, axis=1, keepdims=True)
-    return summed / np.where(length > 0, length, 1)
+    triangles = np.asarray(triangles)
+    places = np.ascontiguousarray(np.asarray(vertices, dtype=float).T)
+    a, b, c = (np.take(places, corner, axis=1) for corner in triangles.T)
+    (ux, uy, uz), (wx, wy, wz) = b - a, c - a
+    faces = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx  # of twice their areas
+    corner = triangles.ravel()
+    summed = [np.bincount(corner, np.repeat(part, 3), len(vertices)) for part in faces]
+    length = np.sqrt(summed[0] ** 2 + summed[1] ** 2 + summed[2] ** 2)
+    length[length == 0] = 1
+    return np.stack([part / length for part in summed], axis=1)
 
 
 def volume(vertices, triangles):

@@ -91,9 +91,8 @@ class Motion:
         own = stance.OTHER[side] if self.left_handed else side
         return self.feet[own].standing()
 
-    def _body(self, time_s):
+    def _body(self, moment, time_s):
         """Return what the legs and the trunk do, apart from the pelvis's height."""
-        moment = self.course.at(time_s)
         place, heading = self.route.at(time_s)
         feet = {side: self.feet[side].at(time_s) for side in SIDES}
         stride = self._stride(feet, heading)
@@ -106,7 +105,8 @@ class Motion:
         return _Body(feet, stride, upright, upright @ pelvis, place + SWAY * drop * upright[:2, 0])
 
     def _local(self, time_s):
-        moment, body = self.course.at(time_s), self._body(time_s)
+        moment = self.course.at(time_s)
+        body = self._body(moment, time_s)
         thorax = limb_chain.turn(
             moment.twist + 0.6 * COUNTER * body.stride, moment.lean, moment.roll
         )
@@ -141,7 +141,8 @@ class Motion:
 
     def _highest(self, time_s):
         """Return how high the pelvis may be, m: as the pose wants it, but both feet within reach."""
-        moment, body = self.course.at(time_s), self._body(time_s)
+        moment = self.course.at(time_s)
+        body = self._body(moment, time_s)
         leg, lowest = self._leg(), self.proportions.ankle_height
         heights = [lowest + leg * moment.height]
         for side, hip in self._hips(body.pelvis).items():

@@ -3,6 +3,7 @@
 import numpy as np
 
 NEARLY_OPPOSITE = -1 + 1e-9
+NO_TURN = np.eye(3)
 
 
 def unit(vector):
@@ -17,16 +18,16 @@ def swing(start, end):
     """
     cosine = start @ end
     if cosine < NEARLY_OPPOSITE:
-        aside = unit(np.cross(start, np.eye(3)[np.argmin(np.abs(start))]))
-        return 2 * np.outer(aside, aside) - np.eye(3)
+        aside = unit(np.cross(start, NO_TURN[np.argmin(np.abs(start))]))
+        return 2 * np.outer(aside, aside) - NO_TURN
     cross = skew(cross3(start, end))
-    return np.eye(3) + cross + cross @ cross / (1 + cosine)
+    return NO_TURN + cross + cross @ cross / (1 + cosine)
 
 
 def about(axis, angle):
     """Return the rotation (3, 3) about a unit vector by an angle, radians."""
     cross = skew(axis)
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return NO_TURN + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def angle_about(axis, start, end):
@@ -93,11 +94,11 @@ def shares(start, end, parts):
 
 def skew(vector):
     """Return the matrix (3, 3) whose product with another vector is the cross product."""
-    x, y, z = vector
+    x, y, z = vector.tolist()  # arithmetic on NumPy's own numbers takes several times as long
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
 def cross3(first, second):
     """Return the cross product (3,) of two vectors; NumPy's own takes ten times as long on so few."""
-    (a, b, c), (x, y, z) = first, second
+    (a, b, c), (x, y, z) = first.tolist(), second.tolist()
     return np.array([b * z - c * y, c * x - a * z, a * y - b * x])

@@ -41,13 +41,15 @@ def blotches(shape, cells, rng, *, decay=0.6):
 
 def faded(texture, contrast):
     """Return a texture with its contrast against its own mean colour multiplied."""
-    mean = texture.reshape(-1, 3).mean(axis=0)
-    return to_bytes(mean + (texture.astype(np.float32) - mean) * contrast)
+    mean = np.array(cv2.sumElems(texture)[:3]) / texture[..., 0].size
+    levels = np.arange(256, dtype=np.float32)[:, np.newaxis]
+    return cv2.LUT(texture, to_bytes(mean + (levels - mean) * contrast)[np.newaxis])
 
 
 def to_bytes(values):
     """Return values rounded and limited to 0..255, uint8."""
-    return np.clip(np.rint(values), 0, 255).astype(np.uint8)
+    values = np.rint(values)
+    return np.clip(values, 0, 255, out=values).astype(np.uint8)
 
 
 def paint(image, corners, colour, *, cover=1.0):
@@ -105,9 +107,8 @@ def planks(size_m, texel_m, contrast, n_scuffs, rng):
     _add(tone, stains)
     step = np.arange(-128, 128)[:, None] * contrast * np.array([0.8, 0.95, 1.0])
     palette = to_bytes(FLOOR_BGR + step)
-    texture = np.empty((height, width, 3), np.uint8)
-    for row, tones in zip(texture, tone, strict=True):
-        row[:] = palette[tones.astype(np.intp) + 128]
+    level = np.bitwise_xor(tone.view(np.uint8), 0x80)  # from 0 for the darkest
+    texture = cv2.LUT(cv2.merge([level] * 3), palette[np.newaxis])
     for _ in range(n_scuffs):
         start = rng.uniform(0, (width, height))
         end = start + rng.normal(0, 0.15 / texel_m, 2)
