@@ -52,7 +52,7 @@ report: "workflow/report/study.rst"
 
 
 onstart:
-    check_results()
+    files.delete_unfinished("results")
     # On one machine, no limit of job starts per second: to keep it, Snakemake 9.27 looks at all jobs that are
     # ready anew each second for every job that it has started, which cost minutes in the default study.
     if workflow.local_exec:

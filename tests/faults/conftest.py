@@ -35,8 +35,8 @@ def copy(untouched, tmp_path):
 
 @pytest.fixture
 def cut(copy):
-    """Return a copy of the study in which a few jobs are due, those that make `study_copies.CUT`."""
-    for name in (*study_copies.MADE_FOR_CUT, *study_copies.CUT):
+    """Return a copy of the study in which a few jobs are due, `study_copies.JOBS`."""
+    for name in study_copies.JOBS.values():
         (copy / FOLDER / name).unlink()
     return copy
 

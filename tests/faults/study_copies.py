@@ -2,13 +2,11 @@
 
 import hashlib
 import os
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import zipfile
-from pathlib import Path
 
 from courtside.study import artefacts, comparison
 from smoke.snakemake_runs import FOLDER, ROOT, TINY
@@ -18,15 +16,16 @@ EXTERNAL = [ROOT / folder / "results" / "external" for folder in (".", FOLDER)]
 WRITTEN = {"results", ".snakemake", "__pycache__"}  # folders that a run may write to
 TAKE = "results/walk-4cams-tiny/takes/balancing"
 METHOD = "file/all-robust/blazepose-full"
-LEFT_OVER = re.compile(r"\..+\.[0-9a-f]{8}(\.\w+)?")
 SAME = {comparison.EQUAL, comparison.CLOSE, comparison.TIMES}
-# A few jobs of the study, one after the other and side by side, to which the smaller faults are done.
-CUT = [
-    f"{TAKE}/pose3d_filtered/{METHOD}.p1.trc",
-    f"{TAKE}/figures/skeletons.{METHOD.replace('/', '.')}.png",
-    f"{TAKE}/figures/overlay.{METHOD.replace('/', '.')}.png",
-]
-MADE_FOR_CUT = [f"{TAKE}/{stage}/{METHOD}.npz" for stage in ("pose3d", "pose3d_filtered")]
+# A few jobs, one after the other and side by side, to which the smaller faults are done: rule to product.
+JOBS = {
+    "triangulate": f"{TAKE}/pose3d/{METHOD}.npz",
+    "filter_motion": f"{TAKE}/pose3d_filtered/{METHOD}.npz",
+    "export_take": f"{TAKE}/pose3d_filtered/{METHOD}.p1.trc",
+    "draw_skeletons": f"{TAKE}/figures/skeletons.{METHOD.replace('/', '.')}.png",
+    "draw_overlay": f"{TAKE}/figures/overlay.{METHOD.replace('/', '.')}.png",
+}
+CUT = [JOBS[rule] for rule in ("export_take", "draw_skeletons", "draw_overlay")]
 
 
 def copy_repository(root):
@@ -104,14 +103,7 @@ def raw(root):
     }
 
 
-def is_left_over(name):
-    """Return whether a name is one that `courtside.study.files` gives to what is not finished."""
-    return any(LEFT_OVER.fullmatch(part) for part in Path(name).parts)
-
-
 def differences(here, there):
-    """Return (files that are not the same or differ beyond the stated tolerance, names of left-overs)."""
+    """Return the verdicts on files that differ beyond the stated tolerance, are missing, or are left over."""
     verdicts = comparison.compare(here / FOLDER / "results", there / FOLDER / "results")
-    faults = [each for each in verdicts if each.outcome not in SAME]
-    left = [each.name for each in faults if is_left_over(each.name)]
-    return [each for each in faults if not is_left_over(each.name)], left
+    return [each for each in verdicts if each.outcome not in SAME]

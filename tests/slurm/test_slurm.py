@@ -15,7 +15,7 @@ from courtside.study import comparison
 from smoke.snakemake_runs import FOLDER, ROOT, TINY
 
 PROFILE = ROOT / "profiles" / "slurm" / "config.yaml"
-KEPT = ("Snakefile", "workflow", "config", "profiles")
+KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 MOST_JOBS = 15
 ONE_TAKE = "results/walk-4cams-tiny/takes/balancing"
 SKELETONS = f"{ONE_TAKE}/pose3d/file/all-robust/blazepose-full.npz"

@@ -20,11 +20,12 @@ LOCK = REPOSITORY / "environment.lock"
 PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
 
-from courtside.study import configuration, digest, plans, shortage
+from courtside.study import configuration, dates, digest, files, plans, shortage
 from courtside.study.errors import InputError
 
 try:
-    shortage.check(Path.cwd())
+    for folder in filter(Path.exists, [Path.cwd(), Path("results")]):
+        shortage.check(folder)
 except InputError as error:
     sys.exit(f"Error: {error}")
 
@@ -40,6 +41,7 @@ FORMATS = ["pdf", "png", "csv"]
 try:
     STUDY = configuration.load(config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd())
     PLANS = {name: plans.read(CONFIG / "plans" / f"{name}.yaml") for name in config["plans"]}
+    dates.check([CONFIG, "results/external", *(f"data/{name}" for name in STUDY.sessions)])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 

@@ -1,4 +1,4 @@
-"""What is said when a run begins that cannot write, and when a run ends.
+"""What is said when a run ends.
 
 Inputs: the jobs of the run. Outputs: none. Steps: what was made, or what failed; the words are the library's.
 """
@@ -13,15 +13,6 @@ LOOK_AT = [
     "results/figures/players.csv",
     "results/figures/calibration.csv",
 ]
-
-
-def check_results():
-    """Stop before the first job if results cannot be written; a dry run may look at them."""
-    try:
-        if Path("results").exists():
-            shortage.check("results")
-    except InputError as error:
-        raise WorkflowError(str(error)) from None
 
 
 def end_of_run():

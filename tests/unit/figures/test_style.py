@@ -6,6 +6,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from courtside.figures import style
@@ -75,3 +76,16 @@ def test_files_tell_neither_date_nor_program(tmp_path):
 )
 def test_sides_have_colours(joint, colour):
     assert style.side_colour(joint) == colour
+
+
+def test_no_place_on_the_page_depends_on_the_last_digits_of_the_solver():
+    drawing = style.figure(80)
+    for part in drawing.subfigures(1, 2, width_ratios=(1, 2)):
+        part.suptitle("Title")
+        axes = part.subplots(2, 1)
+        axes[0].set_ylabel("wide label")
+    drawing.draw_without_rendering()
+    boxes = [axes.get_position().bounds for axes in drawing.axes]
+    boxes += [part.bbox_relative.bounds for part in drawing.subfigs]
+    np.testing.assert_allclose(boxes, np.round(boxes, 6), rtol=0, atol=1e-15)
+    assert len({round(x, 4) for x, *_ in boxes}) > 2  # it has been laid out

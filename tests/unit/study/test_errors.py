@@ -81,3 +81,9 @@ def test_an_error_without_words_is_named():
     assert errors.said(MemoryError()) == "MemoryError"
     assert errors.said(ValueError("two\n lines")) == "two lines"
     assert len(errors.said(ValueError("x" * 9999))) == errors.SHORT
+
+
+def test_too_little_memory_for_a_whole_file_is_told_as_that():
+    words = "make it again; or, if the file is whole, end other programs"
+    with pytest.raises(InputError, match=words), errors.reading("poses.npz", "an npz file"):
+        raise MemoryError("Unable to allocate 55.7 KiB")

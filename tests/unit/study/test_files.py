@@ -110,3 +110,22 @@ def test_json_is_read_and_anything_else_is_one_line(tmp_path):
         with pytest.raises(InputError, match=r"a\.json: expected JSON, found: .*; do so") as caught:
             files.read_json(path, "do so")
         assert len(str(caught.value).splitlines()) == 1
+
+
+def test_what_killed_jobs_left_is_deleted_and_nothing_else(tmp_path):
+    kept = [
+        tmp_path / "deep" / name
+        for name in ("walk.png", ".hidden", ".keep.me.png", "a.0a1b2c3d.png")
+    ]
+    kept[0].parent.mkdir()
+    for path in kept:
+        path.write_text("x")
+    held = []
+    for make in (files.atomic, files.atomic_folder):
+        writing = make(tmp_path / "deep" / "take.mp4")
+        held.append(writing)  # as of a killed job, the block never ends
+        path = writing.__enter__()
+        (path / "0.png" if path.is_dir() else path).write_text("half")
+    assert len(list((tmp_path / "deep").iterdir())) == 6
+    files.delete_unfinished(tmp_path)
+    assert sorted((tmp_path / "deep").iterdir()) == sorted(kept)

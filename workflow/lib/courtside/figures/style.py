@@ -1,7 +1,9 @@
 """One look for all figures, and saving them with the numbers drawn."""
 
 import matplotlib
+import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from courtside.study.files import atomic
 
@@ -24,6 +26,28 @@ SETTINGS = {
 }
 
 
+class RoundedLayout(ConstrainedLayoutEngine):
+    """Matplotlib's layout without the last digits, which its solver takes from addresses in memory."""
+
+    DECIMALS = 6  # of the width and height of a page
+
+    def execute(self, drawing):
+        """Lay a figure out; Matplotlib calls it whenever it draws."""
+        super().execute(drawing)
+        for part in drawing.subfigs:
+            self._round_subfigure(part)
+        for axes in drawing.axes:
+            for which in ("original", "active"):
+                bounds = axes.get_position(original=which == "original").bounds
+                axes._set_position(np.round(bounds, self.DECIMALS), which=which)
+
+    def _round_subfigure(self, part):
+        box = part.bbox_relative
+        box.p0, box.p1 = np.round(box.p0, self.DECIMALS), np.round(box.p1, self.DECIMALS)
+        for inner in part.subfigs:
+            self._round_subfigure(inner)
+
+
 def figure(height_mm):
     """Return an empty figure of page width.
 
@@ -31,7 +55,7 @@ def figure(height_mm):
     """
     matplotlib.rcParams.update(SETTINGS)
     size = (WIDTH_MM / MM_PER_INCH, height_mm / MM_PER_INCH)
-    return Figure(figsize=size, dpi=DOTS_PER_INCH, layout="constrained")
+    return Figure(figsize=size, dpi=DOTS_PER_INCH, layout=RoundedLayout())
 
 
 def side_colour(joint):

@@ -36,8 +36,8 @@ TABLED = {".pdf", ".png", ".c3d"}
 # What a processor's last digit changes as a whole, and whose numbers are in files that are compared: films,
 # recordings (keypoints), COLMAP's databases and models (ties, summaries), pages (tables).
 UNREAD = {".mp4", ".bag", ".db", ".bin", ".html"}
-# Numbers in these hold seconds of computing time, which no two runs share.
-TIMED = ("*/figures/growth.*",)
+# Numbers in these hold seconds of computing time, which no two runs share; the report shows those figures.
+TIMED = ("*/figures/growth.*", "report.html")
 EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
 OTHER_BYTES, ONLY_HERE, ONLY_THERE = "other bytes", "only here", "only there"
 FAULTS = (DIFFERENT, ONLY_HERE, ONLY_THERE)

@@ -15,6 +15,7 @@ SHORT = 200  # of what a library says
 DAMAGED = (ValueError, OSError, EOFError, LookupError, TypeError, AttributeError, ArithmeticError)
 DAMAGED += (RuntimeError, MemoryError, SyntaxError, tokenize.TokenError, csv.Error, struct.error)
 DAMAGED += (zipfile.BadZipFile, zlib.error, lzma.LZMAError)
+SPARE_MEMORY = "end other programs, or run fewer jobs at a time with --cores 1"
 
 
 class InputError(ValueError):
@@ -85,4 +86,8 @@ def reading(path, what, advice="make it again", *, kinds=DAMAGED):
     except InputError:
         raise
     except kinds as error:
+        if isinstance(
+            error, MemoryError
+        ):  # the file asks for too much, or the machine has too little
+            advice = f"{advice}; or, if the file is whole, {SPARE_MEMORY}"
         raise InputError(f"{path}: expected {what}, found: {said(error)}; {advice}") from error

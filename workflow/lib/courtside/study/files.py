@@ -3,6 +3,7 @@
 import contextlib
 import hashlib
 import json
+import re
 import secrets
 import shutil
 from pathlib import Path
@@ -10,6 +11,9 @@ from pathlib import Path
 from courtside.study.errors import reading
 
 CHUNK_BYTES = 1 << 20
+UNFINISHED = re.compile(
+    r"\..+\.[0-9a-f]{8}(\.\w+)?"
+)  # names that `atomic` and `atomic_folder` give
 
 
 @contextlib.contextmanager
@@ -63,6 +67,21 @@ def atomic_folder(path):
     finally:
         for rest in (temporary, old):
             shutil.rmtree(rest, ignore_errors=True)
+
+
+def delete_unfinished(folder):
+    """Delete what killed jobs left below a folder; call it only when no job is running there.
+
+    Parameters
+    ----------
+    folder : str or Path
+    """
+    found = [path for path in Path(folder).rglob(".*") if UNFINISHED.fullmatch(path.name)]
+    for path in found:
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
 
 
 def write_json(path, content):

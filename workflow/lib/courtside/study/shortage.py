@@ -5,7 +5,7 @@ import os
 import shutil
 from pathlib import Path
 
-from courtside.study.errors import InputError
+from courtside.study.errors import SPARE_MEMORY, InputError
 
 LEAST_FREE_MB = 20  # below, not even Snakemake's own notes and logs are sure of their place
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -65,8 +65,7 @@ def _of_memory(error):
     if not isinstance(error, MemoryError) and not any(word in text for word in NO_MEMORY):
         return None
     return (
-        f"expected enough memory, found none left{text and f' ({text})'}; end other programs, or run fewer "
-        f"jobs at a time with --cores 1, {AGAIN}"
+        f"expected enough memory, found none left{text and f' ({text})'}; {SPARE_MEMORY}, {AGAIN}"
     )
 
 
