@@ -24,7 +24,7 @@ from pathlib import Path
 import yaml
 
 ROOT = Path(__file__).parents[1]
-KEPT = ("Snakefile", "workflow", "config", "profiles")
+KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 LINE = (
     "{:>8} sessions x {} takes x {} cameras{:>9} jobs{:>9.1f} s{:>9.1f} s of processor{:>9.0f} MB"
 )

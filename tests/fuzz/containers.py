@@ -10,6 +10,7 @@ import zipfile
 import zlib
 from pathlib import Path
 
+from courtside.study.errors import DAMAGED
 from fuzz import binaries, hostile, texts
 
 BOXES = {b"moov", b"trak", b"mdia", b"minf", b"stbl", b"edts", b"dinf", b"udta"}
@@ -39,7 +40,7 @@ def change_zip(data, rng):
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = [(info.filename, archive.read(info)) for info in archive.infolist()]
-    except (zipfile.BadZipFile, zlib.error, OSError, ValueError, RuntimeError, EOFError):
+    except DAMAGED:  # by an earlier change
         return data
     at = rng.randrange(len(members)) if members else 0
     ways = (_content, _content, _content, _renamed, _missing, _twice, _bomb, _method, _lying)

@@ -146,3 +146,13 @@ def test_a_member_that_is_no_array_is_named(tmp_path, path):
             archive.writestr(f"{name}.npy", "no array")
     with pytest.raises(InputError, match=r"b\.npz: expected format"):
         npz.read(tmp_path / "b.npz", "test 1", SPEC)
+
+
+@pytest.mark.parametrize("times", [[0.0, 0.0], [1.0, 0.5], [0.0, np.nan]])
+def test_times_increase(tmp_path, times):
+    spec = {"time_s": ("float", ("T",))}
+    with pytest.raises(ValueError, match="time_s: expected times that increase"):
+        npz.write(tmp_path / "a.npz", "test 1", spec, {"time_s": times})
+    np.savez(tmp_path / "b.npz", format="test 1", time_s=times)
+    with pytest.raises(InputError, match="time_s: expected times that increase"):
+        npz.read(tmp_path / "b.npz", "test 1", spec)

@@ -13,7 +13,7 @@ from av.error import FFmpegError
 from av.video.reformatter import Interpolation, VideoReformatter
 
 from courtside.devices.packets import damage, opened, raise_logged
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
 STRICT = {"err_detect": "crccheck+bitstream+buffer+explode"}
 ONE = 65536  # display matrices are in 16.16 fixed point
@@ -155,7 +155,8 @@ def pictures(listing, wanted, crop_px):
             matrix is None
         ):  # of the whole stream; reading it keeps a frame until garbage is collected
             matrix = display_matrix(listing.path, frame)
-        image = _picture(frame, reformatter, matrix)
+        with reading(listing.path, "pictures that fit the memory", kinds=(MemoryError,)):
+            image = _picture(frame, reformatter, matrix)
         if image.shape != (shape or image.shape):
             raise InputError(
                 f"{listing.path}: expected pictures of one size, {shape[1]}x{shape[0]}, found "

@@ -9,6 +9,7 @@ from courtside.records import tables
 from courtside.study.errors import InputError
 
 COLUMNS = ("frame_idx", "number", "time_s")
+LARGEST = 2**53  # a whole number, and so is each below
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +90,8 @@ def _fault(rows):
     numbers = rows.apply(pd.to_numeric, errors="coerce")
     if not np.isfinite(numbers.to_numpy(dtype=float)).all():
         return "found values that are not numbers"
+    if (numbers["number"].abs() >= LARGEST).any():
+        return "found numbers of frames too large to count to"
     if (np.diff(numbers["time_s"]) <= 0).any():
         return "found times that do not increase"
     return ""

@@ -29,7 +29,7 @@ def write(path, form, spec, arrays):
     Raises
     ------
     ValueError
-        If a key is missing or unknown, or a kind or shape is not as stated.
+        If a key is missing or unknown, a kind or shape is not as stated, or `time_s` does not increase.
     """
     arrays = {key: np.asarray(value) for key, value in arrays.items()}
     fault = _fault(spec, arrays)
@@ -79,6 +79,8 @@ def _fault(spec, arrays):
         if not _fits(array.shape, dimensions, lengths):
             known = {name: lengths[name] for name in dimensions if name in lengths}
             return f"{key}: expected shape {dimensions} with {known}, found {array.shape}"
+    if "time_s" in spec and not (np.diff(arrays["time_s"]) > 0).all():
+        return "time_s: expected times that increase, found others"
     return None
 
 

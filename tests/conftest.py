@@ -1,0 +1,20 @@
+"""`pytest -n 2`: the tests of a file stay in one process, and so do all that share the tiny study."""
+
+from pathlib import PurePosixPath
+
+from xdist.scheduler import LoadFileScheduling
+
+ONE_STUDY = {"smoke", "faults", "slurm"}  # folders
+
+
+class ByStudy(LoadFileScheduling):
+    """Gives a process the tests of one file, or of all folders that look at one study, which is made once."""
+
+    def _split_scope(self, nodeid):
+        file = PurePosixPath(nodeid.partition("::")[0])
+        return "study" if ONE_STUDY.intersection(file.parts) else str(file)
+
+
+def pytest_xdist_make_scheduler(config, log):
+    config.option.loadscopereorder = False  # the study is collected first, and takes longest
+    return ByStudy(config, log)
