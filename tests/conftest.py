@@ -1,4 +1,4 @@
-"""`pytest -n 2`: the tests of a file stay in one process, and so do all that share the tiny study."""
+"""In several processes (`-n 2` of pyproject.toml): the tests of a file stay in one process, and so do all that share the tiny study."""
 
 from pathlib import PurePosixPath
 
