@@ -1,4 +1,4 @@
-"""In several processes (`-n 2` of pyproject.toml): the tests of a file stay in one process, and so do all that share the tiny study."""
+"""The tests of a file stay in one of the processes (`-n 2` of pyproject.toml), all that share a study too."""
 
 from pathlib import PurePosixPath
 
