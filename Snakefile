@@ -60,11 +60,13 @@ onstart:
 
 
 onsuccess:
+    files.delete_unfinished("results")
     record_provenance()
     print(end_of_run(), *waiting_for_clicks(), *left_out(), sep="\n", file=sys.stderr)
 
 
 onerror:
+    files.delete_unfinished("results")
     print(end_of_run(), file=sys.stderr)
     record_provenance()
 

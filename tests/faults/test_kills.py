@@ -17,6 +17,7 @@ ALL = ("--", "all", *ASKED_FOR)
 SEED = 20250711
 N_OF_SNAKEMAKE = 24
 LATEST = 0.9  # of a job's seconds: later, it may have ended before
+EARLIER = (0.5, 0.2, 0.1, 0.05)  # for jobs that had
 LATE_S = 2.0  # Snakemake is killed up to so long after a job has ended
 # A job is not killed more often than Snakemake tries it again.
 AGAIN = ("--keep-going", "--retries", "3")
@@ -51,9 +52,9 @@ class Killer:
                 return main
             run("--unlock", root=root)
 
-    def second_chance(self, root, rules):
-        """Run rules again whose jobs had ended before their moments came, and kill each."""
-        self.latest, self.moments = LATEST / 2, []
+    def again(self, root, rules, latest):
+        """Run rules again whose jobs had ended before their moments came, and kill each, now earlier."""
+        self.latest, self.moments = latest, []
         names = sorted(map(killing.name_in_snakemake, rules))
         main = study_copies.start(root, *AGAIN, "--forcerun", *names, "--until", *names, *ALL)
         self.disturb(main)
@@ -112,10 +113,11 @@ def killed(untouched, tmp_path_factory):
     killer = Killer(untouched[1])
     main = killer.run_through(root, *ALL)
     assert main.returncode == 0, study_copies.said(main)
-    spared = rules_of(root) - set(killer.killed)
-    if spared:
-        main = killer.second_chance(root, spared)
-        assert main.returncode == 0, study_copies.said(main)
+    for latest in EARLIER:
+        spared = rules_of(root) - set(killer.killed)
+        if spared:
+            main = killer.again(root, spared, latest)
+            assert main.returncode == 0, study_copies.said(main)
     psutil.wait_procs(killer.orphans, timeout=120)
     return root, killer, before
 

@@ -188,9 +188,12 @@ def test_a_clock_that_jumped_reruns_nothing(copy):
 
 
 def known_by_content(path):
-    """Return whether Snakemake looks into a file of a new date: not inside a folder that is an output."""
+    """Return whether Snakemake looks into a file of a new date: not inside a folder that is an output.
+
+    What is fetched from outside has a test of its own above.
+    """
     of_folder = any((folder / ".snakemake_timestamp").exists() for folder in path.parents)
-    return path.is_file() and not of_folder
+    return path.is_file() and not of_folder and "external" not in path.parts
 
 
 def test_of_two_runs_at_once_the_second_stops(cut, untouched):

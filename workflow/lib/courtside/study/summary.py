@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from courtside.study.errors import SPARE_MEMORY
+
 N_NAMED = 3  # folders or files that a line names before it counts the rest
 N_FAULTS = 3
 UNFINISHED = (" INFO ", " WARNING ")  # a log that ends so tells of no fault
@@ -125,7 +127,7 @@ def _last_fault(log):
         if mark:
             return message
     if not lines:
-        return "its log is empty: it was killed, or the disk is full"
+        return f"its log is empty: it was killed, or disk or memory are full; {SPARE_MEMORY}"
     if any(mark in lines[-1] for mark in UNFINISHED):
         return f"it was killed, or ran out of memory; its last words: {lines[-1]}"
     return lines[-1]
