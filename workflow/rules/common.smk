@@ -11,14 +11,14 @@ from itertools import product
 from pathlib import Path
 
 REPOSITORY = Path(str(workflow.current_basedir)).parents[1]
-# Relative, so that a study that moves with its results reruns nothing.
-CONFIG = Path(os.path.relpath(REPOSITORY / "config"))
+CONFIG = Path(os.path.relpath(REPOSITORY / "config"))  # relative: a study may move with its results
 SCRIPTS = REPOSITORY / "workflow" / "scripts"
 LIBRARY = REPOSITORY / "workflow" / "lib"
 ASSETS = Path(os.path.relpath(LIBRARY / "courtside" / "pages" / "assets"))
 LOCK = REPOSITORY / "environment.lock"
 PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # of each job: sums do not depend on the number of cores
 
 from courtside.study import configuration, dates, digest, files, plans, shortage
 from courtside.study.errors import InputError

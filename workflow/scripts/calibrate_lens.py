@@ -1,5 +1,6 @@
 """Calibrate the lens of one fixed camera from pictures of a chessboard: images -> K and distortion."""
 
+import cv2
 import numpy as np
 
 from courtside.devices import chessboard
@@ -8,6 +9,7 @@ from courtside.study import log
 
 
 def main(images, lens_toml, *, camera, inner_corners):
+    cv2.setNumThreads(1)  # of several, sums depend on which ends first
     boards = chessboard.find(images, inner_corners)
     lens = chessboard.calibrate(boards, name=camera)
     log.logger.info("%s: %d boards, %.2f px", camera, lens.n_used, lens.rms_px)
