@@ -50,7 +50,8 @@ def _panel(panel, found, limit):
                      label="machine's least" if "over" in limit else "without Snakemake")  # fmt: skip
     low, high = panel.get_ylim()
     panel.set_ylim(low / MARGIN, high * MARGIN)
-    panel.set(title=found["comparison"].iloc[0], xlabel=f"{unit}s", ylabel=f"CPU us per {unit}")
+    title = found["comparison"].iloc[0].replace(", ", ",\n")
+    panel.set(title=title, xlabel=f"{unit}s", ylabel=f"CPU us per {unit}")
     panel.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     panel.legend(fontsize=6, handlelength=1.5)
 
