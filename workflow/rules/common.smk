@@ -18,9 +18,7 @@ ASSETS = Path(os.path.relpath(LIBRARY / "courtside" / "pages" / "assets"))
 LOCK = REPOSITORY / "environment.lock"
 PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
-os.environ.update(
-    OPENBLAS_NUM_THREADS="1"
-)  # of each job: sums do not depend on the number of cores
+os.environ.update(OPENBLAS_NUM_THREADS="1")  # sums do not depend on the number of cores
 
 from courtside.study import configuration, dates, digest, files, plans, shortage
 from courtside.study.errors import InputError
