@@ -7,7 +7,7 @@ import rows
 from courtside.figures import style
 from courtside.study.files import atomic
 
-COLUMNS, HEIGHT_MM = 3, 55
+COLUMNS, HEIGHT_MM = 3, 75
 MARKERS = "os^vDP"
 MARGIN = 1.5  # of the axis of times, so that lines do not end at the frame
 
@@ -53,7 +53,7 @@ def _panel(panel, found, limit):
     title = found["comparison"].iloc[0].replace(", ", ",\n")
     panel.set(title=title, xlabel=f"{unit}s", ylabel=f"CPU us per {unit}")
     panel.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
-    panel.legend(fontsize=6, handlelength=1.5)
+    panel.legend(fontsize=6, handlelength=1.5, loc="upper left", bbox_to_anchor=(0, -0.32))
 
 
 def save(drawing, png, svg):

@@ -17,8 +17,12 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import venv
 from pathlib import Path
+
+import numpy as np
+import rows
 
 HERE = Path(__file__).parent
 FOLDER = HERE / ".environments"
@@ -107,6 +111,40 @@ def run_method(python, script, *arguments):
     if done.returncode:
         return {"failed": (done.stderr.strip().splitlines() or ["no message"])[-1]}
     return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+def measured(runs, arrays, environments):
+    """Run methods on the same arrays, and return the least seconds and the result of each.
+
+    Parameters
+    ----------
+    runs : list of (str or None, str, tuple of str)
+        Peer (None: this project, which runs first and last), script of methods/, its further arguments.
+    arrays : dict of str to array-like
+        What each script reads from its first file; its second file takes one result per function.
+    environments : path
+        Where the peers' environments are.
+
+    Returns
+    -------
+    found : dict of str to (float, ndarray)
+        By method, which is `rows.OURS` for this project.
+    """
+    found = {}
+    with tempfile.TemporaryDirectory() as name:
+        given, result = Path(name) / "given.npz", Path(name) / "result.npz"
+        np.savez(given, **arrays)
+        for peer, script, arguments in runs:
+            python = interpreter(peer, environments) if peer else sys.executable
+            said = run_method(python, script, given, result, *arguments)
+            if "failed" in said:
+                raise SystemExit(f"{script}: {said['failed']}")
+            with np.load(result) as made:
+                for function, each in said.items():
+                    method = f"{peer} {function}" if peer else rows.OURS
+                    best_s = min([*each["seconds"], found.get(method, (np.inf,))[0]])
+                    found[method] = best_s, made[function]
+    return found
 
 
 def on_one_thread():

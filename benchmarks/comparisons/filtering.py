@@ -1,9 +1,5 @@
 """Zero-lag Butterworth filter of 26 joints at 60 Hz: 6 Hz, order 4, with gaps."""
 
-import sys
-import tempfile
-from pathlib import Path
-
 import machine
 import numpy as np
 import peers
@@ -32,31 +28,17 @@ def compare(given):
         noisy = true + rng.normal(0, NOISE_M, true.shape)
         for start in rng.integers(0, len(true) - GAP_FRAMES, GAPS * times):
             noisy[start : start + GAP_FRAMES] = np.nan
-        measured = _measured({"xyz": noisy, **SETTINGS}, given)
+        arrays = {"xyz": noisy, **SETTINGS}
+        measured = peers.measured(_runs(given), arrays, given.environments)
         ours = measured[rows.OURS][1]
         found += [_row(true, times, ours, method, *one) for method, one in measured.items()]
     return found
 
 
-def _measured(given_arrays, given):
-    """Return {method: (least seconds, coordinates)}; this project runs first and last."""
-    runs = [(None, "filter_courtside.py"), ("pose2sim", "filter_pose2sim.py"),
-            (None, "filter_courtside.py")]  # fmt: skip
-    measured = {}
-    with tempfile.TemporaryDirectory() as name:
-        noisy, result = Path(name) / "noisy.npz", Path(name) / "result.npz"
-        np.savez(noisy, **given_arrays)
-        for peer, script in runs:
-            python = peers.interpreter(peer, given.environments) if peer else sys.executable
-            said = peers.run_method(python, script, noisy, result, str(given.repeats))
-            if "failed" in said:
-                raise SystemExit(f"{script}: {said['failed']}")
-            with np.load(result) as filtered:
-                for function, each in said.items():
-                    method = f"{peer} {function}" if peer else rows.OURS
-                    best_s = min([*each["seconds"], measured.get(method, (np.inf,))[0]])
-                    measured[method] = best_s, filtered[function]
-    return measured
+def _runs(given):
+    """Return which program runs which script with which arguments."""
+    ours = (None, "filter_courtside.py", (str(given.repeats),))
+    return [ours, ("pose2sim", "filter_pose2sim.py", (str(given.repeats),)), ours]
 
 
 def _row(true, times, ours, method, cpu_s, xyz):

@@ -1,9 +1,5 @@
 """Triangulation of 4 cameras x 26 joints, with outliers and gaps."""
 
-import sys
-import tempfile
-from pathlib import Path
-
 import machine
 import numpy as np
 import peers
@@ -27,39 +23,25 @@ def compare(given):
     found = []
     for times in rows.TIMES[: 2 if given.quick else None]:
         made = scene.spoiled(frames=times * FRAMES)
-        measured = _measured(made, times, given)
+        measured = peers.measured(_runs(made, times, given), made, given.environments)
         ours = measured[rows.OURS][1]
         found += [_row(made, times, ours, method, *one) for method, one in measured.items()]
     return found
 
 
-def _measured(made, times, given):
-    """Return {method: (least seconds, points)}; this project runs first and last."""
+def _runs(made, times, given):
+    """Return which program runs which script with which arguments."""
     joints, repeats = str(scene.JOINTS), str(given.repeats)
     plain = str(made["xy"].shape[1])
     anipose = (repeats, joints, str(times * RANSAC_POINTS), "0")
-    runs = [
-        (None, "triangulate_courtside.py", (repeats,)),
+    ours = (None, "triangulate_courtside.py", (repeats,))
+    return [
+        ours,
         ("pose2sim", "triangulate_pose2sim.py", ("1", plain)),
         ("aniposelib", "triangulate_aniposelib.py", anipose),
         ("caliscope", "triangulate_caliscope.py", (repeats, joints)),
-        (None, "triangulate_courtside.py", (repeats,)),
+        ours,
     ]
-    measured = {}
-    with tempfile.TemporaryDirectory() as name:
-        scene_npz, result = Path(name) / "scene.npz", Path(name) / "result.npz"
-        np.savez(scene_npz, **made)
-        for peer, script, arguments in runs:
-            python = peers.interpreter(peer, given.environments) if peer else sys.executable
-            said = peers.run_method(python, script, scene_npz, result, *arguments)
-            if "failed" in said:
-                raise SystemExit(f"{script}: {said['failed']}")
-            with np.load(result) as points:
-                for function, each in said.items():
-                    method = f"{peer} {function}" if peer else rows.OURS
-                    best_s = min([*each["seconds"], measured.get(method, (np.inf,))[0]])
-                    measured[method] = best_s, points[function]
-    return measured
 
 
 def _row(made, times, ours, method, cpu_s, xyz):

@@ -14,7 +14,7 @@ from smoke.snakemake_runs import FOLDER
 def untouched(tmp_path_factory):
     """Return (repository with the finished tiny study, seconds of each job by its log)."""
     root = tmp_path_factory.mktemp("untouched")
-    study_copies.copy_repository(root)
+    study_copies.prepare_copy(root)
     main = study_copies.start(root, "--", "all", *ASKED_FOR)
     seconds = {}
     for _, _, ended in killing.watch(main):

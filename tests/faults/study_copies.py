@@ -9,9 +9,8 @@ import tempfile
 import zipfile
 
 from courtside.study import artefacts, comparison
-from smoke.snakemake_runs import FOLDER, ROOT, TINY
+from smoke.snakemake_runs import FOLDER, ROOT, TINY, copy_repository
 
-KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 EXTERNAL = [ROOT / folder / "results" / "external" for folder in (".", FOLDER)]
 WRITTEN = {"results", ".snakemake", "__pycache__"}  # folders that a run may write to
 TAKE = "results/walk-4cams-tiny/takes/balancing"
@@ -28,14 +27,9 @@ JOBS = {
 CUT = [JOBS[rule] for rule in ("export_take", "draw_skeletons", "draw_overlay")]
 
 
-def copy_repository(root):
+def prepare_copy(root):
     """Copy what a study is made by; pinned artefacts that are here are packed into a mirror folder."""
-    for name in KEPT:
-        source = ROOT / name
-        if source.is_dir():
-            shutil.copytree(source, root / name, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy2(source, root / name)
+    copy_repository(root)
     (root / FOLDER).mkdir(parents=True)
     pack_mirror(root)
 

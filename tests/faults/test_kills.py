@@ -108,7 +108,7 @@ class Killer:
 def killed(untouched, tmp_path_factory):
     """Return (repository whose study was killed and restarted until it ended, killer, raw files before)."""
     root = tmp_path_factory.mktemp("killed")
-    study_copies.copy_repository(root)
+    study_copies.prepare_copy(root)
     before = study_copies.raw(root)
     killer = Killer(untouched[1])
     main = killer.run_through(root, *ALL)

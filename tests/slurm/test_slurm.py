@@ -12,10 +12,9 @@ import pytest
 import yaml
 
 from courtside.study import comparison
-from smoke.snakemake_runs import FOLDER, ROOT, TINY
+from smoke.snakemake_runs import FOLDER, ROOT, TINY, copy_repository
 
 PROFILE = ROOT / "profiles" / "slurm" / "config.yaml"
-KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 MOST_JOBS = 15
 ONE_TAKE = "results/walk-4cams-tiny/takes/balancing"
 SKELETONS = f"{ONE_TAKE}/pose3d/file/all-robust/blazepose-full.npz"
@@ -79,12 +78,7 @@ def slurm():
 def copy(slurm, tiny_study, tmp_path_factory):
     """Return a copy of the repository without results but for what is fetched from outside."""
     root = tmp_path_factory.mktemp("slurm")
-    for name in KEPT:
-        source = ROOT / name
-        if source.is_dir():
-            shutil.copytree(source, root / name, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy2(source, root / name)
+    copy_repository(root)
     shutil.copytree(tiny_study / "external", root / FOLDER / "results" / "external")
     return root
 

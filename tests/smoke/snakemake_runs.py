@@ -1,6 +1,7 @@
 """Running Snakemake as its user does, and reading what it says."""
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +9,19 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("tests") / "smoke"
 TINY = Path("config") / "tiny.yaml"
+MADE_BY = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
+
+
+def copy_repository(root, *further, copy_file=shutil.copy2):
+    """Copy what a study is made by, and further files or folders of the repository, into a folder."""
+    left_out = shutil.ignore_patterns("__pycache__", "locks")
+    for name in (*MADE_BY, *map(str, further)):
+        source, target = ROOT / name, root / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_dir():
+            shutil.copytree(source, target, ignore=left_out, copy_function=copy_file)
+        else:
+            copy_file(source, target)
 
 
 def run(*options, root=ROOT, check=True, timeout_s=900):

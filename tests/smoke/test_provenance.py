@@ -8,9 +8,8 @@ import sys
 
 import pytest
 
-from smoke.snakemake_runs import FOLDER, ROOT, planned, run
+from smoke.snakemake_runs import FOLDER, copy_repository, planned, run
 
-KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 FIGURE = "results/figures/court_points.badminton.png"
 COURT = "config/courts/badminton.yaml"
 FILES = [f"results/figures/court_points.badminton.{kind}" for kind in ("csv", "pdf", "png")]
@@ -20,9 +19,7 @@ FILES = [f"results/figures/court_points.badminton.{kind}" for kind in ("csv", "p
 def drawn(tmp_path_factory):
     """Return a copy of the repository in which one figure was drawn."""
     root = tmp_path_factory.mktemp("repository")
-    for name in KEPT:
-        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
-        copy(ROOT / name, root / name)
+    copy_repository(root)
     (root / FOLDER).mkdir(parents=True)
     run("--", FIGURE, root=root)
     return root

@@ -21,9 +21,8 @@ import pytest
 import yaml
 
 from courtside.study import digest
-from smoke.snakemake_runs import FOLDER, ROOT, planned, run
+from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, planned, run
 
-KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock", "tests/smoke")
 RESULTS = FOLDER / "results"
 DEMO = RESULTS / "external/pose2sim/Pose2Sim/Demo_SinglePerson"
 NETWORK = RESULTS / "networks/blazepose-full/landmarks.onnx"
@@ -110,19 +109,8 @@ TIES = {
 def kept(tiny_study, tmp_path_factory):
     """Return a copy of the repository with the tiny study's results, for tests that leave it as it was."""
     root = tmp_path_factory.mktemp("kept")
-    copy(root)
+    copy_repository(root, FOLDER)
     return root
-
-
-def copy(root, copy_file=shutil.copy2):
-    for name in KEPT:
-        source, target = ROOT / name, root / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_dir():
-            left_out = shutil.ignore_patterns("__pycache__", "locks")
-            shutil.copytree(source, target, ignore=left_out, copy_function=copy_file)
-        else:
-            copy_file(source, target)
 
 
 @contextmanager
@@ -327,9 +315,7 @@ def is_of_the_repository(path, root):
 
 def test_photos_in_a_folder_are_compared_one_by_one(tmp_path):
     """Snakemake compares files; of a folder it knows only the date."""
-    for name in KEPT[:-1]:
-        copy_one = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
-        copy_one(ROOT / name, tmp_path / name)
+    copy_repository(tmp_path)
     photos = tmp_path / FOLDER / "data" / "hall"
     photos.mkdir(parents=True)
     random = np.random.default_rng(1)
@@ -353,7 +339,7 @@ def test_photos_in_a_folder_are_compared_one_by_one(tmp_path):
 @pytest.mark.slow
 def test_results_without_their_dates_or_records_are_repaired_by_touch(tiny_study, tmp_path):
     """Copied with new dates in the order of copying, and without Snakemake's records of what it did."""
-    copy(tmp_path, copy_file=shutil.copy)
+    copy_repository(tmp_path, FOLDER, copy_file=shutil.copy)
     shutil.rmtree(tmp_path / FOLDER / ".snakemake")
     assert planned(root=tmp_path) != {}
     before = {path: path.read_bytes() for path in figures(tmp_path)}

@@ -10,21 +10,13 @@ import time
 
 import pytest
 
-from smoke.snakemake_runs import FOLDER, ROOT, TINY, planned, run
-
-KEPT = ("Snakefile", "workflow", "config", "profiles", "environment.lock", "tests/smoke")
+from smoke.snakemake_runs import FOLDER, TINY, copy_repository, planned, run
 
 
 @pytest.fixture
 def copy(tiny_study, tmp_path):
     """Return a copy of the repository with the results of the tiny study."""
-    for name in KEPT:
-        source, target = ROOT / name, tmp_path / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_dir():
-            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__", "locks"))
-        else:
-            shutil.copy2(source, target)
+    copy_repository(tmp_path, FOLDER)
     return tmp_path
 
 

@@ -86,8 +86,7 @@ def reading(path, what, advice="make it again", *, kinds=DAMAGED):
     except InputError:
         raise
     except kinds as error:
-        if isinstance(
-            error, MemoryError
-        ):  # the file asks for too much, or the machine has too little
+        if isinstance(error, MemoryError):
+            # The file asks for too much, or the machine has too little.
             advice = f"{advice}; or, if the file is whole, {SPARE_MEMORY}"
         raise InputError(f"{path}: expected {what}, found: {said(error)}; {advice}") from error

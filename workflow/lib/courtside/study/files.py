@@ -11,9 +11,8 @@ from pathlib import Path
 from courtside.study.errors import reading
 
 CHUNK_BYTES = 1 << 20
-UNFINISHED = re.compile(
-    r"\..+\.[0-9a-f]{8}(\.\w+)?"
-)  # names that `atomic` and `atomic_folder` give
+# Names that `atomic` and `atomic_folder` give.
+UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}(\.\w+)?")
 
 
 @contextlib.contextmanager
