@@ -30,6 +30,7 @@ include: "workflow/rules/pages.smk"
 include: "workflow/rules/clicking.smk"
 include: "workflow/rules/plans.smk"
 include: "workflow/rules/single_view.smk"
+include: "workflow/rules/evaluation_inputs.smk"
 include: "workflow/rules/take_evaluation.smk"
 include: "workflow/rules/players.smk"
 include: "workflow/rules/view_sets.smk"
@@ -84,6 +85,7 @@ rule all:
         every_comparison_of_views(),
         every_players_figure(),
         every_device_figure(),
+        every_body_frame(),
         every_clicking_page(),
         every_viewer(),
         every_overlay_video(),

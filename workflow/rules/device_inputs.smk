@@ -61,10 +61,11 @@ def source_files(wildcards, corrected=True):
     return [path for path, _, _ in sources_of(wildcards, corrected).values()]
 
 
-def body_files_of(wildcards):
-    """Return the aligned skeletons of all sources of a take."""
+def body_files_of(wildcards, kind="npz", corrected=True):
+    """Return the aligned skeletons of all sources of a take, or as `json` their body frames."""
     folder = f"results/{wildcards.session}/takes/{wildcards.take}/body"
-    return [f"{folder}/{source}.{wildcards.model}.npz" for source in sources_of(wildcards)]
+    sources = sources_of(wildcards, corrected)
+    return [f"{folder}/{source}.{wildcards.model}.{kind}" for source in sources]
 
 
 def worn_by(wildcards):

@@ -96,6 +96,15 @@ def device_takes():
     ]
 
 
+def every_body_frame():
+    """Return the tables of how far the body frames of virtual takes with devices are from the true ones."""
+    return [
+        f"results/{session}/evaluation/takes/{take}/body_frames/{model}.csv"
+        for session, take, model in device_takes()
+        if STUDY.sessions[session].virtual
+    ]
+
+
 def every_device_figure():
     """Return the figures of all takes with devices, and those of the thesis."""
     stems = []

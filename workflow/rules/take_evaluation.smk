@@ -1,10 +1,9 @@
 """Takes of virtual sessions against their truth: with evaluation.smk and racket.smk, the only rules that read it.
 
 Inputs: 3D keypoints, clocks, truth of takes. Outputs: results/{session}/evaluation/takes/.
-Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_joint_offsets (of development sessions, asked for by name).
+Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_body_frames; of
+development sessions, asked for by name: evaluate_joint_offsets, evaluate_skin_depths.
 """
-
-TRUE_TAKE = "results/virtual/{session}/takes/{take}/truth.npz"
 
 
 rule evaluate_take:
@@ -81,21 +80,51 @@ rule evaluate_sources:
         "../scripts/evaluate_sources.py"
 
 
+rule evaluate_body_frames:
+    input:
+        bodies=lambda w: body_files_of(w, corrected=False),
+        frames=lambda w: body_files_of(w, "json", corrected=False),
+        truth=TRUE_TAKE,
+        derived=CONFIG / "derived_joints.yaml",
+    output:
+        errors="results/{session}/evaluation/takes/{take}/body_frames/{model}.csv",
+    log:
+        "results/{session}/logs/evaluate_body_frames/{take}.{model}.log",
+    params:
+        code=code("evaluate_body_frames.py"),
+        labels=lambda w: dict(w.items()),
+        person=worn_by,
+        owners=lambda w: clock_owners(w, corrected=False),
+    script:
+        "../scripts/evaluate_body_frames.py"
+
+
 rule evaluate_joint_offsets:
     input:
         pose3d=lambda w: every_take_file(w, "pose3d_filtered/known18/all-robust/{model}.npz"),
-        truth=lambda w: [
-            f"results/virtual/{w.session}/takes/{take}/truth.npz" for take in session_of(w).takes
-        ],
+        truth=true_takes,
     output:
         offsets="results/{session}/evaluation/joint_offsets.{model}.csv",
     log:
         "results/{session}/logs/evaluate_joint_offsets/{model}.log",
     params:
         code=code("evaluate_joint_offsets.py"),
-        about=lambda w: (
-            f"Estimated on session {w.session} by: snakemake --config sessions=[{w.session}] variations=[] -- "
-            f"results/{w.session}/evaluation/joint_offsets.{w.model}.csv"
-        ),
+        about=lambda w, output: estimated_by(w.session, output.offsets),
     script:
         "../scripts/evaluate_joint_offsets.py"
+
+
+rule evaluate_skin_depths:
+    input:
+        lifted=lambda w: every_take_file(w, "devices/{device}-depth.{model}.npz"),
+        truth=true_takes,
+    output:
+        depths="results/{session}/evaluation/skin_depths.{device}.{model}.csv",
+    log:
+        "results/{session}/logs/evaluate_skin_depths/{device}.{model}.log",
+    params:
+        code=code("evaluate_skin_depths.py"),
+        about=lambda w, output: estimated_by(w.session, output.depths),
+        step=step("lift_depth"),
+    script:
+        "../scripts/evaluate_skin_depths.py"

@@ -1,13 +1,10 @@
 """Estimate joint offsets on development bodies: filtered 3D keypoints, truth of takes -> offsets."""
 
-from pathlib import Path
-
 import numpy as np
 
 from courtside.motion import joint_offsets, pose_errors
-from courtside.records import keypoints, take_truth
+from courtside.records import keypoints, tables, take_truth
 from courtside.study import log
-from courtside.study.files import atomic
 
 
 def main(pose3d_npz, truth_npz, offsets_csv, *, about):
@@ -17,9 +14,7 @@ def main(pose3d_npz, truth_npz, offsets_csv, *, about):
         pairs += zip(points.xyz, pose_errors.true_places(points, truth), strict=True)
     table = joint_offsets.estimate(pairs, points.joints, truth.joints)
     log.logger.info("frames: %d", np.sum([len(found) for found, _ in pairs]))
-    with atomic(offsets_csv) as temporary, Path(temporary).open("w", encoding="utf-8") as file:
-        file.write(f"# {about}\n")
-        table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
+    tables.write(offsets_csv, table, about=about)
 
 
 if __name__ == "__main__":

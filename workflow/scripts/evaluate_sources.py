@@ -6,18 +6,19 @@ import numpy as np
 import pandas as pd
 
 from courtside.motion import arcs, bodyframe, common_frame, smoothness, source_errors
-from courtside.records import body_motion, derived, tables, take_truth
-from courtside.records.device_motion import DeviceMotion
+from courtside.records import body_motion, derived, device_motion, tables, take_truth
+from courtside.records.sync import Clock
 from courtside.study import log
 
 
 def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_hz):
-    true = true_motion(take_truth.read(truth_npz), person)
+    true = device_motion.of_truth(take_truth.read(truth_npz), person)
     table = derived.read(derived_yaml)
     carried_by = bodyframe.anchors(table, derived.RIG, true.joints)
     errors, parts, paths, distortion = [], [], [], []
     for body in map(body_motion.read, body_npz):
-        reference = common_frame.counterpart(true, carried_by, body.tpose_s)
+        frame = common_frame.counterpart(true, carried_by, body.tpose_s)
+        reference = common_frame.aligned(true, frame, Clock())
         names, found = source_errors.errors(body, reference)
         _, expected = source_errors.matched(body, reference)
         known = np.isfinite(expected).all(axis=-1)
@@ -38,13 +39,6 @@ def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_h
     for path, rows in made:
         rows = pd.concat(rows, ignore_index=True)
         tables.write(path, rows.set_index("source").reset_index(), labels)
-
-
-def true_motion(truth, person):
-    xyz = truth.xyz[list(map(str, truth.person_id)).index(person)]
-    complete = np.ones(len(truth.time_s), dtype=bool)
-    reason = np.zeros(xyz.shape[:2], dtype=np.uint8)
-    return DeviceMotion("truth", "cameras", truth.joints, truth.time_s, xyz, reason, complete)
 
 
 if __name__ == "__main__":

@@ -88,7 +88,8 @@ def test_the_counterpart_has_the_frame_of_the_same_t_pose():
     truth, made, _ = take()
     for number in (1, 2):
         span = [truth[2][f"tpose_{number}_{end}"] for end in ("start", "stop")]
-        body = common_frame.counterpart(made[0], CARRIED_BY, span)
+        frame = common_frame.counterpart(made[0], CARRIED_BY, span)
+        body = common_frame.aligned(made[0], frame, CLOCKS["d415-rgb"])
         assert body.tpose_s[0] == pytest.approx(span[0], abs=0.15)
         held = (body.time_s > span[0] + 0.1) & (body.time_s < span[1] - 0.1)
         wrist = np.median(body.joint("left_wrist")[held], axis=0)

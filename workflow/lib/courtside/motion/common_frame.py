@@ -5,7 +5,6 @@ import numpy as np
 from courtside.motion import bodyframe
 from courtside.motion import tpose as tposes
 from courtside.records.body_motion import BodyMotion
-from courtside.records.sync import Clock
 from courtside.study.errors import InputError
 
 SAME_S = 0.3  # two devices' spells that overlap by that are one T-pose
@@ -120,7 +119,7 @@ def aligned(motion, frame, clock, clap_s=()):
 
 
 def counterpart(motion, carried_by, tpose_s):
-    """Return the motion that counts as true in the frame of a T-pose that another source has.
+    """Return the body frame of the motion that counts as true, of a T-pose that another source has.
 
     Parameters
     ----------
@@ -130,6 +129,10 @@ def counterpart(motion, carried_by, tpose_s):
         Of this motion's joints.
     tpose_s : (2,) float
         When the T-pose began and ended, on the reference clock.
+
+    Returns
+    -------
+    frame : courtside.motion.bodyframe.BodyFrame
 
     Raises
     ------
@@ -143,7 +146,7 @@ def counterpart(motion, carried_by, tpose_s):
             f"{motion.source}: expected a T-pose at {tpose_s[0]:.2f} to {tpose_s[1]:.2f} s, found T-poses at "
             f"{', '.join(f'{spell.start_s:.2f}' for spell in spells)} s; check the clocks"
         )
-    return aligned(motion, bodyframe.at_tpose(motion, carried_by, best), Clock())
+    return bodyframe.at_tpose(motion, carried_by, best)
 
 
 def _overlap(spell, span_s):

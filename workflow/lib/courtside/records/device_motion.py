@@ -54,6 +54,21 @@ class DeviceMotion:
         return self.xyz[:, list(self.joints).index(name)]
 
 
+def of_truth(truth, person):
+    """Return a person of a virtual take as a source that misses nothing.
+
+    Parameters
+    ----------
+    truth
+        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3), metres.
+    person : str
+    """
+    xyz = truth.xyz[list(map(str, truth.person_id)).index(person)]
+    complete = np.ones(len(truth.time_s), dtype=bool)
+    reason = np.zeros(xyz.shape[:2], dtype=np.uint8)
+    return DeviceMotion("truth", "cameras", truth.joints, truth.time_s, xyz, reason, complete)
+
+
 def of_person(points, person, source="cameras"):
     """Return one person of the fixed cameras as a source beside devices.
 

@@ -1,5 +1,7 @@
 """Writing and reading the CSV tables of the study: whole files, labels first, floats to 6 digits."""
 
+from pathlib import Path
+
 import pandas as pd
 
 from courtside.study.errors import InputError, reading
@@ -8,7 +10,7 @@ from courtside.study.files import atomic
 REMAKE = "delete it and run the study again"
 
 
-def write(path, rows, labels=None, float_format="%.6g"):
+def write(path, rows, labels=None, float_format="%.6g", about=None):
     """Write a table as CSV, whole or not at all.
 
     Parameters
@@ -19,12 +21,16 @@ def write(path, rows, labels=None, float_format="%.6g"):
         Columns put before the others, the same in every row: session, take, how it was measured.
     float_format : str
         Of every number that is not whole.
+    about : str, optional
+        A comment for the first line.
     """
     labels = labels or {}
     rows = rows.assign(**labels)
     columns = [*labels, *(name for name in rows.columns if name not in labels)]
-    with atomic(path) as temporary:
-        rows[columns].to_csv(temporary, index=False, float_format=float_format, lineterminator="\n")
+    with atomic(path) as temporary, Path(temporary).open("w", encoding="utf-8") as file:
+        if about:
+            file.write(f"# {about}\n")
+        rows[columns].to_csv(file, index=False, float_format=float_format, lineterminator="\n")
 
 
 def read(path, what, fault_of, **options):

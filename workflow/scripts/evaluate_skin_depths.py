@@ -1,0 +1,29 @@
+"""Measure how deep joints lie behind the skin of development bodies: lifted joints, truth -> depths."""
+
+from courtside.motion import skin_depths
+from courtside.records import device_motion, tables, take_truth
+from courtside.study import log
+
+
+def main(lifted_npz, truth_npz, depths_csv, *, device, about, skin_m=None):
+    pairs = []
+    for found_npz, true_npz in zip(lifted_npz, truth_npz, strict=True):
+        motion, truth = device_motion.read(found_npz), take_truth.read(true_npz)
+        person = truth.devices[device].person
+        true = skin_depths.in_camera(truth, device, person, motion.time_s)
+        pairs.append((motion.xyz, true))
+    joints = list(map(str, motion.joints))
+    table = skin_depths.estimate(pairs, joints, list(map(str, truth.joints)), skin_m)
+    tables.write(depths_csv, table, about=about)
+
+
+if __name__ == "__main__":
+    log.to_file(snakemake.log[0])
+    main(
+        snakemake.input.lifted,
+        snakemake.input.truth,
+        snakemake.output.depths,
+        device=snakemake.wildcards.device,
+        about=snakemake.params.about,
+        skin_m=snakemake.params.step.get("skin_m"),
+    )
