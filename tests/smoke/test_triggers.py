@@ -86,6 +86,7 @@ DEVICES_ALIGNED = {
     "align_bodies": 4,  # colour, depth, suit, corrected suit
     "measure_arcs": 1,
     "evaluate_sources": 1,
+    "evaluate_body_frames": 1,
     "build_viewer": 1,
     "draw_wrist_distance": 2,  # by each device's own clock, and by the clocks found
     "draw_thesis_fig3": 2,
