@@ -101,6 +101,7 @@ rule correct_joints:
         f"results/{{session}}/logs/correct_joints/{OF_FUSED}.log",
     params:
         code=code("correct_joints.py"),
+        sex_of=sex_of,
     script:
         "../scripts/correct_joints.py"
 
@@ -136,6 +137,6 @@ rule measure_kinematics:
     params:
         code=code("measure_kinematics.py"),
         step=step("measure_kinematics"),
-        sex_of=lambda w: {name: sex_of(w, name) for name in take_of(w).subjects},
+        sex_of=sex_of,
     script:
         "../scripts/measure_kinematics.py"

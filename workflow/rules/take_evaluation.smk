@@ -54,7 +54,7 @@ rule evaluate_kinematics:
     params:
         code=code("evaluate_kinematics.py"),
         labels=lambda w: dict(w.items()),
-        sex_of=lambda w: {name: sex_of(w, name) for name in take_of(w).subjects},
+        sex_of=sex_of,
     script:
         "../scripts/evaluate_kinematics.py"
 
@@ -109,6 +109,7 @@ rule evaluate_joint_offsets:
         "results/{session}/logs/evaluate_joint_offsets/{model}.log",
     params:
         code=code("evaluate_joint_offsets.py"),
+        sex_of=sex_of,
         about=lambda w, output: estimated_by(w.session, output.offsets),
     script:
         "../scripts/evaluate_joint_offsets.py"

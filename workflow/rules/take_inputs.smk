@@ -42,10 +42,11 @@ def background_file(wildcards):
     return f"results/{wildcards.session}/takes/{wildcards.take}/background/{wildcards.camera}.png"
 
 
-def sex_of(wildcards, person):
-    """Return the sex of a person where it is stated as m or f, which chooses a table of masses; None elsewhere."""
-    sex = session_of(wildcards).subjects[person].sex
-    return sex if sex in ("m", "f") else None
+def sex_of(wildcards):
+    """Return {person: sex}, None where it is not stated as m or f, of a take, or without one of a session."""
+    known = session_of(wildcards).subjects
+    people = take_of(wildcards).subjects if "take" in wildcards.keys() else known
+    return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
 
 
 def every_take_file(wildcards, pattern):
@@ -61,11 +62,6 @@ def followed(wildcards):
     take = take_of(wildcards)
     n_people = len(take.subjects) if wildcards.camera in take.videos else 1  # a device follows one
     return 1 if n_people == 1 else n_people + 1
-
-
-def evaluated(wildcards):
-    """Return (stage, fusion) of the skeletons of a take that are compared with the truth."""
-    return list(product(stages_of(wildcards.model), every_fusion(wildcards)))
 
 
 def every_fusion(wildcards):

@@ -5,12 +5,17 @@ from courtside.records import keypoints
 from courtside.study import log
 
 
-def main(filtered_npz, offsets_csv, corrected_npz):
+def main(filtered_npz, offsets_csv, corrected_npz, *, sex_of):
     table = joint_offsets.read(offsets_csv)
-    corrected = joint_offsets.correct(keypoints.read_3d(filtered_npz), table)
+    corrected = joint_offsets.correct(keypoints.read_3d(filtered_npz), table, sex_of)
     keypoints.write_3d(corrected_npz, limb_lengths.keep(corrected))
 
 
 if __name__ == "__main__":
     log.to_file(snakemake.log[0])
-    main(snakemake.input.pose3d, snakemake.input.offsets, snakemake.output.pose3d)
+    main(
+        snakemake.input.pose3d,
+        snakemake.input.offsets,
+        snakemake.output.pose3d,
+        sex_of=snakemake.params.sex_of,
+    )

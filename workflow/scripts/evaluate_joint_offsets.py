@@ -7,13 +7,14 @@ from courtside.records import keypoints, tables, take_truth
 from courtside.study import log
 
 
-def main(pose3d_npz, truth_npz, offsets_csv, *, about):
-    pairs = []
+def main(pose3d_npz, truth_npz, offsets_csv, *, sex_of, about):
+    clips = []
     for found_npz, true_npz in zip(pose3d_npz, truth_npz, strict=True):
         points, truth = keypoints.read_3d(found_npz), take_truth.read(true_npz)
-        pairs += zip(points.xyz, pose_errors.true_places(points, truth), strict=True)
-    table = joint_offsets.estimate(pairs, points.joints, truth.joints)
-    log.logger.info("frames: %d", np.sum([len(found) for found, _ in pairs]))
+        sexes = [sex_of[str(person)] for person in points.person_id]
+        clips += zip(points.xyz, pose_errors.true_places(points, truth), sexes, strict=True)
+    table = joint_offsets.estimate(clips, points.joints, truth.joints)
+    log.logger.info("frames: %d", np.sum([len(found) for found, _, _ in clips]))
     tables.write(offsets_csv, table, about=about)
 
 
@@ -23,5 +24,6 @@ if __name__ == "__main__":
         snakemake.input.pose3d,
         snakemake.input.truth,
         snakemake.output.offsets,
+        sex_of=snakemake.params.sex_of,
         about=snakemake.params.about,
     )

@@ -73,7 +73,7 @@ def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
 def test_shares_are_found_and_hold_for_bodies_of_another_size():
     """The trunk is measured on the displaced body, so what is found is not SHARES but removes them."""
     true = bodies(400, seed=1)
-    table = joint_offsets.estimate([(displaced(true), true)], JOINTS, JOINTS)
+    table = joint_offsets.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
     hips = table[table["joint"] == "hip"]
     assert (hips["n"] == 800).all()
     elsewhere = bodies(50, seed=2, size=0.8)
@@ -93,7 +93,7 @@ def test_what_remains_is_its_standard_deviation_and_joins_the_covariance():
     true = bodies(2000, seed=4)
     noisy = true.copy()
     noisy[:, [2, 8]] += rng.normal(0, 0.01, (2000, 2, 3))
-    table = joint_offsets.estimate([(noisy, true)], JOINTS, JOINTS)
+    table = joint_offsets.estimate([(noisy, true, None)], JOINTS, JOINTS)
     sigma_m = table.groupby("joint")["sigma_m"].first()
     assert sigma_m["wrist"] == pytest.approx(0.01, rel=0.05)
     assert sigma_m["hip"] < 1e-3
@@ -104,9 +104,42 @@ def test_what_remains_is_its_standard_deviation_and_joins_the_covariance():
     )
 
 
+def test_the_direction_of_an_arm_counts_whatever_its_length():
+    """Elbows that a network puts 2 cm along the forearm, for forearms of any length."""
+    true = bodies(300, seed=11) * np.random.default_rng(12).uniform(0.8, 1.2, (300, 1, 1))
+    found = true.copy()
+    for elbow in (1, 7):
+        way = true[:, elbow + 1] - true[:, elbow]
+        found[:, elbow] += 0.02 * way / np.linalg.norm(way, axis=-1, keepdims=True)
+    table = joint_offsets.estimate([(found, true, None)], JOINTS, JOINTS)
+    corrected = joint_offsets.correct(record(found), table)
+    at = [list(corrected.joints).index(name) for name in ("left_elbow", "right_elbow")]
+    assert np.linalg.norm(corrected.xyz[0][:, at] - true[:, [1, 7]], axis=-1).mean() < 1e-3
+
+
+def test_hips_of_men_and_women_may_be_off_in_opposite_directions():
+    """`displaced` of men, its mirror image of women: nothing in common, so who is neither keeps the place."""
+    men, women, others = (bodies(400, seed) for seed in (8, 9, 10))
+
+    def moved(true, sign):
+        found = true.copy()
+        trunk = (true[:, 0] + true[:, 6] - true[:, 3] - true[:, 9]) / 2
+        found[:, [3, 9]] += sign * SHARES["up"] * trunk[:, np.newaxis]
+        return found
+
+    clips = [(moved(men, 1), men, "m"), (moved(women, -1), women, "f")]
+    table = joint_offsets.estimate(clips, JOINTS, JOINTS)
+    for sex, sign in (("m", 1), ("f", -1), (None, 0)):
+        corrected = joint_offsets.correct(record(moved(others, sign)), table, {"p1": sex})
+        at = [list(corrected.joints).index(name) for name in ("left_hip", "right_hip")]
+        assert np.abs(corrected.xyz[0][:, at] - others[:, [3, 9]]).max() < 3e-3
+    wrong = joint_offsets.correct(record(moved(others, 1)), table, {"p1": "f"})
+    assert np.linalg.norm(wrong.xyz[0][:, at] - others[:, [3, 9]], axis=-1).mean() > 0.04
+
+
 def test_a_joint_whose_trunk_is_missing_keeps_its_place():
     true = bodies(20, seed=5)
-    table = joint_offsets.estimate([(displaced(true), true)], JOINTS, JOINTS)
+    table = joint_offsets.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
     points = record(displaced(true))
     points.xyz[0, 3, list(points.joints).index("left_shoulder")] = np.nan
     corrected = joint_offsets.correct(points, table)
@@ -120,11 +153,13 @@ def test_a_joint_seen_in_no_clip_is_a_fault():
     blind = true.copy()
     blind[:, [5, 11]] = np.nan
     with pytest.raises(ValueError, match="expected hip in a clip"):
-        joint_offsets.estimate([(blind, true)], JOINTS, JOINTS)
+        joint_offsets.estimate([(blind, true, None)], JOINTS, JOINTS)
 
 
 def test_a_table_is_read_back_and_other_files_are_refused(tmp_path):
-    table = joint_offsets.estimate([(displaced(bodies(50, 7)), bodies(50, 7))], JOINTS, JOINTS)
+    table = joint_offsets.estimate(
+        [(displaced(bodies(50, 7)), bodies(50, 7), None)], JOINTS, JOINTS
+    )
     path = tmp_path / "offsets.csv"
     path.write_text("# made by a rule\n" + table.to_csv(index=False))
     assert joint_offsets.read(path)["share"].to_numpy() == pytest.approx(table["share"])
