@@ -24,7 +24,7 @@ def copy_repository(root, *further, copy_file=shutil.copy2):
             copy_file(source, target)
 
 
-def run(*options, root=ROOT, check=True, timeout_s=900):
+def run(*options, root=ROOT, check=True, timeout_s=3600):
     """Run the tiny study of a repository; return the finished process with its whole output."""
     command = [sys.executable, "-m", "snakemake", "--directory", str(FOLDER)]
     command += ["--configfile", str(TINY), *options]

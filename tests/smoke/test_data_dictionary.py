@@ -41,7 +41,7 @@ PLACES = {
     "*/body/*.paths.csv": [PATHS, *SOURCE],
     "*/body/*.distortion.csv": [DISTORTION, *SOURCE],
     "*/evaluation/takes/*/sources/*.errors.csv": [f"{DEVICES} | .errors.csv", *SOURCE],
-    "*/evaluation/takes/*/body_frames/*.csv": [f"{DEVICES} | body_frames/<model>.csv", *SOURCE],
+    "*/evaluation/takes/*/body_frames/*.csv": [f"{DEVICES} | ../body_frames/<model>.csv", *SOURCE],
     "*/evaluation/takes/*/sources/*.parts.csv": [f"{DEVICES} | .parts.csv", *SOURCE],
     "*/evaluation/takes/*/sources/*.true_paths.csv": [PATHS, *SOURCE],
     "*/evaluation/takes/*/sources/*.true_distortion.csv": [DISTORTION, *SOURCE],

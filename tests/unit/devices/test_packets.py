@@ -199,12 +199,12 @@ def test_a_matroska_cut_between_clusters_is_caught_by_its_duration(tmp_path):
     clusters = [m.start() for m in re.finditer(re.escape(bytes.fromhex("1f43b675")), data)]
     path = tmp_path / "cut.mkv"
     path.write_bytes(data[: clusters[2]])
-    with pytest.raises(
-        InputError, match=r"declares a duration of 2\.000 s.* end at 0\.233 s"
-    ) as caught:
+    # How many frames a cluster holds depends on how fast they come.
+    left = sum(position < clusters[2] for _, position, _ in packets(source))
+    expected = rf"declares a duration of 2\.000 s.* end at {left / 30:.3f} s"
+    with pytest.raises(InputError, match=expected) as caught:
         video.frame_times(path)
-    index = int(re.search(r"last good frame is (\d+)", str(caught.value))[1])
-    assert index == sum(position < clusters[2] for _, position, _ in packets(source)) - 1
+    assert int(re.search(r"last good frame is (\d+)", str(caught.value))[1]) == left - 1
 
 
 def test_a_fragmented_file_cut_between_fragments_is_caught_where_it_declares_a_duration(
