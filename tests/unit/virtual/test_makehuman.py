@@ -124,7 +124,8 @@ def test_a_broken_file_is_named(tmp_path, name, content):
 
 
 @pytest.mark.parametrize(
-    "content", [b"not gzip", gzip.compress(b"1 2 3\n", mtime=0), gzip.compress(b"99999999 1 2 3")]
+    "content",
+    [b"not gzip", gzip.compress(b"1 2 3\n", mtime=0), gzip.compress(b"99999999 1 2 3", mtime=0)],
 )
 def test_a_broken_target_is_named(tmp_path, content):
     name = f"{makehuman.TARGETS}/asian-male-young.target.gz"
