@@ -84,7 +84,7 @@ def true_take_file(wildcards):
     """Return the truth of a take where there is one."""
     if not session_of(wildcards).virtual:
         return []
-    return f"results/virtual/{wildcards.session}/takes/{wildcards.take}/truth.npz"
+    return TRUE_TAKE.format(session=wildcards.session, take=wildcards.take)
 
 
 def round_trip_fusions(wildcards):

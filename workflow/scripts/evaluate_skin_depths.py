@@ -12,8 +12,7 @@ def main(lifted_npz, truth_npz, depths_csv, *, device, about, skin_m=None):
         person = truth.devices[device].person
         true = skin_depths.in_camera(truth, device, person, motion.time_s)
         pairs.append((motion.xyz, true))
-    joints = list(map(str, motion.joints))
-    table = skin_depths.estimate(pairs, joints, list(map(str, truth.joints)), skin_m)
+    table = skin_depths.estimate(pairs, motion.joints, truth.joints, skin_m)
     tables.write(depths_csv, table, about=about)
 
 

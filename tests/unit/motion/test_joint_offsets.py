@@ -118,7 +118,7 @@ def test_the_direction_of_an_arm_counts_whatever_its_length():
 
 
 def test_hips_of_men_and_women_may_be_off_in_opposite_directions():
-    """`displaced` of men, its mirror image of women: nothing in common, so who is neither keeps the place."""
+    """Men's hips too high, women's as much too low: who is neither keeps the place."""
     men, women, others = (bodies(400, seed) for seed in (8, 9, 10))
 
     def moved(true, sign):

@@ -65,10 +65,8 @@ def test_truth_is_seen_from_the_camera_at_the_time_of_what_it_shows():
     def place(when):
         return np.stack([0.3 * when, 1 - 0.2 * when**2, 0 * when], axis=-1)
 
-    turn, shift = (
-        Rotation.from_euler("xyz", [0.3, -1.0, 2.0]).as_matrix(),
-        np.array([0.1, 0.2, 3.0]),
-    )
+    turn = Rotation.from_euler("xyz", [0.3, -1.0, 2.0]).as_matrix()
+    shift = np.array([0.1, 0.2, 3.0])
     camera = DeviceTruth("rgbd", "b", 0.5, 200.0, 0.03, np.column_stack([turn, shift]))
     xyz = np.stack([np.full((len(time_s), 1, 3), 9.0), place(time_s)[:, np.newaxis]])
     truth = TakeTruth(

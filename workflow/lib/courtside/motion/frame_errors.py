@@ -42,11 +42,11 @@ def against(body_from_device, device_from_world, body_from_world):
         distance of the origins; it says nothing of a source without a place in the world.
     """
     rotation = body_from_device.rotation @ device_from_world[:, :3] @ body_from_world.rotation.T
-    in_device = body_from_device.inverse().translation
-    in_world = (in_device - device_from_world[:, 3]) @ device_from_world[:, :3]
+    world_from_device = Sim3(1.0, device_from_world[:, :3], device_from_world[:, 3]).inverse()
+    origin = world_from_device.points(body_from_device.inverse().translation)
     true = body_from_world.inverse().translation
     return {
         "angle_deg": float(np.degrees(Rotation.from_matrix(rotation).magnitude())),
         "unit_percent": float(100 * (body_from_world.scale / body_from_device.scale - 1)),
-        "origin_mm": float(1000 * np.linalg.norm(in_world - true)),
+        "origin_mm": float(1000 * np.linalg.norm(origin - true)),
     }

@@ -71,8 +71,7 @@ def vectors(xyz, joints, side, joint, sex=None):
     length = np.linalg.norm(up, axis=-1, keepdims=True)
     across = place["left_shoulder"] - place["right_shoulder"]
     across = across + place["left_hip"] - place["right_hip"]
-    forward = np.cross(across, up)
-    forward = forward / np.linalg.norm(forward, axis=-1, keepdims=True)
+    forward = transforms.unit(np.cross(across, up))
     left = np.cross(up, forward)  # as long as the trunk
     other = {"left": "right", "right": "left"}[side]
     found = dict(zip(TRUNK, (left if side == "left" else -left, up, forward * length), strict=True))

@@ -7,6 +7,7 @@ be moved is measured on development bodies and used for others.
 import numpy as np
 import pandas as pd
 
+from courtside.geometry import transforms
 from courtside.motion.depth_lift import SKIN_TO_JOINT_M, by_joint
 from courtside.motion.pose_errors import at_times
 from courtside.records import limbs, sync
@@ -80,5 +81,4 @@ def estimate(pairs, joints, true_joints, skin_m=None):
 
 def _behind(found, true):
     """Return how far true points (T, 3) are behind found ones, along the ray through the latter, (T,)."""
-    ray = found / np.linalg.norm(found, axis=-1, keepdims=True)
-    return ((true - found) * ray).sum(axis=-1)
+    return ((true - found) * transforms.unit(found)).sum(axis=-1)
