@@ -1,6 +1,6 @@
 """Calibrate from the same images with this project and with COLMAP's defaults: seconds and error.
 
-    python benchmarks/structure_from_motion.py results SESSION [--images 75] [--json OUT]
+    python benchmarks/structure_from_motion.py results SESSION [--images 75] [--map-minutes M] [--json OUT]
 
 SESSION is a virtual session that the study has rendered and extracted (static pictures, frames of the walk,
 clicks, truth). Both sides get the same pictures, lens model, one lens per physical camera, and all cores;
@@ -8,7 +8,8 @@ their processor time counts, which a busy machine changes little, and the time b
 this project matches the pairs of its list and maps globally, COLMAP matches all pairs and maps incrementally,
 with its own default options. Errors are those of the playing volume, from the session's own clicks, after the
 alignment that each side stops at (a similarity to all court points) and after this project's adjustment of
-either model.
+either model. `--map-minutes` stops COLMAP's mapper after so long (it counts what it has by then); with
+hundreds of images it takes hours otherwise.
 """
 
 import argparse
@@ -70,7 +71,7 @@ def ours(root, groups, walked, fixed, folder, parameters):
     return watch
 
 
-def colmap(root, groups, folder):
+def colmap(root, groups, folder, map_minutes):
     watch = Watch()
     defaults = pycolmap.SiftExtractionOptions()
     features.extract(
@@ -86,7 +87,11 @@ def colmap(root, groups, folder):
     with database.working_copy(folder / "f.db") as copy:
         pycolmap.match_exhaustive(copy, device=pycolmap.Device.cpu)
         watch.stop("matching")
-        found = pycolmap.incremental_mapping(copy, root, folder)
+        print(f"colmap: features and matches {watch.cpu} CPU s", file=sys.stderr, flush=True)
+        options = pycolmap.IncrementalPipelineOptions()
+        if map_minutes:
+            options.max_runtime_seconds = round(60 * map_minutes)
+        found = pycolmap.incremental_mapping(copy, root, folder, options)
     max(found.values(), key=lambda each: each.num_reg_images()).write_binary(str(folder))
     watch.stop("mapping")
     return watch
@@ -129,7 +134,7 @@ def compared_features(path, pairs=None):
     return sum(counts[a] * counts[b] for a, b in pairs or itertools.combinations(counts, 2))
 
 
-def compare(results, session, count):
+def compare(results, session, count, map_minutes=None):
     """Return {side: seconds of each step, images registered, errors in cm} for so many bridging images."""
     root, virtual = results / session, results / "virtual" / session
     court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
@@ -152,13 +157,14 @@ def compare(results, session, count):
                 watch = ours(root, groups, walked, fixed, folder, parameters)
                 pairs = walked.pairs(fixed)
             else:
-                watch, pairs = colmap(root, groups, folder), None
+                watch, pairs = colmap(root, groups, folder, map_minutes), None
             compared = compared_features(folder / "f.db", pairs)
             errors_cm = errors(folder, real, court, marked, parameters)
         named = ("registered", "similarity_cm", "adjusted_cm")
         wall = {f"{step}_wall": seconds for step, seconds in watch.wall.items()}
         found[side] = {**watch.cpu, **wall, "compared": compared}
         found[side] |= dict(zip(named, errors_cm, strict=True))
+        print(f"{side}: {found[side]}", file=sys.stderr, flush=True)
     return found
 
 
@@ -172,9 +178,10 @@ def main():
     parser.add_argument("results", type=Path)
     parser.add_argument("session")
     parser.add_argument("--images", type=int, default=75)
+    parser.add_argument("--map-minutes", type=float, help="stop COLMAP's mapper then")
     parser.add_argument("--json", type=Path)
     chosen = parser.parse_args()
-    found = compare(chosen.results, chosen.session, chosen.images)
+    found = compare(chosen.results, chosen.session, chosen.images, chosen.map_minutes)
     print(LINE.format("CPU seconds", *STEPS, "total", "wall", "registered", "sim. cm", "adjusted"))
     for side, row in found.items():
         wall = total(row, [f"{step}_wall" for step in STEPS])

@@ -5,14 +5,14 @@ from courtside.records import device_motion, tables, take_truth
 from courtside.study import log
 
 
-def main(lifted_npz, truth_npz, depths_csv, *, device, about, skin_m=None):
+def main(lifted_npz, truth_npz, depths_csv, *, device, about, skin_m=None, beyond_m=None):
     pairs = []
     for found_npz, true_npz in zip(lifted_npz, truth_npz, strict=True):
         motion, truth = device_motion.read(found_npz), take_truth.read(true_npz)
         person = truth.devices[device].person
         true = skin_depths.in_camera(truth, device, person, motion.time_s)
         pairs.append((motion.xyz, true))
-    table = skin_depths.estimate(pairs, motion.joints, truth.joints, skin_m)
+    table = skin_depths.estimate(pairs, motion.joints, truth.joints, skin_m, beyond_m)
     tables.write(depths_csv, table, about=about)
 
 
@@ -25,4 +25,5 @@ if __name__ == "__main__":
         device=snakemake.wildcards.device,
         about=snakemake.params.about,
         skin_m=snakemake.params.step.get("skin_m"),
+        beyond_m=snakemake.params.step.get("beyond_m"),
     )

@@ -6,7 +6,7 @@ from courtside.records import device_motion, frame_times, keypoints, skeleton
 from courtside.study import log
 
 
-def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, **sampling):
+def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m=None, **sampling):
     recording = depth_recordings.read(paths.recording, device)
     view = frame_times.on_device_clock(keypoints.read_2d(paths.pose2d), paths.frames)
     motion, sigma_m = depth_lift.lift_take(
@@ -17,6 +17,7 @@ def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, **sampli
         bones=skeleton.read(paths.skeleton).bones,
         baseline_m=depth_recordings.baseline(recording, baseline_m),
         skin_m=skin_m,
+        beyond_m=beyond_m,
         sampling=depth_samples.Sampling(**sampling),
     )
     log.logger.info("%s", depth_lift.summary(motion, sigma_m))

@@ -149,6 +149,17 @@ def test_hands_together_otherwise_are_no_clap(change, why):
     assert why in candidate.why
 
 
+def test_arms_that_seem_bent_only_where_hands_hide_them_clap():
+    take = device_takes.truth(0)
+    motion = device_takes.device(np.random.default_rng(0), take, axes=np.eye(3), rate_hz=60.0)
+    straight = found_at(motion)
+    xyz = motion.xyz.copy()
+    elbows = [motion.joints.tolist().index(f"{side}_elbow") for side in ("left", "right")]
+    hidden = abs(motion.time_s - take[2]["clap_1"]) < 0.15
+    xyz[np.ix_(hidden, elbows, [2])] -= 0.35
+    assert found_at(replace(motion, xyz=xyz)) == straight
+
+
 def test_distances():
     motion = device_takes.device(np.random.default_rng(0), device_takes.truth(0))
     spell = tpose.find(motion)[0]

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -7,7 +8,7 @@ import depth_scenes
 from courtside.geometry import cameras
 from courtside.motion import depth_lift
 from courtside.motion.depth_samples import Sampling
-from courtside.records import reasons
+from courtside.records import limbs, reasons
 from courtside.records.keypoints import Keypoints2D
 from depth_scenes import BONES, RADIUS_M, STANDING
 
@@ -136,6 +137,29 @@ def test_a_joint_that_another_limb_hides_is_missing(still):
     motion, _ = lift(view(several), [*pictures[:-1], seen(crossed)])
     assert motion.reason[-1, wrist] == reasons.NO_DEPTH
     assert (motion.reason[:-1] == reasons.OK).all()
+
+
+def test_joints_placed_beyond_their_limbs_are_drawn_back(still):
+    """Elbows 3 cm too far out, wrists 2 cm short of their place; one without its parent stays."""
+    xyz, pictures = still
+    beyond_m = {"elbow": 0.03, "wrist": -0.02}
+    placed = xyz.copy()
+    for (joint, beyond), side in product(beyond_m.items(), ("left", "right")):
+        ends = f"{side}_{limbs.PARENT[joint]}", f"{side}_{joint}"
+        start, stop = (NAMES.index(end) for end in ends)
+        along = xyz[0, stop] - xyz[0, start]
+        placed[:, stop] += beyond * along / np.linalg.norm(along)
+    keypoints = view(placed)
+    elbow, wrist = NAMES.index("left_elbow"), NAMES.index("left_wrist")
+    keypoints.reason[0, 3, elbow] = reasons.OUT_OF_IMAGE
+    as_placed, _ = lift(keypoints, pictures)
+    motion, _ = lift(keypoints, pictures, beyond_m=beyond_m)
+    arms = [NAMES.index(f"{side}_{joint}") for side in ("left", "right") for joint in beyond_m]
+    error = np.linalg.norm(motion.xyz - xyz, axis=-1)
+    error[3, [elbow, wrist]] = 0.0
+    assert error.max() < 0.015
+    assert np.nanmin(np.linalg.norm(as_placed.xyz - xyz, axis=-1)[:, arms]) > 0.015
+    assert motion.xyz[3, wrist].tolist() == as_placed.xyz[3, wrist].tolist()
 
 
 def test_reasons_of_the_picture_stay(still):

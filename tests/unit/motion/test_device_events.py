@@ -29,6 +29,23 @@ def test_a_source_without_a_clap_is_borne_with_where_its_device_claps_in_another
     assert found["d415-rgb"].claps[0].time_s == pytest.approx(truth[2]["clap_1"], abs=0.02)
 
 
+def test_a_source_with_its_own_t_poses_has_the_claps_of_its_device():
+    """Its arms look bent whenever hands come together; the second T-pose is not in it at all."""
+    truth, rgb, mocopi, _ = take()
+    events, xyz = truth[2], rgb.xyz.copy()
+    later = rgb.time_s > events["tpose_1_stop"] + 0.05
+    elbows = [rgb.joints.tolist().index(f"{side}_elbow") for side in ("left", "right")]
+    xyz[np.ix_(later, elbows, [1])] += 0.35
+    depth = replace(rgb, source="d415-depth", xyz=xyz)
+    alone = device_events.shown([depth], {"d415-depth": "d415"})["d415-depth"]
+    assert (len(alone.tposes), alone.claps) == (1, [])
+    found = device_events.shown([depth, mocopi, rgb], DEVICES)
+    (clap,) = found["d415-depth"].claps
+    assert clap == found["d415-rgb"].claps[0]
+    assert clap.tpose == 0
+    assert len(found["mocopi"].claps) == 2
+
+
 def test_a_device_among_others_must_clap():
     _, _, mocopi, depth = take()
     with pytest.raises(InputError, match="d415-depth: expected a T-pose"):

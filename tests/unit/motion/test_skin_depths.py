@@ -1,5 +1,7 @@
 """How deep joints lie behind the skin: known depths along known rays are found, by the camera's own clock."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -41,6 +43,33 @@ def test_depths_are_found_whatever_the_joints_were_lifted_with(lifted_with):
         tolerance_m = 0.003 if joint == "ankle" else 0.001
         assert table.loc[joint, "skin_m"] == pytest.approx(depth_m, abs=tolerance_m)
         assert table.loc[joint, "sd_m"] == pytest.approx(SPREAD_M, rel=0.15)
+
+
+def test_how_far_joints_are_placed_beyond_their_limbs_is_found():
+    """Limbs across the view, so that depth is not mistaken for it; the lift took part of it off already."""
+    rng = np.random.default_rng(6)
+    true, found = (np.zeros((300, len(JOINTS), 3)) for _ in range(2))
+    beyond_m = {"elbow": 0.02, "wrist": 0.012, "knee": -0.015, "ankle": 0.03}
+    for side, (chain, start) in product(
+        ("left", "right"), zip(limbs.CHAINS, (0.0, 0.4), strict=True)
+    ):
+        places = np.cumsum([[0, start, 3], [0.3, 0.0, 0], [0.25, 0.1, 0]], axis=0)
+        for at, joint in enumerate(chain):
+            name = JOINTS.index(f"{side}_{joint}")
+            true[:, name] = places[at]
+            along = places[at] - places[max(at - 1, 0)]
+            along /= max(np.linalg.norm(along), 1e-9)
+            off = beyond_m.get(joint, 0.0) + rng.normal(0, 0.004, (300, 1))
+            found[:, name] = places[at] + off * along
+    lifted_with = {"wrist": 0.05, "knee": -0.01}
+    table = skin_depths.estimate([(found, true)], JOINTS, JOINTS, None, lifted_with).set_index(
+        "joint"
+    )
+    for joint, beyond in beyond_m.items():
+        expected = beyond + lifted_with.get(joint, 0.0)
+        assert table.loc[joint, "beyond_m"] == pytest.approx(expected, abs=0.001)
+        assert table.loc[joint, "beyond_sd_m"] == pytest.approx(0.004, rel=0.3)
+    assert table.loc[["shoulder", "hip"], ["beyond_m", "beyond_sd_m"]].isna().all(axis=None)
 
 
 def test_joints_are_taken_by_name():

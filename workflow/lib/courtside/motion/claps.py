@@ -25,6 +25,10 @@ REACH_S = 0.08  # the contact is sought about the first guess
 IN_FRONT = 0.5  # of the arm's length: hands are before the shoulders by that at least
 LEVEL = 0.6  # of the arm's length: they are above or below the shoulders by that at most
 STRAIGHT_DEG = 45.0  # elbows bend less on the way, median of both arms
+ON_THE_WAY_S = (
+    -0.4,
+    -0.1,
+)  # before hands meet; then they hide the arms from a camera that they point to
 REBOUND_NOISE = 1.5  # standard deviations of the noise that hands must part by as well
 MOST_UNCERTAIN_S = 0.04
 TOUCHING_M = 0.14  # wrists of hands that touch, seen by any device, are not further apart
@@ -223,7 +227,7 @@ def _why_not(motion, spell, near, apart, most_m):
 
 def _bent(motion, near, bend_deg):
     """Return why arms on their way to a clap are none to go by, empty if they are."""
-    bend = bend_deg[_within(motion.time_s, motion.time_s[near], (-0.2, 0.1))]
+    bend = bend_deg[_within(motion.time_s, motion.time_s[near], ON_THE_WAY_S)]
     straight = np.isfinite(bend).any() and np.nanmedian(bend) < STRAIGHT_DEG
     return "" if straight else "the arms are bent"
 

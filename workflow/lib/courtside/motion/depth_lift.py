@@ -1,10 +1,12 @@
 """Lift the 2D joints of a colour picture into space by the depth camera beside it."""
 
+from itertools import product
+
 import numpy as np
 
-from courtside.geometry import cameras
+from courtside.geometry import cameras, transforms
 from courtside.motion.depth_samples import TRUNK, Sampler, Sampling
-from courtside.records import reasons
+from courtside.records import limbs, reasons
 from courtside.records.device_motion import DeviceMotion
 
 # How deep a joint lies behind the skin that a camera sees, metres, from any side; the radius of the limb
@@ -37,7 +39,9 @@ FROM_BODY_M = {True: 0.4, False: 1.1}  # a joint of the trunk, and another, from
 COVERED_M = 0.05  # a limb's skin and what is seen at a joint that it covers agree to this
 
 
-def lift_take(source, view, depth_frames, rig, *, bones, baseline_m, skin_m=None, sampling=None):
+def lift_take(
+    source, view, depth_frames, rig, *, bones, baseline_m, skin_m=None, beyond_m=None, sampling=None
+):
     """Lift the joints of one person over a take.
 
     Parameters
@@ -57,6 +61,9 @@ def lift_take(source, view, depth_frames, rig, *, bones, baseline_m, skin_m=None
     skin_m : dict of str to float, optional
         How deep each joint lies behind the skin, by its name or its name without side; `SKIN_TO_JOINT_M`
         where absent.
+    beyond_m : dict of str to float, optional
+        How far the network places a joint beyond the end of its limb (`limbs.PARENT`), by the joint's name
+        without side, which is taken off; 0 where absent.
     sampling : Sampling, optional
 
     Returns
@@ -99,6 +106,7 @@ def lift_take(source, view, depth_frames, rig, *, bones, baseline_m, skin_m=None
         _uncover(chosen, xy[t], z[t], radius_px, chain, is_trunk)
         for joint, surface in chosen.items():
             xyz[t, joint], depth[t, joint] = joints_at[t, joint, surface], z[t, joint, surface]
+    xyz = _drawn_back(xyz, names, beyond_m or {})
     missing = np.isnan(xyz[..., 0]) & (view.reason[0] == reasons.OK)
     motion = DeviceMotion(
         source=source,
@@ -172,6 +180,18 @@ def _behind_skin(colour, xy, z, skin):
     along = z[..., np.newaxis] * ray[:, :, np.newaxis]
     unit = ray / np.linalg.norm(ray, axis=-1, keepdims=True)
     return along + (skin[:, np.newaxis] * unit)[:, :, np.newaxis]
+
+
+def _drawn_back(xyz, names, beyond_m):
+    """Return joints (T, J, 3) moved towards their parents; those without a parent in the frame stay."""
+    moved = xyz.copy()
+    for (joint, beyond), side in product(beyond_m.items(), ("left", "right")):
+        ends = f"{side}_{limbs.PARENT[joint]}", f"{side}_{joint}"
+        if set(ends) <= set(names):
+            start, stop = (names.index(end) for end in ends)
+            back = beyond * transforms.unit(xyz[:, stop] - xyz[:, start])
+            moved[:, stop] -= np.where(np.isfinite(back), back, 0.0)
+    return moved
 
 
 def _chain(names, bones, is_trunk):

@@ -1,6 +1,6 @@
 """What each source of a take shows: T-poses and claps, by its own clock."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from courtside.motion import claps as clapping
 from courtside.motion import tpose as tposes
@@ -29,8 +29,9 @@ def shown(motions, devices, stated=()):
     Returns
     -------
     happened : dict of str to Events
-        By source. Of the sources of one device one must show a clap: they have one clock. A device that is
-        alone needs none.
+        By source. Of the sources of one device one must show a clap: they have one clock, and a source with
+        T-poses but without a clap has the claps of its device's first source that shows any. A device that
+        is alone needs none.
 
     Raises
     ------
@@ -50,4 +51,30 @@ def shown(motions, devices, stated=()):
     for source, error in faults.items():
         if devices[source] not in clapped and len(set(devices.values())) > 1:
             raise error
-    return happened
+    return {source: _with_claps(source, happened, devices) for source in happened}
+
+
+def _with_claps(source, happened, devices):
+    """Return the events of a source; without a clap, with those that its device shows in another source.
+
+    Hands that point to a depth camera hide what is behind them: it sees bent arms where its colour does not.
+    """
+    own = happened[source]
+    shared = next(
+        (
+            each
+            for name, each in happened.items()
+            if devices[name] == devices[source] and each.claps
+        ),
+        own,
+    )
+    if own.claps or not own.tposes:
+        return own
+    claps = [
+        replace(clap, tpose=number)
+        for clap in shared.claps
+        for number, spell in enumerate(own.tposes)
+        if spell.start_s <= shared.tposes[clap.tpose].stop_s
+        and shared.tposes[clap.tpose].start_s <= spell.stop_s
+    ]
+    return Events(own.tposes, claps)

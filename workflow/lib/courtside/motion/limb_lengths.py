@@ -8,7 +8,8 @@ from itertools import pairwise, product
 
 import numpy as np
 
-CHAINS = (("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"))
+from courtside.records import limbs
+
 SIDES = ("left", "right")
 LEAST = 10  # frames, of both sides together, that a length must rest on
 # ASSUME: a take's own median length is wrong by 5 % (one standard deviation): on the development bodies the
@@ -36,7 +37,7 @@ def lengths(xyz, joints):
     """
     place = dict(zip(joints, np.moveaxis(xyz, 1, 0), strict=True))
     found = {}
-    for start, stop in (pair for chain in CHAINS for pair in pairwise(chain)):
+    for start, stop in (pair for chain in limbs.CHAINS for pair in pairwise(chain)):
         ends = [(f"{side}_{start}", f"{side}_{stop}") for side in SIDES]
         apart = [place[b] - place[a] for a, b in ends if a in place and b in place]
         apart = np.linalg.norm(np.concatenate(apart or [np.zeros((0, 3))]), axis=1)
@@ -68,7 +69,7 @@ def keep(points):
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)
-    for person, (side, chain) in product(range(len(xyz)), product(SIDES, CHAINS)):
+    for person, (side, chain) in product(range(len(xyz)), product(SIDES, limbs.CHAINS)):
         known = lengths(points.xyz[person], joints)
         names = [f"{side}_{joint}" for joint in chain]
         wanted = [known.get(pair) for pair in pairwise(chain)]

@@ -1,8 +1,11 @@
 """How deep joints lie behind the skin that a depth camera sees, from bodies whose joints are known.
 
 A lifted joint is the skin at the joint's place in the picture, moved along the viewing ray. How far it has to
-be moved is measured on development bodies and used for others.
+be moved is measured on development bodies and used for others; so is how far the network places it beyond the
+end of its limb.
 """
+
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -12,7 +15,7 @@ from courtside.motion.depth_lift import SKIN_TO_JOINT_M, by_joint
 from courtside.motion.pose_errors import at_times
 from courtside.records import limbs, sync
 
-COLUMNS = ["joint", "skin_m", "sd_m", "n"]
+COLUMNS = ["joint", "skin_m", "sd_m", "n", "beyond_m", "beyond_sd_m"]
 NORMAL_SPREAD = 1.4826  # standard deviation over median distance from the median, of normal errors
 
 
@@ -39,8 +42,8 @@ def in_camera(truth, device, person, time_s):
     return world @ real.from_world[:, :3].T + real.from_world[:, 3]
 
 
-def estimate(pairs, joints, true_joints, skin_m=None):
-    """Measure how deep the joints of the limbs lie.
+def estimate(pairs, joints, true_joints, skin_m=None, beyond_m=None):
+    """Measure how deep the joints of the limbs lie, and how far beyond their limbs they are placed.
 
     Parameters
     ----------
@@ -50,12 +53,15 @@ def estimate(pairs, joints, true_joints, skin_m=None):
         Names of the J and of the K joints.
     skin_m : dict of str to float, optional
         With which they were lifted; `depth_lift.SKIN_TO_JOINT_M` by default.
+    beyond_m : dict of str to float, optional
+        With which they were lifted; 0 where absent.
 
     Returns
     -------
     table : pandas.DataFrame
         `COLUMNS`: for each joint, both sides together, the median of its depth behind the skin along the
-        viewing ray and its robust standard deviation, metres; n, how many it rests on.
+        viewing ray and its robust standard deviation, metres; n, how many it rests on; and of how far it is
+        placed beyond the end of its limb (`limbs.PARENT`), NaN for shoulder and hip.
 
     Raises
     ------
@@ -65,20 +71,27 @@ def estimate(pairs, joints, true_joints, skin_m=None):
     used_m = by_joint(limbs.LIMBS, SKIN_TO_JOINT_M if skin_m is None else skin_m)
     rows = []
     for joint, used in zip(limbs.LIMBS, used_m, strict=True):
-        names = [f"{side}_{joint}" for side in ("left", "right")]
-        deep = np.concatenate([
-            used + _behind(found[:, list(joints).index(name)], true[:, list(true_joints).index(name)])
-            for found, true in pairs
-            for name in names
-        ])  # fmt: skip
-        deep = deep[np.isfinite(deep)]
-        if not len(deep):
+        deep, beyond = [], []
+        for (found, true), side in product(pairs, ("left", "right")):
+            place = dict(zip(joints, np.moveaxis(found, 1, 0), strict=True))
+            at = place[f"{side}_{joint}"]
+            off = at - true[:, list(true_joints).index(f"{side}_{joint}")]
+            deep.append(used - (off * transforms.unit(at)).sum(axis=-1))
+            if joint in limbs.PARENT:
+                limb = transforms.unit(at - place[f"{side}_{limbs.PARENT[joint]}"])
+                beyond.append((beyond_m or {}).get(joint, 0.0) + (off * limb).sum(axis=-1))
+        depth, deep_sd, count = _spread(deep)
+        if not count:
             raise ValueError(f"expected {joint} in a clip, found it in none of {len(pairs)}")
-        middle = np.median(deep)
-        rows.append((joint, middle, NORMAL_SPREAD * np.median(np.abs(deep - middle)), len(deep)))
+        rows.append((joint, depth, deep_sd, count, *_spread(beyond)[:2]))
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _behind(found, true):
-    """Return how far true points (T, 3) are behind found ones, along the ray through the latter, (T,)."""
-    return ((true - found) * transforms.unit(found)).sum(axis=-1)
+def _spread(parts):
+    """Return the median of what is known in some arrays, its robust standard deviation, how many it is."""
+    values = np.concatenate([[], *parts])
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return np.nan, np.nan, 0
+    middle = np.median(values)
+    return middle, NORMAL_SPREAD * np.median(np.abs(values - middle)), len(values)
