@@ -98,8 +98,13 @@ def colmap(root, groups, folder, map_minutes):
 
 
 def errors(folder, real, court, marked, parameters):
-    """Return registered images, and the volume error (cm) after a similarity and after adjustment."""
+    """Return registered images, and the volume error (cm) after a similarity and after adjustment.
+
+    The errors are NaN where a fixed camera is not registered.
+    """
     network, images, sizes = model.read(folder)
+    if not {image_names.static(camera.name) for camera in real.cameras} <= set(images):
+        return len(images), np.nan, np.nan
     placed = {c.name: images.index(image_names.static(c.name)) for c in real.cameras}
     size_of = {name: sizes[network.lens_of_image[at]] for name, at in placed.items()}
     sfm = control_points.fixed_cameras(network, placed, size_of)
