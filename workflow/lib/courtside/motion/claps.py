@@ -25,10 +25,8 @@ REACH_S = 0.08  # the contact is sought about the first guess
 IN_FRONT = 0.5  # of the arm's length: hands are before the shoulders by that at least
 LEVEL = 0.6  # of the arm's length: they are above or below the shoulders by that at most
 STRAIGHT_DEG = 45.0  # elbows bend less on the way, median of both arms
-ON_THE_WAY_S = (
-    -0.4,
-    -0.1,
-)  # before hands meet; then they hide the arms from a camera that they point to
+# Before hands meet; when they do, they hide the arms from a camera that they point to.
+ON_THE_WAY_S = (-0.4, -0.1)
 REBOUND_NOISE = 1.5  # standard deviations of the noise that hands must part by as well
 MOST_UNCERTAIN_S = 0.04
 TOUCHING_M = 0.14  # wrists of hands that touch, seen by any device, are not further apart

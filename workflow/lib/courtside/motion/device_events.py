@@ -60,16 +60,10 @@ def _with_claps(source, happened, devices):
     Hands that point to a depth camera hide what is behind them: it sees bent arms where its colour does not.
     """
     own = happened[source]
-    shared = next(
-        (
-            each
-            for name, each in happened.items()
-            if devices[name] == devices[source] and each.claps
-        ),
-        own,
-    )
     if own.claps or not own.tposes:
         return own
+    of_device = [each for name, each in happened.items() if devices[name] == devices[source]]
+    shared = next((each for each in of_device if each.claps), own)
     claps = [
         replace(clap, tpose=number)
         for clap in shared.claps
