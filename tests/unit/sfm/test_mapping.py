@@ -189,6 +189,28 @@ def test_a_failure_is_tried_again_and_the_best_model_kept(synthetic, tmp_path, m
     assert mapping.map_images(path, names, tmp_path / "c", **options)["n_models"] == 0
 
 
+def test_a_model_with_an_image_that_sees_nothing_is_no_whole_model(
+    synthetic, tmp_path, monkeypatch
+):
+    path, truth = synthetic
+    names, own, seeds = sorted(sfm_made.centres(truth)), mapping._map, []
+
+    def blind(matches_db, images, mapper, seed, options):
+        found = own(matches_db, images, mapper, seed, options)
+        seeds.append(seed)
+        if len(seeds) == 1:
+            seen = found.model.images[found.model.reg_image_ids()[0]]
+            for at, point in enumerate(seen.points2D):
+                if point.has_point3D():
+                    found.model.delete_observation(seen.image_id, at)
+        return found
+
+    monkeypatch.setattr(mapping, "_map", blind)
+    options = {"mapper": "global", "seed": 7}
+    summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=5)
+    assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8], 8, 6)
+
+
 def test_a_model_that_the_disk_cuts_short_is_refused(synthetic, tmp_path, monkeypatch):
     path, truth = synthetic
     names, map_really = sorted(sfm_made.centres(truth)), mapping._map

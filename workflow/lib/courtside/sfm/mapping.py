@@ -9,6 +9,7 @@ import pycolmap
 from courtside.sfm import database
 from courtside.study.errors import InputError
 
+LEAST_POINTS = 6  # an image that sees fewer is nowhere: COLMAP calls it registered all the same
 SOUND_PX = 2.0  # a model with a larger mean reprojection error has folded or lost its lenses
 
 
@@ -28,9 +29,9 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
     options : dict, optional
         Options of COLMAP's pipeline by dotted name, such as `mapper.ba_num_iterations`.
     attempts : int
-        How often to try at most, each time with the next seed, as long as images are missing from the model
-        or it does not fit: the global mapper starts from random places, and now and then its adjustment
-        diverges. The model with most images is kept, of equals that which fits best.
+        How often to try at most, each time with the next seed, as long as images are missing from the model,
+        see next to nothing of it, or it does not fit: the global mapper starts from random places, and now
+        and then its adjustment diverges. The model with most images is kept, of equals that which fits best.
 
     Returns
     -------
@@ -48,7 +49,7 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
         found = _map(matches_db, images, mapper, seed + at, options)
         if best is None or _rank(found) > _rank(best):
             best = found
-        if best.model.num_reg_images() == len(images) and _error_px(best) <= SOUND_PX:
+        if _n_placed(best) == len(images) and _error_px(best) <= SOUND_PX:
             break
     Path(folder).mkdir(parents=True, exist_ok=True)
     best.model.write_binary(str(folder))
@@ -100,7 +101,12 @@ def _map(matches_db, images, mapper, seed, options):
 
 
 def _rank(attempt):
-    return attempt.model.num_reg_images(), _error_px(attempt) <= SOUND_PX, -_error_px(attempt)
+    return _n_placed(attempt), _error_px(attempt) <= SOUND_PX, -_error_px(attempt)
+
+
+def _n_placed(attempt):
+    images = attempt.model.images
+    return sum(images[at].num_points3D >= LEAST_POINTS for at in attempt.model.reg_image_ids())
 
 
 def _error_px(attempt):
