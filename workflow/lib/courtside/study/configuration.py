@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import jsonschema
+import yaml
 
 from courtside.study import (
     artefacts,
@@ -181,18 +182,24 @@ def schema_faults(content, schema, file):
     ]
 
 
+def _rules(schema):
+    """Read a file of the project itself by libyaml: many times as fast, but hostile nesting would kill it."""
+    text = (SCHEMAS / f"{schema}.schema.yaml").read_text(encoding="utf-8")
+    return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+
+
 @functools.cache
 def _validator(schema):
     """Return what checks a kind of file; reading a schema takes longer than checking by it."""
-    rules = yaml_files.read(SCHEMAS / f"{schema}.schema.yaml")
+    rules = _rules(schema)
     if schema == "session":
-        steps = yaml_files.read(SCHEMAS / "config.schema.yaml")
+        steps = _rules("config")
         rules["properties"]["override"] = _overridable(steps)
         rules["$defs"] = steps["$defs"] | rules["$defs"]
     elif schema == "config":
         condition = rules["properties"]["conditions"]["additionalProperties"]["properties"]
         condition["override"] = _overridable(rules)
-        virtual = yaml_files.read(SCHEMAS / "session.schema.yaml")["properties"]["virtual"]
+        virtual = _rules("session")["properties"]["virtual"]
         condition["set"]["properties"] = virtual["properties"]
         condition["vary"]["properties"] = {
             key: {"type": "array", "minItems": 1, "items": value}
