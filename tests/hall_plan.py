@@ -17,8 +17,19 @@ PLAIN = TEXTURES["plain"]
 # What `sfm.model.lens_prior` says of three pictures of this size, written out.
 LENS_MEAN = np.tile([1280, 1, 639.5, 359.5, 0, 0, 0, 0], (3, 1)).astype(float)
 LENS_SIGMA = np.tile([np.inf, 1e-3, 25.6, 25.6, 0.2, 0.2, 2e-3, 2e-3], (3, 1))
-WEIGHTS = {"tie_sigma": 2.0, "click_sigma_px": 0.7, "click_bias_px": 0.5, "click_loss": 4.0}
-THINNING = {"min_angle_deg": 1.5, "max_error_px": 8.0, "max_points": 2000, "seed": 0}
+WEIGHTS = {
+    "images_per_part": 40,
+    "tie_sigma": 2.0,
+    "click_sigma_px": 0.7,
+    "click_bias_px": 0.5,
+    "click_loss": 4.0,
+}
+THINNING = {
+    "min_angle_deg": 1.5,
+    "max_error_px": 8.0,
+    "max_points": 2000,
+    "seed": 0,
+}
 
 
 def from_centre(*offset):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.geometry import control_points, court_adjustment, courts
+from courtside.geometry import control_points, court_adjustment, courts, network_parts
 from courtside.records import clicks, image_names, ties
 from courtside.sfm import model, registration
 from courtside.study import log
@@ -14,24 +14,25 @@ from courtside.study.errors import InputError
 
 def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options):
     network, images, sizes = model.read(Path(summary_json).parent)
-    summary = json.loads(Path(summary_json).read_text())
+    n_models = json.loads(Path(summary_json).read_text())["n_models"]
     fixed = {camera: image_names.static(camera) for camera in cameras}
-    least = {"min_points": min_points, "n_models": summary["n_models"]}
-    outcome = registration.outcome(network, images, fixed, **least)
+    outcome = registration.outcome(network, images, fixed, min_points=min_points, n_models=n_models)
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
     found = control_points.fixed_cameras(network, placed, size_of)
-    known, fault, adjusted, residual_px = None, "", network, np.nan
+    known, fault, residual_px = None, "", np.nan
+    places = control_points.centres(network), network.xyz
     if not outcome:
         try:
-            known, adjusted = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
-            residual_px = control_points.residual_spread(adjusted)
+            known, parts = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
+            places = network_parts.centres(parts), network_parts.points(parts)
+            residual_px = network_parts.residual_spread(parts)
         except InputError as error:
             fault = str(error)
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
     seen = [registration.n_seen(network, images, fixed[camera]) for camera in placed]
-    places = images, control_points.centres(adjusted), adjusted.xyz
-    ties.write(ties_npz, ties.Record(outcome, fault, found, seen, known, *places, residual_px))
+    about = outcome, fault, found, seen, known, images, *places, residual_px
+    ties.write(ties_npz, ties.Record(*about))
 
 
 def adjust(

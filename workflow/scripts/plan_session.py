@@ -8,7 +8,7 @@ from courtside.study import log, plans
 from courtside.study.errors import InputError
 
 THINNING = ("min_angle_deg", "max_error_px", "max_points", "seed")
-WEIGHTS = ("tie_sigma", "click_sigma_px", "click_bias_px", "click_loss")
+WEIGHTS = ("images_per_part", "tie_sigma", "click_sigma_px", "click_bias_px", "click_loss")
 
 
 def main(plan_yaml, court_yaml, growth, over_court, *, heights_m, adjust):

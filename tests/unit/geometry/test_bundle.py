@@ -151,6 +151,23 @@ def test_more_knowledge_pulls_towards_itself():
     assert np.abs(found.difference(truth)).max() < 1e-6
 
 
+def test_the_mean_of_quadratics_is_the_mean_of_their_values():
+    truth, rng = networks_made.make(2, 10), np.random.default_rng(3)
+    several = []
+    for seed in range(3):
+        root = rng.normal(size=(truth.n_columns, truth.n_columns))
+        about = networks_made.disturbed(truth, seed, scale=1e-4)
+        several.append(bundle.Quadratic(about, root @ root.T, rng.normal(size=truth.n_columns)))
+    together = bundle.mean(several)
+
+    def value(quadratic, network):
+        return bundle.cost(network, quadratic) - bundle.cost(network)
+
+    at, other = (networks_made.disturbed(truth, seed, scale=1e-3) for seed in (8, 9))
+    expected = np.mean([value(each, at) - value(each, other) for each in several])
+    assert value(together, at) - value(together, other) == pytest.approx(expected, rel=1e-3)
+
+
 def test_a_point_behind_an_image_says_nothing_there():
     truth = with_known_points(networks_made.make(3, 12, noise_px=0.5), 6)
     centre = -truth.cam_from_world[0, :, :3].T @ truth.cam_from_world[0, :, 3]

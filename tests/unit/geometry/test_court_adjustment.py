@@ -7,14 +7,27 @@ import numpy as np
 import pytest
 
 import networks_made
-from courtside.geometry import alignment, bundle, control_points, court_adjustment, courts
+from courtside.geometry import (
+    alignment,
+    bundle,
+    control_points,
+    court_adjustment,
+    courts,
+    network_parts,
+)
 from courtside.study.errors import InputError
 from scene import opencv_projection
 
 COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 FIXED = {"side": 0, "back": 1}
 SIZES = dict.fromkeys(FIXED, networks_made.SIZE)
-EVERYTHING = {"min_angle_deg": 0, "max_error_px": 1e3, "max_points": 10**6, "seed": 0}
+EVERYTHING = {
+    "images_per_part": 100,
+    "min_angle_deg": 0,
+    "max_error_px": 1e3,
+    "max_points": 10**6,
+    "seed": 0,
+}
 GAUSSIAN = {"click_sigma_px": 2.0, "click_bias_px": 0.0, "click_loss": np.inf}
 SIGMA_PX = 2.0 * 1280 / 3840  # of a click in these pictures
 
@@ -50,7 +63,8 @@ def assert_cameras(found, true, tolerance_m=1e-5):
 def test_exact_ties_and_clicks_give_the_true_cameras_whatever_the_frame():
     truth = made(6, 60)
     clicks = clicks_of(truth)
-    ties, whole = condense(networks_made.disturbed(truth, scale=0.3), clicks)
+    ties, (part,) = condense(networks_made.disturbed(truth, scale=0.3), clicks)
+    whole = part.network
     found = court_adjustment.solve(ties, clicks, COURT, **GAUSSIAN)
     assert_cameras(found.cameras, networks_made.fixed_cameras(truth))
     assert [c.name for c in found.cameras] == ["side", "back"]
@@ -61,7 +75,8 @@ def test_exact_ties_and_clicks_give_the_true_cameras_whatever_the_frame():
 
 def test_condensed_ties_agree_with_the_whole_adjustment_of_other_clicks():
     truth = made(4, 40, noise_px=0.5)
-    ties, whole = condense(truth, clicks_of(truth))
+    ties, (part,) = condense(truth, clicks_of(truth))
+    whole = part.network
     clicks = clicks_of(truth, SIGMA_PX, seed=1)
     clicks["side"][3] = np.nan
     found = court_adjustment.solve(ties, clicks, COURT, **GAUSSIAN)
@@ -240,8 +255,27 @@ def test_an_image_that_no_tie_sees_changes_nothing():
 
 def test_thinning_keeps_the_points_asked_for():
     truth = made(4, 60, noise_px=0.5)
-    few = {"min_angle_deg": 5, "max_error_px": 10, "max_points": 20, "seed": 1}
-    assert len(condense(truth, clicks_of(truth), thinning=few)[1].xyz) == 20
+    few = EVERYTHING | {"min_angle_deg": 5, "max_points": 20}
+    assert len(condense(truth, clicks_of(truth), thinning=few)[1][0].network.xyz) == 20
+
+
+def test_parts_share_images_out_and_find_the_cameras_together():
+    truth = made(30, 60, noise_px=0.3)
+    clicks, parted = clicks_of(truth, noise_px=0.1), EVERYTHING | {"images_per_part": 10}
+    whole, together = condense(truth, clicks)[0], condense(truth, clicks, thinning=parted)
+    ties, parts = together
+    assert [len(part.images) for part in parts] == [12, 12, 12]
+    found, one = (court_adjustment.solve(t, clicks, COURT, **GAUSSIAN) for t in (ties, whole))
+    for mine, its, true in zip(
+        found.cameras, one.cameras, networks_made.fixed_cameras(truth), strict=True
+    ):
+        error = np.linalg.norm(its.centre_in_world - true.centre_in_world)
+        assert np.linalg.norm(mine.centre_in_world - its.centre_in_world) < error
+    # What one part knows, not the sum over three.
+    share = np.trace(ties.knowledge.information) / np.trace(whole.knowledge.information)
+    assert 0.3 < share < 1
+    place = network_parts.centres(parts)
+    np.testing.assert_allclose(place, control_points.centres(truth), atol=0.05)
 
 
 def test_clicks_of_one_camera_give_no_frame():
@@ -281,7 +315,8 @@ def from_side(cameras):
 def test_ties_without_a_court_give_the_true_cameras_up_to_frame_and_scale():
     truth = made(6, 60)
     start = networks_made.in_random_frame(networks_made.disturbed(truth, scale=0.3))
-    ties, whole = court_adjustment.condense_free(start, FIXED, SIZES, **FREE)
+    ties, (part,) = court_adjustment.condense_free(start, FIXED, SIZES, **FREE)
+    whole = part.network
     found = court_adjustment.free(ties)
     assert [c.name for c in found.cameras] == ["side", "back"]
     exact = networks_made.fixed_cameras(truth)

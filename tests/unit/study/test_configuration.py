@@ -338,6 +338,7 @@ def test_a_fault_of_a_condition_names_key_and_value(folder, condition, parts):
         *[("adjust_network", "click_sigma_px", v) for v in (0,)],
         *[("adjust_network", "click_bias_px", v) for v in (-0.1, "x")],
         *[("adjust_network", "click_loss", v) for v in (0, float("inf"))],
+        *[("adjust_network", "images_per_part", v) for v in (9, 40.5)],
         *[("adjust_network", "min_angle_deg", v) for v in (-1, 91)],
         *[("adjust_network", "max_error_px", v) for v in (0,)],
         *[("adjust_network", "max_points", v) for v in (19,)],

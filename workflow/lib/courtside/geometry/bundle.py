@@ -28,6 +28,17 @@ class Quadratic:
     gradient: np.ndarray
 
 
+def mean(knowledge):
+    """Return the mean of what several `Quadratic` say of the same parameters, about the first's reference.
+
+    It knows no more than they do one by one: their errors may be the same.
+    """
+    reference = knowledge[0].reference
+    gradients = [k.gradient + k.information @ reference.difference(k.reference) for k in knowledge]
+    information = np.mean([k.information for k in knowledge], axis=0)
+    return Quadratic(reference, information, np.mean(gradients, axis=0))
+
+
 @dataclass(frozen=True, eq=False)
 class Normal:
     """Normal equations of a network with its points eliminated.

@@ -9,7 +9,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from courtside.geometry import alignment, bundle, control_points, exchanged_cameras, uncertainty
+from courtside.geometry import (
+    alignment,
+    bundle,
+    control_points,
+    exchanged_cameras,
+    network_parts,
+    uncertainty,
+)
 from courtside.geometry.network import FLEX, IMAGE, POSE
 from courtside.study.errors import InputError
 
@@ -65,13 +72,14 @@ def condense(
     clicks,
     court,
     *,
+    images_per_part,
     tie_sigma_px,
     tie_loss,
     click_sigma_px,
     click_loss,
     **thinning,
 ):
-    """Adjust a whole network with its clicks, and keep what its ties say of the fixed cameras.
+    """Adjust a network with its clicks, part by part, and keep what its ties say of the fixed cameras.
 
     Parameters
     ----------
@@ -84,6 +92,8 @@ def condense(
     clicks : dict of str to (P, 2) float
         By camera; NaN where not clicked.
     court : courtside.geometry.courts.Court
+    images_per_part : int
+        See `network_parts.split`.
     tie_sigma_px : float
         Weight of the ties. Their errors are not independent: it is larger than a feature's own noise.
     tie_loss, click_loss : float
@@ -96,8 +106,9 @@ def condense(
     Returns
     -------
     ties : Ties
-    network : courtside.geometry.network.Network
-        All images and the chosen points after adjustment, in the court's frame.
+        The mean over the parts.
+    parts : list of courtside.geometry.network_parts.Part
+        With their chosen points after adjustment, in the court's frame.
 
     Raises
     ------
@@ -109,15 +120,29 @@ def condense(
     exchanged_cameras.refuse(court, cameras, clicks)
     world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
     network = control_points.transform(network, world_from_sfm)
-    network = _ties_of(network, tie_sigma_px, tie_loss, thinning)
+    marked = {
+        "clicks": [clicks[name] for name in names],
+        "sigma_px": [click_sigma(click_sigma_px, sizes[name]) for name in names],
+        "loss_scale": click_loss,
+    }
+    parts = []
+    for part in network_parts.split(network, list(fixed.values()), images_per_part):
+        tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
+        parts.append(replace(part, network=_adjusted(tied, part.fixed, court, **marked)))
+    return _condensed(parts, names, sizes), parts
+
+
+def _adjusted(network, fixed, court, *, clicks, sigma_px, loss_scale):
+    """Return a network adjusted with clicked court points, without these."""
     n_ties, n_seen = len(network.xyz), len(network.xy)
+    by_image = [dict(zip(fixed.tolist(), each, strict=True)) for each in (clicks, sigma_px)]
     both = control_points.add(
         network,
         court.xyz,
         court.sigma_m,
-        {fixed[name]: clicks[name] for name in names},
-        sigma_px={fixed[name]: click_sigma(click_sigma_px, sizes[name]) for name in names},
-        loss_scale=click_loss,
+        by_image[0],
+        sigma_px=by_image[1],
+        loss_scale=loss_scale,
     )
     if not np.isfinite(bundle.cost(both)):
         raise InputError(
@@ -125,18 +150,17 @@ def condense(
             "structure from motion went wrong: take more bridging images"
         )
     both, _ = bundle.adjust(both, max_iterations=20, tolerance=1e-7)
-    tied = control_points.select(
+    return control_points.select(
         both, np.arange(len(both.xyz)) < n_ties, np.arange(len(both.xy)) < n_seen
     )
-    return _condensed(tied, fixed, sizes), tied
 
 
-def condense_free(network, fixed, sizes, *, tie_sigma_px, tie_loss, **thinning):
+def condense_free(network, fixed, sizes, *, images_per_part, tie_sigma_px, tie_loss, **thinning):
     """Adjust a network that no court scales, in a frame of its own.
 
     Parameters
     ----------
-    network, fixed, sizes, tie_sigma_px, tie_loss, **thinning
+    network, fixed, sizes, images_per_part, tie_sigma_px, tie_loss, **thinning
         As for `condense`.
 
     Returns
@@ -144,12 +168,16 @@ def condense_free(network, fixed, sizes, *, tie_sigma_px, tie_loss, **thinning):
     ties : Ties
         In the frame of `control_points.free_frame`: the unit is the distance between the first two fixed
         cameras.
-    network : courtside.geometry.network.Network
+    parts : list of courtside.geometry.network_parts.Part
     """
-    network = _ties_of(_in_free_frame(network, fixed), tie_sigma_px, tie_loss, thinning)
-    network, _ = bundle.adjust(network, max_iterations=20, tolerance=1e-7)
-    network = _in_free_frame(network, fixed)  # which nothing held in place
-    return _condensed(network, fixed, sizes), network
+    names, parts = tuple(fixed), []
+    network = _in_free_frame(network, list(fixed.values()))
+    for part in network_parts.split(network, list(fixed.values()), images_per_part):
+        tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
+        tied, _ = bundle.adjust(tied, max_iterations=20, tolerance=1e-7)
+        tied = _in_free_frame(tied, part.fixed)  # which nothing held in place
+        parts.append(replace(part, network=tied))
+    return _condensed(parts, names, sizes), parts
 
 
 def _ties_of(network, sigma_px, loss_scale, thinning):
@@ -157,14 +185,13 @@ def _ties_of(network, sigma_px, loss_scale, thinning):
     return control_points.weigh(network, sigma_px=sigma_px, loss_scale=loss_scale)
 
 
-def _condensed(network, fixed, sizes):
-    knowledge = control_points.what_ties_say(network, list(fixed.values()))
-    return Ties(tuple(fixed), tuple(sizes[name] for name in fixed), knowledge)
+def _condensed(parts, names, sizes):
+    said = [control_points.what_ties_say(part.network, part.fixed) for part in parts]
+    return Ties(names, tuple(sizes[name] for name in names), bundle.mean(said))
 
 
 def _in_free_frame(network, fixed):
-    frame_from_sfm = control_points.free_frame(network, list(fixed.values()))
-    return control_points.transform(network, frame_from_sfm)
+    return control_points.transform(network, control_points.free_frame(network, fixed))
 
 
 def free(ties):

@@ -9,6 +9,7 @@ from courtside.geometry import (
     control_points,
     court_adjustment,
     court_errors,
+    network_parts,
     planned_ties,
     uncertainty,
     walk_path,
@@ -55,7 +56,18 @@ class Prediction:
 
 
 def predict(
-    fixed, walked, court, hall_m, texture, lens_prior, *, seed, tie_sigma, thinning, **clicking
+    fixed,
+    walked,
+    court,
+    hall_m,
+    texture,
+    lens_prior,
+    *,
+    seed,
+    images_per_part,
+    tie_sigma,
+    thinning,
+    **clicking,
 ):
     """Predict the error over the court with planned fixed cameras and bridging images.
 
@@ -70,6 +82,8 @@ def predict(
     lens_prior : (mean, sigma)
         As for `planned_ties.network`.
     seed : int
+    images_per_part : int
+        See `network_parts.split`.
     tie_sigma : float
         Weight of ties, in their noise: as after a session.
     thinning : dict
@@ -83,11 +97,13 @@ def predict(
     """
     rng = np.random.default_rng([seed, len(walked)])
     ties = planned_ties.network(fixed, walked, hall_m, texture, lens_prior, rng)
-    ties = control_points.thin(ties, **thinning)
-    ties = control_points.weigh(ties, sigma_px=tie_sigma * texture.noise_px, loss_scale=np.inf)
     names, sizes = tuple(c.name for c in fixed), tuple(c.size for c in fixed)
-    at = range(len(fixed))
-    knowledge = _what_is_known(ties, at)
+    at, known = range(len(fixed)), []
+    for part in network_parts.split(ties, at, images_per_part):
+        tied = control_points.thin(part.network, **thinning)
+        tied = control_points.weigh(tied, sigma_px=tie_sigma * texture.noise_px, loss_scale=np.inf)
+        known.append(_what_is_known(tied, part.fixed))
+    knowledge, ties = bundle.mean(known), control_points.thin(ties, **thinning)
     n_seen = [np.count_nonzero(ties.image_idx == k) for k in at]
     found = (len(walked), widest_angle_deg(fixed, walked, court), len(ties.xyz), min(n_seen))
     try:
