@@ -185,7 +185,7 @@ def schema_faults(content, schema, file):
 def _rules(schema):
     """Read a file of the project itself by libyaml: many times as fast, but hostile nesting would kill it."""
     text = (SCHEMAS / f"{schema}.schema.yaml").read_text(encoding="utf-8")
-    return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    return yaml.load(text, Loader=yaml.CSafeLoader)
 
 
 @functools.cache
