@@ -92,7 +92,11 @@ def colmap(root, groups, folder, map_minutes):
         if map_minutes:
             options.max_runtime_seconds = round(60 * map_minutes)
         found = pycolmap.incremental_mapping(copy, root, folder, options)
-    max(found.values(), key=lambda each: each.num_reg_images()).write_binary(str(folder))
+    models = [
+        *found.values(),
+        pycolmap.Reconstruction(),
+    ]  # an empty one where it was stopped too early
+    max(models, key=lambda each: each.num_reg_images()).write_binary(str(folder))
     watch.stop("mapping")
     return watch
 
