@@ -120,30 +120,22 @@ def condense(
     exchanged_cameras.refuse(court, cameras, clicks)
     world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
     network = control_points.transform(network, world_from_sfm)
-    marked = {
-        "clicks": [clicks[name] for name in names],
-        "sigma_px": [click_sigma(click_sigma_px, sizes[name]) for name in names],
-        "loss_scale": click_loss,
-    }
+    seen = [clicks[name] for name in names]
+    sigma_px = [click_sigma(click_sigma_px, sizes[name]) for name in names]
     parts = []
     for part in network_parts.split(network, list(fixed.values()), images_per_part):
         tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
-        parts.append(replace(part, network=_adjusted(tied, part.fixed, court, **marked)))
+        at = part.fixed.tolist()
+        marked = {"clicks": dict(zip(at, seen, strict=True)), "loss_scale": click_loss}
+        marked["sigma_px"] = dict(zip(at, sigma_px, strict=True))
+        parts.append(replace(part, network=_adjusted(tied, court, **marked)))
     return _condensed(parts, names, sizes), parts
 
 
-def _adjusted(network, fixed, court, *, clicks, sigma_px, loss_scale):
+def _adjusted(network, court, **marked):
     """Return a network adjusted with clicked court points, without these."""
     n_ties, n_seen = len(network.xyz), len(network.xy)
-    by_image = [dict(zip(fixed.tolist(), each, strict=True)) for each in (clicks, sigma_px)]
-    both = control_points.add(
-        network,
-        court.xyz,
-        court.sigma_m,
-        by_image[0],
-        sigma_px=by_image[1],
-        loss_scale=loss_scale,
-    )
+    both = control_points.add(network, court.xyz, court.sigma_m, **marked)
     if not np.isfinite(bundle.cost(both)):
         raise InputError(
             "court points: expected all before the cameras that saw them, found some behind after alignment; "
