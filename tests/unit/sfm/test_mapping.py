@@ -211,6 +211,27 @@ def test_a_model_with_an_image_that_sees_nothing_is_no_whole_model(
     assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8], 8, 6)
 
 
+@pytest.mark.parametrize(("mapper", "held"), [("global", True), ("incremental", False)])
+def test_from_the_third_attempt_on_lenses_are_held(synthetic, tmp_path, monkeypatch, mapper, held):
+    path, truth = synthetic
+    own, asked = mapping._map, []
+
+    def failing(matches_db, images, mapper, seed, options):
+        asked.append(options)
+        found = own(matches_db, images, mapper, seed, options)
+        return found._replace(model=pycolmap.Reconstruction()) if len(asked) < 4 else found
+
+    monkeypatch.setattr(mapping, "_map", failing)
+    names, options = sorted(sfm_made.centres(truth)), {"min_num_matches": 14}
+    summary = mapping.map_images(
+        path, names, tmp_path / "a", mapper=mapper, seed=0, options=options, attempts=4
+    )
+    assert summary["n_registered"] == 6
+    key = "mapper.bundle_adjustment.refine_extra_params"
+    assert [each.get(key, True) for each in asked] == [True, True, not held, not held]
+    assert all(each["min_num_matches"] == 14 for each in asked)
+
+
 def test_a_model_that_the_disk_cuts_short_is_refused(synthetic, tmp_path, monkeypatch):
     path, truth = synthetic
     names, map_really = sorted(sfm_made.centres(truth)), mapping._map

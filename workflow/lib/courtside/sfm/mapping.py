@@ -10,6 +10,9 @@ from courtside.sfm import database
 from courtside.study.errors import InputError
 
 LEAST_POINTS = 6  # an image that sees fewer is nowhere: COLMAP calls it registered all the same
+# A lens that one image alone knows, a fixed camera's, can run away in the mapper's own adjustment.
+HELD = {"global": {"mapper.bundle_adjustment.refine_extra_params": False}}
+HELD_FROM = 2  # attempts as usual before it is held
 SOUND_PX = 2.0  # a model with a larger mean reprojection error has folded or lost its lenses
 
 
@@ -31,7 +34,8 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
     attempts : int
         How often to try at most, each time with the next seed, as long as images are missing from the model,
         see next to nothing of it, or it does not fit: the global mapper starts from random places, and now
-        and then its adjustment diverges. The model with most images is kept, of equals that which fits best.
+        and then its adjustment diverges. From the third on lenses stay without distortion there. The model
+        with most images is kept, of equals that which fits best.
 
     Returns
     -------
@@ -46,7 +50,8 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
     """
     best = None
     for at in range(max(attempts, 1)):
-        found = _map(matches_db, images, mapper, seed + at, options)
+        held = HELD.get(mapper, {}) if at >= HELD_FROM else {}
+        found = _map(matches_db, images, mapper, seed + at, held | (options or {}))
         if best is None or _rank(found) > _rank(best):
             best = found
         if _n_placed(best) == len(images) and _error_px(best) <= SOUND_PX:
@@ -128,7 +133,7 @@ def _options(mapper, images, seed, changes):
         pipeline.min_model_size = 3
     _everywhere(pipeline, "random_seed", seed)
     _everywhere(pipeline, "num_threads", 1)  # with more, sums depend on who comes first
-    for name, value in (changes or {}).items():
+    for name, value in changes.items():
         *parents, last = name.split(".")
         owner = pipeline
         for parent in parents:
