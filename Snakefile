@@ -6,7 +6,7 @@ from snakemake.utils import min_version
 
 min_version("9.27.1")
 
-# Millions of objects make a plan, and all stay: to look for garbage among them as often as usual takes a tenth of the time.
+# Millions of objects make a plan, and all stay: to look for garbage among them as often as usual takes a seventh of the time.
 gc.freeze()
 gc.set_threshold(200_000, 20, 20)
 

@@ -28,7 +28,7 @@ import pycolmap
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.geometry import alignment, control_points, court_adjustment, court_errors, courts
 from courtside.records import clicks, image_names, truth
-from courtside.sfm import database, features, grid, mapping, matching, model
+from courtside.sfm import database, features, grid, mapping, matching, model, registration
 from courtside.study import yaml_files
 
 ROOT = Path(__file__).parents[1]
@@ -92,11 +92,9 @@ def colmap(root, groups, folder, map_minutes):
         if map_minutes:
             options.max_runtime_seconds = round(60 * map_minutes)
         found = pycolmap.incremental_mapping(copy, root, folder, options)
-    models = [
-        *found.values(),
-        pycolmap.Reconstruction(),
-    ]  # an empty one where it was stopped too early
-    max(models, key=lambda each: each.num_reg_images()).write_binary(str(folder))
+    none = pycolmap.Reconstruction()  # where it was stopped too early
+    largest = max(found.values(), key=lambda each: each.num_reg_images(), default=none)
+    largest.write_binary(str(folder))
     watch.stop("mapping")
     return watch
 
@@ -104,17 +102,17 @@ def colmap(root, groups, folder, map_minutes):
 def errors(folder, real, court, marked, parameters):
     """Return registered images, and the volume error (cm) after a similarity and after adjustment.
 
-    The errors are NaN where a fixed camera is not registered.
+    The errors are NaN where the study would call a fixed camera not placed.
     """
     network, images, sizes = model.read(folder)
-    if not {image_names.static(camera.name) for camera in real.cameras} <= set(images):
+    options = dict(parameters["adjust_network"])
+    fixed = {camera.name: image_names.static(camera.name) for camera in real.cameras}
+    if registration.outcome(network, images, fixed, min_points=options.pop("min_points")):
         return len(images), np.nan, np.nan
-    placed = {c.name: images.index(image_names.static(c.name)) for c in real.cameras}
+    placed = {name: images.index(image) for name, image in fixed.items()}
     size_of = {name: sizes[network.lens_of_image[at]] for name, at in placed.items()}
     sfm = control_points.fixed_cameras(network, placed, size_of)
     world_from_sfm, _ = alignment.align(court, alignment.reconstruct(sfm, marked))
-    options = dict(parameters["adjust_network"])
-    options.pop("min_points")
     bias_px = options.pop("click_bias_px")
     options["tie_sigma_px"] = options.pop("tie_sigma") * control_points.residual_spread(network)
     ties, _ = court_adjustment.condense(network, placed, size_of, marked, court, **options)

@@ -24,12 +24,7 @@ WEIGHTS = {
     "click_bias_px": 0.5,
     "click_loss": 4.0,
 }
-THINNING = {
-    "min_angle_deg": 1.5,
-    "max_error_px": 8.0,
-    "max_points": 2000,
-    "seed": 0,
-}
+THINNING = {"min_angle_deg": 1.5, "max_error_px": 8.0, "max_points": 2000, "seed": 0}
 
 
 def from_centre(*offset):

@@ -255,8 +255,8 @@ def test_an_image_that_no_tie_sees_changes_nothing():
 
 def test_thinning_keeps_the_points_asked_for():
     truth = made(4, 60, noise_px=0.5)
-    few = EVERYTHING | {"min_angle_deg": 5, "max_points": 20}
-    assert len(condense(truth, clicks_of(truth), thinning=few)[1][0].network.xyz) == 20
+    few = {"min_angle_deg": 5, "max_error_px": 10, "max_points": 20, "seed": 1}
+    assert len(condense(truth, clicks_of(truth), thinning=EVERYTHING | few)[1][0].network.xyz) == 20
 
 
 def test_parts_share_images_out_and_find_the_cameras_together():

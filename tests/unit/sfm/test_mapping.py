@@ -161,31 +161,46 @@ def test_the_door_is_mapped_twice_the_same(door, tmp_path):
         np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-9)
 
 
+def spoil(monkeypatch, change):
+    """Change what the mapper's attempts find: change(number of the attempt, found) -> found.
+
+    Returned is a list that grows by the (seed, options) of each attempt.
+    """
+    own, asked = mapping._map, []
+
+    def spoiled(matches_db, images, mapper, seed, options):
+        asked.append((seed, options))
+        return change(len(asked), own(matches_db, images, mapper, seed, options))
+
+    monkeypatch.setattr(mapping, "_map", spoiled)
+    return asked
+
+
 def test_a_failure_is_tried_again_and_the_best_model_kept(synthetic, tmp_path, monkeypatch):
     """The mapper is made to find nothing, then all images badly placed, then all images."""
     path, truth = synthetic
-    names, own, seeds = sorted(sfm_made.centres(truth)), mapping._map, []
+    names = sorted(sfm_made.centres(truth))
 
-    def unlucky(matches_db, images, mapper, seed, options):
-        found = own(matches_db, images, mapper, seed, options)
-        seeds.append(seed)
-        if len(seeds) == 1:
+    def unlucky(number, found):
+        if number == 1:
             return found._replace(model=pycolmap.Reconstruction(), n_models=0)
-        if len(seeds) == 2:
+        if number == 2:
             for point in found.model.points3D.values():
                 point.xyz = point.xyz + np.array([1.0, 0, 0])
             found.model.update_point_3d_errors()
         return found
 
-    monkeypatch.setattr(mapping, "_map", unlucky)
+    asked = spoil(monkeypatch, unlucky)
     options = {"mapper": "global", "seed": 7}
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=5)
+    seeds = [seed for seed, _ in asked]
     assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8, 9], 9, 6)
-    seeds.clear()
+    asked.clear()
     summary = mapping.map_images(path, names, tmp_path / "b", **options, attempts=2)
+    seeds = [seed for seed, _ in asked]
     assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8], 8, 6)
     assert summary["reprojection_px"] > mapping.SOUND_PX
-    seeds.clear()
+    asked.clear()
     assert mapping.map_images(path, names, tmp_path / "c", **options)["n_models"] == 0
 
 
@@ -193,43 +208,38 @@ def test_a_model_with_an_image_that_sees_nothing_is_no_whole_model(
     synthetic, tmp_path, monkeypatch
 ):
     path, truth = synthetic
-    names, own, seeds = sorted(sfm_made.centres(truth)), mapping._map, []
 
-    def blind(matches_db, images, mapper, seed, options):
-        found = own(matches_db, images, mapper, seed, options)
-        seeds.append(seed)
-        if len(seeds) == 1:
+    def blind(number, found):
+        if number == 1:
             seen = found.model.images[found.model.reg_image_ids()[0]]
             for at, point in enumerate(seen.points2D):
                 if point.has_point3D():
                     found.model.delete_observation(seen.image_id, at)
         return found
 
-    monkeypatch.setattr(mapping, "_map", blind)
-    options = {"mapper": "global", "seed": 7}
+    asked = spoil(monkeypatch, blind)
+    names, options = sorted(sfm_made.centres(truth)), {"mapper": "global", "seed": 7}
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=5)
+    seeds = [seed for seed, _ in asked]
     assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8], 8, 6)
 
 
 @pytest.mark.parametrize(("mapper", "held"), [("global", True), ("incremental", False)])
 def test_from_the_third_attempt_on_lenses_are_held(synthetic, tmp_path, monkeypatch, mapper, held):
     path, truth = synthetic
-    own, asked = mapping._map, []
 
-    def failing(matches_db, images, mapper, seed, options):
-        asked.append(options)
-        found = own(matches_db, images, mapper, seed, options)
-        return found._replace(model=pycolmap.Reconstruction()) if len(asked) < 4 else found
+    def failing(number, found):
+        return found._replace(model=pycolmap.Reconstruction()) if number < 4 else found
 
-    monkeypatch.setattr(mapping, "_map", failing)
+    asked = spoil(monkeypatch, failing)
     names, options = sorted(sfm_made.centres(truth)), {"min_num_matches": 14}
     summary = mapping.map_images(
         path, names, tmp_path / "a", mapper=mapper, seed=0, options=options, attempts=4
     )
     assert summary["n_registered"] == 6
     key = "mapper.bundle_adjustment.refine_extra_params"
-    assert [each.get(key, True) for each in asked] == [True, True, not held, not held]
-    assert all(each["min_num_matches"] == 14 for each in asked)
+    assert [each.get(key, True) for _, each in asked] == [True, True, not held, not held]
+    assert all(each["min_num_matches"] == 14 for _, each in asked)
 
 
 def test_a_model_that_the_disk_cuts_short_is_refused(synthetic, tmp_path, monkeypatch):

@@ -126,8 +126,11 @@ def condense(
     for part in network_parts.split(network, list(fixed.values()), images_per_part):
         tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
         at = part.fixed.tolist()
-        marked = {"clicks": dict(zip(at, seen, strict=True)), "loss_scale": click_loss}
-        marked["sigma_px"] = dict(zip(at, sigma_px, strict=True))
+        marked = {
+            "clicks": dict(zip(at, seen, strict=True)),
+            "sigma_px": dict(zip(at, sigma_px, strict=True)),
+            "loss_scale": click_loss,
+        }
         parts.append(replace(part, network=_adjusted(tied, court, **marked)))
     return _condensed(parts, names, sizes), parts
 

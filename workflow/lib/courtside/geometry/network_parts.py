@@ -13,7 +13,6 @@ from courtside.geometry import control_points
 from courtside.geometry.network import Network
 
 PER_IMAGE = ("cam_from_world", "flex", "lens_of_image", "height_px", "flex_sigma")
-PER_VIEW = ("point_idx", "xy", "sigma_px", "loss_scale")
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,13 +61,10 @@ def split(network, fixed, images_per_part):
 
 
 def _of_images(network, images):
-    seen = np.isin(network.image_idx, images)
-    return replace(
-        network,
-        image_idx=np.searchsorted(images, network.image_idx[seen]),
-        **{name: getattr(network, name)[images] for name in PER_IMAGE},
-        **{name: getattr(network, name)[seen] for name in PER_VIEW},
-    )
+    every_point = np.ones(len(network.xyz), dtype=bool)
+    mine = control_points.select(network, every_point, np.isin(network.image_idx, images))
+    per_image = {name: getattr(network, name)[images] for name in PER_IMAGE}
+    return replace(mine, image_idx=np.searchsorted(images, mine.image_idx), **per_image)
 
 
 def centres(parts):
