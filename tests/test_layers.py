@@ -39,7 +39,7 @@ OWNERS = {
     "ezc3d": "exports",
     "embreex": "virtual",
 }
-TRUTH = ("truth.npz", "TRUE_TAKE", "true_take_file")  # how rules name files of truth
+TRUTH = ("truth.npz", "TRUE_TAKE", "true_take_file", "backdrops")  # how rules name files of truth
 FOR_SCRIPTS = {"courtside", "numpy", "pandas", "cv2", *sys.stdlib_module_names}
 
 
@@ -118,8 +118,8 @@ SHOWING = ("evaluate_", "draw_", "tabulate_", "compare_", "all")
 
 
 def is_truth(name):
-    """Tell files that hold the truth of a simulation."""
-    return "/virtual/" in f"/{name}" and Path(name).name == "truth.npz"
+    """Tell files that hold the truth of a simulation, how far its empty hall is among them."""
+    return "/virtual/" in f"/{name}" and Path(name).name in ("truth.npz", "backdrops.npz")
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.name)
@@ -127,7 +127,7 @@ def test_methods_reach_neither_simulation_nor_truth(path):
     if not path.name.startswith(KNOWING):
         reached = digest.modules_of(path, LIBRARY)
         assert [name for name in sorted(reached) if name.startswith(TRUE_MODULES)] == []
-        assert "truth.npz" not in path.read_text()
+        assert not any(words in path.read_text() for words in ("truth.npz", "backdrops"))
 
 
 def test_only_the_records_of_truth_and_the_simulation_name_its_file():
@@ -159,7 +159,7 @@ def test_only_evaluations_take_truth_files():
         )
         takers += [name] if any(words in taken for words in TRUTH) else []
     assert len(takers) >= 9
-    assert [name for name in takers if not name.startswith("evaluate_")] == []
+    assert [name for name in takers if not name.startswith(KNOWING)] == []
 
 
 @pytest.fixture(scope="module")
@@ -192,7 +192,7 @@ def knowing_methods(jobs):
     }
     showing = {rule for rule, inputs, _ in jobs if measured.intersection(inputs)}
     return sorted(
-        {rule for rule in takers if not rule.startswith("evaluate_")}
+        {rule for rule in takers if not rule.startswith(KNOWING)}
         | {rule for rule in showing if not rule.startswith(SHOWING)}
     )
 

@@ -9,6 +9,9 @@ for session in STUDY.sessions.values():
     if session.virtual is None:
         continue
 
+    filming = [take for take in session.takes.values() if take.videos]
+    backdrops = [f"results/virtual/{session.name}/backdrops.npz"] if filming else []
+
     if session.filmed():
 
         rule:
@@ -23,12 +26,14 @@ for session in STUDY.sessions.values():
                     if session.films_boards()
                     else []
                 ),
+                backdrops=backdrops,
                 clicks=f"results/virtual/{session.name}/court_points.csv",
                 truth=f"results/virtual/{session.name}/truth.npz",
             log:
                 f"results/virtual/logs/simulate_session/{session.name}.log",
             benchmark:
                 f"results/virtual/benchmarks/simulate_session/{session.name}.tsv"
+            priority: int(max((take.virtual["seconds"] for take in filming), default=0))  # as its takes
             threads: 2 if session.virtual["walk_frames"] > 24 else 1
             resources:
                 mem_mb=2000,
@@ -47,6 +52,7 @@ for session in STUDY.sessions.values():
             input:
                 court=court_file(session),
                 body=body_files,
+                backdrops=backdrops if take in filming else [],
             output:
                 videos=list(take.videos.values()),
                 devices=[device.file for device in take.devices.values()],

@@ -8,7 +8,7 @@ from courtside.study.errors import InputError
 from courtside.virtual import capture, layouts
 
 
-def main(court_yaml, folder, *, settings, names, threads):
+def main(court_yaml, folder, *, backdrops_npz, settings, names, threads):
     walks = [capture.WALK] if settings["walk_frames"] else []
     expected = [*layouts.LAYOUTS[settings["layout"]], *walks]
     if sorted(names) != sorted(expected):
@@ -16,7 +16,13 @@ def main(court_yaml, folder, *, settings, names, threads):
             f"session {Path(folder).name}: expected the cameras (and walk) of layout {settings['layout']}, "
             f"{expected}, found {names}; rename them"
         )
-    capture.simulate(capture.Settings(**settings), courts.read(court_yaml), folder, threads=threads)
+    capture.simulate(
+        capture.Settings(**settings),
+        courts.read(court_yaml),
+        folder,
+        backdrops_npz=backdrops_npz,
+        threads=threads,
+    )
 
 
 if __name__ == "__main__":
@@ -24,6 +30,7 @@ if __name__ == "__main__":
     main(
         snakemake.input.court,
         Path(snakemake.output.truth).parent,
+        backdrops_npz=next(iter(snakemake.output.backdrops), None),
         settings=snakemake.params.settings,
         names=snakemake.params.names,
         threads=snakemake.threads,

@@ -13,13 +13,14 @@ def body_folder(files):
     return next(above for above in Path(files[0]).parents if (above / makehuman.MESH).is_file())
 
 
-def main(court_yaml, body_folder, folder, *, settings, take, threads):
+def main(court_yaml, body_folder, folder, *, backdrops_npz, settings, take, threads):
     worn = takes.simulate_take(
         capture.Settings(**settings),
         takes.TakeSettings(**take),
         courts.read(court_yaml),
         body_folder,
         folder,
+        backdrops_npz=backdrops_npz,
         threads=threads,
     )
     for name, posed in worn.items():
@@ -32,6 +33,7 @@ if __name__ == "__main__":
         snakemake.input.court,
         body_folder(snakemake.input.body),
         Path(snakemake.output.truth).parent,
+        backdrops_npz=next(iter(snakemake.input.backdrops), None),
         settings=snakemake.params.settings,
         take=snakemake.params.take,
         threads=snakemake.threads,

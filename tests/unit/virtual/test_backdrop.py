@@ -1,10 +1,13 @@
 """Distances in an empty hall, against planes and boxes whose place is known."""
 
+from dataclasses import fields, replace
+
 import numpy as np
 import pytest
 
 import small_hall
 from courtside.geometry import cameras
+from courtside.study.errors import InputError
 from courtside.virtual import backdrop, paintwork, surfaces
 from courtside.virtual.renderer import Renderer
 
@@ -88,3 +91,23 @@ def test_a_margin_shows_more_of_the_same(renderer, empty):
     middle = slice(60, 120), slice(110, 210)  # the vignette is of the whole picture
     difference = wide.picture[inner][middle].astype(int) - empty.picture[middle]
     assert np.abs(difference).mean() < 4
+
+
+def test_what_is_kept_comes_back_for_the_cameras_asked(empty, tmp_path):
+    path, other = tmp_path / "backdrops.npz", replace(CAMERA, name="other")
+    dark = replace(empty, camera=other, picture=empty.picture // 2)
+    backdrop.write(path, [empty, dark])
+    for found, expected in zip(backdrop.read(path, [other, CAMERA]), [dark, empty], strict=True):
+        for field in fields(expected):
+            one, two = getattr(found, field.name), getattr(expected, field.name)
+            np.testing.assert_array_equal(one, two)
+            assert getattr(one, "dtype", None) == getattr(two, "dtype", None)
+
+
+@pytest.mark.parametrize("change", [{"name": "third"}, {"size": (640, 360)}])
+def test_a_kept_hall_of_other_cameras_is_refused(empty, tmp_path, change):
+    backdrop.write(tmp_path / "backdrops.npz", [empty])
+    with pytest.raises(
+        InputError, match=r"backdrops.npz: expected camera \w+ with .* make it again"
+    ):
+        backdrop.read(tmp_path / "backdrops.npz", [replace(CAMERA, **change)])

@@ -102,6 +102,25 @@ def test_a_take_has_its_files_which_do_not_depend_on_the_number_of_processes(tmp
     assert {row["take"] for row in rows} == {"shot"} and len(rows) == 12
 
 
+def test_a_hall_kept_by_the_session_gives_the_same_films(runner, monkeypatch, tmp_path):
+    one, two, kept = tmp_path / "one" / "shot", tmp_path / "two" / "shot", tmp_path / "kept.npz"
+    capture.simulate(LARGE, COURT, tmp_path / "session", backdrops_npz=kept)
+    take = replace(TAKE, racket=False)  # `side` shakes, and sees more than the session's camera
+    takes.simulate_take(LARGE, take, COURT, None, one)
+    looked, look = [], capture.backdrop.look
+
+    def counted(renderer, camera, margin_px=0):
+        looked.append((camera.name, margin_px > 0))
+        return look(renderer, camera, margin_px)
+
+    monkeypatch.setattr(capture.backdrop, "look", counted)
+    takes.simulate_take(LARGE, take, COURT, None, two, backdrops_npz=kept)
+    assert looked == [("side", True)]
+    assert files(one) == files(two)
+    monkeypatch.delattr(capture.hall, "build")
+    takes.simulate_take(LARGE, replace(take, shake={}), COURT, None, two, backdrops_npz=kept)
+
+
 def test_each_camera_shows_the_truth_at_its_own_time(runner, tmp_path):
     take = replace(TAKE, shake={}, start_s=0.0, seconds=0.2, racket=False)
     takes.simulate_take(LARGE, take, COURT, None, tmp_path)

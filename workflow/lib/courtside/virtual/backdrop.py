@@ -5,8 +5,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from courtside.geometry import cameras
+from courtside.records import npz
+from courtside.study.errors import InputError
 from courtside.virtual import exposure, rays, sampling
 
+FORM = "courtside backdrops 1"
+SPEC = {
+    "camera": ("str", ("C",)),
+    "picture": ("int", ("C", "H", "W", "3")),
+    "solid_m": ("float", ("C", "H", "W")),
+    "net_m": ("float", ("C", "H", "W")),
+    "floor": ("bool", ("C", "H", "W")),
+}
 BAND_RAYS = 1 << 16  # at a time: what fits the processor's cache
 NOTHING = np.float16(np.inf)
 
@@ -90,3 +100,45 @@ def look(renderer, camera, margin_px=0):
     return Backdrop(
         wide, margin_px, picture, solid.reshape(shape), net.reshape(shape), floor.reshape(shape)
     )
+
+
+def write(path, backdrops):
+    """Keep what cameras of one size see of an empty hall, for all takes in it.
+
+    Parameters
+    ----------
+    path : str or Path
+        An npz file, of the form SPEC.
+    backdrops : list of Backdrop
+        Without a margin.
+    """
+    arrays = {name: [getattr(each, name) for each in backdrops] for name in SPEC}
+    npz.write(path, FORM, SPEC, arrays | {"camera": [each.camera.name for each in backdrops]})
+
+
+def read(path, filming):
+    """Return the `Backdrop` of each camera, a list, as `write` kept it.
+
+    Parameters
+    ----------
+    path : str or Path
+    filming : list of courtside.geometry.cameras.Camera
+
+    Raises
+    ------
+    InputError
+        If the file is not such a file, or not of these cameras.
+    """
+    kept = npz.read(path, FORM, SPEC)
+    found = {name: at for at, name in enumerate(kept.pop("camera").tolist())}
+    size = kept["picture"].shape[2:0:-1]
+    for camera in filming:
+        if camera.name not in found or tuple(camera.size) != size:
+            raise InputError(
+                f"{path}: expected camera {camera.name} with {camera.size} px, found {sorted(found)} with "
+                f"{size}; make it again"
+            )
+    return [
+        Backdrop(camera, 0, **{name: part[found[camera.name]] for name, part in kept.items()})
+        for camera in filming
+    ]

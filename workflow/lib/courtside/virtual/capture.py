@@ -116,10 +116,6 @@ class Studio:
         """Return where the court's points really are, (P, 3) m."""
         return self._renderer.scene.court_xyz
 
-    def empty_hall(self, index):
-        """Return what fixed camera `index` sees, without people and without noise."""
-        return self._renderer.render(self.fixed[index])
-
     def backdrop(self, index, margin_px=0):
         """Return what fixed camera `index` sees without people, and how far away that is."""
         return backdrop.look(self._renderer, self.fixed[index], margin_px)
@@ -169,7 +165,7 @@ def plan(settings, court):
     return fixed, walked
 
 
-def simulate(settings, court, folder, *, threads=1):
+def simulate(settings, court, folder, *, backdrops_npz=None, threads=1):
     """Film a session.
 
     Parameters
@@ -179,6 +175,8 @@ def simulate(settings, court, folder, *, threads=1):
     folder : str or Path
         Gets `{camera}.mp4` for each camera of the layout, `court_points.csv`, `truth.npz`, and `walk.mp4`
         and `boards/{camera}/*.png` where asked for; each file appears under its name only when whole.
+    backdrops_npz : str, Path or None
+        Where to keep the empty hall for takes, `backdrop.write`, if at all.
     threads : int
         Processes that render; the files do not depend on it.
 
@@ -191,9 +189,11 @@ def simulate(settings, court, folder, *, threads=1):
     fixed, walked = plan(settings, court)
     with crews.crew(Studio, (settings, court), threads) as call:
         court_xyz = next(call("court_xyz", [()]))
-        empty = list(call("empty_hall", [(at,) for at in range(len(fixed))]))
-        for at, (camera, picture) in enumerate(zip(fixed, empty, strict=True)):
-            _film_fixed(settings, folder, at, camera, picture)
+        empty = list(call("backdrop", [(at,) for at in range(len(fixed))]))
+        for at, (camera, seen) in enumerate(zip(fixed, empty, strict=True)):
+            _film_fixed(settings, folder, at, camera, seen.picture)
+        if backdrops_npz is not None:
+            backdrop.write(backdrops_npz, empty)
         if settings.walk_frames:
             frames = call("walk_picture", [(at,) for at in range(settings.walk_frames)])
             _film_walk(settings, folder, walked, frames)
@@ -208,6 +208,38 @@ def simulate(settings, court, folder, *, threads=1):
     click_records.write(folder / "court_points.csv", marked, court.points)
     walks = {WALK: _true_walk(walked, settings.walk_frames)} if settings.walk_frames else {}
     truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz)
+
+
+def backdrops(settings, court, margins, *, kept_npz=None, threads=1):
+    """Return what fixed cameras see of the empty hall, a dict of int to `backdrop.Backdrop`.
+
+    Parameters
+    ----------
+    settings : Settings
+    court : courtside.geometry.courts.Court
+    margins : dict of int to int
+        For each camera, by its place in the layout, how much more is needed on each side, px.
+    kept_npz : str, Path or None
+        What `simulate` kept of this session, which has no margins; without it the hall is built.
+    threads : int
+        Processes that render what is not kept.
+
+    Raises
+    ------
+    InputError
+        If that file is damaged or of other cameras.
+    """
+    kept = [at for at, margin in margins.items() if kept_npz is not None and not margin]
+    seen = {}
+    if kept:
+        fixed = plan(settings, court)[0]
+        seen = dict(zip(kept, backdrop.read(kept_npz, [fixed[at] for at in kept]), strict=True))
+    others = [(at, margin) for at, margin in margins.items() if at not in seen]
+    if others:
+        with crews.crew(Studio, (settings, court), min(threads, len(others))) as call:
+            looks = call("backdrop", others)
+            seen |= {at: look for (at, _), look in zip(others, looks, strict=True)}
+    return seen
 
 
 def _film_fixed(settings, folder, at, camera, picture):

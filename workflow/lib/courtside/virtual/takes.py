@@ -218,7 +218,7 @@ def perform(take, court, body_folder):
     return athletes
 
 
-def simulate_take(settings, take, court, body_folder, folder, *, threads=1):
+def simulate_take(settings, take, court, body_folder, folder, *, backdrops_npz=None, threads=1):
     """Film a take with the fixed cameras of a virtual session, and record it with the take's devices.
 
     Parameters
@@ -232,6 +232,8 @@ def simulate_take(settings, take, court, body_folder, folder, *, threads=1):
     folder : str or Path
         Gets `{camera}.mp4` for each camera, `{device}.bag` for each depth camera, `racket.csv` and
         `truth.npz`; its name is the take's. Each file appears under its name only when whole.
+    backdrops_npz : str, Path or None
+        The session's empty hall, if `capture.simulate` kept it; otherwise it is built again.
     threads : int
         Processes, each of which films cameras; the files do not depend on it.
 
@@ -245,18 +247,19 @@ def simulate_take(settings, take, court, body_folder, folder, *, threads=1):
     ValueError
         If the take has cameras that the layout has not.
     InputError
-        If the body's files are damaged or the disk refuses a file.
+        If the files of the body or of the hall are damaged, or the disk refuses a file.
     """
     folder, preset = Path(folder), presets.PRESETS[settings.preset]
     chosen = take.filming(settings.layout)
     cameras = {at: capture.plan(settings, court)[0][at] for at in chosen}
     shaken = {at: take.shaking(camera, at) for at, camera in cameras.items()}
-    margins = [(at, each.reach_px() if each else 0) for at, each in shaken.items()]
+    margins = {at: each.reach_px() if each else 0 for at, each in shaken.items()}
     films = [(at, folder / f"{camera.name}.mp4") for at, camera in cameras.items()]
     workers = min(threads, len(chosen))
     if films:
-        with crews.crew(capture.Studio, (settings, court), workers) as call:
-            backdrops = dict(zip(chosen, call("backdrop", margins), strict=True))
+        backdrops = capture.backdrops(
+            settings, court, margins, kept_npz=backdrops_npz, threads=workers
+        )
         with crews.crew(Set, (take, preset, court, body_folder, backdrops), workers) as call:
             for name in call("film", films):
                 log.logger.info("%s: filmed", name)
