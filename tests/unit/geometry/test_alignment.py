@@ -59,6 +59,13 @@ def test_clicks_are_reconstructed_in_the_cameras_frame():
         np.testing.assert_allclose(centre, known.centre_in_world, atol=1e-6)
 
 
+def test_clicks_in_a_camera_that_is_not_there_take_no_part():
+    fixed = fixed_cameras()
+    clicks = clicks_of(fixed)
+    found = alignment.reconstruct(fixed, clicks | {"third": clicks["back"] + 50})
+    np.testing.assert_allclose(found, COURT.xyz, atol=1e-7)
+
+
 def test_the_papers_frame_of_exact_points_is_the_world():
     frame = alignment.paper_frame(COURT, IN_SFM)
     assert_inverse(frame)

@@ -168,6 +168,19 @@ def test_the_mean_of_quadratics_is_the_mean_of_their_values():
     assert value(together, at) - value(together, other) == pytest.approx(expected, rel=1e-3)
 
 
+def test_small_and_large_networks_follow_the_same_equations(monkeypatch):
+    network = networks_made.disturbed(
+        with_known_points(networks_made.make(3, 20), 6), 5, scale=1e-3
+    )
+    dense = bundle.normal_equations(network)
+    monkeypatch.setattr(bundle, "SMALL", 0)
+    large = bundle.normal_equations(network)
+    np.testing.assert_allclose(dense.information, large.information, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(dense.gradient, large.gradient, rtol=1e-9, atol=1e-6)
+    step = np.random.default_rng(6).normal(size=len(dense.gradient))
+    np.testing.assert_allclose(dense.back(step), large.back(step), rtol=1e-9, atol=1e-9)
+
+
 def test_a_point_behind_an_image_says_nothing_there():
     truth = with_known_points(networks_made.make(3, 12, noise_px=0.5), 6)
     centre = -truth.cam_from_world[0, :, :3].T @ truth.cam_from_world[0, :, 3]

@@ -9,7 +9,7 @@ from scipy import stats
 from scipy.spatial.transform import Rotation
 
 import scene
-from courtside.geometry import court_errors, courts, similarity
+from courtside.geometry import court_errors, courts
 
 COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 CAMERAS = scene.ring(3, dist=(-0.05, 0.01, 1e-3, 0, 0))
@@ -24,30 +24,6 @@ def test_the_volume_is_a_grid_over_the_court():
     np.testing.assert_allclose(grid[[0, 5, 35], 1], [0, 13.4 / 6, 0])
     assert len(np.unique(grid.round(9), axis=0)) == len(grid)
     assert court_errors.volume(COURT, [0.5], 2, 3)[:, 2].tolist() == [0.5] * 6
-
-
-def test_true_cameras_displace_nothing():
-    xyz = scene.points(20)
-    assert np.abs(court_errors.displaced(CAMERAS, CAMERAS, xyz) - xyz).max() < 1e-6
-
-
-def test_cameras_in_another_frame_displace_by_that_frame():
-    b_from_a = similarity.Sim3(
-        1.02, Rotation.from_rotvec([0, 0, 0.01]).as_matrix(), np.array([0.05, 0, 0])
-    )
-    xyz = scene.points(20)
-    moved = [b_from_a.camera(camera) for camera in CAMERAS]
-    turned = np.array(
-        [[np.cos(0.01), -np.sin(0.01), 0], [np.sin(0.01), np.cos(0.01), 0], [0, 0, 1]]
-    )
-    expected = 1.02 * xyz @ turned.T + [0.05, 0, 0]
-    found = court_errors.displaced(moved, CAMERAS, xyz)
-    np.testing.assert_allclose(found, expected, atol=1e-6)
-
-
-def test_a_camera_that_is_not_there_takes_no_part():
-    xyz = scene.points(5)
-    assert np.abs(court_errors.displaced(CAMERAS[:2], CAMERAS, xyz) - xyz).max() < 1e-6
 
 
 def test_published_errors_are_those_of_the_ends_of_x_and_y():

@@ -8,6 +8,7 @@ import pytest
 
 import hall_plan
 from courtside.geometry import (
+    alignment,
     bundle,
     control_points,
     court_adjustment,
@@ -15,6 +16,7 @@ from courtside.geometry import (
     planned_ties,
     planning,
 )
+from courtside.geometry.cameras import project
 from courtside.geometry.planning import Prediction
 
 PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
@@ -74,7 +76,8 @@ def test_predicted_errors_are_those_of_simulated_sessions():
         solved = court_adjustment.solve(
             court_adjustment.Ties(names, sizes, drawn), seen, court, click_loss=1e6, **weights
         )
-        error_m = court_errors.displaced(solved.cameras, fixed, grid) - grid
+        truly = {camera.name: project(camera, grid) for camera in fixed}
+        error_m = alignment.reconstruct(solved.cameras, truly) - grid
         rms_cm.append(court_errors.over_volume(error_m)["volume_rms_cm"])
     assert np.quantile(rms_cm, [0.05, 0.5, 0.95]) == pytest.approx(found.error_cm, rel=0.25)
 

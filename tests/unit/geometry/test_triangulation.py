@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.optimize import least_squares
 
 import scene
 from courtside.geometry import calibration_files, cameras, triangulation
@@ -22,6 +23,38 @@ def test_exact_keypoints_give_exact_points(n_cameras, dist):
     np.testing.assert_allclose(found.xyz, xyz, atol=1e-8)
     assert found.accepted.all()
     assert found.error_px.max() < 1e-5
+
+
+def test_all_views_give_the_least_squares_of_their_pixels():
+    views, xyz = scene.ring(3, dist=LENS), scene.points(8)
+    xy = scene.views(views, xyz) + np.random.default_rng(4).normal(0, 3, (3, 8, 2))
+    found = triangulation.triangulate_all(views, xy)
+    for point, seen in zip(found, xy.swapaxes(0, 1), strict=True):
+        # On the undistorted plane, in px, as the project states its errors.
+        plane = [cameras.undistort(view, px) for view, px in zip(views, seen, strict=True)]
+
+        def off(x, plane=plane):
+            placed = [view.cam_from_world[:, :3] @ x + view.cam_from_world[:, 3] for view in views]
+            scaled = [
+                (p[:2] / p[2] - q) * v.K[0, 0] for p, q, v in zip(placed, plane, views, strict=True)
+            ]
+            return np.concatenate(scaled)
+
+        best = least_squares(off, point + 0.1, xtol=1e-12, ftol=1e-12)
+        np.testing.assert_allclose(point, best.x, atol=1e-6)
+
+
+def test_a_point_needs_two_views_and_to_be_before_those_that_show_it():
+    views, xyz = scene.ring(3), scene.points(4)
+    xy = scene.views(views, xyz)
+    xy[1:, 0] = np.nan
+    behind = views[0].centre_in_world * 1.5 - 0.5 * xyz[1]  # behind the first camera only
+    others = scene.views(views[1:], behind[None])[:, 0]
+    xy[:, 1], xy[1:, 2] = [[np.nan, np.nan], *others], others
+    xy[0, 2] = scene.opencv_projection(views[0], behind[None])[0]
+    found = triangulation.triangulate_all(views, xy)
+    assert np.isnan(found).any(axis=1).tolist() == [True, False, True, False]
+    np.testing.assert_allclose(found[[1, 3]], [behind, xyz[3]], atol=1e-8)
 
 
 def test_dlt_equals_the_null_vector_of_hartley_and_zisserman():

@@ -51,14 +51,10 @@ def reconstruct(cameras, clicks):
     -------
     xyz : (P, 3) float
         In the cameras' frame; NaN where fewer than two cameras have a click or the views do not meet before
-        both cameras.
+        the cameras that saw them.
     """
     xy = np.stack([np.asarray(clicks[camera.name], float) for camera in cameras])
-    score = np.where(np.isfinite(xy).all(axis=-1), 1.0, np.nan)
-    found = triangulation.triangulate_robust(
-        cameras, xy, score, sigma_px=1.0, max_error_px=np.inf, min_views=2
-    )
-    return found.xyz
+    return triangulation.triangulate_all(cameras, xy)
 
 
 def paper_frame(court, xyz_in_sfm):

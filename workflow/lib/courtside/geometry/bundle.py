@@ -7,6 +7,7 @@ from scipy import linalg, sparse
 
 from courtside.geometry import network as networks
 
+SMALL = 10_000  # elements of a matrix that is not worth the overhead of a sparse one
 FLAT = 1e-10  # of a point's information along its best direction: no depth is known below it
 
 
@@ -101,7 +102,7 @@ def adjust(network, *, quadratic=None, max_iterations=30, tolerance=1e-8):
             break
         gain = (normal.cost - trial) / max(trial, 1e-300)
         network, damping = moved, max(damping / 10, 1e-9)
-        normal = normal_equations(network, quadratic)
+        normal = _normal(network, quadratic, trial)
         if gain < tolerance:
             break
     return network, normal
@@ -144,8 +145,12 @@ def normal_equations(network, quadratic=None):
     network : courtside.geometry.network.Network
     quadratic : Quadratic, optional
     """
-    residual = networks.residuals(network)
-    by_camera, by_point = networks.jacobians(network)
+    return _normal(network, quadratic, cost(network, quadratic))
+
+
+def _normal(network, quadratic, total):
+    """Return the `Normal` of a network whose cost is known."""
+    residual, by_camera, by_point = networks.linearised(network)
     weight = _weight(network, residual)
     seen = weight > 0
     residual, by_camera, by_point = (
@@ -157,14 +162,13 @@ def normal_equations(network, quadratic=None):
     root, point_gradient, point_information = _point_side(network, by_point, residual)
     coupling = _coupling(network, root, by_point, by_camera)[:, active]
     scaled_gradient = np.einsum("nij,nj->ni", root, point_gradient)
-    information = full[np.ix_(active, active)] - (coupling.T @ coupling).toarray()
+    information = full[np.ix_(active, active)] - _dense(coupling.T @ coupling)
     gradient = gradient[active] - coupling.T @ scaled_gradient.ravel()
 
     def back(step):
         pulled = (coupling @ step).reshape(-1, 3) + scaled_gradient
         return -np.einsum("nji,nj->ni", root, pulled)
 
-    total = cost(network, quadratic)
     return Normal(active, information, gradient, total, point_information, back)
 
 
@@ -246,10 +250,18 @@ def _sum_by(index, values, length):
 
 
 def _coupling(network, root, by_point, by_camera):
-    """Return root @ by_point.T @ by_camera, summed by point: sparse (3 N, K)."""
+    """Return root @ by_point.T @ by_camera, summed by point: (3 N, K), sparse where it is large."""
     block = np.einsum("mij,mrj,mrk->mik", root[network.point_idx], by_point, by_camera)
     rows = 3 * network.point_idx[:, None, None] + np.arange(3)[None, :, None]
     columns = network.columns()[:, None, :]
-    shape = (3 * len(network.xyz), network.n_columns)
+    n_rows, n_columns = 3 * len(network.xyz), network.n_columns
+    if n_rows * n_columns <= SMALL:
+        at = (rows * n_columns + columns).ravel()
+        whole = np.bincount(at, block.ravel(), minlength=n_rows * n_columns)
+        return whole.reshape(n_rows, n_columns)
     at = (np.broadcast_to(rows, block.shape).ravel(), np.broadcast_to(columns, block.shape).ravel())
-    return sparse.csr_matrix((block.ravel(), at), shape=shape)
+    return sparse.csr_matrix((block.ravel(), at), shape=(n_rows, n_columns))
+
+
+def _dense(matrix):
+    return matrix.toarray() if sparse.issparse(matrix) else matrix

@@ -1,15 +1,16 @@
 """How wrong calibrated cameras are, in the terms of the study: court points, playing volume, camera poses."""
 
 import numpy as np
-from scipy import stats
+from scipy import special
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import alignment, uncertainty
-from courtside.geometry.cameras import project
+from courtside.geometry import uncertainty
 
 HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
 COLUMNS, ROWS = 5, 7  # of the grid, along the short and the long side
 LEVELS = (0.5, 0.9, 0.95)
+# Of chi-squared with three degrees of freedom; `scipy.stats` has it too, but takes half a second to import.
+LIMITS = {level: 2 * special.gammaincinv(3 / 2, level) for level in LEVELS}
 
 
 def volume(court, heights_m=HEIGHTS_M, columns=COLUMNS, rows=ROWS):
@@ -26,22 +27,6 @@ def volume(court, heights_m=HEIGHTS_M, columns=COLUMNS, rows=ROWS):
     y = np.linspace(0, court.size_m[1], rows)
     z, y, x = np.meshgrid(np.asarray(heights_m, dtype=float), y, x, indexing="ij")
     return np.stack([x, y, z], axis=-1).reshape(-1, 3)
-
-
-def displaced(cameras, truth, xyz):
-    """Return where cameras see points that truly lie at `xyz`, (N, 3) m.
-
-    Parameters
-    ----------
-    cameras : list of Camera
-        As calibrated.
-    truth : list of Camera
-        The same as they are; nothing but the calibration is wrong, pixels have no noise.
-    xyz : (N, 3) float
-        m.
-    """
-    seen = {camera.name: project(camera, xyz) for camera in truth}
-    return alignment.reconstruct(cameras, seen)
 
 
 def court_points(court, xyz):
@@ -110,8 +95,7 @@ def coverage(error_m, covariance):
     """
     square = uncertainty.mahalanobis(error_m, covariance)
     shares = {
-        f"coverage{100 * level:.0f}": np.mean(square <= stats.chi2.ppf(level, 3))
-        for level in LEVELS
+        f"coverage{100 * level:.0f}": np.mean(square <= limit) for level, limit in LIMITS.items()
     }
     return {**shares, "predicted_volume_cm": expected_rms_cm(covariance)}
 

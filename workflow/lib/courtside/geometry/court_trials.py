@@ -141,8 +141,10 @@ def score(cameras, truth, court, clicks, point_covariance=None):
         Covariance (N, 3, 3) m2 of points (N, 3), of cameras that know theirs.
     """
     grid = court_errors.volume(court)
-    error_m = court_errors.displaced(cameras, truth, grid) - grid
-    found = court_errors.court_points(court, alignment.reconstruct(cameras, clicks))
+    seen = {true.name: np.vstack([project(true, grid), clicks[true.name]]) for true in truth}
+    xyz = alignment.reconstruct(cameras, seen)
+    error_m = xyz[: len(grid)] - grid
+    found = court_errors.court_points(court, xyz[len(grid) :])
     found |= court_errors.over_volume(error_m) | court_errors.poses(cameras, truth)
     if point_covariance is not None:
         found |= court_errors.coverage(error_m, point_covariance(grid))

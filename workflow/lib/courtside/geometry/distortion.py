@@ -27,6 +27,12 @@ def distort(dist, normalised):
 
 def jacobian(dist, normalised):
     """Return the derivative (..., 2, 2) of `distort`; it is symmetric."""
+    along_x, mixed, along_y = _slopes(dist, normalised)
+    return np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*mixed.shape, 2, 2)
+
+
+def _slopes(dist, normalised):
+    """Return the three elements (...) of the symmetric derivative of `distort`."""
     x, y = normalised[..., 0], normalised[..., 1]
     square = x * x + y * y
     k1, k2, p1, p2, k3 = dist
@@ -35,7 +41,7 @@ def jacobian(dist, normalised):
     mixed = x * y * slope + 2 * (p1 * x + p2 * y)
     along_x = radial + x * x * slope + 2 * p1 * y + 6 * p2 * x
     along_y = radial + y * y * slope + 6 * p1 * y + 2 * p2 * x
-    return np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*x.shape, 2, 2)
+    return along_x, mixed, along_y
 
 
 def jacobian_by_place(dist, normalised, depth):
@@ -94,8 +100,7 @@ def undistort(dist, fold, distorted, tolerance):
     for _ in range(MAX_ITERATIONS):
         error = distorted - distort(dist, normalised)
         solved = np.abs(error).max(axis=-1) <= tolerance
-        slope = jacobian(dist, normalised)
-        a, b, d = slope[..., 0, 0], slope[..., 0, 1], slope[..., 1, 1]
+        a, b, d = _slopes(dist, normalised)
         determinant = a * d - b * b
         rising = determinant > 0
         if (solved | ~rising).all():

@@ -161,7 +161,11 @@ def bare(cam_from_world, lens, height_px):
 
 def residuals(network):
     """Return predicted minus observed, (M, 2) px; NaN where a point lies behind its image."""
-    *_, distorted = _see(network)
+    return _residuals(network, _see(network))
+
+
+def _residuals(network, seen):
+    *_, distorted = seen
     lens = network.lens[network.lens_of_image[network.image_idx]]
     focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
     shift = network.flex[network.image_idx, 3:]
@@ -181,7 +185,17 @@ def jacobians(network):
         Along the columns of `Network.columns`.
     by_point : (M, 2, 3) float
     """
-    still, in_cam, normalised, distorted = _see(network)
+    return _jacobians(network, _see(network))
+
+
+def linearised(network):
+    """Return `residuals` and, after them, both of `jacobians`."""
+    seen = _see(network)
+    return _residuals(network, seen), *_jacobians(network, seen)
+
+
+def _jacobians(network, seen):
+    still, in_cam, normalised, distorted = seen
     lens = network.lens[network.lens_of_image[network.image_idx]]
     focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
     # Of the point in the camera's frame.

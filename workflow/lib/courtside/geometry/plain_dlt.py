@@ -4,6 +4,7 @@ import numpy as np
 
 from courtside.geometry import cameras as camera_models
 from courtside.geometry import triangulation
+from courtside.geometry.views import Views
 
 
 def triangulate_plain(cameras, xy, score, *, sigma_px, min_views=2, min_score=0.0):
@@ -41,7 +42,7 @@ def triangulate_plain(cameras, xy, score, *, sigma_px, min_views=2, min_score=0.
     )
     matrices = np.stack([camera.cam_from_world for camera in cameras])
     xyz = triangulation.triangulate(normalised, used.astype(float), matrices)
-    views = triangulation.Views(cameras, xy, used.astype(float))
+    views = Views(cameras, xy, used.astype(float))
     return triangulation.Triangulated(
         xyz=xyz,
         covariance=triangulation.noise_covariance(

@@ -10,6 +10,7 @@ import numpy as np
 
 from courtside.geometry import cameras as camera_models
 from courtside.geometry import small_matrices
+from courtside.geometry.views import Views
 
 FADE = 4 / 3  # default of `fade_px`, in units of the limit
 START = 12.0  # the first robust kernel, in units of the last
@@ -71,6 +72,33 @@ def triangulate(xy, weight, cam_from_world):
     xyz = small_matrices.solve_3x3(normal[:, :3, :3], -normal[:, :3, 3])
     xyz[used.sum(axis=0) < 2] = np.nan
     return xyz
+
+
+def triangulate_all(cameras, xy):
+    """Triangulate points from all views that show them, by least squares of the pixel errors.
+
+    Parameters
+    ----------
+    cameras : list of Camera, length C
+    xy : (C, N, 2) float
+        Px, distorted as in the pictures; NaN where unseen.
+
+    Returns
+    -------
+    xyz_in_world : (N, 3) float
+        Metres; NaN where fewer than two cameras see the point, or do not meet before all that do.
+    """
+    views = Views(cameras, xy, np.isfinite(xy).all(axis=-1).astype(float))
+    found = np.full((xy.shape[1], 3), np.nan)
+    at = np.flatnonzero((views.weight > 0).sum(axis=0) >= 2)
+    if len(at):
+        views = views.of(at)
+        xyz = _linear(views)
+        for _ in range(SETTLING):
+            xyz = views.stepped(xyz, views.weight)
+        fine = views.in_front(xyz, views.weight > 0)
+        found[at[fine]] = xyz[fine]
+    return found
 
 
 def triangulate_robust(
@@ -169,62 +197,24 @@ def _solve(cameras, xy, score, sigma_px, *, fade_px, max_error_px, min_views, mi
     return Triangulated(xyz, covariance, accepted, error_px)
 
 
-class Views:
-    """Keypoints of C cameras on the normalised plane, with weights in px^-2 relative to score 1."""
-
-    def __init__(self, cameras, xy, weight):
-        self.xy = np.stack(
-            [camera_models.undistort(c, points) for c, points in zip(cameras, xy, strict=True)]
-        )
-        self.weight = np.where(np.isfinite(self.xy).all(axis=-1), weight, 0.0)
-        self.xy = np.nan_to_num(self.xy)
-        self.matrix = np.stack([camera.cam_from_world for camera in cameras])
-        self.focal_px = np.array([(c.K[0, 0] + c.K[1, 1]) / 2 for c in cameras])
-
-    def of(self, at):
-        """Return the same views of some of the points only."""
-        part = object.__new__(Views)
-        part.xy, part.weight = self.xy[:, at], self.weight[:, at]
-        part.matrix, part.focal_px = self.matrix, self.focal_px
-        return part
-
-    def residuals(self, xyz):
-        """Return residuals (C, N, 2) px and points in each camera (C, N, 3) m."""
-        rotation, shift = self.matrix[:, :, :3], self.matrix[:, :, 3]
-        in_cam = xyz[None] @ rotation.transpose(0, 2, 1) + shift[:, None]
-        depth = np.where(np.abs(in_cam[..., 2:]) < 1e-9, 1e-9, in_cam[..., 2:])
-        residual = (in_cam[..., :2] / depth - self.xy) * self.focal_px[:, None, None]
-        return residual, in_cam
-
-    def normal(self, in_cam, weight, residual=None):
-        """Return J'WJ (N, 3, 3), and J'Wr (N, 3) where residuals are given."""
-        scale = self.focal_px[:, None] / in_cam[..., 2]
-        ratio = in_cam[..., :2] / in_cam[..., 2:]
-        rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
-        rows = rows * scale[..., None, None]
-        weighted = rows * weight[..., None, None]
-        flat = rows.transpose(1, 0, 2, 3).reshape(rows.shape[1], -1, 3)
-        flat_weighted = weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
-        square = flat_weighted @ flat
-        if residual is None:
-            return square, None
-        right = residual.transpose(1, 0, 2).reshape(rows.shape[1], -1, 1)
-        return square, (flat_weighted @ right)[..., 0]
-
-
 def _select_and_refine(views, limit_px, fade_px, min_views):
     """Return points (N, 3), NaN where views disagree, and accepted views (C, N)."""
-    xyz = triangulate(views.xy, np.sqrt(views.weight) * views.focal_px[:, None], views.matrix)
-    xyz = _step(views, xyz, views.weight)
-    bad = np.flatnonzero(((_distance(views, xyz) > limit_px) & (views.weight > 0)).any(axis=0))
+    xyz = _linear(views)
+    bad = np.flatnonzero(((views.distance(xyz) > limit_px) & (views.weight > 0)).any(axis=0))
     if len(bad):
         xyz[bad] = _graduate(views.of(bad), xyz[bad], fade_px)
     for _ in range(SETTLING):
-        xyz = _step(views, xyz, _faded(views, xyz, fade_px, WIDEST * limit_px))
-    accepted = _accept(_distance(views, xyz), views.weight > 0, limit_px, min_views)
-    fine = (accepted.sum(axis=0) >= min_views) & _in_front(views, xyz, accepted)
+        xyz = views.stepped(xyz, _faded(views, xyz, fade_px, WIDEST * limit_px))
+    accepted = _accept(views.distance(xyz), views.weight > 0, limit_px, min_views)
+    fine = (accepted.sum(axis=0) >= min_views) & views.in_front(xyz, accepted)
     xyz[~fine] = np.nan
     return xyz, accepted & fine
+
+
+def _linear(views):
+    """Return points (N, 3) by weighted DLT, then one step of least squares."""
+    xyz = triangulate(views.xy, np.sqrt(views.weight) * views.focal_px[:, None], views.matrix)
+    return views.stepped(xyz, views.weight)
 
 
 def _accept(error, usable, limit_px, min_views):
@@ -237,33 +227,15 @@ def _accept(error, usable, limit_px, min_views):
 def _graduate(views, xyz, fade_px):
     scale = START * fade_px
     while scale > fade_px:
-        xyz = _step(views, xyz, _faded(views, xyz, scale, np.inf))
+        xyz = views.stepped(xyz, _faded(views, xyz, scale, np.inf))
         scale /= GRADUATION
     return xyz
 
 
 def _faded(views, xyz, scale_px, widest_px):
     """Return Geman-McClure weights (C, N): an error of `scale_px` leaves a quarter."""
-    error = _distance(views, xyz)
+    error = views.distance(xyz)
     return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)
-
-
-def _step(views, xyz, weight):
-    """Make one damped Gauss-Newton step; a point whose system is singular stays where it is."""
-    residual, in_cam = views.residuals(xyz)
-    square, right = views.normal(in_cam, weight, residual)
-    step = np.nan_to_num(small_matrices.solve_3x3(square, right))
-    return xyz - step
-
-
-def _distance(views, xyz):
-    residual, _ = views.residuals(xyz)
-    return np.sqrt(np.einsum("cni,cni->cn", residual, residual))
-
-
-def _in_front(views, xyz, accepted):
-    _, in_cam = views.residuals(xyz)
-    return ((in_cam[..., 2] > 0) | ~accepted).all(axis=0)
 
 
 def noise_covariance(views, xyz, accepted, sigma_px):
