@@ -44,7 +44,8 @@ def test_exact_matches_give_the_exact_model(synthetic, tmp_path, mapper):
     before, names = path.read_bytes(), sorted(sfm_made.centres(truth))
     summary = mapping.map_images(path, names, tmp_path / "model", mapper=mapper, seed=0)
     counts = {"n_images": 6, "n_models": 1, "n_registered": 6, "n_points3d": 150}
-    assert summary | {**counts, "mapper": mapper, "seed": 0, "track_length": 6.0} == summary
+    named = {"mapper": mapper, "seed": 0, "held": {}, "track_length": 6.0}
+    assert summary | counts | named == summary
     assert summary["reprojection_px"] < 1e-3
     found = pycolmap.Reconstruction(str(tmp_path / "model"))
     assert_placed(sfm_made.centres(found), sfm_made.centres(truth), 1e-4)
@@ -240,6 +241,20 @@ def test_from_the_third_attempt_on_lenses_are_held(synthetic, tmp_path, monkeypa
     key = "mapper.bundle_adjustment.refine_extra_params"
     assert [each.get(key, True) for _, each in asked] == [True, True, not held, not held]
     assert all(each["min_num_matches"] == 14 for _, each in asked)
+    assert summary["held"] == ({key: False} if held else {})
+
+
+def test_what_the_user_states_of_lenses_is_never_held(synthetic, tmp_path, monkeypatch):
+    path, truth = synthetic
+    asked = spoil(
+        monkeypatch, lambda number, found: found._replace(model=pycolmap.Reconstruction())
+    )
+    options = {"mapper.bundle_adjustment.refine_extra_params": True}
+    names, folder = sorted(sfm_made.centres(truth)), tmp_path / "a"
+    summary = mapping.map_images(
+        path, names, folder, mapper="global", seed=0, options=options, attempts=3
+    )
+    assert summary["held"] == {} and [each for _, each in asked] == [options] * 3
 
 
 def test_a_model_that_the_disk_cuts_short_is_refused(synthetic, tmp_path, monkeypatch):

@@ -40,18 +40,19 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
     Returns
     -------
     summary : dict
-        Of the model: pycolmap's version, the seed that gave it, n_models, n_images, n_registered, n_points3d,
-        reprojection_px, track_length.
+        Of the model: pycolmap's version, the seed that gave it, which of COLMAP's options were `held` against
+        a lens that runs away, n_models, n_images, n_registered, n_points3d, reprojection_px, track_length.
 
     Raises
     ------
     InputError
         If the disk refuses the model.
     """
-    best = None
+    best, options = None, options or {}
     for at in range(max(attempts, 1)):
         held = HELD.get(mapper, {}) if at >= HELD_FROM else {}
-        found = _map(matches_db, images, mapper, seed + at, held | (options or {}))
+        held = {name: value for name, value in held.items() if name not in options}
+        found = _map(matches_db, images, mapper, seed + at, options | held)._replace(held=held)
         if best is None or _rank(found) > _rank(best):
             best = found
         if _n_placed(best) == len(images) and _error_px(best) <= SOUND_PX:
@@ -62,6 +63,7 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
     return {
         "mapper": mapper,
         "seed": best.seed,
+        "held": best.held,
         "pycolmap": pycolmap.__version__,
         "n_images": len(images),
         "n_models": best.n_models,
@@ -94,6 +96,7 @@ class _Attempt(NamedTuple):
     model: pycolmap.Reconstruction
     n_models: int
     seed: int
+    held: dict
 
 
 def _map(matches_db, images, mapper, seed, options):
@@ -102,7 +105,7 @@ def _map(matches_db, images, mapper, seed, options):
         run = {"global": pycolmap.global_mapping, "incremental": pycolmap.incremental_mapping}
         models = run[mapper](*arguments)
     largest = max(models.values(), key=_size, default=pycolmap.Reconstruction())
-    return _Attempt(largest, len(models), seed)
+    return _Attempt(largest, len(models), seed, {})
 
 
 def _rank(attempt):
