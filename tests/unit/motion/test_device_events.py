@@ -46,6 +46,20 @@ def test_a_source_with_its_own_t_poses_has_the_claps_of_its_device():
     assert len(found["mocopi"].claps) == 2
 
 
+def test_a_t_pose_in_two_spells_has_each_clap_once():
+    truth, rgb, mocopi, _ = take()
+    events, xyz = truth[2], rgb.xyz.copy()
+    middle_s = (events["tpose_1_start"] + events["tpose_1_stop"]) / 2
+    elbows = [rgb.joints.tolist().index(f"{side}_elbow") for side in ("left", "right")]
+    bent = (np.abs(rgb.time_s - middle_s) < 0.2) | (rgb.time_s > events["tpose_1_stop"] + 0.05)
+    xyz[np.ix_(bent, elbows, [1])] += 0.35
+    found = device_events.shown([replace(rgb, source="d415-depth", xyz=xyz), mocopi, rgb], DEVICES)[
+        "d415-depth"
+    ]
+    assert len(found.tposes) == 2
+    assert [clap.tpose for clap in found.claps] == [1]
+
+
 def test_a_device_among_others_must_clap():
     _, _, mocopi, depth = take()
     with pytest.raises(InputError, match="d415-depth: expected a T-pose"):

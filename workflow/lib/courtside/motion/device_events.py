@@ -64,11 +64,15 @@ def _with_claps(source, happened, devices):
         return own
     of_device = [each for name, each in happened.items() if devices[name] == devices[source]]
     shared = next((each for each in of_device if each.claps), own)
-    claps = [
-        replace(clap, tpose=number)
-        for clap in shared.claps
-        for number, spell in enumerate(own.tposes)
-        if spell.start_s <= shared.tposes[clap.tpose].stop_s
-        and shared.tposes[clap.tpose].start_s <= spell.stop_s
-    ]
+    claps = []
+    for clap in shared.claps:
+        theirs = shared.tposes[clap.tpose]
+        same = [
+            number
+            for number, spell in enumerate(own.tposes)
+            if spell.start_s <= theirs.stop_s and theirs.start_s <= spell.stop_s
+        ]
+        claps += (
+            [replace(clap, tpose=same[-1])] if same else []
+        )  # the last, where it fell into several
     return Events(own.tposes, claps)
