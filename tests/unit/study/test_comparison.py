@@ -132,11 +132,15 @@ def test_a_drawing_is_as_close_as_its_numbers(trees, number, drawing):
 
 @pytest.mark.parametrize(
     ("name", "outcome"),
-    [("gym/video.mp4", comparison.OTHER_BYTES), ("networks/a.onnx", comparison.DIFFERENT)],
+    [
+        ("gym/video.mp4", comparison.OTHER_BYTES),
+        ("virtual/gym/backdrops.npz", comparison.OTHER_BYTES),
+        ("networks/a.onnx", comparison.DIFFERENT),
+    ],
 )
 def test_what_nobody_can_read(trees, name, outcome):
     for tree, text in zip(trees, ("weights", "Weights"), strict=True):
-        (tree / name).parent.mkdir(exist_ok=True)
+        (tree / name).parent.mkdir(parents=True, exist_ok=True)
         (tree / name).write_text(text)
     assert outcomes(trees) == {name: outcome}
     assert (outcome in comparison.FAULTS) == name.startswith("networks")

@@ -34,8 +34,9 @@ TOLERANCES = (
 # Drawings and binary exports whose numbers are in the table beside them.
 TABLED = {".pdf", ".png", ".c3d"}
 # What a processor's last digit changes as a whole, and whose numbers are in files that are compared: films,
-# recordings (keypoints), COLMAP's databases and models (ties, summaries), pages (tables).
-UNREAD = {".mp4", ".bag", ".db", ".bin", ".html"}
+# the pictures that they begin with, recordings (keypoints), COLMAP's databases and models (ties, summaries),
+# pages (tables).
+UNREAD = ("*.mp4", "virtual/*/backdrops.npz", "*.bag", "*.db", "*.bin", "*.html")
 # Numbers in these hold seconds of computing time, which no two runs share; the report shows those figures.
 TIMED = ("*/figures/growth.*", "report.html")
 EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
@@ -115,13 +116,14 @@ def verdict(name, here, there):
     """
     if here.stat().st_size == there.stat().st_size and files.sha256(here) == files.sha256(there):
         return Verdict(name, EQUAL)
-    if any(fnmatch.fnmatch(name, pattern) for pattern in TIMED):
-        return Verdict(name, TIMES)
+    for patterns, outcome in ((TIMED, TIMES), (UNREAD, OTHER_BYTES)):
+        if any(fnmatch.fnmatch(name, pattern) for pattern in patterns):
+            return Verdict(name, outcome)
     if here.suffix in TABLED:
         return _of_drawing(name, here, there)
     parse = READERS.get(here.suffix)
     if parse is None:
-        return Verdict(name, OTHER_BYTES if here.suffix in UNREAD else DIFFERENT)
+        return Verdict(name, DIFFERENT)
     try:
         ours, theirs = parse(here), parse(there)
     except DAMAGED:
