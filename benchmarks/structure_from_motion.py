@@ -56,13 +56,8 @@ def ours(root, groups, walked, fixed, folder, parameters):
         folder / "f.db", root, groups, threads=os.cpu_count(), **parameters["extract_features"]
     )
     watch.stop("features")
-    matching.match(
-        folder / "f.db",
-        folder / "m.db",
-        walked.pairs(fixed),
-        threads=os.cpu_count(),
-        **parameters["match_images"],
-    )
+    pairs = walked.pairs(fixed)
+    matching.match(folder / "f.db", folder / "m.db", pairs, **parameters["match_images"])
     watch.stop("matching")
     images = [*fixed, *walked.names.tolist()]
     options = parameters["map_images"]["colmap"]["global"]

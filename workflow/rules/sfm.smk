@@ -44,7 +44,6 @@ rule match_images:
         "results/{session}/logs/match_images/all.log",
     benchmark:
         "results/{session}/benchmarks/match_images/all.tsv"
-    threads: 2
     resources:
         mem_mb=2000,
     params:

@@ -7,11 +7,11 @@ from courtside.sfm import grid, matching
 from courtside.study import log
 
 
-def main(features_db, features_csv, frames_csv, matches_db, table_csv, *, threads, **options):
+def main(features_db, features_csv, frames_csv, matches_db, table_csv, **options):
     walks = grid.read(frames_csv)
     images = pd.read_csv(features_csv)
     fixed = images["name"][~images["source"].isin(list(frames_csv))].tolist()
-    found = matching.match(features_db, matches_db, walks.pairs(fixed), threads=threads, **options)
+    found = matching.match(features_db, matches_db, walks.pairs(fixed), **options)
     table = pd.DataFrame(
         [(*pair, n) for pair, n in found.items()], columns=["name_a", "name_b", "n_matches"]
     )
@@ -29,6 +29,5 @@ if __name__ == "__main__":
         dict(zip(snakemake.params.walks, snakemake.input.frames, strict=True)),
         snakemake.output.database,
         snakemake.output.table,
-        threads=snakemake.threads,
         **snakemake.params.step,
     )

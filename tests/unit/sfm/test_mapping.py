@@ -122,7 +122,7 @@ def door(tmp_path_factory):
     extraction = {"max_features": 1500, "first_octave": 0, "focal_factor": 1.2}
     features.extract(folder / "f.db", root, [group], **extraction, threads=2)
     pairs = [(a, b) for at, a in enumerate(names) for b in names[at + 1 :]]
-    matching.match(folder / "f.db", folder / "m.db", pairs, seed=0, threads=2)
+    matching.match(folder / "f.db", folder / "m.db", pairs, seed=0)
     return folder / "m.db", names
 
 

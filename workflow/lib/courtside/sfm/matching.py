@@ -8,7 +8,7 @@ import pycolmap
 from courtside.sfm import database
 
 
-def match(features_db, matches_db, pairs, *, seed, max_ratio=0.8, threads=1):
+def match(features_db, matches_db, pairs, *, seed, max_ratio=0.8):
     """Match pairs of images and verify the matches; the result holds all that mapping needs.
 
     Parameters
@@ -22,14 +22,18 @@ def match(features_db, matches_db, pairs, *, seed, max_ratio=0.8, threads=1):
         Of the verification's random samples.
     max_ratio : float
         Of the distances to the best and the second-best descriptor (Lowe's test).
-    threads : int
 
     Returns
     -------
     n_verified : dict of (str, str) to int
         Matches that agree with one two-view geometry, by pair; 0 where none was found.
+
+    Notes
+    -----
+    One thread: with several, one run in 15 to 50 on a busy machine had other matches of the first few images,
+    whatever the seed.
     """
-    matching = pycolmap.FeatureMatchingOptions(num_threads=threads, use_gpu=False)
+    matching = pycolmap.FeatureMatchingOptions(num_threads=1, use_gpu=False)
     matching.sift.max_ratio = max_ratio
     verification = pycolmap.TwoViewGeometryOptions()
     verification.ransac.random_seed = seed
