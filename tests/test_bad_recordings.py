@@ -67,7 +67,7 @@ class Session:
         sfm = self.folder / "sfm"
         features = sfm / "features.db", sfm / "features.csv"
         found = sfm / "matches.db", sfm / "matches.csv"
-        run("match_images", *features, self.frames, *found, threads=1, **CONFIG["match_images"])
+        run("match_images", *features, self.frames, *found, **CONFIG["match_images"])
 
     def map(self, mapper="global", n_images=N_IMAGES):
         sfm = self.folder / "sfm"
