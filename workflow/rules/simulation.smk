@@ -52,7 +52,7 @@ for session in STUDY.sessions.values():
             input:
                 court=court_file(session),
                 body=body_files,
-                backdrops=backdrops if take in filming else [],
+                backdrops=backdrops if take.videos else [],
             output:
                 videos=list(take.videos.values()),
                 devices=[device.file for device in take.devices.values()],

@@ -59,6 +59,14 @@ def test_clicks_are_reconstructed_in_the_cameras_frame():
         np.testing.assert_allclose(centre, known.centre_in_world, atol=1e-6)
 
 
+def test_points_above_the_floor_lie_in_the_cameras_frame_too():
+    xyz = COURT.xyz + np.linspace(0, 3, len(COURT.xyz))[:, None] * [0, 0, 1]
+    seen = {camera.name: opencv_projection(camera, xyz) for camera in fixed_cameras()}
+    in_sfm = [SFM_FROM_WORLD.camera(camera) for camera in fixed_cameras()]
+    found = alignment.reconstruct(in_sfm, seen)
+    np.testing.assert_allclose(found, SFM_FROM_WORLD.points(xyz), atol=1e-7)
+
+
 def test_clicks_in_a_camera_that_is_not_there_take_no_part():
     fixed = fixed_cameras()
     clicks = clicks_of(fixed)

@@ -8,9 +8,8 @@ from courtside.geometry import uncertainty
 
 HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
 COLUMNS, ROWS = 5, 7  # of the grid, along the short and the long side
-LEVELS = (0.5, 0.9, 0.95)
 # Of chi-squared with three degrees of freedom; `scipy.stats` has it too, but takes half a second to import.
-LIMITS = {level: 2 * special.gammaincinv(3 / 2, level) for level in LEVELS}
+LIMITS = {level: 2 * special.gammaincinv(3 / 2, level) for level in (0.5, 0.9, 0.95)}
 
 
 def volume(court, heights_m=HEIGHTS_M, columns=COLUMNS, rows=ROWS):

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
 from courtside.geometry import triangulation
 from courtside.geometry.views import Views
 
@@ -37,12 +36,8 @@ def triangulate_plain(cameras, xy, score, *, sigma_px, min_views=2, min_score=0.
     triangulation.check(cameras, xy, score, min_views)
     used = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score >= min_score) & (score > 0)
     used &= used.sum(axis=0) >= min_views
-    normalised = np.stack(
-        [camera_models.undistort(c, points) for c, points in zip(cameras, xy, strict=True)]
-    )
-    matrices = np.stack([camera.cam_from_world for camera in cameras])
-    xyz = triangulation.triangulate(normalised, used.astype(float), matrices)
     views = Views(cameras, xy, used.astype(float))
+    xyz = triangulation.triangulate(views.xy, views.weight, views.matrix)
     return triangulation.Triangulated(
         xyz=xyz,
         covariance=triangulation.noise_covariance(

@@ -72,7 +72,6 @@ def _with_claps(source, happened, devices):
             for number, spell in enumerate(own.tposes)
             if spell.start_s <= theirs.stop_s and theirs.start_s <= spell.stop_s
         ]
-        claps += (
-            [replace(clap, tpose=same[-1])] if same else []
-        )  # the last, where it fell into several
+        if same:  # the last, where theirs fell into several
+            claps.append(replace(clap, tpose=same[-1]))
     return Events(own.tposes, claps)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from courtside.geometry import cameras
+from courtside.geometry import cameras, fields
 from courtside.records import npz
 from courtside.study.errors import InputError
 from courtside.virtual import exposure, rays, sampling
@@ -112,8 +112,10 @@ def write(path, backdrops):
     backdrops : list of Backdrop
         Without a margin.
     """
-    arrays = {name: [getattr(each, name) for each in backdrops] for name in SPEC}
-    npz.write(path, FORM, SPEC, arrays | {"camera": [each.camera.name for each in backdrops]})
+    arrays = {
+        name: [getattr(each, name) for each in backdrops] for name in SPEC if name != "camera"
+    }
+    npz.write(path, FORM, SPEC, {"camera": [each.camera.name for each in backdrops], **arrays})
 
 
 def read(path, filming):
@@ -135,8 +137,8 @@ def read(path, filming):
     for camera in filming:
         if camera.name not in found or tuple(camera.size) != size:
             raise InputError(
-                f"{path}: expected camera {camera.name} with {camera.size} px, found {sorted(found)} with "
-                f"{size}; make it again"
+                f"{path}: expected camera {camera.name} with {fields.times(camera.size)} px, found "
+                f"{sorted(found)} with {fields.times(size)}; make it again"
             )
     return [
         Backdrop(camera, 0, **{name: part[found[camera.name]] for name, part in kept.items()})
