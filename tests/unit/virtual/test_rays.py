@@ -31,7 +31,7 @@ def test_rays_beside_pixels_and_of_halved_pictures():
     camera = small_hall.camera()
     seen = rays.of_camera(camera, rays.grid(camera), None, 0.0)
     chosen = np.array([0, 639, 200 * 640 + 77, 359 * 640, 359 * 640 + 639])
-    direction, _ = seen.near(chosen, (0.375, -0.125))
+    (_, direction), _ = seen.near(chosen, [(0, 0), (0.375, -0.125)])
     xy = scene.opencv_projection(camera, camera.centre_in_world + direction.T.astype(float))
     np.testing.assert_allclose(xy, pixels(camera.size)[chosen] + [0.375, -0.125], atol=0.01)
     direction, _ = seen.halved().of_band(0, 180)
@@ -54,7 +54,7 @@ def test_each_row_has_its_own_time_place_and_direction():
         np.testing.assert_allclose(
             seen.origins(times)[0], camera.centre_in_world + TWIST[1] * time_s, atol=1e-6
         )
-        beside, same = seen.near(np.arange(row * 640, (row + 1) * 640))
+        (beside,), same = seen.near(np.arange(row * 640, (row + 1) * 640))
         np.testing.assert_allclose(beside, direction, atol=1e-6)
         np.testing.assert_array_equal(same, times)
     assert not still.moving

@@ -90,6 +90,17 @@ def test_far_textures_are_averaged_and_near_ones_are_not():
     np.testing.assert_allclose(colours[0.1], 100, atol=2)
 
 
+def test_surfaces_take_the_atlas_of_earlier_ones_with_the_same_textures_only():
+    red, blue = (np.full((8, 8, 3), bgr, np.uint8) for bgr in ((0, 0, 200), (200, 0, 0)))
+    walls = [[Quad([-1, away, 1], [2, 0, 0], [0, 0, -2], red)] for away in (2, 3)]
+    painted = [Quad([-1, 2, 1], [2, 0, 0], [0, 0, -2], blue)]
+    first = sampling.Surfaces(walls[0])
+    assert sampling.Surfaces(walls[1], earlier=first).packed is first.packed
+    view = sampling.View(sampling.Surfaces(painted, earlier=first), np.zeros(3), STEPS)
+    ahead = np.array([[0.0], [1.0], [0.0]], np.float32)
+    np.testing.assert_allclose(sampling.shade(view, np.array([0]), ahead), [[200, 0, 0]], atol=0.01)
+
+
 def test_colour_is_texture_times_light():
     texture = np.full((8, 8, 3), (10, 80, 160), np.uint8)
     wall = [Quad([-1, 2, 1], [2, 0, 0], [0, 0, -2], texture, light) for light in (1.0, 1.5)]

@@ -44,7 +44,7 @@ class Exposure:
         ids = np.empty((self.height, self.width), np.intp)
         hidden = np.empty((self.height, self.width), bool)
         colour = np.empty((self.height, self.width, 3), np.float32)
-        shares = np.zeros((self.height, self.width, 1), np.float32)
+        shares = np.zeros((self.height, self.width), np.float32)
         rows = max(1, BAND_RAYS // self.width)
         for start in range(0, self.height, rows):
             part = slice(start, min(start + rows, self.height))
@@ -54,11 +54,11 @@ class Exposure:
             ids[part], hidden[part] = index.reshape(shape), behind_net.reshape(shape)
             colour[part] = band.reshape(*shape, 3)
             if self.scene.gloss > 0:
-                shares[part] = self._share(index, direction).reshape(*shape, 1)
+                shares[part] = self._share(index, direction).reshape(shape)
         flat = colour.reshape(-1, 3)
         mirrored = self._mirrored(ids) if self.scene.gloss > 0 else None
         if mirrored is not None:
-            colour += shares * (mirrored.reshape(colour.shape) - colour)
+            _mix(colour, mirrored.reshape(colour.shape), shares)
         edges = _edges(ids, hidden)
         flat[edges] = self._supersampled(edges, mirrored)
         return colour
@@ -66,12 +66,11 @@ class Exposure:
     def _supersampled(self, pixel, mirrored):
         """Return the mean colour of some pixels over several rays each, (n, 3)."""
         total = np.zeros((len(pixel), 3), np.float32)
-        for offset in SUBPIXELS:
-            direction, time_s = self.rays.near(pixel, offset)
+        directions, time_s = self.rays.near(pixel, SUBPIXELS)
+        for direction in directions:
             index, colour, _ = self._sample(direction, time_s)
             if mirrored is not None:
-                share = self._share(index, direction)[:, None]
-                colour += share * (mirrored[pixel] - colour)
+                _mix(colour, mirrored[pixel], self._share(index, direction))
             total += colour
         return total / len(SUBPIXELS)
 
@@ -100,9 +99,10 @@ class Exposure:
         half = self.rays.halved()
         height, width = half.xy.shape[1:]
         floor = (ids[: 2 * height, : 2 * width] == FLOOR).astype(np.uint8)
-        floor = floor.reshape(height, 2, width, 2).max(axis=(1, 3))
+        floor = np.maximum(floor[::2], floor[1::2])
+        floor = np.maximum(floor[:, ::2], floor[:, 1::2])
         pixel = np.flatnonzero(cv2.dilate(floor, np.ones((3, 3), np.uint8)))
-        direction, time_s = half.near(pixel)
+        (direction,), time_s = half.near(pixel)
         below = np.flatnonzero(direction[2] < -sampling.TINY)
         pixel, direction = pixel[below], direction[:, below]
         time_s = None if time_s is None else time_s[below]
@@ -120,7 +120,9 @@ class Exposure:
         light = light[..., :3] / np.maximum(light[..., 3:], sampling.TINY)
         light = cv2.resize(light, (2 * width, 2 * height), interpolation=cv2.INTER_LINEAR)
         odd = self.height - 2 * height, self.width - 2 * width
-        return np.pad(light, ((0, odd[0]), (0, odd[1]), (0, 0)), mode="edge").reshape(-1, 3)
+        if any(odd):
+            light = cv2.copyMakeBorder(light, 0, odd[0], 0, odd[1], cv2.BORDER_REPLICATE)
+        return light.reshape(-1, 3)
 
     def _share(self, index, direction):
         """Return the share of mirrored light in what rays see, (n,) float32: 0 where they see no floor."""
@@ -165,11 +167,10 @@ class _Eye:
         if len(self.parts) == 1 or not len(index) or index.max() < last:
             return function(self.views[0], index, direction, time_s, **detail)
         result = np.empty((len(index), *shape), np.float32)
-        owner = np.searchsorted(self.first, index, side="right") - 1
-        for number, view in enumerate(self.views):
-            mine = np.flatnonzero(owner == number)
+        for view, first, end in zip(self.views, self.first, self.first[1:], strict=False):
+            mine = np.flatnonzero((index >= first) & (index < end))
             times = None if time_s is None else time_s[mine]
-            local = index[mine] - self.first[number]
+            local = index[mine] - first
             result[mine] = function(view, local, direction[:, mine], times, **detail)
         return result
 
@@ -186,7 +187,7 @@ def cross(net, origin, direction):
     start, end = net.feet
     along = end - start
     normal = np.array([along[1], -along[0], 0.0])
-    away = (start - origin) @ normal
+    away = sum((start[axis] - origin[..., axis]) * normal[axis] for axis in (0, 1))
     speed = direction[0] * np.float32(normal[0]) + direction[1] * np.float32(normal[1])
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (away / speed).astype(np.float32)
@@ -200,6 +201,13 @@ def cross(net, origin, direction):
     inside = (way > 0) & (way < 1) & (place[:, 2] < top - paintwork.TAPE_M)
     inside &= place[:, 2] > top - paintwork.NET_DEPTH_M
     return ahead[inside], share[inside]
+
+
+def _mix(colour, other, share):
+    """Replace a share (...) of colours (..., 3) by another, channel by channel: a third of the time."""
+    for channel in range(3):
+        own = colour[..., channel]
+        own += share * (other[..., channel] - own)
 
 
 def _edges(*maps):

@@ -19,7 +19,7 @@ class Renderer:
     def __init__(self, scene):
         self.scene = scene
         self.surfaces = sampling.Surfaces(scene.quads)
-        self._grids = {}
+        self._grids, self._extra = {}, None
 
     def render(
         self, camera, *, twist=None, readout_s=0.0, exposure_s=0.0, extra=None, noise=0.0, rng=None
@@ -52,7 +52,10 @@ class Renderer:
         """
         xy = self._grid(camera)
         seen = rays.of_camera(camera, xy, twist, readout_s)
-        parts = [self.surfaces, sampling.Surfaces(extra)] if extra else [self.surfaces]
+        parts = [self.surfaces]
+        if extra:
+            self._extra = sampling.Surfaces(extra, earlier=self._extra)
+            parts.append(self._extra)
         picture = exposure.Exposure(self.scene, parts, seen).picture()
         return development.develop(
             picture,

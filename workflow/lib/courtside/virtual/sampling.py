@@ -18,9 +18,11 @@ class Surfaces:
     Parameters
     ----------
     quads : list of surfaces.Quad
+    earlier : Surfaces or None
+        Of the picture before: where its textures are the same, so is the atlas.
     """
 
-    def __init__(self, quads):
+    def __init__(self, quads, earlier=None):
         self.quads = list(quads)
         origin, u, v = (
             np.array([getattr(q, name) for q in self.quads]) for name in ("origin", "u", "v")
@@ -28,15 +30,16 @@ class Surfaces:
         normal = np.cross(u, v)
         self.origin = origin
         self.normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-        textures = {id(quad.texture): quad.texture for quad in self.quads}
-        order = {key: index for index, key in enumerate(textures)}
-        packed = atlas.pack(list(textures.values()))
+        self.textures = {id(quad.texture): quad.texture for quad in self.quads}
+        order = {key: index for index, key in enumerate(self.textures)}
+        same = earlier is not None and list(earlier.textures) == list(self.textures)
+        packed = earlier.packed if same else atlas.pack(list(self.textures.values()))
         of_quad = np.array([order[id(quad.texture)] for quad in self.quads])
         sizes = packed.sizes[of_quad]
         # Dual vectors: texel = dual . (point - origin), also where u and v are not at right angles.
         self.u_dual = _dual(u, v, self.normal) * sizes[:, :1]
         self.v_dual = _dual(v, u, self.normal) * sizes[:, 1:]
-        self.image = packed.image
+        self.packed = packed
         self.width, self.height = np.ascontiguousarray(sizes.T.astype(np.float32))
         flat = packed.places[of_quad].reshape(-1, 4)
         self.place = np.ascontiguousarray(flat.T)  # indexed by quad * LEVELS + level
@@ -226,21 +229,24 @@ def shade(view, quad, direction, time_s=None, *, coarser=0.0, taps=MAX_TAPS):
     level = np.log2(np.maximum(minor, TINY)) + np.float32(coarser)
     np.clip(level, 0, atlas.LEVELS - 1.01, out=level)
     ratio = length / np.maximum(minor, TINY)
-    colour = np.empty((len(u), 3), np.float32)
+    sums = np.empty(len(u), np.uint64)
     light = _take(surfaces.light, quad)
     doublings = np.clip(np.ceil(np.log2(ratio)), 1, np.log2(taps)).astype(np.uint8)
     for doubling in np.unique(doublings):
         chosen = np.flatnonzero(doublings == doubling)
         parts = (x[chosen] for x in (u, v, major[0], major[1], level, quad))
         n_taps = 1 << int(doubling)
-        total = _average(surfaces, n_taps, *parts)
-        colour[chosen] = total * (light[chosen] / n_taps)[:, None]
+        sums[chosen] = _total(surfaces, n_taps, *parts).view(np.uint64).ravel()
+        light[chosen] /= n_taps
+    colour = np.empty((len(u), 3), np.float32)
+    for channel in range(3):  # a third of the time of all at once
+        np.multiply(sums.view(np.uint16)[channel::4], light, out=colour[:, channel])
     return colour
 
 
-def _average(surfaces, n_taps, u, v, du, dv, level, quad):
-    """Add up lookups along each footprint, (n, 3) of 16 bits."""
-    total = None
+def _total(surfaces, n_taps, u, v, du, dv, level, quad):
+    """Add up lookups along each footprint, (n, 4) of 16 bits."""
+    total = np.zeros((len(u), 4), np.uint16)
     first = quad * atlas.LEVELS
     for tap in range(n_taps):
         share = np.float32((tap + 0.5) / n_taps)
@@ -249,8 +255,7 @@ def _average(surfaces, n_taps, u, v, du, dv, level, quad):
         y = (v + (share - np.float32(0.5)) * dv) * _take(surfaces.place[3], index)
         x += _take(surfaces.place[0], index)
         y += _take(surfaces.place[1], index)
-        seen = lookup(surfaces.image, x, y)[:, :3]
-        total = seen.astype(np.uint16) if total is None else np.add(total, seen, out=total)
+        total += lookup(surfaces.packed.image, x, y)
     return total
 
 
