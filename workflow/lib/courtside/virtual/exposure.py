@@ -8,10 +8,8 @@ from courtside.virtual import paintwork, sampling
 BAND_RAYS = 1 << 16  # at a time: what fits the processor's cache
 SUBPIXELS = np.array([[-0.375, -0.125], [0.125, -0.375], [0.375, 0.125], [-0.125, 0.375]])
 ROUGHNESS = 2.0  # levels by which the floor blurs what it mirrors
-SMEAR = (
-    3,
-    7,
-)  # pixels of half the picture's size, to the right and down, for edges that it mirrors
+# Pixels of half the picture's size, to the right and down, for edges that the floor mirrors.
+SMEAR = (3, 7)
 GRAZING = 3.5  # how much more the floor mirrors at grazing angles
 MOST = 0.6  # of the light that it may mirror
 LIFT_M = 1e-3  # mirrored rays begin so far above the floor
@@ -187,6 +185,7 @@ def cross(net, origin, direction):
     start, end = net.feet
     along = end - start
     normal = np.array([along[1], -along[0], 0.0])
+    # Not `@`: it takes five times as long for rows of three.
     away = sum((start[axis] - origin[..., axis]) * normal[axis] for axis in (0, 1))
     speed = direction[0] * np.float32(normal[0]) + direction[1] * np.float32(normal[1])
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -30,6 +30,7 @@ class Surfaces:
         normal = np.cross(u, v)
         self.origin = origin
         self.normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+        # Kept, so that no other texture gets the identity of one of them.
         self.textures = {id(quad.texture): quad.texture for quad in self.quads}
         order = {key: index for index, key in enumerate(self.textures)}
         same = earlier is not None and list(earlier.textures) == list(self.textures)
