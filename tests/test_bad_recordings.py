@@ -151,8 +151,7 @@ def aligned(good, tmp_path, marked, name):
     if not record.is_file():
         good.adjust(good.folder.parent / "film" / "court_points.csv", out=record)
     out = tmp_path / "aligned.toml", tmp_path / "aligned.json"
-    sigma = {"click_sigma_px": CLICKING["click_sigma_px"]}
-    run("align_cameras", record, points, BADMINTON, *out, name=name, **sigma)
+    run("align_cameras", record, points, BADMINTON, *out, name=name, **CLICKING)
     return json.loads(out[1].read_text())["warnings"]
 
 

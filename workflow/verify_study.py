@@ -4,6 +4,10 @@ It computes again the checksums of raw inputs, artefacts, networks, lock and cod
 the sidecars in results/run say. With `--against OTHER/results` it compares two results trees file by file
 instead: bit-equal, equal within the tolerances that courtside/study/comparison.py states, or different. The
 exit status is 1 if anything is otherwise.
+
+Two machines that cannot reach each other's files compare checksums: `--write-checksums TABLE.csv` on one of
+them, `--against TABLE.csv` on the other. It counts the files of each stage that are bit-equal and names the
+first stage that is not.
 """
 
 import argparse
@@ -14,7 +18,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.study import comparison, verification  # noqa: E402
+from courtside.study import comparison, stage_checksums, verification  # noqa: E402
 from courtside.study.errors import InputError  # noqa: E402
 
 RESULTS = Path("results")
@@ -22,30 +26,52 @@ RESULTS = Path("results")
 
 def main(against):
     """Return (lines to print, number of files that are otherwise)."""
+    check_results()
+    if against is None:
+        return verification.report(RESULTS / "run", RESULTS, REPOSITORY)
+    if against.is_file():
+        return stage_checksums.table(
+            stage_checksums.measure(RESULTS), stage_checksums.read(against)
+        )
+    if not against.is_dir():
+        raise InputError(
+            f"{against}: expected a folder of results or a table of checksums, found neither; "
+            "correct --against"
+        )
+    verdicts = comparison.compare(RESULTS, against)
+    return comparison.table(verdicts), sum(v.outcome in comparison.FAULTS for v in verdicts)
+
+
+def check_results():
+    """Refuse a folder without results."""
     if not RESULTS.is_dir():
         raise InputError(
             f"{Path.cwd()}: expected a folder {RESULTS}, found none; "
             "go where the study ran, or give --directory"
         )
-    if against is None:
-        return verification.report(RESULTS / "run", RESULTS, REPOSITORY)
-    if not against.is_dir():
-        raise InputError(f"{against}: expected a folder of results, found none; correct --against")
-    verdicts = comparison.compare(RESULTS, against)
-    return comparison.table(verdicts), sum(v.outcome in comparison.FAULTS for v in verdicts)
+
+
+def write_checksums(table):
+    """Write the table that another machine's results are compared with; return (lines to print, 0)."""
+    check_results()
+    rows = stage_checksums.measure(RESULTS)
+    stage_checksums.write(table, rows)
+    return [f"{table}: checksums of {len(rows)} files"], 0
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--directory", type=Path, default=Path(), help="where the study ran")
     parser.add_argument(
-        "--against", type=Path, help="another results folder, say of another machine"
+        "--against", type=Path, help="another results folder, or a table of its checksums"
     )
+    parser.add_argument("--write-checksums", type=Path, help="write such a table (CSV), and end")
     given = parser.parse_args()
     other = given.against.resolve() if given.against else None
+    table = given.write_checksums.resolve() if given.write_checksums else None
     try:
         os.chdir(given.directory)
-        lines, n_faults = main(other)
+        lines, n_faults = write_checksums(table) if table else main(other)
     except (InputError, OSError) as error:
         sys.exit(f"Error: {error}")
     print("\n".join(lines))

@@ -1,6 +1,6 @@
 """Align a model with the court by a similarity: ties, clicks -> cameras as paper or all points say."""
 
-from courtside.geometry import alignment, court_adjustment, courts, quality
+from courtside.geometry import alignment, courts, quality
 from courtside.geometry import cameras as camera_models
 from courtside.records import clicks, ties
 from courtside.study import log
@@ -8,7 +8,7 @@ from courtside.study.errors import InputError
 from courtside.study.files import write_json
 
 
-def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, click_sigma_px):
+def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, **options):
     record = ties.read(ties_npz)
     if record.outcome:
         raise InputError(record.outcome)
@@ -22,12 +22,27 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, 
         world_from_sfm, accepted = alignment.align(court, xyz_in_sfm)
         how = {"n_points": int(accepted.sum())}
     found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
-    sigma_px = court_adjustment.largest_click_sigma(click_sigma_px, found)
-    checked = quality.of_court(court, found, marked, click_sigma_px=sigma_px, strict=False)
-    log.logger.info("warnings: %s", checked["warnings"] or "none")
-    report = {"calibration": name, "scale": world_from_sfm.scale, **how, **checked}
+    report = {
+        "calibration": name,
+        "scale": world_from_sfm.scale,
+        **how,
+        "misfit_cm": round(100 * alignment.misfit_m(court, world_from_sfm, xyz_in_sfm), 2),
+        "warnings": warnings_of(court, record, marked, **options),
+        "left_out": quality.left_out(court, found, marked),
+    }
+    log.logger.info("warnings: %s", report["warnings"] or "none")
     camera_models.write_toml(cameras_toml, found, source=name)
     write_json(quality_json, report)
+
+
+def warnings_of(court, record, marked, **options):
+    """Return what is wrong with clicks or court; the bend of this model, which stays in it, is not."""
+    try:
+        if record.fault:
+            raise InputError(record.fault)
+        return quality.of_ties(court, record.ties, marked, **options)[1]["warnings"]
+    except InputError as error:
+        return [str(error)]
 
 
 if __name__ == "__main__":
@@ -39,5 +54,5 @@ if __name__ == "__main__":
         snakemake.output.cameras,
         snakemake.output.quality,
         name=snakemake.wildcards.calibration,
-        click_sigma_px=snakemake.params.step["click_sigma_px"],
+        **snakemake.params.step,
     )

@@ -1,7 +1,7 @@
 """Calibrate the fixed cameras in the court's frame: ties, clicks -> cameras, covariance, quality."""
 
 from courtside.geometry import cameras as camera_models
-from courtside.geometry import court_adjustment, courts, fields, line_centres, quality
+from courtside.geometry import court_adjustment, courts, fields, quality
 from courtside.records import camera_covariance, clicks, ties
 from courtside.study import log
 from courtside.study.errors import InputError
@@ -38,11 +38,7 @@ def solve(found, clicks_csv, court_yaml, **options):
         }
     court = courts.read(court_yaml)
     marked = clicks.read(clicks_csv, list(found.cameras), list(court.points))
-    solved = court_adjustment.solve(found, marked, court, max_iterations=30, **options)
-    px = court_adjustment.largest_click_sigma(options["click_sigma_px"], solved.cameras)
-    known = {"click_sigma_px": px, "point_covariance": solved.point_covariance}
-    known["inwards"] = line_centres.shift(found, marked, court, **options)
-    return solved, quality.of_court(court, solved.cameras, marked, **known)
+    return quality.of_ties(court, found, marked, **options)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Bundle adjustment of a `Network`: Levenberg-Marquardt on images and lenses, points eliminated."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import linalg, sparse
@@ -9,6 +9,7 @@ from courtside.geometry import network as networks
 
 SMALL = 10_000  # elements of a matrix that is not worth the overhead of a sparse one
 FLAT = 1e-10  # of a point's information along its best direction: no depth is known below it
+MOST_DAMPING = 1e6  # the steps of images are nothing then
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +95,7 @@ def adjust(network, *, quadratic=None, max_iterations=30, tolerance=1e-8):
     damping = 1e-4
     normal = normal_equations(network, quadratic)
     for _ in range(max_iterations):
-        moved, trial = _descend(network, normal, quadratic, damping)
-        while trial is None and damping < 1e6:
-            damping *= 10
-            moved, trial = _descend(network, normal, quadratic, damping)
+        moved, trial, damping = _fall(network, normal, quadratic, damping)
         if trial is None:
             break
         gain = (normal.cost - trial) / max(trial, 1e-300)
@@ -108,15 +106,42 @@ def adjust(network, *, quadratic=None, max_iterations=30, tolerance=1e-8):
     return network, normal
 
 
-def _descend(network, normal, quadratic, damping):
+def _fall(network, normal, quadratic, damping):
+    """Return the network after a step that lowers the cost, the cost, and the damping that it took.
+
+    Points are not damped: a step may put one behind an image however small the images' steps are. Where
+    no damping helps, such points stay where they were, because one alone would stop all others.
+    """
+    for hold in (False, True):
+        tried = damping
+        while tried <= MOST_DAMPING:
+            moved, trial = _descend(network, normal, quadratic, tried, hold)
+            if trial is not None:
+                return moved, trial, tried
+            tried *= 10
+    return network, None, damping
+
+
+def _descend(network, normal, quadratic, damping, hold):
     """Return the network after a damped step with its cost, None if the cost does not fall."""
     information = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
     part = linalg.solve(information, -normal.gradient, assume_a="sym")
     step = np.zeros(len(normal.active))
     step[normal.active] = part
     moved = network.moved(step, normal.back(part))
+    if hold:
+        moved = _in_front(moved, network)
     trial = cost(moved, quadratic)
     return moved, trial if trial <= normal.cost else None
+
+
+def _in_front(moved, network):
+    """Return a moved network whose points stay where they were if they would be behind an image."""
+    behind = ~np.isfinite(networks.residuals(moved)).all(axis=1)
+    xyz = moved.xyz.copy()
+    stay = np.unique(moved.point_idx[behind])
+    xyz[stay] = network.xyz[stay]
+    return replace(moved, xyz=xyz)
 
 
 def cost(network, quadratic=None):

@@ -21,6 +21,10 @@ from courtside.geometry.network import FLEX, IMAGE, POSE
 from courtside.study.errors import InputError
 
 UHD = 3840  # picture width at which click sigmas are stated
+# Focal lengths are tied to the bend of the whole, and the cost falls slowly along a curved valley. Most sessions
+# need 20 steps. With no more than these, one small session in thirty was 2.5 cm off instead of 0.9, and
+# without a court the fixed cameras of one in five 4 to 7 degrees instead of 1.2 to 1.7.
+ENOUGH = {"max_iterations": 200, "tolerance": 1e-6}
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,24 +119,30 @@ def condense(
     InputError
         If the clicks cannot give a frame.
     """
-    names = tuple(fixed)
     cameras = control_points.fixed_cameras(network, fixed, sizes)
-    exchanged_cameras.refuse(court, cameras, clicks)
-    world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
-    network = control_points.transform(network, world_from_sfm)
-    seen = [clicks[name] for name in names]
-    sigma_px = [click_sigma(click_sigma_px, sizes[name]) for name in names]
-    parts = []
-    for part in network_parts.split(network, list(fixed.values()), images_per_part):
-        tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
-        at = part.fixed.tolist()
-        marked = {
-            "clicks": dict(zip(at, seen, strict=True)),
-            "sigma_px": dict(zip(at, sigma_px, strict=True)),
-            "loss_scale": click_loss,
-        }
-        parts.append(replace(part, network=_adjusted(tied, court, **marked)))
-    return _condensed(parts, names, sizes), parts
+    sigma_px = [click_sigma(click_sigma_px, sizes[name]) for name in fixed]
+
+    def adjusted(clicks):
+        world_from_sfm, _ = alignment.align(court, alignment.reconstruct(cameras, clicks))
+        in_world = control_points.transform(network, world_from_sfm)
+        for part in network_parts.split(in_world, list(fixed.values()), images_per_part):
+            tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
+            at = part.fixed.tolist()
+            marked = {
+                "clicks": dict(zip(at, [clicks[name] for name in fixed], strict=True)),
+                "sigma_px": dict(zip(at, sigma_px, strict=True)),
+                "loss_scale": click_loss,
+            }
+            yield replace(part, network=_adjusted(tied, court, **marked))
+
+    def adjusted_cameras(clicks):
+        part = next(adjusted(clicks))
+        at = dict(zip(fixed, part.fixed.tolist(), strict=True))
+        return control_points.fixed_cameras(part.network, at, sizes)
+
+    exchanged_cameras.refuse(court, cameras, clicks, adjusted_cameras)
+    parts = list(adjusted(clicks))
+    return _condensed(parts, tuple(fixed), sizes), parts
 
 
 def _adjusted(network, court, **marked):
@@ -144,7 +154,7 @@ def _adjusted(network, court, **marked):
             "court points: expected all before the cameras that saw them, found some behind after alignment; "
             "structure from motion went wrong: take more bridging images"
         )
-    both, _ = bundle.adjust(both, max_iterations=20, tolerance=1e-7)
+    both, _ = bundle.adjust(both, **ENOUGH)
     return control_points.select(
         both, np.arange(len(both.xyz)) < n_ties, np.arange(len(both.xy)) < n_seen
     )
@@ -169,7 +179,7 @@ def condense_free(network, fixed, sizes, *, images_per_part, tie_sigma_px, tie_l
     network = _in_free_frame(network, list(fixed.values()))
     for part in network_parts.split(network, list(fixed.values()), images_per_part):
         tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
-        tied, _ = bundle.adjust(tied, max_iterations=20, tolerance=1e-7)
+        tied, _ = bundle.adjust(tied, **ENOUGH)
         tied = _in_free_frame(tied, part.fixed)  # which nothing held in place
         parts.append(replace(part, network=tied))
     return _condensed(parts, names, sizes), parts

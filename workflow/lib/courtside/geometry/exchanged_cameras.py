@@ -1,17 +1,20 @@
 """Camera files under each other's names: the clicks of two fixed cameras fit where the other one stands."""
 
+import warnings
 from itertools import combinations
 
 import numpy as np
+from scipy.linalg import LinAlgWarning
 
 from courtside.geometry import alignment
 from courtside.study.errors import InputError
 
 OFF = 0.01  # of the court's length: points nearer than that fit
+BENT = 0.1  # of the court's length: structure from motion of 12 small pictures was bent by up to half of that
 NEARER = 5.0  # so many times nearer must they be with the clicks of two cameras exchanged
 
 
-def refuse(court, cameras, clicks):
+def refuse(court, cameras, clicks, adjust=None):
     """Raise where the clicks fit the court only after those of two cameras are exchanged.
 
     Parameters
@@ -21,6 +24,9 @@ def refuse(court, cameras, clicks):
         Fixed cameras in one frame, of structure from motion: clicks must not have shaped it.
     clicks : dict of str to (P, 2) float
         By camera name, px; NaN where not clicked.
+    adjust : callable, optional
+        From clicks to the fixed cameras after a joint adjustment with them. Structure from motion of few
+        pictures is bent by more than clicks scatter: points that such a bend can explain are judged after it.
 
     Raises
     ------
@@ -28,12 +34,14 @@ def refuse(court, cameras, clicks):
         If so: the files of these cameras may be exchanged. Any other fault of the clicks is not looked for.
     """
     near_m = OFF * np.max(court.size_m)
-    off_m = _off_m(court, cameras, clicks)
+    if _off_m(court, cameras, clicks) < near_m:
+        return
+    off_m = _off_m(court, cameras, clicks, adjust)
     if off_m < near_m:
         return
     for one, other in combinations([camera.name for camera in cameras], 2):
         exchanged = {**clicks, one: clicks[other], other: clicks[one]}
-        better_m = _off_m(court, cameras, exchanged)
+        better_m = _off_m(court, cameras, exchanged, adjust)
         if better_m < min(near_m, off_m / NEARER):
             found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
             raise InputError(
@@ -43,11 +51,20 @@ def refuse(court, cameras, clicks):
             )
 
 
-def _off_m(court, cameras, clicks):
+def _off_m(court, cameras, clicks, adjust=None):
     """Return how far most reconstructed points are from the court, inf where they cannot be aligned."""
-    xyz = alignment.reconstruct(cameras, clicks)
     try:
-        world_from_sfm, _ = alignment.align(court, xyz)
+        off_m = _misfit_m(court, cameras, clicks)
+        if adjust and off_m <= BENT * np.max(court.size_m):
+            with warnings.catch_warnings():  # clicks under wrong names may leave nothing to solve
+                warnings.simplefilter("ignore", LinAlgWarning)
+                off_m = _misfit_m(court, adjust(clicks), clicks)
     except InputError:
         return np.inf
+    return off_m
+
+
+def _misfit_m(court, cameras, clicks):
+    xyz = alignment.reconstruct(cameras, clicks)
+    world_from_sfm, _ = alignment.align(court, xyz)
     return alignment.misfit_m(court, world_from_sfm, xyz)

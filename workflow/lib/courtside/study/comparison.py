@@ -73,7 +73,7 @@ def compare(here, there):
     -------
     verdicts : list of Verdict
     """
-    ours, theirs = _names(here), _names(there)
+    ours, theirs = names(here), names(there)
     verdicts = []
     for name in sorted(ours | theirs):
         if name not in ours or name not in theirs:
@@ -83,7 +83,8 @@ def compare(here, there):
     return verdicts
 
 
-def _names(folder):
+def names(folder):
+    """Return the files below a folder of results that a comparison looks at, as a set of relative paths."""
     paths = (path.relative_to(folder) for path in Path(folder).rglob("*") if path.is_file())
     return {
         path.as_posix()
