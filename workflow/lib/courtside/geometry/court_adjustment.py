@@ -21,8 +21,8 @@ from courtside.geometry.network import FLEX, IMAGE, POSE
 from courtside.study.errors import InputError
 
 UHD = 3840  # picture width at which click sigmas are stated
-# Focal lengths are tied to the bend of the whole, and the cost falls slowly along a curved valley. Most sessions
-# need 20 steps. With no more than these, one small session in thirty was 2.5 cm off instead of 0.9, and
+# Focal lengths are tied to the bend of the whole, and the cost falls slowly along a curved valley. Most
+# sessions need 20 steps. With no more than these, one small one in thirty was 2.5 cm off instead of 0.9, and
 # without a court the fixed cameras of one in five 4 to 7 degrees instead of 1.2 to 1.7.
 ENOUGH = {"max_iterations": 200, "tolerance": 1e-6}
 
