@@ -80,7 +80,7 @@ def tied(folder):
         outcome="", fault="", sfm_cameras=fixed, n_points_seen=[8, 5],
         ties=court_adjustment.Ties(("side", "back"), sizes, known),
         images=np.array(["static/side.png", "static/back.png", "frames/walk/000000.png"]),
-        centres=np.arange(9.0).reshape(3, 3), xyz=np.ones((4, 3)), residual_px=0.4,
+        centres=np.arange(9.0).reshape(3, 3), xyz=np.ones((4, 3)), residual_px=0.4, n_maps=(2, 2),
     )  # fmt: skip
     ties.write(folder / "ties.npz", record)
 

@@ -14,9 +14,11 @@ from courtside.study.errors import InputError
 
 def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options):
     network, images, sizes = model.read(Path(summary_json).parent)
-    n_models = json.loads(Path(summary_json).read_text())["n_models"]
+    summary = json.loads(Path(summary_json).read_text())
     fixed = {camera: image_names.static(camera) for camera in cameras}
-    outcome = registration.outcome(network, images, fixed, min_points=min_points, n_models=n_models)
+    outcome = registration.outcome(
+        network, images, fixed, min_points=min_points, n_models=summary["n_models"]
+    )
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
     found = control_points.fixed_cameras(network, placed, size_of)
@@ -31,7 +33,8 @@ def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points,
             fault = str(error)
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
     seen = [registration.n_seen(network, images, fixed[camera]) for camera in placed]
-    about = outcome, fault, found, seen, known, images, *places, residual_px
+    n_maps = summary["n_agreeing"], summary["n_attempts"]
+    about = outcome, fault, found, seen, known, images, *places, residual_px, n_maps
     ties.write(ties_npz, ties.Record(*about))
 
 

@@ -20,9 +20,17 @@ def main(
         "calibration": name,
         "tie_residual_px": round(record.residual_px, 4),
         "n_images": len(record.images),
+        "n_maps_agreeing": record.n_maps[0],
+        "n_maps": record.n_maps[1],
         "n_points_seen": dict(zip(names, map(int, record.n_points_seen), strict=True)),
         **checked,
     }
+    if not court_yaml and record.n_maps[0] == 1 < record.n_maps[1]:
+        report["warnings"].append(
+            f"walk: expected maps of its images to agree, found {record.n_maps[1]} that all differ by more "
+            "than 1 % of their extent: angles and proportions are that uncertain; take more bridging images, "
+            "or name a court"
+        )
     log.logger.info("warnings: %s", report["warnings"] or "none")
     unit = "m" if court_yaml else fields.UNSCALED
     camera_models.write_toml(cameras_toml, found.cameras, source=name, unit=unit)

@@ -38,7 +38,9 @@ def record(cameras=None, **changes):
     moved = similarity.Sim3(0.3, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
     in_sfm = [moved.camera(camera) for camera in cameras or truth()]
     nothing = np.zeros((0, 3))
-    made = ties.Record("", "", in_sfm, [60, 60], known, np.zeros(0, str), nothing, nothing, 0.1)
+    made = ties.Record(
+        "", "", in_sfm, [60, 60], known, np.zeros(0, str), nothing, nothing, 0.1, (1, 1)
+    )
     return replace(made, **changes)
 
 

@@ -39,6 +39,7 @@ def record(**changes):
         "centres": np.arange(9.0).reshape(3, 3),
         "xyz": np.ones((4, 3)),
         "residual_px": 0.4,
+        "n_maps": (2, 3),
     }
     return ties.Record(**{**fields, **changes})
 
@@ -52,6 +53,7 @@ def test_what_is_written_is_read(tmp_path):
     made = record()
     found = through(tmp_path, made)
     assert (found.outcome, found.fault, found.residual_px) == ("", "", 0.4)
+    assert found.n_maps == (2, 3)
     assert [c.name for c in found.sfm_cameras] == list(NAMES)
     assert [c.size for c in found.sfm_cameras] == SIZES
     for camera, known in zip(found.sfm_cameras, made.sfm_cameras, strict=True):

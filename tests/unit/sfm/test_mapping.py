@@ -195,7 +195,8 @@ def test_a_failure_is_tried_again_and_the_best_model_kept(synthetic, tmp_path, m
     options = {"mapper": "global", "seed": 7}
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=5)
     seeds = [seed for seed, _ in asked]
-    assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8, 9], 9, 6)
+    assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8, 9, 10], 9, 6)
+    assert (summary["n_attempts"], summary["n_agreeing"]) == (4, 2)
     asked.clear()
     summary = mapping.map_images(path, names, tmp_path / "b", **options, attempts=2)
     seeds = [seed for seed, _ in asked]
@@ -222,7 +223,49 @@ def test_a_model_with_an_image_that_sees_nothing_is_no_whole_model(
     names, options = sorted(sfm_made.centres(truth)), {"mapper": "global", "seed": 7}
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=5)
     seeds = [seed for seed, _ in asked]
-    assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8], 8, 6)
+    assert (seeds, summary["seed"], summary["n_registered"]) == ([7, 8, 9], 8, 6)
+
+
+def bent(found, by):
+    """Move the images of a model along one axis, by a share of the way that grows along it."""
+    model = found.model
+    for at in model.reg_image_ids():
+        pose = model.images[at].cam_from_world()
+        place = model.images[at].projection_center()
+        moved = place * (1 + by * (place[0] > 0))
+        model.frames[model.images[at].frame_id].rig_from_world = pycolmap.Rigid3d(
+            pose.rotation, -pose.rotation.matrix() @ moved
+        )
+    return found
+
+
+def test_models_are_made_until_two_agree(synthetic, tmp_path, monkeypatch):
+    """The first model is bent by more than models of one session differ, without a trace in its pixels."""
+    path, truth = synthetic
+    monkeypatch.setattr(mapping, "SOUND_PX", np.inf)
+    asked = spoil(monkeypatch, lambda number, found: bent(found, 0.2) if number == 1 else found)
+    names, options = sorted(sfm_made.centres(truth)), {"mapper": "global", "seed": 7}
+    summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=4)
+    assert [seed for seed, _ in asked] == [7, 8, 9]
+    assert (summary["n_attempts"], summary["n_agreeing"]) == (3, 1 + (summary["seed"] != 7))
+
+
+def test_of_models_that_differ_the_one_with_most_observations_is_kept(
+    synthetic, tmp_path, monkeypatch
+):
+    path, truth = synthetic
+
+    def poorer(number, found):
+        for point in list(found.model.points3D)[: 10 * (5 - number)]:
+            found.model.delete_point3D(point)
+        return bent(found, 0.1 * number)
+
+    monkeypatch.setattr(mapping, "SOUND_PX", np.inf)
+    asked = spoil(monkeypatch, poorer)
+    names, options = sorted(sfm_made.centres(truth)), {"mapper": "global", "seed": 7}
+    summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=3)
+    assert [seed for seed, _ in asked] == [7, 8, 9] and summary["seed"] == 9
+    assert (summary["n_attempts"], summary["n_agreeing"]) == (3, 1)
 
 
 @pytest.mark.parametrize(("mapper", "held"), [("global", True), ("incremental", False)])

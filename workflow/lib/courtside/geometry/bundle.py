@@ -1,5 +1,6 @@
 """Bundle adjustment of a `Network`: Levenberg-Marquardt on images and lenses, points eliminated."""
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -125,7 +126,11 @@ def _fall(network, normal, quadratic, damping):
 def _descend(network, normal, quadratic, damping, hold):
     """Return the network after a damped step with its cost, None if the cost does not fall."""
     information = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
-    part = linalg.solve(information, -normal.gradient, assume_a="sym")
+    with (
+        warnings.catch_warnings()
+    ):  # a free frame leaves the information singular but for the damping
+        warnings.simplefilter("ignore", linalg.LinAlgWarning)
+        part = linalg.solve(information, -normal.gradient, assume_a="sym")
     step = np.zeros(len(normal.active))
     step[normal.active] = part
     moved = network.moved(step, normal.back(part))

@@ -1,10 +1,8 @@
 """Camera files under each other's names: the clicks of two fixed cameras fit where the other one stands."""
 
-import warnings
 from itertools import combinations
 
 import numpy as np
-from scipy.linalg import LinAlgWarning
 
 from courtside.geometry import alignment
 from courtside.study.errors import InputError
@@ -56,9 +54,7 @@ def _off_m(court, cameras, clicks, adjust=None):
     try:
         off_m = _misfit_m(court, cameras, clicks)
         if adjust and off_m <= BENT * np.max(court.size_m):
-            with warnings.catch_warnings():  # clicks under wrong names may leave nothing to solve
-                warnings.simplefilter("ignore", LinAlgWarning)
-                off_m = _misfit_m(court, adjust(clicks), clicks)
+            off_m = _misfit_m(court, adjust(clicks), clicks)
     except InputError:
         return np.inf
     return off_m

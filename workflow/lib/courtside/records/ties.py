@@ -10,7 +10,7 @@ from courtside.geometry.network import LENS
 from courtside.records import npz
 from courtside.study.errors import reading
 
-FORM = "courtside ties 1"
+FORM = "courtside ties 2"
 SPEC = {
     "outcome": ("str", ()),
     "fault": ("str", ()),
@@ -27,6 +27,7 @@ SPEC = {
     "centre": ("float", ("V", "3")),
     "xyz": ("float", ("N", "3")),
     "residual_px": ("float", ()),
+    "n_maps": ("int", ("2",)),
 }
 
 
@@ -54,6 +55,8 @@ class Record:
         Points that tie the images, in the same frame.
     residual_px : float
         Of the ties, robust standard deviation per axis; NaN without ties.
+    n_maps : (int, int)
+        Maps of the same matches that place the images as this one does, itself included; all that were made.
     """
 
     outcome: str
@@ -65,6 +68,7 @@ class Record:
     centres: np.ndarray
     xyz: np.ndarray
     residual_px: float
+    n_maps: tuple
 
 
 def write(path, record):
@@ -88,6 +92,7 @@ def write(path, record):
         "centre": _stack(record.centres, (3,)),
         "xyz": _stack(record.xyz, (3,)),
         "residual_px": np.array(float(record.residual_px)),
+        "n_maps": np.array(record.n_maps, dtype=int),
     }
     npz.write(path, FORM, SPEC, arrays)
 
@@ -120,6 +125,7 @@ def _record(found):
         found["centre"],
         found["xyz"],
         float(found["residual_px"]),
+        tuple(map(int, found["n_maps"])),
     )
 
 
