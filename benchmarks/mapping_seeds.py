@@ -16,9 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "workflow" / "lib"))
-sys.path.insert(0, str(ROOT / "workflow" / "scripts"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "scripts"))
 import adjust_network
 import map_images
 
@@ -27,6 +26,7 @@ from courtside.records import ties, truth
 from courtside.study import yaml_files
 from courtside.virtual import clicking
 
+ROOT = Path(__file__).parents[1]
 CLICKS = "click_sigma_px", "click_bias_px", "click_loss"
 LINE = "{:<13}{:<8}{:>7}{:>9}{:>9}{:>9}"
 
