@@ -7,7 +7,7 @@ from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
 
 from courtside.devices import bag_writer
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 
 AT_REST = np.eye(3, 4)
 COLOUR = Camera(

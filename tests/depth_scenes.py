@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import depth_alignment
-from courtside.geometry.cameras import Camera
+from courtside.geometry import depth_registration
+from courtside.geometry.camera import Camera
 
 WALL_M = 4.5
 APART = np.column_stack(
@@ -86,7 +86,7 @@ def depth_of(depth_camera, shapes, colour_from_depth, wall_m=WALL_M, n_balls=40)
 
     Balls are met exactly by a quadratic equation, so that what is drawn at a joint is a ball's surface.
     """
-    rays = depth_alignment.rays(depth_camera)
+    rays = depth_registration.rays(depth_camera)
     directions = np.concatenate([rays, np.ones((*rays.shape[:2], 1))], axis=-1)
     rotation, shift = colour_from_depth[:, :3], colour_from_depth[:, 3]
     depth = np.full(rays.shape[:2], wall_m)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.geometry.network import LENS, Network, residuals
 
 SIZE = (1280, 720)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 
 SIZE = (1920, 1080)
 FOCAL_PX = 1400.0

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.virtual import surfaces
 from courtside.virtual.hall import Scene
 

@@ -5,7 +5,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
 
 import scene
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.records.keypoints import Keypoints2D
 
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")

@@ -80,7 +80,7 @@ def test_rooms_import_downwards_only(path):
     [
         ("pose", "from courtside.devices import video"),
         ("geometry", "from courtside.records import keypoints"),
-        ("study", "import courtside.geometry.cameras"),
+        ("study", "import courtside.geometry.camera"),
         ("motion", "from courtside.figures import style"),
         ("motion", "import matplotlib.pyplot"),
         ("exports", "import snakemake"),

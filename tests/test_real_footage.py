@@ -14,7 +14,8 @@ import pytest
 import networks
 from courtside.devices import still, video
 from courtside.exports import trc
-from courtside.geometry import calibration_files, cameras, triangulation
+from courtside.geometry import calibration_files, triangulation
+from courtside.geometry import camera as cameras
 from courtside.motion import fusion
 from courtside.pose import decoders, foreground, tracking
 from courtside.records import keypoints, skeleton

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "workflow" / "lib"))
-from courtside.geometry import cameras, triangulation
+from courtside.geometry import camera, triangulation
 
 
 def main(scene_npz, result_npz, repeats):
     scene = np.load(scene_npz)
     size = tuple(int(side) for side in scene["size"])
     views = [
-        cameras.Camera(f"cam_{at:02d}", size, scene["K"], np.zeros(5), matrix)
+        camera.Camera(f"cam_{at:02d}", size, scene["K"], np.zeros(5), matrix)
         for at, matrix in enumerate(scene["cam_from_world"])
     ]
     limits = {"sigma_px": float(scene["sigma_px"]), "max_error_px": 15.0, "min_views": 2}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import court_pictures
-from courtside.geometry import cameras as projection
+from courtside.geometry import camera as projection
 from courtside.pages import clicking_page
 from courtside.pages import page as pages
 from courtside.records import clicks

@@ -8,7 +8,8 @@ import tomli_w
 
 import walker
 from courtside.exports import pose2sim, trc
-from courtside.geometry import calibration_files, cameras, courts
+from courtside.geometry import calibration_files, courts
+from courtside.geometry import camera as cameras
 from courtside.motion import joint_offsets
 from courtside.records import clicks, proposals, skeleton
 from fuzz.format import Format, require

@@ -11,7 +11,7 @@ from bvh_texts import ARM
 import depth_recordings_made
 import walker
 from courtside.devices import bvh, depth_recordings, mocopi, nuitrack, openpose, video_writer
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.records import skeleton
 from courtside.records.hierarchy import forward
 from courtside.records.keypoints import Keypoints2D

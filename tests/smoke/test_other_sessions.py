@@ -11,7 +11,8 @@ import pytest
 import scipy.io
 import yaml
 
-from courtside.geometry import cameras, similarity
+from courtside.geometry import camera as cameras
+from courtside.geometry import similarity
 from courtside.records import camera_covariance, keypoints, limbs, truth
 from courtside.sfm import model
 from courtside.study.errors import InputError

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.exports import tidy, trc
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.records import camera_covariance, keypoints, truth
 from smoke.snakemake_runs import ROOT, planned
 

@@ -1,7 +1,7 @@
 """Align a model with the court by a similarity: ties, clicks -> cameras as paper or all points say."""
 
 from courtside.geometry import alignment, courts, quality
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.records import clicks, ties
 from courtside.study import log
 from courtside.study.errors import InputError

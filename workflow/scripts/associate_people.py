@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from courtside.geometry import cameras, courts
+from courtside.geometry import camera as cameras
+from courtside.geometry import courts
 from courtside.motion import association, resampling
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log

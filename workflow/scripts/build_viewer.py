@@ -5,7 +5,7 @@ and whether it is `shown` at first; of a device also the `person`, its `source` 
 whether it is to be `placed` onto the first layer.
 """
 
-from courtside.geometry import cameras, courts
+from courtside.geometry import camera, courts
 from courtside.pages import page, viewer, viewer_layers
 from courtside.records import skeleton, sync
 from courtside.study import log
@@ -26,7 +26,7 @@ def main(paths, html, *, title, layers, notes=()):
         )
         made.append(viewer_layers.placed(layer, made[0]) if said.get("placed") else layer)
     court = courts.read(paths.court) if paths.court else None
-    seen = cameras.read_toml(paths.cameras) if paths.cameras else ()
+    seen = camera.read_toml(paths.cameras) if paths.cameras else ()
     content = viewer.build(title, made, seen, court, notes)
     page.write(html, content)
     log.logger.info("%s: %d layers, %.1f MB", html, len(made), len(content) / 1e6)

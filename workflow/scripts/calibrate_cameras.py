@@ -1,7 +1,7 @@
 """Calibrate the fixed cameras in the court's frame: ties, clicks -> cameras, covariance, quality."""
 
-from courtside.geometry import cameras as camera_models
-from courtside.geometry import court_adjustment, courts, fields, quality
+from courtside.geometry import camera as camera_models
+from courtside.geometry import camera_fields, court_adjustment, courts, quality
 from courtside.records import camera_covariance, clicks, ties
 from courtside.study import log
 from courtside.study.errors import InputError
@@ -32,7 +32,7 @@ def main(
             "or name a court"
         )
     log.logger.info("warnings: %s", report["warnings"] or "none")
-    unit = "m" if court_yaml else fields.UNSCALED
+    unit = "m" if court_yaml else camera_fields.UNSCALED
     camera_models.write_toml(cameras_toml, found.cameras, source=name, unit=unit)
     covariance = camera_covariance.of_network(names, found.covariance)
     camera_covariance.write(covariance_npz, covariance)

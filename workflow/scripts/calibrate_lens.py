@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from courtside.devices import chessboard
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.study import log
 
 

@@ -1,13 +1,13 @@
 """Draw the error to expect over the court: cameras, covariance, court -> figure, CSV."""
 
 from courtside.figures import error_map, style
-from courtside.geometry import cameras, courts
+from courtside.geometry import camera, courts
 from courtside.records import camera_covariance
 from courtside.study import log
 
 
 def main(cameras_toml, covariance_npz, court_yaml, pdf, png, csv, *, title, heights_m):
-    found, court = cameras.read_toml(cameras_toml), courts.read(court_yaml)
+    found, court = camera.read_toml(cameras_toml), courts.read(court_yaml)
     covariance = camera_covariance.read(covariance_npz)
     rows = error_map.table(found, covariance, court, heights_m)
     style.save(error_map.draw(rows, found, court, title), rows, pdf, png, csv)

@@ -4,7 +4,7 @@ import numpy as np
 
 from courtside.devices import video
 from courtside.figures import overlay, style
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.motion import resampling
 from courtside.pose import privacy
 from courtside.records import keypoints, people, skeleton, sync

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from courtside.figures import camera_shake, style
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.motion import knocks
 from courtside.records import keypoints, shake_table
 from courtside.study import log

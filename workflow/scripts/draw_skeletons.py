@@ -1,14 +1,14 @@
 """Draw the metric skeletons in the hall: 3D keypoints, cameras -> figure, CSV."""
 
 from courtside.figures import skeletons, style
-from courtside.geometry import cameras
+from courtside.geometry import camera
 from courtside.records import keypoints, skeleton
 from courtside.study import log
 
 
 def main(pose3d_npz, cameras_toml, skeleton_yaml, pdf, png, csv):
     points = keypoints.read_3d(pose3d_npz)
-    found = [c for c in cameras.read_toml(cameras_toml) if c.name in points.cameras]
+    found = [c for c in camera.read_toml(cameras_toml) if c.name in points.cameras]
     drawing = skeletons.draw(points, found, skeleton.read(skeleton_yaml))
     style.save(drawing, skeletons.table(points), pdf, png, csv)
 

@@ -2,7 +2,8 @@
 
 import pandas as pd
 
-from courtside.geometry import cameras, court_trials, courts
+from courtside.geometry import camera as cameras
+from courtside.geometry import court_trials, courts
 from courtside.records import tables, truth
 from courtside.study import log
 from courtside.virtual import clicking

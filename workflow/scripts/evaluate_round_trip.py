@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.motion import joint_errors, round_trip
 from courtside.records import derived, keypoints, skeleton, sync, tables, take_truth
 from courtside.study import log

@@ -3,7 +3,7 @@
 from courtside.devices import video, video_writer
 from courtside.exports import overlay_video
 from courtside.figures import style
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
 

@@ -1,7 +1,7 @@
 """Export one take as a Pose2Sim project: cameras, 2D, people, clocks, 3D -> folder."""
 
 from courtside.exports import pose2sim
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.motion import resampling
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log

@@ -1,7 +1,7 @@
 """Extract the colour of a depth camera's recording: recording -> video, its frames' times, colour camera."""
 
 from courtside.devices import depth_recordings, video_writer
-from courtside.geometry import cameras
+from courtside.geometry import camera
 from courtside.records import frame_times
 from courtside.study import log
 
@@ -15,7 +15,7 @@ def main(recording, video, frames_csv, camera_toml, *, device, crf):
     images = (image for _, image in pictures)
     video_writer.write_video(video, images, table.rate_hz, crf=crf)
     frame_times.write(frames_csv, table)
-    cameras.write_toml(camera_toml, [found.colour], source=f"recorded by {device}")
+    camera.write_toml(camera_toml, [found.colour], source=f"recorded by {device}")
 
 
 if __name__ == "__main__":

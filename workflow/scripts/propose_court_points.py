@@ -3,7 +3,8 @@
 import cv2
 
 from courtside.devices import court_proposals
-from courtside.geometry import cameras, courts
+from courtside.geometry import camera as cameras
+from courtside.geometry import courts
 from courtside.records import proposals
 from courtside.study import log
 from courtside.study.errors import InputError

@@ -2,7 +2,7 @@
 
 import cv2
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.geometry import court_adjustment, courts, known_points, quality
 from courtside.records import clicks
 from courtside.study import log

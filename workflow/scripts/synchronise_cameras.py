@@ -1,6 +1,6 @@
 """Find the cameras' clocks of one take: 2D keypoints of every camera -> offset and drift of each."""
 
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.motion import camera_sync
 from courtside.records import keypoints, sync
 from courtside.study import log

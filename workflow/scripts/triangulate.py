@@ -4,7 +4,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.motion import camera_error, fusion, halfbody, resampling, steadying
 from courtside.records import camera_covariance, keypoints, people, shake_table, skeleton, sync
 from courtside.study import log

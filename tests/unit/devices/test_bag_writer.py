@@ -4,8 +4,8 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag1 import Reader
 
 from courtside.devices import bag_writer, realsense
-from courtside.geometry import depth_alignment
-from courtside.geometry.cameras import Camera
+from courtside.geometry import depth_registration
+from courtside.geometry.camera import Camera
 from depth_recordings_made import BASELINE_M, COLOUR, DEPTH, PLACED, UNIT_M, frames, write_bag
 from real_data import REAL, needs_real
 
@@ -137,7 +137,7 @@ def test_the_camera_s_own_software_aligns_alike(sdk, tmp_path):
     path = tmp_path / "a.bag"
     bag_writer.write(path, colour, depth, apart, 0.001, made)
     theirs = played(sdk, path)[0][3]
-    ours = depth_alignment.align(steps * 0.001, depth, colour, apart)
+    ours = depth_registration.align(steps * 0.001, depth, colour, apart)
     both = (theirs > 0) & np.isfinite(ours)
     # They let a depth pixel cover whole pixels at its rim, we those whose centre it covers.
     assert both.sum() > 0.97 * np.isfinite(ours).sum()

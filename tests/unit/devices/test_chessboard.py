@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from courtside.devices import chessboard
-from courtside.geometry import calibration_files, transforms
+from courtside.geometry import calibration_files, rotations
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 
@@ -34,7 +34,7 @@ def rays():
 
 def draw(turn_deg, shift, blur_px=0.7):
     """Draw a board of unit squares seen through the lens: each sample's ray is cut with its plane."""
-    rotation = transforms.rotation_from_rodrigues(np.radians(turn_deg))
+    rotation = rotations.rotation_from_rodrigues(np.radians(turn_deg))
     place = np.array([*shift, 0]) * 4 + [0, 0, 15] - rotation @ [3, 2, 0]
     board_from_ray = np.linalg.inv(np.column_stack([rotation[:, :2], place]))
     on_board = rays() @ board_from_ray.T

@@ -5,7 +5,8 @@ import pytest
 
 import court_pictures
 from courtside.devices import court_proposals
-from courtside.geometry import cameras, line_registration
+from courtside.geometry import camera as cameras
+from courtside.geometry import line_registration
 
 SIZE, F = (1280, 720), 1150.0
 

@@ -6,7 +6,7 @@ import pytest
 import court_pictures
 from courtside.devices import line_profiles
 from courtside.devices.court_view import View
-from courtside.geometry import cameras, court_edges, line_registration
+from courtside.geometry import camera, court_edges, line_registration
 
 
 def test_the_shift_is_how_far_the_camera_is_off():
@@ -22,7 +22,7 @@ def test_the_shift_is_how_far_the_camera_is_off():
         origin = stretch.mean(axis=0)
         found = made.shift(line, stretch, origin, 5.0)
         _, normal = line_profiles.axes(moved, origin[None], ends[1] - ends[0], half)
-        exact = (cameras.project(true, origin) - cameras.project(moved, origin)) @ normal[0]
+        exact = (camera.project(true, origin) - camera.project(moved, origin)) @ normal[0]
         assert abs(exact) > 0.3
         assert found.low_px == pytest.approx(exact, abs=0.12)
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from courtside.devices import depth_folder, video_writer
-from courtside.geometry import cameras
+from courtside.geometry import camera
 from courtside.study.errors import InputError
 from depth_recordings_made import PLACED
 
@@ -17,14 +17,14 @@ IN_DEVICE = np.column_stack([np.eye(3), [0.3, -0.2, 0.1]])  # both cameras, in s
 
 
 def write(folder):
-    depth = cameras.Camera(
+    depth = camera.Camera(
         "depth", (32, 24), [[25, 0, 15], [0, 25, 11], [0, 0, 1]], np.zeros(5), IN_DEVICE
     )
     placed = np.column_stack([PLACED[:, :3], PLACED[:, :3] @ IN_DEVICE[:, 3] + PLACED[:, 3]])
-    colour = cameras.Camera(
+    colour = camera.Camera(
         "colour", (48, 32), [[40, 0, 23], [0, 41, 15], [0, 0, 1]], [0.1, 0, 0, 0, 0], placed
     )
-    cameras.write_toml(folder / "cameras.toml", [colour, depth], source="test")
+    camera.write_toml(folder / "cameras.toml", [colour, depth], source="test")
     with (folder / "cameras.toml").open("a") as stream:
         stream.write("depth_unit_m = 0.0005\nbaseline_m = 0.05\n")
     pictures = [np.full((32, 48, 3), grey, np.uint8) for grey in GREYS]

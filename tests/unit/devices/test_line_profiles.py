@@ -6,7 +6,8 @@ import pytest
 
 import court_pictures
 from courtside.devices import line_profiles
-from courtside.geometry import cameras, court_edges
+from courtside.geometry import camera as cameras
+from courtside.geometry import court_edges
 
 BLUR_PX = 0.6
 

@@ -10,7 +10,7 @@ import pytest
 from courtside.devices import openpose
 from courtside.exports import markers, trc
 from courtside.geometry import calibration_files
-from courtside.geometry.cameras import project
+from courtside.geometry.camera import project
 from courtside.records import reasons, skeleton
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real

@@ -6,7 +6,7 @@ import pytest
 import court_pictures
 from courtside.devices import post_profiles
 from courtside.devices.court_view import View
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 
 SIZE = (1280, 720)
 

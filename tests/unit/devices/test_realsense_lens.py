@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from courtside.devices import realsense_lens
-from courtside.geometry import distortion
+from courtside.geometry import camera
 from courtside.study.errors import InputError
 
 K = np.array([[640.0, 0, 641.2], [0, 639.0, 362.1], [0, 0, 1]])
@@ -37,7 +37,7 @@ def test_the_tangential_part_after_the_radial_one(model):
         axis=-1,
     )
     assert np.allclose(realsense_lens.modified(GIVEN, plane), wanted)
-    assert np.abs((distortion.distort(found, plane) - wanted) * 640).max() < 0.1
+    assert np.abs((camera.distort(found, plane) - wanted) * 640).max() < 0.1
 
 
 @pytest.mark.parametrize(
@@ -66,5 +66,5 @@ def test_the_camera_s_own_software_agrees(model):
     found = realsense_lens.five_coefficients("f", model, GIVEN, K, SIZE)
     for plane in ([-0.9, -0.5], [0.3, 0.4], [0.9, 0.1]):
         theirs = rs.rs2_project_point_to_pixel(lens, [*plane, 1.0])
-        ours = distortion.distort(found, np.array(plane)) * np.diag(K)[:2] + K[:2, 2]
+        ours = camera.distort(found, np.array(plane)) * np.diag(K)[:2] + K[:2, 2]
         assert np.abs(ours - theirs).max() < 0.1

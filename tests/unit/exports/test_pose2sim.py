@@ -15,7 +15,7 @@ import pytest
 import scene
 import walker
 from courtside.exports import markers, pose2sim, trc
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.records import keypoints, reasons, skeleton
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from courtside.figures import camera_shake, style
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 
 FOCAL = 1500.0
 PLAYER = np.array([0.0, 0.0, 6.0])

@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 import scene
 from courtside.figures import error_map
 from courtside.geometry import courts
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.records.camera_covariance import PARAMETERS, CameraCovariance
 
 COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import alignment, cameras, courts, similarity
+from courtside.geometry import alignment, courts, similarity
+from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
 from scene import look_at, opencv_projection
 

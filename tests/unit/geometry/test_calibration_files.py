@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.geometry import calibration_files, cameras
+from courtside.geometry import calibration_files
+from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.geometry import alignment, click_faults, courts, similarity
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from scene import look_at, opencv_projection
 
 COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import court_pictures
-from courtside.geometry import cameras, court_edges, courts
+from courtside.geometry import camera as cameras
+from courtside.geometry import court_edges, courts
 
 FOLDER = Path(__file__).parents[3] / "config" / "courts"
 COURTS = sorted(FOLDER.glob("*.yaml"))

@@ -5,14 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.geometry import (
-    alignment,
-    cameras,
-    click_faults,
-    courts,
-    exchanged_cameras,
-    similarity,
-)
+from courtside.geometry import alignment, click_faults, courts, exchanged_cameras, similarity
+from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
 from scene import look_at, opencv_projection
 

@@ -5,7 +5,8 @@ import pytest
 
 import court_pictures
 from courtside.devices import line_profiles
-from courtside.geometry import cameras, court_edges, line_registration
+from courtside.geometry import camera as cameras
+from courtside.geometry import court_edges, line_registration
 
 
 def offsets(start, true, court):

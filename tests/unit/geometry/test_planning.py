@@ -16,7 +16,7 @@ from courtside.geometry import (
     planned_ties,
     planning,
 )
-from courtside.geometry.cameras import project
+from courtside.geometry.camera import project
 from courtside.geometry.planning import Prediction
 
 PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.geometry import courts, quality
 from courtside.study.errors import InputError
 from scene import look_at, opencv_projection

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.geometry import cameras, courts, resection, triangulation
+from courtside.geometry import camera as cameras
+from courtside.geometry import courts, resection, triangulation
 from courtside.study.errors import InputError
 from scene import look_at, opencv_projection
 

@@ -6,7 +6,7 @@ import pytest
 from scipy.optimize import least_squares
 
 import scene
-from courtside.geometry import calibration_files, cameras, triangulation
+from courtside.geometry import calibration_files, camera, triangulation
 from real_data import REAL, needs_real
 
 LENS = (-0.25, 0.08, 1e-3, -5e-4, -0.01)
@@ -31,7 +31,7 @@ def test_all_views_give_the_least_squares_of_their_pixels():
     found = triangulation.triangulate_all(views, xy)
     for point, seen in zip(found, xy.swapaxes(0, 1), strict=True):
         # On the undistorted plane, in px, as the project states its errors.
-        plane = [cameras.undistort(view, px) for view, px in zip(views, seen, strict=True)]
+        plane = [camera.undistort(view, px) for view, px in zip(views, seen, strict=True)]
 
         def off(x, plane=plane):
             placed = [view.cam_from_world[:, :3] @ x + view.cam_from_world[:, 3] for view in views]
@@ -61,7 +61,7 @@ def test_dlt_equals_the_null_vector_of_hartley_and_zisserman():
     views, xyz = scene.ring(4), scene.points(20)
     rng = np.random.default_rng(1)
     xy = scene.views(views, xyz) + rng.normal(0, 0.01, (4, 20, 2))
-    plane = np.stack([cameras.undistort(c, p) for c, p in zip(views, xy, strict=True)])
+    plane = np.stack([camera.undistort(c, p) for c, p in zip(views, xy, strict=True)])
     matrices = np.stack([c.cam_from_world for c in views])
     found = triangulation.triangulate(plane, np.ones((4, 20)), matrices)
     for at in range(20):
@@ -122,7 +122,7 @@ def test_points_behind_the_cameras_are_refused():
     matrix = scene.ring(1)[0].K
     poses = [scene.look_at((0, -6, 2), (0, 0, 1.9)), scene.look_at((0.5, -6, 2), (0.5, 0, 1.9))]
     pair = [
-        cameras.Camera(n, scene.SIZE, matrix, np.zeros(5), p)
+        camera.Camera(n, scene.SIZE, matrix, np.zeros(5), p)
         for n, p in zip("ab", poses, strict=True)
     ]
     # The rays cross behind the cameras: the left camera sees the point further left than the right one.

@@ -8,7 +8,8 @@ import pytest
 
 import scene
 import sync_takes
-from courtside.geometry import calibration_files, cameras
+from courtside.geometry import calibration_files
+from courtside.geometry import camera as cameras
 from courtside.motion import camera_sync
 from courtside.records import sync
 from courtside.records.keypoints import Keypoints2D

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import depth_scenes
-from courtside.geometry import cameras
+from courtside.geometry import camera
 from courtside.motion import depth_lift
 from courtside.motion.depth_samples import Sampling
 from courtside.records import limbs, reasons
@@ -27,7 +27,7 @@ def view(xyz):
         joints=np.array(NAMES),
         size=np.array(RIG.colour.size),
         time_s=5 + np.arange(n_frames) / 30,
-        xy=cameras.project(RIG.colour, xyz)[np.newaxis],
+        xy=camera.project(RIG.colour, xyz)[np.newaxis],
         score=np.ones(shape),
         reason=np.zeros(shape, np.uint8),
         xyz_in_body=np.full((*shape, 3), np.nan),
@@ -93,7 +93,7 @@ def test_a_hole_over_a_limb_is_no_depth(still):
     xyz, pictures = still
     wrist = NAMES.index("left_wrist")
     at = RIG.colour_from_depth[:, :3].T @ (xyz[0, wrist] - RIG.colour_from_depth[:, 3])
-    u, v = np.rint(cameras.project(RIG.depth, at)).astype(int)
+    u, v = np.rint(camera.project(RIG.depth, at)).astype(int)
     holed = [depth_m.copy() for depth_m in pictures]
     holed[3][v - 12 : v + 13, u - 12 : u + 13] = 0
     motion, sigma_m = lift(view(xyz), holed)
@@ -113,7 +113,7 @@ def test_a_hand_before_the_trunk_is_not_the_hip(still, beside):
     several = np.concatenate([xyz[:-1], crossed[np.newaxis]])
     last = seen(crossed)
     if not beside:
-        u, v = np.rint(cameras.project(RIG.depth, xyz[0, hip])).astype(int)
+        u, v = np.rint(camera.project(RIG.depth, xyz[0, hip])).astype(int)
         around = last[v - 25 : v + 25, u - 25 : u + 25]
         around[around > 2.38] = 0
     exact = Sampling(disparity_px=0.02)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import depth_scenes
-from courtside.geometry import cameras
+from courtside.geometry import camera
 from courtside.motion.depth_samples import Sampler, Sampling, modes_of, plane_at_origin
 
 RNG = np.random.default_rng(4)
@@ -24,7 +24,7 @@ def ball(centre=BALL, radius=0.05):
 
 
 def place(xyz):
-    return cameras.project(RIG.colour, np.atleast_2d(xyz))
+    return camera.project(RIG.colour, np.atleast_2d(xyz))
 
 
 def test_noise_grows_with_the_square_of_the_distance():
@@ -50,7 +50,7 @@ def test_the_wall_beside_a_limb_comes_second():
 
 def test_a_hole_is_filled_from_around_it_within_limits():
     depth_m = seen(ball())
-    u, v = np.rint(cameras.project(RIG.depth, BALL - RIG.colour_from_depth[:, 3])).astype(int)
+    u, v = np.rint(camera.project(RIG.depth, BALL - RIG.colour_from_depth[:, 3])).astype(int)
     small, large = depth_m.copy(), depth_m.copy()
     small[v - 3 : v + 4, u - 3 : u + 4] = 0
     large[v - 14 : v + 15, u - 14 : u + 15] = 0

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.motion import knocks
 
 FOCAL = 1680.0

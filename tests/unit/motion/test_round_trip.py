@@ -9,7 +9,7 @@ import pytest
 
 import scene
 import walker
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.motion import round_trip
 from courtside.study.errors import InputError
 

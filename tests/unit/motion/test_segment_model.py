@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import moved_bodies
-from courtside.motion import body_segments, rotation_vectors, segment_model
+from courtside.geometry import rotations
+from courtside.motion import body_segments, segment_model
 from courtside.records import limbs
 from courtside.records.hierarchy import forward
 
@@ -41,7 +42,7 @@ def test_without_correction_it_is_forward_kinematics():
 def test_heading_turns_all_about_the_root():
     slow, fixed = parameters(0, 0.0)
     slow[:, MODEL.slow["heading"]] = 0.4
-    turn = rotation_vectors.matrices(0.4 * moved_bodies.UP)
+    turn = rotations.matrices_from_vectors(0.4 * moved_bodies.UP)
     wanted = XYZ[:, :1] + (XYZ[:, OBSERVED] - XYZ[:, :1]) @ turn.T
     assert MODEL.places(frames(), slow, fixed) == pytest.approx(wanted, abs=1e-12)
 

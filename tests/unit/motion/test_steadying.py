@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.motion import steadying
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints2D

@@ -6,7 +6,7 @@ import pytest
 
 import scene
 import stick_figures
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.motion import view_agreement
 
 MIRROR = [1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10]

@@ -7,7 +7,7 @@ import pytest
 
 import scene
 import walker
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.records import footage, keypoints, people, sync
 from courtside.study.errors import InputError
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import small_hall
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
 from courtside.virtual import backdrop, paintwork, surfaces
 from courtside.virtual.renderer import Renderer

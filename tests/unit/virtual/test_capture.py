@@ -10,7 +10,7 @@ import pytest
 import scene
 from courtside.devices import video
 from courtside.geometry import courts
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.records import clicks, truth
 from courtside.virtual import capture, layouts
 

@@ -5,7 +5,8 @@ import pytest
 
 import balls
 import small_hall
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera as cameras
+from courtside.geometry import rotations
 from courtside.virtual import depth_camera
 from courtside.virtual.depth_camera import DepthCamera
 from courtside.virtual.renderer import Renderer
@@ -74,7 +75,7 @@ def test_the_sensors_are_apart_by_the_known_transform():
     apart = colour.centre_in_world - depth.centre_in_world
     assert np.linalg.norm(apart) == pytest.approx(0.015)
     turn = SMALL.colour_from_depth[:, :3]
-    angle = np.degrees(np.linalg.norm(transforms.rodrigues_from_rotation(turn)))
+    angle = np.degrees(np.linalg.norm(rotations.rodrigues_from_rotation(turn)))
     assert 0.1 < angle < 0.5
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import balls
 import small_hall
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.virtual import depth_casting, paintwork
 from courtside.virtual.renderer import Renderer
 

@@ -9,7 +9,7 @@ import pytest
 
 import scene as projection
 from courtside.geometry import courts
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.virtual import hall, layouts
 from courtside.virtual.presets import PLAIN, RICH
 from courtside.virtual.renderer import Renderer

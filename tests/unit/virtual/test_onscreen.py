@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 import balls
 import scene
 import small_hall
-from courtside.geometry import cameras
+from courtside.geometry import camera
 from courtside.virtual import onscreen
 
 CAMERA = small_hall.camera(size=(1920, 1080))
@@ -107,7 +107,7 @@ def test_points_are_where_the_camera_projects_them_to_the_last_bit():
     xyz = rng.uniform([-20, -20, -5], [25, 30, 12], (5000, 3))  # many behind it, many far aside
     xyz[7] = np.nan
     x, y, depth = onscreen.shown(CAMERA, xyz)
-    expected = cameras.project(CAMERA, xyz)
+    expected = camera.project(CAMERA, xyz)
     assert 0.1 < np.isfinite(expected[:, 0]).mean() < 0.9
     np.testing.assert_array_equal(np.stack([x, y], axis=1), expected)
     away = np.column_stack([xyz, np.ones(len(xyz))]) @ CAMERA.cam_from_world[2]

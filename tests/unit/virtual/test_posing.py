@@ -7,7 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import mannequin
-from courtside.virtual import posing, rotations, stance
+from courtside.geometry import rotations
+from courtside.virtual import posing, stance
 from courtside.virtual.stance import SIDES
 
 BODY = "f2"
@@ -34,13 +35,15 @@ def ways(posed, skeleton):
         ]
         for part, start, end in chains:
             ends = [posed.at(b + suffix, skeleton.heads[b + suffix]) for b in (start, end)]
-            found[f"{side}_{part}"] = rotations.unit(ends[1] - ends[0])
+            found[f"{side}_{part}"] = rotations.unit_vector(ends[1] - ends[0])
         for part, bone, tips in (
             ("hand", "wrist", skeleton.knuckles),
             ("foot", "foot", skeleton.toes),
         ):
             start = posed.at(bone + suffix, skeleton.heads[bone + suffix])
-            found[f"{side}_{part}"] = rotations.unit(posed.at(bone + suffix, tips[side]) - start)
+            found[f"{side}_{part}"] = rotations.unit_vector(
+                posed.at(bone + suffix, tips[side]) - start
+            )
     return found
 
 
@@ -120,8 +123,10 @@ def test_knees_bend_about_an_axis_to_the_left_and_soles_lie_flat():
         fall = skeleton.toes[side] - skeleton.heads["foot" + posing.SUFFIX[side]]
         out = np.radians(25) * sign
         way = [np.sin(out), np.cos(out), fall[1] / np.linalg.norm(fall[[0, 2]])]
-        flat[f"{side}_foot"] = rotations.unit(np.array(way))
-        flat[f"{side}_shank"] = rotations.unit(np.array([0.35 * sign, -0.3, -1]))  # leans out
+        flat[f"{side}_foot"] = rotations.unit_vector(np.array(way))
+        flat[f"{side}_shank"] = rotations.unit_vector(
+            np.array([0.35 * sign, -0.3, -1])
+        )  # leans out
     posed, skeleton, _ = placed(directions=wanted.directions | flat)
     for suffix in posing.SUFFIX.values():
         up = posed.rotation["foot" + suffix] @ [0, 1, 0]
@@ -134,7 +139,7 @@ def test_the_palm_faces_where_it_should_and_the_forearm_shares_the_twist(side, t
     free, skeleton, wanted = placed()
     suffix = posing.SUFFIX[side]
     hand = wanted.directions[f"{side}_hand"]
-    turn = rotations.about(hand, np.radians(turn_deg))
+    turn = rotations.about_axis(hand, np.radians(turn_deg))
     palm = turn @ free.rotation["wrist" + suffix] @ skeleton.palms[side]
     posed, _, _ = placed(palms={side: palm})
     found = posed.rotation["wrist" + suffix] @ skeleton.palms[side]
@@ -155,7 +160,7 @@ def test_the_palm_faces_where_it_should_and_the_forearm_shares_the_twist(side, t
 @pytest.mark.parametrize("side", SIDES)
 def test_a_racket_lies_across_the_palm_thumb_towards_its_head(side):
     hand = mannequin.stance().directions[f"{side}_hand"]
-    sideways = rotations.unit(np.cross(hand, [0.3, -0.2, 1.0]))
+    sideways = rotations.unit_vector(np.cross(hand, [0.3, -0.2, 1.0]))
     free, skeleton, _ = placed()
     across = free.rotation["wrist" + posing.SUFFIX[side]] @ skeleton.across[side]
     sideways *= np.sign(sideways @ across)
@@ -185,7 +190,7 @@ def test_small_changes_of_a_stance_make_small_changes_of_the_pose():
     for seed in SEEDS:
         posed, skeleton, wanted = placed(seed)
         nudge = {
-            name: rotations.unit(Rotation.from_rotvec(rng.normal(0, 1e-4, 3)).apply(way))
+            name: rotations.unit_vector(Rotation.from_rotvec(rng.normal(0, 1e-4, 3)).apply(way))
             for name, way in wanted.directions.items()
         }
         other = posing.pose(skeleton, stance.Stance(**{**vars(wanted), "directions": nudge}))

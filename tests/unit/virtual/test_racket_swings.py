@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.geometry import cameras, courts
+from courtside.geometry import camera as cameras
+from courtside.geometry import courts
 from courtside.virtual import layouts, presets, racket_swings
 
 COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 import scene
 import small_hall
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.virtual import rays
 
 TWIST = np.array([0.4, -0.3, 0.2]), np.array([1.0, 2.0, -0.5])

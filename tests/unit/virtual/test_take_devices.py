@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 import mannequin
 from courtside.devices import realsense
-from courtside.geometry import cameras, courts
+from courtside.geometry import camera, courts
 from courtside.records import take_truth
 from courtside.records.hierarchy import forward
 from courtside.virtual import body, capture, depth_camera, inertial, take_devices, takes
@@ -59,7 +59,7 @@ def test_the_bag_shows_the_truth(recorded):
     np.testing.assert_allclose([shot[0][0] for shot in shots], np.arange(4) / 20, atol=1e-6)
     for (time_s, bgr), (_, steps) in shots:
         joints = truth.xyz[0, np.argmin(np.abs(truth.time_s - time_s))]
-        xy = cameras.project(colour, joints)
+        xy = camera.project(colour, joints)
         assert ((xy > 0) & (xy < [212, 120])).all()
         assert _lit(bgr, xy[list(truth.joints).index("rig_head_top")])
         _assert_below_skin(found, colour, truth.joints, joints, steps)

@@ -11,7 +11,7 @@ from rosbags import rosbag1, rosbag2
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
 
-from courtside.geometry import fields
+from courtside.geometry import camera_fields
 from courtside.study.errors import InputError
 
 READERS = {
@@ -113,7 +113,7 @@ def _guarded(path):
     except InputError:
         raise
     except DAMAGED as error:
-        found = fields.short(error) or type(error).__name__
+        found = camera_fields.short(error) or type(error).__name__
         if "not indexed" in found:
             found = "a recording that was not finished (it has no index)"
         raise InputError(

@@ -36,7 +36,7 @@ def shown(word):
     return repr(word if len(word) <= MAX_DIGITS else word[:MAX_DIGITS] + "...")
 
 
-def read(path, text, at, n_frames, n_channels):
+def read_rows(path, text, at, n_frames, n_channels):
     """Read the rows at the end of a BVH file.
 
     Parameters

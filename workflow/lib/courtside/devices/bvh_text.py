@@ -169,7 +169,7 @@ class _Reader:
         self.words.expect("}", f"at the end {where}")
 
 
-def read(path):
+def read_text(path):
     """Read the text of a BVH file and check it.
 
     Parameters

@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.devices import line_profiles, post_profiles
 from courtside.devices.court_view import Ray, View
-from courtside.geometry import cameras as projection
+from courtside.geometry import camera as projection
 from courtside.geometry import court_edges, line_registration
 
 STRETCH_M = 1.6
@@ -37,7 +37,7 @@ class Proposals:
         0..1: share of what is expected near the point that is seen, less where the place is uncertain.
     reason : tuple of str, length P
         Why nothing is proposed; empty where something is.
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         The given one, moved so that the lines fit.
     """
 
@@ -53,7 +53,7 @@ def propose(camera, image, court, *, search_px, max_sigma_px=1.0, lines="light")
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         As known from two or three clicks: the court it expects may be `search_px` off.
     image : (H, W, 3) uint8
         Its static picture.

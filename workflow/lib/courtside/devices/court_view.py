@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.devices import line_profiles, line_shift
 from courtside.geometry import court_edges
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.geometry.courts import Court
 
 

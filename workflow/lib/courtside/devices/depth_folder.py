@@ -38,7 +38,8 @@ import pandas as pd
 
 from courtside.devices import image_files, video
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
-from courtside.geometry import cameras, fields, transforms
+from courtside.geometry import camera as cameras
+from courtside.geometry import camera_fields, rotations
 from courtside.records.frame_times import FrameTimes
 from courtside.study.errors import InputError, reading
 
@@ -77,7 +78,7 @@ def read(path, name="rgbd"):
     colour_index, depth_index = _indices(folder, film, len(pictures))
     colour, depth = found["colour"], found["depth"]
     cameras.check_size(colour, video.probe(film).size, film)
-    back = transforms.invert(depth.cam_from_world)
+    back = rotations.invert(depth.cam_from_world)
     turn, shift = colour.cam_from_world[:, :3], colour.cam_from_world[:, 3]
     return DepthRecording(
         name=name,
@@ -96,18 +97,22 @@ def read(path, name="rgbd"):
 def _metadata(toml):
     metadata = tomllib.loads(toml.read_text(encoding="utf-8-sig")).get("metadata", {})
     if not isinstance(metadata, dict):
-        raise InputError(f"{toml}: expected a table [metadata], found {fields.short(metadata)}")
+        raise InputError(
+            f"{toml}: expected a table [metadata], found {camera_fields.short(metadata)}"
+        )
     where, remarks = f"{toml}: [metadata]", ()
     if "depth_unit_m" not in metadata:
         remarks = (f"no depth_unit_m in {toml}: {DEFAULT_UNIT_M} m assumed",)
     unit = metadata.get("depth_unit_m", DEFAULT_UNIT_M)
-    depth_unit_m = float(fields.numbers(where, "depth_unit_m", unit, ()))
+    depth_unit_m = float(camera_fields.numbers(where, "depth_unit_m", unit, ()))
     if not 1e-6 <= depth_unit_m <= 0.1:
         raise InputError(
             f"{where}: expected depth_unit_m of 0.000001 to 0.1, found {depth_unit_m}; correct it"
         )
     baseline = metadata.get("baseline_m")
-    baseline_m = np.nan if baseline is None else fields.numbers(where, "baseline_m", baseline, ())
+    baseline_m = (
+        np.nan if baseline is None else camera_fields.numbers(where, "baseline_m", baseline, ())
+    )
     return depth_unit_m, float(baseline_m), remarks
 
 
@@ -167,7 +172,7 @@ def _colour(film, times_s):
 
 def _depth(pictures, times_s, size):
     for path, time_s in zip(pictures, times_s.tolist(), strict=True):
-        what = f"a 16-bit picture of one channel, {fields.times(size)} px"
+        what = f"a 16-bit picture of one channel, {camera_fields.times(size)} px"
         image = image_files.read(path, cv2.IMREAD_UNCHANGED, what=what, advice=EXPORT)
         if image.dtype != np.uint16 or image.shape != size[::-1]:
             raise InputError(

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import fields
-from courtside.geometry.cameras import Camera
+from courtside.geometry import camera_fields
+from courtside.geometry.camera import Camera
 
 DEFAULT_UNIT_M = 0.001  # what one step of a D400's depth means unless its option says otherwise
 
@@ -58,7 +58,7 @@ class DepthRecording:
         moved = np.array(self.colour_from_depth, dtype=float)
         if moved.shape != (3, 4) or not np.isfinite(moved).all():
             raise ValueError(
-                f"expected colour_from_depth as (3, 4) finite numbers, found {fields.short(moved)}"
+                f"expected colour_from_depth as (3, 4) finite numbers, found {camera_fields.short(moved)}"
             )
         rotation = moved[:, :3]
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-4 or np.linalg.det(rotation) < 0:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from courtside.geometry import cameras as projection
+from courtside.geometry import camera as projection
 
 STEP_PX = 0.25  # of profiles across a line
 FINE = 5  # steps of the expected paint within one of those
@@ -48,7 +48,7 @@ def look(grey, camera, ends_m, origin_m, half_width_m, paint, reach_px, blur_px)
     Parameters
     ----------
     grey : (H, W) float32
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         Expects the line.
     ends_m : (2, 3) float
         Of the stretch, on the line's middle; world, metres.
@@ -110,7 +110,7 @@ def axes(camera, xyz, along_m, across_m):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     xyz : (N, 3) float
         On the line, metres.
     along_m, across_m : (3,) float

@@ -6,7 +6,7 @@ from scipy.special import erf
 
 from courtside.devices import line_profiles, line_shift
 from courtside.devices.court_view import Ray
-from courtside.geometry import cameras as projection
+from courtside.geometry import camera as projection
 from courtside.geometry.court_edges import Paint
 
 WIDTH_M = 0.04

@@ -16,8 +16,8 @@ import numpy as np
 
 from courtside.devices import bag_images, bags, realsense_lens, realsense_text
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
-from courtside.geometry import fields, transforms
-from courtside.geometry.cameras import Camera
+from courtside.geometry import camera_fields, rotations
+from courtside.geometry.camera import Camera
 from courtside.records.frame_times import FrameTimes
 from courtside.study import log
 from courtside.study.errors import InputError
@@ -96,7 +96,7 @@ def _streams(bag):
             seen = sorted(prefixes) or sorted(t for t in bag.counts if "image" in t)[:3] or "none"
             raise InputError(
                 f"{bag.path}: expected one stream of pictures named {kind}, found "
-                f"{fields.short(seen)}; {RECORD}"
+                f"{camera_fields.short(seen)}; {RECORD}"
             )
     return {"depth": found["Depth"].pop(), "colour": found["Color"].pop()}
 
@@ -162,7 +162,7 @@ def _colour_from_depth(bag, streams):
             f"{to_colour}; "
             f"{RECORD}"
         )
-    back = transforms.invert(depth_from)
+    back = rotations.invert(depth_from)
     rotation = colour_from[:, :3] @ back[:, :3]
     return np.column_stack([rotation, colour_from[:, :3] @ back[:, 3] + colour_from[:, 3]])
 
@@ -197,7 +197,7 @@ def _decoded(where, message, camera, decode):
     size = picture.shape[1], picture.shape[0]
     if size != camera.size:
         raise InputError(
-            f"{where}: expected {fields.times(camera.size)} px as its lens, found {fields.times(size)}; "
+            f"{where}: expected {camera_fields.times(camera.size)} px as its lens, found {camera_fields.times(size)}; "
             f"{bags.HOW}"
         )
     return picture

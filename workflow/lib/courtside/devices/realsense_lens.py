@@ -10,7 +10,7 @@ As the camera's software (librealsense, `rsutil.h`) projects points of the z = 1
 import numpy as np
 from scipy.optimize import least_squares
 
-from courtside.geometry import distortion
+from courtside.geometry import camera
 from courtside.study.errors import InputError
 
 SAME = ("brown conrady", "plumb_bob", "none", "")
@@ -72,7 +72,7 @@ def _fit(given, K, size):
     shown = modified(given, plane)
 
     def miss(dist):
-        return ((distortion.distort(dist, plane) - shown) * focal).ravel()
+        return ((camera.distort(dist, plane) - shown) * focal).ravel()
 
     found = least_squares(miss, given).x
     return found, float(np.hypot(*miss(found).reshape(-1, 2).T).max())

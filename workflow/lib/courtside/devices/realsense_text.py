@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import fields
+from courtside.geometry import camera_fields
 from courtside.study.errors import InputError
 
 FIRST = (
@@ -49,7 +49,9 @@ def lens(where, info):
     found = pairs(info)
     if found:
         values = [found.get(key) for key in ("fx", "ppx", "fy", "ppy", "width", "height")]
-        fx, ppx, fy, ppy, *size = fields.numbers(where, "fx ppx fy ppy width height", values, (6,))
+        fx, ppx, fy, ppy, *size = camera_fields.numbers(
+            where, "fx ppx fy ppy width height", values, (6,)
+        )
         matrix = np.array([[fx, 0, ppx], [0, fy, ppy], [0, 0, 1]])
         model, coefficients = found.get("model", ""), found.get("coeffs", "0,0,0,0,0").split(",")
     elif hasattr(info, "distortion_model"):
@@ -59,9 +61,9 @@ def lens(where, info):
         coefficients = getattr(info, "D", getattr(info, "d", None))
     else:
         raise InputError(f"{where}: expected its lens (camera_info), found another message; {HOW}")
-    matrix = fields.numbers(where, "the lens matrix", matrix, (3, 3))
+    matrix = camera_fields.numbers(where, "the lens matrix", matrix, (3, 3))
     shapes = tuple((n,) for n in range(13))
-    coefficients = fields.numbers(where, "lens coefficients", coefficients, *shapes)
+    coefficients = camera_fields.numbers(where, "lens coefficients", coefficients, *shapes)
     return [int(length) for length in size], matrix, model, coefficients
 
 
@@ -94,7 +96,7 @@ def place(where, message):
             raise ValueError(f"rotation {off:.2g} off, translation {moved.tolist()} m")
     except (KeyError, ValueError, AttributeError, np.linalg.LinAlgError) as error:
         raise InputError(
-            f"{where}: expected its place as a rotation and less than 1 m, found {fields.short(error)}; {HOW}"
+            f"{where}: expected its place as a rotation and less than 1 m, found {camera_fields.short(error)}; {HOW}"
         ) from error
     return np.column_stack([rotation, moved])
 

@@ -83,12 +83,12 @@ class Fit:
         return bool(np.isfinite(self.sigma))
 
 
-def unknown(n_matches=0):
+def unknown_turn(n_matches=0):
     """Return the fit of which nothing can be said."""
     return Fit(np.full(6, np.nan), np.nan, n_matches)
 
 
-def fit(places, moved_px, shape, n_corners):
+def fit_turn(places, moved_px, shape, n_corners):
     """Find the movement that tracked points agree about.
 
     Parameters
@@ -114,7 +114,7 @@ def fit(places, moved_px, shape, n_corners):
     Tukey's weights finish it.
     """
     if len(places) < movement.MIN_MATCHES:
-        return unknown()
+        return unknown_turn()
     half = max(shape) / 2
     places_px = (places * half).astype(np.float32)
     cv2.setRNGSeed(0)
@@ -126,7 +126,7 @@ def fit(places, moved_px, shape, n_corners):
         refineIters=2,
     )
     if matrix is None:
-        return unknown()
+        return unknown_turn()
     start = np.r_[matrix[:, 2] / half, matrix[0, 0] - 1, matrix[1, 0], LENS_MEAN]
     limits = np.array(SCALE_PX) / half
     model, sigma, inliers = _refine(places, moved_px / half, start, mask[:, 0] > 0, limits)
@@ -134,7 +134,7 @@ def fit(places, moved_px, shape, n_corners):
     enough = max(movement.MIN_MATCHES, LEAST_SHARE * n_corners)
     least_spread = movement.MIN_SPREAD * min(shape) / half
     if n_matches < enough or places[inliers].std(axis=0).min() < least_spread:
-        return unknown(n_matches)
+        return unknown_turn(n_matches)
     return Fit(model, float(sigma), n_matches)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.pose import privacy, stick_drawing
 from courtside.study.errors import InputError
 

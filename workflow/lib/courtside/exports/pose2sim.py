@@ -13,7 +13,7 @@ import numpy as np
 import tomli_w
 
 from courtside.exports import markers, opensim, trc
-from courtside.geometry import cameras as camera_files
+from courtside.geometry import camera as camera_files
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
 from courtside.study.errors import InputError

@@ -17,7 +17,7 @@ def table(cameras, shakes, xyz):
 
     Parameters
     ----------
-    cameras : dict of str to courtside.geometry.cameras.Camera
+    cameras : dict of str to courtside.geometry.camera.Camera
     shakes : dict of str to DataFrame
         Of `courtside.records.shake_table`, for each camera to draw.
     xyz : (3,) float

@@ -6,7 +6,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from courtside.figures import court_plan, style
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.geometry import control_points, court_errors, uncertainty
 
 COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.figures import style
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.records import reasons
 
 MARGIN = 1.25  # of the person's extent, around it

@@ -140,7 +140,7 @@ def camera(axis, sight, one, depth_m, colour="black"):
     ----------
     axis : matplotlib.axes.Axes
     sight : Sight
-    one : courtside.geometry.cameras.Camera
+    one : courtside.geometry.camera.Camera
     depth_m : float
         Height of the pyramid.
     colour : str

@@ -8,7 +8,8 @@ from xml.etree import ElementTree
 import cv2
 import numpy as np
 
-from courtside.geometry import cameras, fields
+from courtside.geometry import camera as cameras
+from courtside.geometry import camera_fields
 from courtside.study.errors import InputError, reading
 
 LARGEST_BYTES = 1 << 24
@@ -20,7 +21,7 @@ QUALISYS_CAM_FROM_CAM = np.diag(
     [1.0, -1.0, -1.0]
 )  # it looks along -z with y up, ours along +z, y down
 OPENCV_SUFFIXES = (".yml", ".yaml", ".xml")
-OPENCV_KEYS = {  # the first is what `cameras.build` calls it
+OPENCV_KEYS = {  # the first is what `camera.build` calls it
     "matrix": ("camera_matrix", "K"),
     "distortions": ("distortion_coefficients", "dist"),
     "rotation": ("R", "rvec"),
@@ -54,7 +55,7 @@ def read(path):
     else:
         text = _text(path)
         found = _reader(text)(path, text)
-    for camera in fields.check_distinct(path, found):
+    for camera in camera_fields.check_distinct(path, found):
         _check_distance(path, camera)
     return found
 
@@ -128,11 +129,11 @@ def _check_distance(path, camera):
 
 def _read_toml(path, text):
     with reading(path, f"{FORMS} (read as TOML)", "check it"):
-        content = fields.toml(text)
+        content = camera_fields.toml(text)
     tables = content.get("cameras", content)
     if not isinstance(tables, dict):
         raise InputError(
-            f"{path}: expected a table cameras, found {fields.short(tables)}; check it"
+            f"{path}: expected a table cameras, found {camera_fields.short(tables)}; check it"
         )
     caliscope = {
         key: table
@@ -160,7 +161,7 @@ def _read_qualisys(path, text):
         raise InputError(
             f"{path}: expected plain XML, found a DOCTYPE or ENTITY; export it from QTM again"
         )
-    with reading(path, "XML", fields.EXPORT_AGAIN):  # its ParseError is a SyntaxError
+    with reading(path, "XML", camera_fields.EXPORT_AGAIN):  # its ParseError is a SyntaxError
         root = ElementTree.fromstring(text)
     return [
         _from_qualisys(path, element)
@@ -198,22 +199,25 @@ def _from_qualisys(path, element):
         "rotation": rotation,
         "translation": -rotation @ place[9:],
     }
-    return cameras.build(where, name, table, fields.METRES["mm"])
+    return cameras.build(where, name, table, camera_fields.METRES["mm"])
 
 
 def _attributes(where, element, tag, keys):
     child = element.find(tag)
     attributes = {} if child is None else child.attrib
     return np.array(
-        [fields.numbers(where, f"{tag} {key}", attributes.get(key), ()) for key in keys.split()]
+        [
+            camera_fields.numbers(where, f"{tag} {key}", attributes.get(key), ())
+            for key in keys.split()
+        ]
     )
 
 
 def _one_of(where, key, value, allowed):
     if value not in allowed:
         raise InputError(
-            f"{where}: expected {key} as one of {', '.join(allowed)}, found {fields.short(value)}; "
-            f"{fields.EXPORT_AGAIN}"
+            f"{where}: expected {key} as one of {', '.join(allowed)}, found {camera_fields.short(value)}; "
+            f"{camera_fields.EXPORT_AGAIN}"
         )
 
 
@@ -222,7 +226,7 @@ def _read_opencv(path, text):
         storage = cv2.FileStorage(text, cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
         root = storage.root()
     except (cv2.error, SystemError) as error:
-        found = fields.short(error)
+        found = camera_fields.short(error)
         raise InputError(
             f"{path}: expected a file of OpenCV's FileStorage, found {found}"
         ) from error
@@ -241,7 +245,7 @@ def _from_opencv(path, node, name, root):
     table["size"] = [_value(_child(node, (key,))) for key in ("image_width", "image_height")]
     unit = _child(node, ("unit",)) or _child(root, ("unit",))
     # ASSUME: metres where the file names no unit; OpenCV has none of its own.
-    metres = fields.unit_in_metres(where, "m" if unit is None else _value(unit))
+    metres = camera_fields.unit_in_metres(where, "m" if unit is None else _value(unit))
     return cameras.build(where, name, table, metres)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.geometry import alignment, courts, exchanged_cameras
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.study.errors import InputError
 
 MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis

@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.geometry import bundle
 from courtside.geometry import network as networks
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 
 LEAST_PX = 0.05  # no feature is placed better

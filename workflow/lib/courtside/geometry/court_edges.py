@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 
 ON_EDGE_M = 1e-6
 
@@ -153,7 +153,7 @@ def paint(camera, court):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     court : courtside.geometry.courts.Court
 
     Returns

@@ -3,7 +3,7 @@
 import numpy as np
 
 from courtside.geometry import alignment, court_adjustment, court_errors, known_points
-from courtside.geometry.cameras import project
+from courtside.geometry.camera import project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
 

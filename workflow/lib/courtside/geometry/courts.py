@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.geometry import fields
+from courtside.geometry import camera_fields
 from courtside.study import yaml_files
 from courtside.study.errors import InputError
 
@@ -90,21 +90,24 @@ def read(path):
         )
     sigma = content["sigma_m"] if isinstance(content["sigma_m"], dict) else {}
     floor_m, raised_m = (
-        fields.numbers(path, f"sigma_m {kind}", sigma.get(kind), ()) for kind in ("floor", "raised")
+        camera_fields.numbers(path, f"sigma_m {kind}", sigma.get(kind), ())
+        for kind in ("floor", "raised")
     )
     points, xyz, edges = _points(path, content["points"])
     lines = content["lines_m"] if isinstance(content["lines_m"], list) else None
     court = Court(
         name=Path(path).stem,
         description=str(content["description"]),
-        size_m=fields.numbers(path, "size_m", content["size_m"], (2,)),
-        line_width_m=float(fields.numbers(path, "line_width_m", content["line_width_m"], ())),
+        size_m=camera_fields.numbers(path, "size_m", content["size_m"], (2,)),
+        line_width_m=float(
+            camera_fields.numbers(path, "line_width_m", content["line_width_m"], ())
+        ),
         points=points,
         xyz=xyz,
         edges=edges,
         sigma_m=np.where(xyz[:, 2] > 0, raised_m, floor_m),
         sets={**_sets(path, content["sets"], points), "all": points},
-        lines_m=fields.numbers(path, "lines_m", lines, (len(lines or "-"), 4)),
+        lines_m=camera_fields.numbers(path, "lines_m", lines, (len(lines or "-"), 4)),
         net=_net(path, content["net"]),
     )
     _check(path, court)
@@ -122,15 +125,19 @@ def _points(path, table):
         ):
             raise InputError(
                 f"{path}: points: expected names of a-z, 0-9, _ and -, each with xyz_m and edges, "
-                f"found {name}: {fields.short(point)}; {SEE}"
+                f"found {name}: {camera_fields.short(point)}; {SEE}"
             )
-    xyz = [fields.numbers(f"{path}: {n}", "xyz_m", p["xyz_m"], (3,)) for n, p in table.items()]
+    xyz = [
+        camera_fields.numbers(f"{path}: {n}", "xyz_m", p["xyz_m"], (3,)) for n, p in table.items()
+    ]
     return tuple(table), np.array(xyz), tuple(str(point["edges"]) for point in table.values())
 
 
 def _sets(path, table, points):
     if not isinstance(table, dict):
-        raise InputError(f"{path}: expected sets of points, found {fields.short(table)}; {SEE}")
+        raise InputError(
+            f"{path}: expected sets of points, found {camera_fields.short(table)}; {SEE}"
+        )
     for name, members in table.items():
         unknown = (
             [m for m in members if m not in points] if isinstance(members, list) else [members]
@@ -138,7 +145,7 @@ def _sets(path, table, points):
         if unknown or len(set(members)) < len(members):
             raise InputError(
                 f"{path}: sets: {name}: expected a list of different points, found "
-                f"{fields.short(unknown or members)}; correct it"
+                f"{camera_fields.short(unknown or members)}; correct it"
             )
     return {name: tuple(members) for name, members in table.items()}
 
@@ -148,10 +155,11 @@ def _net(path, table):
         return None
     if not isinstance(table, dict) or set(table) != set(NET_KEYS):
         raise InputError(
-            f"{path}: net: expected null or {', '.join(NET_KEYS)}, found {fields.short(table)}; {SEE}"
+            f"{path}: net: expected null or {', '.join(NET_KEYS)}, found {camera_fields.short(table)}; {SEE}"
         )
     numbers = {
-        key: fields.numbers(f"{path}: net", key, table[key], s) for key, s in NET_KEYS.items()
+        key: camera_fields.numbers(f"{path}: net", key, table[key], s)
+        for key, s in NET_KEYS.items()
     }
     return {key: value.tolist() for key, value in numbers.items()}
 
@@ -176,7 +184,7 @@ def _check(path, court):
     corners = court.lines_m.reshape(-1, 2)
     if (corners < -ON_EDGE_M).any() or (corners > court.size_m + ON_EDGE_M).any():
         raise InputError(
-            f"{path}: expected lines_m inside the court of {fields.times(court.size_m)} m, found a line "
+            f"{path}: expected lines_m inside the court of {camera_fields.times(court.size_m)} m, found a line "
             "beyond it; correct it"
         )
 

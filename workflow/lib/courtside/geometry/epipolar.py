@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 
 TINY = 1e-12
 

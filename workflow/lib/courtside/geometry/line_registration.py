@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera as cameras
+from courtside.geometry import rotations
 
 # How far a camera from two or three clicks is off, standard deviation: rad, m, relative, of k1.
 KNOWN = np.array([0.01] * 3 + [0.15] * 3 + [0.01] + [0.01])
@@ -18,12 +19,12 @@ def moved(camera, change):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     change : (8,) float
         `PARAMETERS`: rotation about its own axes (rad), of its centre along them (m), relative focal length
         (natural logarithm), and what is added to k1.
     """
-    turn = transforms.rotation_from_rodrigues(change[:3])
+    turn = rotations.rotation_from_rodrigues(change[:3])
     rotation = turn @ camera.cam_from_world[:, :3]
     shift = turn @ (camera.cam_from_world[:, 3] - change[3:6])
     K = camera.K.copy()
@@ -38,7 +39,7 @@ def refine(camera, xyz, normal, offset_px, sigma_px):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         As far as it is known; remains near by where the lines do not say otherwise.
     xyz : (M, 3) float
         On lines, metres.
@@ -51,7 +52,7 @@ def refine(camera, xyz, normal, offset_px, sigma_px):
 
     Returns
     -------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     rest_px : (M,) float
         What remains of the offsets.
     """

@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import distortion
+from courtside.geometry import camera
 
 LENS = ("f_px", "aspect", "cx_px", "cy_px", "k1", "k2", "p1", "p2")
 POSE = ("rx_rad", "ry_rad", "rz_rad", "tx_m", "ty_m", "tz_m")
@@ -199,7 +199,7 @@ def _jacobians(network, seen):
     lens = network.lens[network.lens_of_image[network.image_idx]]
     focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
     # Of the point in the camera's frame.
-    by_place = focal[:, :, None] * distortion.jacobian_by_place(
+    by_place = focal[:, :, None] * camera.jacobian_by_place(
         _coefficients(lens), normalised, in_cam[:, 2:]
     )
     # Before the shutter's turn: r @ (I + [spin]) = r + r x spin.
@@ -247,7 +247,7 @@ def _see(network):
     depth = np.where(in_cam[:, 2:] > 1e-6, in_cam[:, 2:], np.nan)
     normalised = in_cam[:, :2] / depth
     lens = network.lens[network.lens_of_image[network.image_idx]]
-    return still, in_cam, normalised, distortion.distort(_coefficients(lens), normalised)
+    return still, in_cam, normalised, camera.distort(_coefficients(lens), normalised)
 
 
 def _coefficients(lens):

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import distortion
+from courtside.geometry import camera
 
 FOCAL_WIDTHS = (0.5, 0.6, 0.72, 0.87, 1.05, 1.3, 1.6, 2.0)  # focal lengths to start from
 MAX_STEPS = 60
@@ -143,8 +143,8 @@ def residuals(state, clicks):
     depth = in_cam[:, 2]
     normalised = in_cam[:, :2] / depth[:, None]
     focal = state.K[[0, 1], [0, 1]]
-    off = distortion.distort(state.dist, normalised) * focal + state.K[:2, 2] - clicks.xy
-    by_point = distortion.jacobian_by_place(state.dist, normalised, depth[:, None])
+    off = camera.distort(state.dist, normalised) * focal + state.K[:2, 2] - clicks.xy
+    by_point = camera.jacobian_by_place(state.dist, normalised, depth[:, None])
     return off, focal[:, None] * by_point, depth
 
 
@@ -174,7 +174,7 @@ def whitened(state, clicks):
     if clicks.free_lens:
         normalised = in_cam[:, :2] / depth[:, None]
         square = (normalised**2).sum(axis=1, keepdims=True)
-        by_f = distortion.distort(state.dist, normalised)
+        by_f = camera.distort(state.dist, normalised)
         parts += [by_f[..., None], (state.K[0, 0] * square * normalised)[..., None]]
     by_step = np.concatenate(parts, axis=2)
     if clicks.xyz_sigma is None:

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from courtside.geometry import transforms
-from courtside.geometry.cameras import Camera
+from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
 # ASSUME: how far a person who walks strays from the way (along x, y, z) and misses the aim, m, and turns the
@@ -56,7 +56,7 @@ def camera(name, place_m, aim_m, size_px, *, focal_px=None, fov_deg=None, roll=0
     right = np.cross(forward, [0, 0, 1.0])
     right /= np.linalg.norm(right)
     upright = np.stack([right, np.cross(forward, right), forward])
-    rotation = transforms.rotation_from_rodrigues([0, 0, roll]) @ upright
+    rotation = rotations.rotation_from_rodrigues([0, 0, roll]) @ upright
     pose = np.column_stack([rotation, -rotation @ np.asarray(place_m, dtype=float)])
     return Camera(name, (int(width), int(height)), K, np.zeros(5), pose)
 

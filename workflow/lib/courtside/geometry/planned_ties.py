@@ -10,7 +10,7 @@ import numpy as np
 
 from courtside.geometry import control_points, walk_path
 from courtside.geometry import network as networks
-from courtside.geometry.cameras import project
+from courtside.geometry.camera import project
 
 CHUNK = 4000  # points tried at once
 WIDTH_PX = 1280  # of the pictures in which textures were measured

@@ -14,7 +14,7 @@ from courtside.geometry import (
     uncertainty,
     walk_path,
 )
-from courtside.geometry.cameras import project
+from courtside.geometry.camera import project
 from courtside.study.errors import InputError
 
 QUANTILES = (0.05, 0.5, 0.95)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
-from courtside.geometry import cameras, one_camera, similarity
+from courtside.geometry import camera as cameras
+from courtside.geometry import one_camera, similarity
 from courtside.geometry.network import POSE
 from courtside.study.errors import InputError
 
@@ -28,7 +29,7 @@ class Linear:
     matrix : (3, 4) float
         From homogeneous world points (m) to homogeneous pixels, all eleven numbers free; positive before
         the camera. For `triangulation.triangulate` with pixels in place of normalised points.
-    camera : courtside.geometry.cameras.Camera or None
+    camera : courtside.geometry.camera.Camera or None
         The same but for skew, which `Camera` does not have; None where the matrix holds no camera.
     rms_px : float
         Per axis, of the points it was found from.
@@ -55,7 +56,7 @@ class Fitted:
 
     Attributes
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     covariance : (n, n) float
         Of `parameters`. The pose changes from the left: a step r, t takes x_in_cam to exp(r) x_in_cam + t.
     parameters : tuple of str, length n

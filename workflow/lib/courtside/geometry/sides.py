@@ -7,7 +7,7 @@ together tell which readings belong to one body.
 
 import numpy as np
 
-from courtside.geometry import epipolar, small_matrices
+from courtside.geometry import epipolar, triangulation
 
 APART = 2.0  # joints of a pair closer than this many limits in a view say less about sides there
 NEAREST_M = 1e-6  # depth: points behind a camera come out far from any keypoint
@@ -88,7 +88,7 @@ class _Views:
         """Return (T,) for one reading (C, T)."""
         normal = _read(self.normal, swapped).sum(axis=0)
         flat = normal.reshape(-1, 4, 4)
-        xyz = small_matrices.solve_3x3(flat[:, :3, :3], -flat[:, :3, 3])
+        xyz = triangulation.solve_3x3(flat[:, :3, :3], -flat[:, :3, 3])
         total = np.zeros(normal.shape[:2])
         views = zip(self.matrix, _read(self.xy, swapped), self.limit_px, self.counted, strict=True)
         for matrix, xy, limit_px, counted in views:

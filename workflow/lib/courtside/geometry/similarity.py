@@ -47,12 +47,12 @@ class Sim3:
 
         Parameters
         ----------
-        camera : courtside.geometry.cameras.Camera
+        camera : courtside.geometry.camera.Camera
             Its `cam_from_world` is from a; lengths along its axes are in units of a.
 
         Returns
         -------
-        camera : courtside.geometry.cameras.Camera, with lengths in units of b.
+        camera : courtside.geometry.camera.Camera, with lengths in units of b.
         """
         rotation = camera.cam_from_world[:, :3] @ self.rotation.T
         shift = self.scale * camera.cam_from_world[:, 3] - rotation @ self.translation

@@ -1,16 +1,13 @@
-"""Points seen by several calibrated cameras: weighted DLT, robust view selection, refinement.
+"""Triangulation of points seen by several cameras: plain DLT, least squares, and robust subsets of views.
 
-All steps are batched over points, and their cost grows linearly with the number of cameras: no subsets
-of views are enumerated.
+Small matrices are solved for many points at once.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
-from courtside.geometry import small_matrices
-from courtside.geometry.views import Views
+from courtside.geometry import camera as camera_models
 
 FADE = 4 / 3  # default of `fade_px`, in units of the limit
 START = 12.0  # the first robust kernel, in units of the last
@@ -69,7 +66,7 @@ def triangulate(xy, weight, cam_from_world):
     rows = np.where(used[..., None, None], rows * np.where(used, weight, 0)[..., None, None], 0.0)
     stacked = rows.transpose(1, 0, 2, 3).reshape(xy.shape[1], -1, 4)
     normal = stacked.transpose(0, 2, 1) @ stacked
-    xyz = small_matrices.solve_3x3(normal[:, :3, :3], -normal[:, :3, 3])
+    xyz = solve_3x3(normal[:, :3, :3], -normal[:, :3, 3])
     xyz[used.sum(axis=0) < 2] = np.nan
     return xyz
 
@@ -251,7 +248,7 @@ def noise_covariance(views, xyz, accepted, sigma_px):
     """
     _, in_cam = views.residuals(np.nan_to_num(xyz))
     square, _ = views.normal(in_cam, views.weight * accepted)
-    return small_matrices.inverse_3x3(square) * (sigma_px**2)[:, None, None]
+    return inverse_3x3(square) * (sigma_px**2)[:, None, None]
 
 
 def reprojection_px(cameras, xy, xyz):
@@ -265,3 +262,132 @@ def reprojection_px(cameras, xy, xyz):
     """
     projected = np.stack([camera_models.project(camera, xyz) for camera in cameras])
     return np.linalg.norm(projected - xy, axis=-1)
+
+
+class Views:
+    """Keypoints of C cameras on the normalised plane.
+
+    Parameters
+    ----------
+    cameras : list of Camera, length C
+    xy : (C, N, 2) float
+        Px, distorted as in the pictures; NaN where unseen.
+    weight : (C, N) float
+        In px^-2, relative to score 1.
+    """
+
+    def __init__(self, cameras, xy, weight):
+        self.xy = np.stack(
+            [camera_models.undistort(c, points) for c, points in zip(cameras, xy, strict=True)]
+        )
+        self.weight = np.where(np.isfinite(self.xy).all(axis=-1), weight, 0.0)
+        self.xy = np.nan_to_num(self.xy)
+        self.matrix = np.stack([camera.cam_from_world for camera in cameras])
+        self.focal_px = np.array([(c.K[0, 0] + c.K[1, 1]) / 2 for c in cameras])
+
+    def of(self, at):
+        """Return the same views of some of the points only."""
+        part = object.__new__(Views)
+        part.xy, part.weight = self.xy[:, at], self.weight[:, at]
+        part.matrix, part.focal_px = self.matrix, self.focal_px
+        return part
+
+    def residuals(self, xyz):
+        """Return residuals (C, N, 2) px and points in each camera (C, N, 3) m."""
+        rotation, shift = self.matrix[:, :, :3], self.matrix[:, :, 3]
+        in_cam = xyz[None] @ rotation.transpose(0, 2, 1) + shift[:, None]
+        depth = np.where(np.abs(in_cam[..., 2:]) < 1e-9, 1e-9, in_cam[..., 2:])
+        residual = (in_cam[..., :2] / depth - self.xy) * self.focal_px[:, None, None]
+        return residual, in_cam
+
+    def normal(self, in_cam, weight, residual=None):
+        """Return J'WJ (N, 3, 3), and J'Wr (N, 3) where residuals are given."""
+        scale = self.focal_px[:, None] / in_cam[..., 2]
+        ratio = in_cam[..., :2] / in_cam[..., 2:]
+        rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
+        rows = rows * scale[..., None, None]
+        weighted = rows * weight[..., None, None]
+        flat = rows.transpose(1, 0, 2, 3).reshape(rows.shape[1], -1, 3)
+        flat_weighted = weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
+        square = flat_weighted @ flat
+        if residual is None:
+            return square, None
+        right = residual.transpose(1, 0, 2).reshape(rows.shape[1], -1, 1)
+        return square, (flat_weighted @ right)[..., 0]
+
+    def stepped(self, xyz, weight):
+        """Return points (N, 3) after a Gauss-Newton step; one whose system is singular stays."""
+        residual, in_cam = self.residuals(xyz)
+        square, right = self.normal(in_cam, weight, residual)
+        return xyz - np.nan_to_num(solve_3x3(square, right))
+
+    def distance(self, xyz):
+        """Return how far keypoints are from the projected points, (C, N) px."""
+        residual, _ = self.residuals(xyz)
+        return np.sqrt(np.einsum("cni,cni->cn", residual, residual))
+
+    def in_front(self, xyz, which):
+        """Return which points (N,) are before all those cameras that `which` (C, N) names."""
+        _, in_cam = self.residuals(xyz)
+        return ((in_cam[..., 2] > 0) | ~which).all(axis=0)
+
+
+def triangulate_plain(cameras, xy, score, *, sigma_px, min_views=2, min_score=0.0):
+    """Triangulate points by a DLT over all views that see them, without weights.
+
+    Parameters
+    ----------
+    cameras : list of Camera, length C
+    xy : (C, N, 2) float
+        Keypoints in px, distorted as in the pictures; NaN where unseen.
+    score : (C, N) float
+        Detector confidence, 0 to 1: chooses views, and weighs none.
+    sigma_px : float or (N,) float
+        Standard deviation per axis of a keypoint: scales the covariance only.
+    min_views : int
+        Fewest views of a point, at least 2.
+    min_score : float
+        Keypoints below it are not used.
+
+    Returns
+    -------
+    triangulated : courtside.geometry.triangulation.Triangulated
+        `accepted` are all views used.
+
+    Notes
+    -----
+    [Shishido2020, section 2]; Hartley & Zisserman 2004, sec. 12.2. The covariance is that of the point of
+    least squares in the pictures, to which a DLT is close where cameras are about equally far.
+    """
+    check(cameras, xy, score, min_views)
+    used = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score >= min_score) & (score > 0)
+    used &= used.sum(axis=0) >= min_views
+    views = Views(cameras, xy, used.astype(float))
+    xyz = triangulate(views.xy, views.weight, views.matrix)
+    return Triangulated(
+        xyz=xyz,
+        covariance=noise_covariance(views, xyz, used, np.broadcast_to(sigma_px, len(xyz))),
+        accepted=used & np.isfinite(xyz[:, 0]),
+        error_px=reprojection_px(cameras, xy, xyz),
+    )
+
+
+def solve_3x3(matrix, right):
+    """Solve symmetric (N, 3, 3) systems for (N, 3) right sides; NaN where singular."""
+    return np.einsum("nij,nj->ni", inverse_3x3(matrix), right)
+
+
+def inverse_3x3(matrix):
+    """Invert symmetric (N, 3, 3) matrices by cofactors; NaN where singular."""
+    a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 0, 2]
+    d, e, f = matrix[:, 1, 1], matrix[:, 1, 2], matrix[:, 2, 2]
+    cofactor = np.empty_like(matrix)
+    cofactor[:, 0, 0], cofactor[:, 1, 1] = d * f - e * e, a * f - c * c
+    cofactor[:, 2, 2] = a * d - b * b
+    cofactor[:, 0, 1] = cofactor[:, 1, 0] = c * e - b * f
+    cofactor[:, 0, 2] = cofactor[:, 2, 0] = b * e - c * d
+    cofactor[:, 1, 2] = cofactor[:, 2, 1] = b * c - a * e
+    determinant = a * cofactor[:, 0, 0] + b * cofactor[:, 0, 1] + c * cofactor[:, 0, 2]
+    scale = (a + d + f) / 3
+    singular = ~(np.abs(determinant) > 1e-12 * scale**3)
+    return cofactor / np.where(singular, np.nan, determinant)[:, None, None]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import transforms
+from courtside.geometry import rotations as transforms
 from courtside.geometry.similarity import Sim3
 from courtside.motion import tpose as tposes
 from courtside.study.errors import InputError

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
-from courtside.geometry import small_matrices, triangulation
+from courtside.geometry import camera as camera_models
+from courtside.geometry import triangulation as small_matrices
 from courtside.motion import view_agreement
 
 GATE = 4.0  # standard deviations: a view further off does not see this person
@@ -196,7 +196,7 @@ class _Views:
         weight = np.where(row.T >= 0, 1.0, 0.0)
         if not len(instant):
             return np.zeros((0, 3))
-        return triangulation.triangulate(xy, weight, self.matrix)
+        return small_matrices.triangulate(xy, weight, self.matrix)
 
     def joined(self, instant, row):
         """Return rows (M, C) with those of other views that show a body where the seed says."""

@@ -3,7 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.motion import heading_drift, rotation_vectors, slow_splines, vision_noise
+from courtside.geometry import rotations as rotation_vectors
+from courtside.motion import heading_drift, slow_splines, vision_noise
 from courtside.motion.body_segments import segments_of
 from courtside.motion.segment_model import Frames, Model
 from courtside.records.hierarchy import forward
@@ -59,13 +60,15 @@ class Fit:
             seen_s, device, self.seen.xyz, self.up, window_s=window
         )
         heading = self.alignment.heading_at(time_s)
-        turn = rotation_vectors.matrices(heading[:, None] * self.up)[:, None]
+        turn = rotation_vectors.matrices_from_vectors(heading[:, None] * self.up)[:, None]
         root = heading_drift.turn_path(xyz[:, 0], heading, self.up)
         placed = root[:, None] + (turn @ (xyz - xyz[:, :1])[..., None])[..., 0]
         self.translation = self.posed.translation.copy()
         self.centre = root.mean(axis=0)
         self.translation[:, 0] = root - self.centre
-        self.facing = rotation_vectors.matrices(facings(turn[:, 0] @ world[:, 0], self.up))
+        self.facing = rotation_vectors.matrices_from_vectors(
+            facings(turn[:, 0] @ world[:, 0], self.up)
+        )
         self.local = self.facing.swapaxes(1, 2)[:, None] @ turn @ world
         observed = placed[:, self.model.observed] - self.centre
         self.velocity = np.gradient(observed, time_s, axis=0)
@@ -136,8 +139,8 @@ class Fit:
         wanted = self.seen.time_s[part] + self.fixed[self.model.fixed["lag"]]
         time_s = self.posed.time_s
         return Frames(
-            rotation_vectors.between(time_s, self.facing, wanted),
-            rotation_vectors.between(time_s, self.local, wanted),
+            rotation_vectors.interpolate(time_s, self.facing, wanted),
+            rotation_vectors.interpolate(time_s, self.local, wanted),
             _linear(time_s, self.translation, wanted),
             _linear(time_s, self.velocity, wanted),
         )
@@ -225,6 +228,6 @@ def facings(rotations, up):
 
 
 def _linear(time_s, values, wanted_s):
-    before, share = rotation_vectors.places(time_s, wanted_s)
+    before, share = rotation_vectors.interpolation_shares(time_s, wanted_s)
     share = share.reshape((-1,) + (1,) * (values.ndim - 1))
     return values[before] * (1 - share) + values[before + 1] * share

@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from courtside.motion import rotation_vectors
+from courtside.geometry import rotations
 from courtside.records.hierarchy import forward
 from courtside.study.files import write_json
 
@@ -169,7 +169,7 @@ def _heading(fit):
 def _changes(fit, before, after):
     """Return the median change of each joint about the root, in axes turned back by the heading."""
     old, new = (forward(posed)[0] for posed in (before, after))
-    turn = rotation_vectors.matrices(_total_heading(fit, after.time_s)[:, None] * fit.up)
+    turn = rotations.matrices_from_vectors(_total_heading(fit, after.time_s)[:, None] * fit.up)
     old = np.einsum("tij,tkj->tki", turn, old - old[:, :1])
     change = 1e3 * np.median(np.linalg.norm(new - new[:, :1] - old, axis=2), axis=0)
     return dict(zip(before.hierarchy.joints, _list(change, 1), strict=True))
@@ -177,7 +177,7 @@ def _changes(fit, before, after):
 
 def _vision_from_device(fit, after):
     layout = fit.model.fixed
-    turned = rotation_vectors.matrices(fit.fixed[layout["tilt"]])
+    turned = rotations.matrices_from_vectors(fit.fixed[layout["tilt"]])
     rotation = fit.alignment.vision_from_device @ turned
     root = fit.translation[:, 0] + fit.slow_at(after.time_s)[:, fit.model.slow["shift"]]
     place = root @ turned.T + fit.fixed[layout["place"]] + fit.place

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera, rotations
 from courtside.motion.depth_samples import TRUNK, Sampler, Sampling
 from courtside.records import limbs, reasons
 from courtside.records.device_motion import DeviceMotion
@@ -175,7 +175,7 @@ def _sampled(sampler, xy, times_s, depth_frames):
 
 def _behind_skin(colour, xy, z, skin):
     """Return where the joints are (T, J, 3 surfaces, 3): behind the skin along the viewing ray."""
-    plane = cameras.undistort(colour, xy)
+    plane = camera.undistort(colour, xy)
     ray = np.concatenate([plane, np.ones((*plane.shape[:2], 1))], axis=-1)
     along = z[..., np.newaxis] * ray[:, :, np.newaxis]
     unit = ray / np.linalg.norm(ray, axis=-1, keepdims=True)
@@ -189,7 +189,7 @@ def _drawn_back(xyz, names, beyond_m):
         ends = f"{side}_{limbs.PARENT[joint]}", f"{side}_{joint}"
         if set(ends) <= set(names):
             start, stop = (names.index(end) for end in ends)
-            back = beyond * transforms.unit(xyz[:, stop] - xyz[:, start])
+            back = beyond * rotations.unit(xyz[:, stop] - xyz[:, start])
             moved[:, stop] -= np.where(np.isfinite(back), back, 0.0)
     return moved
 

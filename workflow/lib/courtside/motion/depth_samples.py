@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import cameras, depth_alignment, transforms
+from courtside.geometry import camera, depth_registration, rotations
 
 N_SURFACES = 3
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
@@ -63,7 +63,7 @@ class Sampler:
     def __init__(self, rig, radius_m, is_trunk, baseline_m, sampling):
         self.rig, self.sampling = rig, sampling
         self.radius_m, self.is_trunk = np.asarray(radius_m), np.asarray(is_trunk)
-        self.rays = depth_alignment.rays(rig.depth)
+        self.rays = depth_registration.rays(rig.depth)
         self.noise_per_m2 = sampling.disparity_px / (rig.depth.K[0, 0] * baseline_m)
         self.pixel = rig.colour.K[0, 0] / rig.depth.K[0, 0]  # colour px to one depth px
 
@@ -93,7 +93,7 @@ class Sampler:
         if part is None:
             return found, np.nan
         depth_m = depth[part] * self.rig.depth_unit_m
-        places, z = depth_alignment.points_in_colour(
+        places, z = depth_registration.points_in_colour(
             depth_m, self.rays[part], self.rig.colour, self.rig.colour_from_depth
         )
         keep = np.isfinite(z) & np.isfinite(places[..., 0]) & ~self._edges(depth_m, z)
@@ -116,10 +116,10 @@ class Sampler:
         low, high = known.min(axis=0) - margin, known.max(axis=0) + margin
         low, high = (np.clip(c, 0, np.subtract(self.rig.colour.size, 1)) for c in (low, high))
         corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
-        ahead = np.column_stack([cameras.undistort(self.rig.colour, corners), np.ones(4)])
+        ahead = np.column_stack([camera.undistort(self.rig.colour, corners), np.ones(4)])
         xyz = np.concatenate([ahead * distance for distance in REACH_M])
-        back = transforms.invert(np.asarray(self.rig.colour_from_depth))
-        seen = cameras.project(self.rig.depth, xyz @ back[:, :3].T + back[:, 3])
+        back = rotations.invert(np.asarray(self.rig.colour_from_depth))
+        seen = camera.project(self.rig.depth, xyz @ back[:, :3].T + back[:, 3])
         if not np.isfinite(seen).any():
             return None
         first = np.maximum(np.floor(np.nanmin(seen, axis=0)).astype(int) - 2, 0)

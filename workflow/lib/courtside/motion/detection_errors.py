@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from scipy.optimize import linear_sum_assignment
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.motion import pose_errors
 from courtside.study.errors import InputError
 

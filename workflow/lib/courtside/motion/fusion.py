@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from courtside.geometry import plain_dlt, sides, triangulation
+from courtside.geometry import sides
+from courtside.geometry import triangulation as plain_dlt
 from courtside.motion import resampling, side_paths
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
@@ -48,7 +49,7 @@ def triangulate_take(
         Of the result, on the reference clock; `resampling.common_times` of the views by default.
     rule : str
         "robust" weighs and leaves out views (`triangulation.triangulate_robust`); "dlt" takes all as they are
-        (`plain_dlt.triangulate_plain`).
+        (`triangulation.triangulate_plain`).
 
     Returns
     -------
@@ -76,7 +77,7 @@ def triangulate_take(
     options = {"min_views": min_views, "min_score": min_score, "sigma_px": 1.0}
     solve = plain_dlt.triangulate_plain
     if rule == "robust":
-        solve = triangulation.triangulate_robust
+        solve = plain_dlt.triangulate_robust
         options |= {"max_error_px": max_error_px, "fade_px": fade_px}
     found = solve(cameras, xy.reshape(len(cameras), -1, 2), flat, **options)
     points = _record(cameras, views[0], person_id, time_s, found, score.shape[1:])

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from courtside.motion import rotation_vectors
+from courtside.geometry import rotations
 
 ROUNDS = 20
 STARTS = 5
@@ -66,7 +66,7 @@ def estimate(time_s, device_xyz, vision_xyz, up, *, window_s):
         off = np.linalg.norm(np.nan_to_num(vision - turned), axis=2)
         weights = np.isfinite(vision_xyz).all(axis=2) / (1 + (off / HARSH_M) ** 2)
     heading = np.unwrap(heading)
-    rotation = rotation @ rotation_vectors.matrices(heading[0] * np.asarray(up))
+    rotation = rotation @ rotations.matrices_from_vectors(heading[0] * np.asarray(up))
     return Alignment(rotation, np.asarray(time_s), heading - heading[0])
 
 
@@ -116,13 +116,13 @@ def _alternate(products, up):
 
 def _headings(products, up):
     """Return the angle about `up` that best explains each product of vision and device (N, 3, 3)."""
-    sine = np.sum(rotation_vectors.cross_matrices(up) * products, axis=(1, 2))
+    sine = np.sum(rotations.cross_matrices(up) * products, axis=(1, 2))
     cosine = np.trace(products, axis1=1, axis2=2) - np.einsum("i,nij,j->n", up, products, up)
     return np.arctan2(sine, cosine)
 
 
 def _about(up, angles):
-    return rotation_vectors.matrices(np.asarray(angles)[:, None] * np.asarray(up))
+    return rotations.matrices_from_vectors(np.asarray(angles)[:, None] * np.asarray(up))
 
 
 def _nearest(product):

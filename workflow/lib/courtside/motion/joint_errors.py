@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.motion import pose_errors, resampling
 from courtside.records import derived
 from courtside.study.errors import InputError

@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from courtside.geometry import transforms
+from courtside.geometry import rotations
 from courtside.records import limbs
 from courtside.study.errors import InputError, reading
 
@@ -71,7 +71,7 @@ def vectors(xyz, joints, side, joint, sex=None):
     length = np.linalg.norm(up, axis=-1, keepdims=True)
     across = place["left_shoulder"] - place["right_shoulder"]
     across = across + place["left_hip"] - place["right_hip"]
-    forward = transforms.unit(np.cross(across, up))
+    forward = rotations.unit(np.cross(across, up))
     left = np.cross(up, forward)  # as long as the trunk
     other = {"left": "right", "right": "left"}[side]
     found = dict(zip(TRUNK, (left if side == "left" else -left, up, forward * length), strict=True))
@@ -83,7 +83,7 @@ def vectors(xyz, joints, side, joint, sex=None):
         if set(ends) <= set(place):
             found[f"{prefix}{start}-{stop}"] = place[ends[1]] - place[ends[0]]
     for start, stop in DIRECTED.get(joint, ()):
-        found[f"way {start}-{stop}"] = LENGTH_M * transforms.unit(found[f"{start}-{stop}"])
+        found[f"way {start}-{stop}"] = LENGTH_M * rotations.unit(found[f"{start}-{stop}"])
     sign = SIGN.get(sex, 0.0)
     return found | {f"sex {name}": sign * found[name] for name in BY_SEX.get(joint, ())}
 

@@ -43,7 +43,7 @@ def find(camera, table):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     table : DataFrame
         Of `courtside.records.shake_table`.
 
@@ -102,7 +102,7 @@ def mm_at(camera, xyz, table):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     xyz : (3,) float
         Where the player is, m, in the world.
     table : DataFrame
@@ -123,7 +123,7 @@ def say(camera, table, xyz):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     table : DataFrame
         Of `courtside.records.shake_table`.
     xyz : (3,) float

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 
 NOBODY = 6.0  # cost of a frame that belongs to none of the persons
 FAR = 14.0  # a frame costs no more than this, however far off

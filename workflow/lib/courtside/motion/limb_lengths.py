@@ -16,7 +16,7 @@ LEAST = 10  # frames, of both sides together, that a length must rest on
 # ratio to the true length, offsets taken off, has mean 0.98 and standard deviation 0.04.
 LENGTH_SIGMA = 0.05
 UNKNOWN_M = 0.03  # standard deviation per axis of a joint for which none is stated
-ROUNDS = 8
+LIMB_ROUNDS = 8
 
 
 def lengths(xyz, joints):
@@ -90,7 +90,7 @@ def _chain(xyz, covariance, wanted):
     for at in range(3):
         prior[:, 3 * at : 3 * at + 3, 3 * at : 3 * at + 3] = information[:, at]
     place = measured
-    for _ in range(ROUNDS):
+    for _ in range(LIMB_ROUNDS):
         normal, right = prior.copy(), np.einsum("nij,nj->ni", prior, measured - place)
         for at, length in enumerate(wanted):
             if length:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.motion import joint_errors
 from courtside.study.errors import InputError

@@ -14,7 +14,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from courtside.motion import body_segments, rotation_vectors
+from courtside.geometry import rotations as rotation_vectors
+from courtside.motion import body_segments
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +88,8 @@ class Model:
         fixed : (Q,) float
         """
         turn, mount, heading = self._turns(slow, fixed)
-        outer = (heading @ frames.facing)[:, None] @ rotation_vectors.matrices(turn)
-        found = outer @ frames.facing_from_joint @ rotation_vectors.matrices(mount)
+        outer = (heading @ frames.facing)[:, None] @ rotation_vectors.matrices_from_vectors(turn)
+        found = outer @ frames.facing_from_joint @ rotation_vectors.matrices_from_vectors(mount)
         for joint, owner in enumerate(self.owner):
             if owner != joint:
                 measured = frames.facing_from_joint[:, owner].swapaxes(1, 2)
@@ -103,7 +104,11 @@ class Model:
         turn = slow[:, self.slow["turn"]].reshape(len(slow), -1, 3)
         turn = np.einsum("jg,ngi->nji", self.segments.share, turn)
         mount = self.segments.share @ fixed[self.fixed["mount"]].reshape(-1, 3)
-        return turn, mount, rotation_vectors.matrices(slow[:, self.slow["heading"]] * self.up)
+        return (
+            turn,
+            mount,
+            rotation_vectors.matrices_from_vectors(slow[:, self.slow["heading"]] * self.up),
+        )
 
     def places(self, frames, slow, fixed):
         """Return where vision should see the joints, (N, D, 3) metres.
@@ -123,7 +128,7 @@ class Model:
                 bone = factor[joint] * frames.translation[:, joint]
                 xyz[:, row] += _turned(world[:, parent], bone + offsets[row] * (joint == path[-1]))
         xyz += (frames.translation[:, self.paths[0][0]] + slow[:, self.slow["shift"]])[:, None]
-        tilt = rotation_vectors.matrices(fixed[self.fixed["tilt"]])
+        tilt = rotation_vectors.matrices_from_vectors(fixed[self.fixed["tilt"]])
         return xyz @ tilt.T + self._shift(fixed)
 
     def linear(self, frames, slow, fixed):
@@ -174,7 +179,7 @@ class Model:
         turn, mount, heading = self._turns(slow, fixed)
         facing = (heading @ frames.facing)[:, None]
         outer = facing @ rotation_vectors.left_jacobians(turn)
-        measured = facing @ rotation_vectors.matrices(turn) @ frames.facing_from_joint
+        measured = facing @ rotation_vectors.matrices_from_vectors(turn) @ frames.facing_from_joint
         return outer, measured @ rotation_vectors.left_jacobians(mount)
 
     def _add_turns(self, by_slow, by_fixed, joint, arm, inner):
@@ -188,7 +193,7 @@ class Model:
 
     def _in_view(self, frames, xyz, by_slow, by_fixed, fixed):
         tilt = fixed[self.fixed["tilt"]]
-        turned = rotation_vectors.matrices(tilt)
+        turned = rotation_vectors.matrices_from_vectors(tilt)
         by_fixed[..., self.fixed["lag"]] = frames.velocity[..., None]
         xyz, by_slow, by_fixed = xyz @ turned.T, turned @ by_slow, turned @ by_fixed
         by_fixed[..., self.fixed["tilt"]] = -rotation_vectors.cross_matrices(

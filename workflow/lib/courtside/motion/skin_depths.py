@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from courtside.geometry import transforms
+from courtside.geometry import rotations
 from courtside.motion.depth_lift import SKIN_TO_JOINT_M, by_joint
 from courtside.motion.pose_errors import at_times
 from courtside.records import limbs, sync
@@ -76,9 +76,9 @@ def estimate(pairs, joints, true_joints, skin_m=None, beyond_m=None):
             place = dict(zip(joints, np.moveaxis(found, 1, 0), strict=True))
             at = place[f"{side}_{joint}"]
             off = at - true[:, list(true_joints).index(f"{side}_{joint}")]
-            deep.append(used - (off * transforms.unit(at)).sum(axis=-1))
+            deep.append(used - (off * rotations.unit(at)).sum(axis=-1))
             if joint in limbs.PARENT:
-                limb = transforms.unit(at - place[f"{side}_{limbs.PARENT[joint]}"])
+                limb = rotations.unit(at - place[f"{side}_{limbs.PARENT[joint]}"])
                 beyond.append((beyond_m or {}).get(joint, 0.0) + (off * limb).sum(axis=-1))
         depth, deep_sd, count = _spread(deep)
         if not count:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 from courtside.study import log
 from courtside.study.errors import InputError
 
@@ -22,7 +22,7 @@ def turns(camera, table):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         As calibrated, standing as in its static picture.
     table : DataFrame
         Of `courtside.records.shake_table`.
@@ -55,7 +55,7 @@ def steady(view, camera, table):
     Parameters
     ----------
     view : courtside.records.keypoints.Keypoints2D
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         As calibrated.
     table : DataFrame
         Of `courtside.records.shake_table`, with a row for each frame of the view.

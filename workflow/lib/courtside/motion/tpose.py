@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from courtside.geometry import transforms
+from courtside.geometry import rotations
 from courtside.motion import filtering
 from courtside.study.errors import InputError
 
@@ -174,7 +174,7 @@ def measure(motion):
     xyz = np.where(motion.performed[:, None, None], motion.xyz, np.nan)
     smooth = _medians(xyz[:, [names.index(name) for name in JOINTS]], MEDIAN_S / step_s)
     at = dict(zip(JOINTS, np.moveaxis(smooth, 1, 0), strict=True))
-    up = transforms.unit(sum(at[f"{s}_shoulder"] - at[f"{s}_hip"] for s in SIDES))
+    up = rotations.unit(sum(at[f"{s}_shoulder"] - at[f"{s}_hip"] for s in SIDES))
     line = _level(at["left_shoulder"] - at["right_shoulder"], up)
     half_m = np.linalg.norm(at["left_wrist"] - at["right_wrist"], axis=1, keepdims=True) / 2
     sides = [_arm(at, side, up, line * (1 if side == "left" else -1)) for side in SIDES]
@@ -190,9 +190,9 @@ def measure(motion):
 
 
 def _arm(at, side, up, outwards):
-    upper = transforms.unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
-    fore = transforms.unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
-    whole = transforms.unit(at[f"{side}_wrist"] - at[f"{side}_shoulder"])
+    upper = rotations.unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
+    fore = rotations.unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
+    whole = rotations.unit(at[f"{side}_wrist"] - at[f"{side}_shoulder"])
     return {
         "bend_deg": _degrees(_dot(upper, fore)),
         "level_deg": np.abs(90 - _degrees(_dot(whole, up))),
@@ -228,7 +228,7 @@ def _dot(first, second):
 
 def _level(vectors, up):
     """Return directions without their part along the trunk."""
-    return transforms.unit(vectors - _dot(vectors, up)[:, None] * up)
+    return rotations.unit(vectors - _dot(vectors, up)[:, None] * up)
 
 
 def _degrees(cosine):

@@ -13,7 +13,7 @@ the joints in the canvas, px) and `opened_ms` (from the start of loading to the 
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.pages import page, viewer_layers
 
 LARGEST_BYTES = 7_500_000  # of all layers; the rest of the page is some 60 kB

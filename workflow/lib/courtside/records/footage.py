@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import cameras as camera_models
+from courtside.geometry import camera as camera_models
 from courtside.records import keypoints, people, sync
 from courtside.records.keypoints import Keypoints2D
 from courtside.records.sync import Clock

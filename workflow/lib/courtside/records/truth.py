@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry.cameras import Camera
+from courtside.geometry.camera import Camera
 from courtside.records import npz
 from courtside.study.errors import DAMAGED, reading
 

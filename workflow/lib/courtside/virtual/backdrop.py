@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from courtside.geometry import cameras, fields
+from courtside.geometry import camera as cameras
+from courtside.geometry import camera_fields
 from courtside.records import npz
 from courtside.study.errors import InputError
 from courtside.virtual import exposure, rays, sampling
@@ -27,7 +28,7 @@ class Backdrop:
 
     Attributes
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         Of this picture, which may be `margin_px` wider than the films on each side.
     margin_px : int
     picture : (H, W, 3) uint8
@@ -67,7 +68,7 @@ def look(renderer, camera, margin_px=0):
     Parameters
     ----------
     renderer : courtside.virtual.renderer.Renderer
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         Of the films.
     margin_px : int
         How much more is needed on each side, for a camera that shakes.
@@ -124,7 +125,7 @@ def read(path, filming):
     Parameters
     ----------
     path : str or Path
-    filming : list of courtside.geometry.cameras.Camera
+    filming : list of courtside.geometry.camera.Camera
 
     Raises
     ------
@@ -137,8 +138,8 @@ def read(path, filming):
     for camera in filming:
         if camera.name not in found or tuple(camera.size) != size:
             raise InputError(
-                f"{path}: expected camera {camera.name} with {fields.times(camera.size)} px, found "
-                f"{sorted(found)} with {fields.times(size)}; make it again"
+                f"{path}: expected camera {camera.name} with {camera_fields.times(camera.size)} px, found "
+                f"{sorted(found)} with {camera_fields.times(size)}; make it again"
             )
     return [
         Backdrop(camera, 0, **{name: part[found[camera.name]] for name, part in kept.items()})

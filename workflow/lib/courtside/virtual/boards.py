@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 
 from courtside.devices import video
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera as cameras
+from courtside.geometry import rotations
 
 INNER_CORNERS = (7, 4)  # along the board's x and y
 SQUARE_M = 0.06
@@ -48,7 +49,7 @@ def poses(camera, n_boards, rng):
         wide = rng.uniform(0.3, 0.55)
         depth_m = (INNER_CORNERS[0] + 1) * SQUARE_M * camera.K[0, 0] / (wide * camera.size[0])
         turn = rng.uniform(-TILT_DEG, TILT_DEG, 3) * [1, 1, 0.4]
-        rotation = transforms.rotation_from_rodrigues(np.radians(turn))
+        rotation = rotations.rotation_from_rodrigues(np.radians(turn))
         pose = np.column_stack([rotation, ray * depth_m - rotation @ middle])
         if _inside(camera, pose):
             found.append(pose)

@@ -4,7 +4,7 @@ import zlib
 
 import numpy as np
 
-from courtside.geometry import cameras as projection
+from courtside.geometry import camera as projection
 from courtside.virtual import presets
 
 FULL_WIDTH_PX = 3840  # clicking errors are stated for pictures of this width

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera, rotations
 from courtside.virtual import backdrop, depth_casting, depth_errors, filming, layouts
 
 TURN_DEG = (
@@ -95,7 +95,7 @@ class DepthCamera:
     @property
     def colour_from_depth(self):
         """From the depth sensor's axes to the colour sensor's, (3, 4), metres."""
-        turn = transforms.rotation_from_rodrigues(np.radians(TURN_DEG))
+        turn = rotations.rotation_from_rodrigues(np.radians(TURN_DEG))
         return np.column_stack([turn, self.colour_from_depth_m])
 
     def errors(self):
@@ -123,7 +123,7 @@ class DepthCamera:
 
         Returns
         -------
-        colour, depth : courtside.geometry.cameras.Camera
+        colour, depth : courtside.geometry.camera.Camera
             In the world.
         """
         start = player.motion.stance(0.0)
@@ -143,7 +143,7 @@ class DepthCamera:
         across, down = self._focal_px(size_px)
         width, height = size_px
         matrix = np.array([[across, 0, (width - 1) / 2], [0, down, (height - 1) / 2], [0, 0, 1]])
-        return cameras.Camera(name, size_px, matrix, np.zeros(5), pose)
+        return camera.Camera(name, size_px, matrix, np.zeros(5), pose)
 
 
 class Recorder:
@@ -152,7 +152,7 @@ class Recorder:
     Parameters
     ----------
     settings : DepthCamera
-    colour, depth : courtside.geometry.cameras.Camera
+    colour, depth : courtside.geometry.camera.Camera
         From `DepthCamera.place`.
     renderer : courtside.virtual.renderer.Renderer
         Of the hall.

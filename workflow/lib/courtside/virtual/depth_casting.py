@@ -15,7 +15,7 @@ def of_hall(renderer, camera):
     Parameters
     ----------
     renderer : courtside.virtual.renderer.Renderer
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
 
     Returns
     -------
@@ -43,7 +43,7 @@ def of_athletes(athletes, camera, time_s, readout_s):
     ----------
     athletes : list
         As `onscreen.Moving` takes them.
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     time_s, readout_s : float
         As `onscreen.Screen` takes them.
 

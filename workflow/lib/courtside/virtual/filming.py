@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera, rotations
 from courtside.virtual import casting, development, onscreen, rays, shadows, shaking
 
 PAD_PX = 3  # round an athlete: what the lens's blur reaches
@@ -75,7 +75,7 @@ class _Shot:
 
     def darken(self, shadow):
         """Let a shadow fall on the floor."""
-        corners = cameras.project(self.camera, shadow.outline())
+        corners = camera.project(self.camera, shadow.outline())
         box = onscreen.bounds(corners, self.camera.size, PAD_PX)
         if box is None:
             return
@@ -86,7 +86,7 @@ class _Shot:
             np.concatenate([self.film.xy[:, *part], np.ones((1, *_shape(box)), np.float32)]),
             axes=1,
         )
-        light = shadow.seen(transforms.invert(pose)[:, 3], direction)
+        light = shadow.seen(rotations.invert(pose)[:, 3], direction)
         light[~self._hall("floor", box).astype(bool)] = 1
         self.picture[part] = np.rint(self.picture[part] * light[..., None]).astype(np.uint8)
 

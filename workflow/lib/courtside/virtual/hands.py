@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.virtual import rotations
+from courtside.geometry import rotations
 from courtside.virtual.posing import SUFFIX
 
 FINGERS = (2, 3, 4, 5)
@@ -29,22 +29,22 @@ def bent(figure, skeleton, side, *, closed):
     figure : courtside.virtual.makehuman.Figure
     """
     suffix, palm = SUFFIX[side], skeleton.palms[side]
-    hand = rotations.unit(skeleton.knuckles[side] - skeleton.heads["wrist" + suffix])
+    hand = rotations.unit_vector(skeleton.knuckles[side] - skeleton.heads["wrist" + suffix])
     turns = {}
     for finger in FINGERS:
         root, tip = (
             figure.head(f"finger{finger}-1{suffix}"),
             figure.tail(f"finger{finger}-3{suffix}"),
         )
-        axis = rotations.unit(np.cross(rotations.unit(tip - root), palm))
+        axis = rotations.unit_vector(np.cross(rotations.unit_vector(tip - root), palm))
         for joint, angle in enumerate(CLOSED if closed else LOOSE, start=1):
-            turns[f"finger{finger}-{joint}{suffix}"] = rotations.about(axis, angle)
+            turns[f"finger{finger}-{joint}{suffix}"] = rotations.about_axis(axis, angle)
     root, tip = figure.head(f"finger1-1{suffix}"), figure.tail(f"finger1-3{suffix}")
     # The thumb closes over the palm, towards the fingers' tips.
     goal = 0.6 * palm + 0.5 * hand - 0.5 * skeleton.across[side] if closed else palm
-    axis = rotations.unit(np.cross(rotations.unit(tip - root), goal))
+    axis = rotations.unit_vector(np.cross(rotations.unit_vector(tip - root), goal))
     for joint, angle in enumerate(THUMB_CLOSED if closed else THUMB_LOOSE, start=1):
-        turns[f"finger1-{joint}{suffix}"] = rotations.about(axis, angle)
+        turns[f"finger1-{joint}{suffix}"] = rotations.about_axis(axis, angle)
     return figure.bent(turns)
 
 
@@ -61,5 +61,5 @@ def grip(figure, skeleton, side):
     """
     suffix = SUFFIX[side]
     knuckles = np.mean([figure.head(f"finger{n}-1{suffix}") for n in FINGERS], axis=0)
-    hand = rotations.unit(skeleton.knuckles[side] - skeleton.heads["wrist" + suffix])
+    hand = rotations.unit_vector(skeleton.knuckles[side] - skeleton.heads["wrist" + suffix])
     return knuckles + GRIP_OUT_M * skeleton.palms[side] - GRIP_BACK_M * hand

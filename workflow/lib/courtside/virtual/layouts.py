@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera, rotations
 
 FOCAL_WIDTHS = 0.875  # a phone's main camera: 60 degrees across
 LENS = np.array([-0.045, 0.011, 1e-4, 1e-4, 0.0])  # k1 k2 p1 p2 k3 of that model of camera
@@ -66,7 +66,7 @@ def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoo
         place = centre + np.array([*places[name], HEIGHTS_M[name]])
         roll_deg = rng.uniform(-ROLL_DEG, ROLL_DEG)
         pose = look_at(place, centre + np.array([0, 0, AIM_M]), roll_deg)
-        made.append(cameras.Camera(name, size_px, matrix, dist, pose))
+        made.append(camera.Camera(name, size_px, matrix, dist, pose))
     return made
 
 
@@ -122,7 +122,7 @@ def look_at(place, target, roll_deg=0.0):
     right = np.cross(forward, [0, 0, 1.0])
     right /= np.linalg.norm(right)
     upright = np.stack([right, np.cross(forward, right), forward])
-    roll = transforms.rotation_from_rodrigues([0, 0, -np.radians(roll_deg)])
+    roll = rotations.rotation_from_rodrigues([0, 0, -np.radians(roll_deg)])
     rotation = roll @ upright
     return np.column_stack([rotation, -rotation @ np.asarray(place, dtype=float)])
 

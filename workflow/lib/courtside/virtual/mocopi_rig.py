@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from courtside.geometry import rotations
 from courtside.records.hierarchy import NO_PARENT, Hierarchy
-from courtside.virtual import posing, rotations
+from courtside.virtual import posing
 from courtside.virtual.stance import SIDES
 
 TIP_M = 0.001  # of the last bones, as in the app's files
@@ -146,4 +147,4 @@ def _at_rest(skeleton, name, bone):
         "hand": (heads["wrist" + suffix], skeleton.knuckles[side]),
     }[part]
     out = np.array([1.0 if side == "left" else -1.0, 0.0, 0.0])
-    return rotations.swing(out, rotations.unit(end - start))
+    return rotations.swing(out, rotations.unit_vector(end - start))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry import distortion
+from courtside.geometry import camera as distortion
 from courtside.virtual import mesh
 
 ROUNDS = (
@@ -69,7 +69,7 @@ def follow(athlete, camera, time_s, readout_s, exposure_s):
     ----------
     athlete : object
         As `Moving` takes it.
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     time_s, readout_s, exposure_s : float
         As `Screen` takes them.
 
@@ -95,7 +95,7 @@ class Screen:
     Parameters
     ----------
     moving : Moving
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     time_s : float
         Mid-exposure of the middle row.
     readout_s : float
@@ -164,14 +164,14 @@ def shown(camera, xyz):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
     xyz : (V, 3) float
         World, metres.
 
     Returns
     -------
     seen : (3, V) float
-        Px across and down as `cameras.project` has them, to the last bit (NaN where the camera sees
+        Px across and down as `camera.project` has them, to the last bit (NaN where the camera sees
         nothing), and metres along the camera's axis.
 
     Notes

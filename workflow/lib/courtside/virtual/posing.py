@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.virtual import rotations
+from courtside.geometry import rotations
 from courtside.virtual.stance import SIDES
 
 SPINE = ("spine05", "spine04", "spine03", "spine02", "spine01")
@@ -65,9 +65,9 @@ class Skeleton:
         across, palms = {}, {}
         for side, sign in (("left", 1), ("right", -1)):
             index, little = (figure.head(f"finger{n}-1{SUFFIX[side]}") for n in (2, 5))
-            hand = rotations.unit(knuckles[side] - heads["wrist" + SUFFIX[side]])
+            hand = rotations.unit_vector(knuckles[side] - heads["wrist" + SUFFIX[side]])
             aside = index - little
-            across[side] = rotations.unit(aside - (aside @ hand) * hand)
+            across[side] = rotations.unit_vector(aside - (aside @ hand) * hand)
             palms[side] = sign * np.cross(hand, across[side])
         hips = (heads["upperleg01.L"] + heads["upperleg01.R"]) / 2
         return cls(heads, hips, knuckles, toes, tips, across, palms)
@@ -116,7 +116,9 @@ def pose(skeleton, stance):
     _chain(posed, skeleton, SPINE[-1], NECK, stance.world_from_head, NECK_SHARES)
     for side in SIDES:
         ways = {
-            part: rotations.unit(np.asarray(stance.directions[f"{side}_{part}"], dtype=float))
+            part: rotations.unit_vector(
+                np.asarray(stance.directions[f"{side}_{part}"], dtype=float)
+            )
             for part in ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
         }
         limb = _Limb(posed, skeleton, SUFFIX[side])
@@ -156,13 +158,15 @@ class _Limb:
         """Place the two parts of a limb's bone, twisted about the line through its joints."""
         rest = self.rest(first)
         for bone, twist in zip((first, second), twists, strict=True):
-            self.put(bone, rotations.about(way, twist) @ rotation, rest, place)
+            self.put(bone, rotations.about_axis(way, twist) @ rotation, rest, place)
 
 
 def _arm(limb, ways, hold, side):
     thorax, upper, fore = limb.posed.rotation[SPINE[-1]], ways["upper_arm"], ways["forearm"]
     shoulder, elbow, wrist = (limb.rest(bone) for bone in ("upperarm01", "lowerarm01", "wrist"))
-    rest = [rotations.unit(end - start) for start, end in ((shoulder, elbow), (elbow, wrist))]
+    rest = [
+        rotations.unit_vector(end - start) for start, end in ((shoulder, elbow), (elbow, wrist))
+    ]
     girdle = thorax @ _girdle(thorax.T @ upper, 1 if side == "left" else -1)
     limb.put(
         "clavicle", girdle, limb.rest("clavicle"), limb.posed.at(SPINE[-1], limb.rest("clavicle"))
@@ -187,7 +191,7 @@ def _girdle(upper, sign):
     """Return the clavicle's rotation in the thorax (3, 3) for an upper arm's direction there."""
     lift = sign * LIFT * (upper[1] + 0.7)  # the rest pose points 45 degrees down
     reach = -sign * REACH * upper[2]
-    return rotations.about(np.array([0.0, 1, 0]), reach) @ rotations.about(
+    return rotations.about_axis(np.array([0.0, 1, 0]), reach) @ rotations.about_axis(
         np.array([0.0, 0, 1]), lift
     )
 
@@ -202,19 +206,19 @@ def _hold(limb, stance, side):
 
 
 def _hand(limb, forearm, way, hold, side):
-    rest = rotations.unit(limb.skeleton.knuckles[side] - limb.rest("wrist"))
+    rest = rotations.unit_vector(limb.skeleton.knuckles[side] - limb.rest("wrist"))
     rotation = rotations.swing(forearm @ rest, way) @ forearm
     if hold is None:
         return rotation
     turn = _towards(way, rotation @ hold[0], hold[1], hinge_is_line=False)
-    return rotations.about(way, turn) @ rotation
+    return rotations.about_axis(way, turn) @ rotation
 
 
 def _leg(limb, ways, toe):
     thigh, shank, foot = ways["thigh"], ways["shank"], ways["foot"]
     hip, knee, ankle = (limb.rest(bone) for bone in ("upperleg01", "lowerleg01", "foot"))
     pelvis, left = limb.posed.rotation["root"], np.array([1.0, 0, 0])
-    rotation = rotations.swing(pelvis @ rotations.unit(knee - hip), thigh) @ pelvis
+    rotation = rotations.swing(pelvis @ rotations.unit_vector(knee - hip), thigh) @ pelvis
     # The knee's axis points to the left: from its bend and, where it is straight, from the foot.
     hinge = rotations.cross3(thigh, shank) + 0.5 * rotations.cross3(foot, shank)
     turn = _towards(thigh, rotation @ left, hinge, hinge_is_line=False)
@@ -222,18 +226,18 @@ def _leg(limb, ways, toe):
     limb.pair("upperleg01", "upperleg02", rotation, place, (FIRST_HALF * turn, turn), thigh)
 
     above = limb.turned("upperleg02")
-    rotation = rotations.swing(above @ rotations.unit(ankle - knee), shank) @ above
+    rotation = rotations.swing(above @ rotations.unit_vector(ankle - knee), shank) @ above
     place = limb.at("upperleg02", knee)
     limb.pair("lowerleg01", "lowerleg02", rotation, place, (0.0, 0.0), shank)
 
     place = limb.at("lowerleg02", ankle)
-    rotation = rotations.swing(rotation @ rotations.unit(toe - ankle), foot) @ rotation
+    rotation = rotations.swing(rotation @ rotations.unit_vector(toe - ankle), foot) @ rotation
     # A foot on the floor lies flat on it, whichever way the shank leans.
     flat = rotations.cross3(np.array([0.0, 0, 1]), foot)
     level = _smooth(-shank[2], *STANDING)
     sideways = level * flat + (1 - level) * rotations.cross3(foot, shank)
     turn = _towards(foot, rotation @ left, sideways, hinge_is_line=False)
-    limb.put("foot", rotations.about(foot, turn) @ rotation, ankle, place)
+    limb.put("foot", rotations.about_axis(foot, turn) @ rotation, ankle, place)
 
 
 def _toes(limb, joint, tip):
@@ -243,7 +247,7 @@ def _toes(limb, joint, tip):
     now = (rotation @ (tip - joint))[2] / length
     least = np.clip((tip[1] - place[2]) / length, -1, 1)
     rise = np.clip(np.arcsin(least) - np.arcsin(now), 0, MOST_TOES)
-    limb.put(TOES, rotation @ rotations.about(np.array([-1.0, 0, 0]), rise), joint, place)
+    limb.put(TOES, rotation @ rotations.about_axis(np.array([-1.0, 0, 0]), rise), joint, place)
 
 
 def _towards(axis, start, end, *, hinge_is_line):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.virtual import rotations
+from courtside.geometry import rotations
 from courtside.virtual.mesh import Mesh, join
 
 LENGTH_M = 0.674
@@ -66,7 +66,7 @@ def place(rest, butt, way, face):
     -------
     mesh : Mesh
     """
-    normal = rotations.unit(face - (face @ way) * way)
+    normal = rotations.unit_vector(face - (face @ way) * way)
     rotation = np.stack([rotations.cross3(way, normal), way, normal], axis=1)
     return Mesh(rest.vertices @ rotation.T.astype(np.float32) + butt, rest.triangles, rest.colours)
 

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera as cameras
+from courtside.geometry import rotations as transforms
 
 NODES = 28  # per axis: the lens is smooth, so that a polynomial through so many is exact to 1e-9 px
 
@@ -16,7 +17,7 @@ def grid(camera):
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
 
     Returns
     -------
@@ -30,7 +31,7 @@ def grid(camera):
 
     Notes
     -----
-    `cameras.undistort` at Chebyshev nodes, a polynomial between them.
+    `camera.undistort` at Chebyshev nodes, a polynomial between them.
     """
     nodes = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
     places = [(nodes + 1) / 2 * length - 0.5 for length in camera.size]

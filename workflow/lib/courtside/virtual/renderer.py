@@ -28,7 +28,7 @@ class Renderer:
 
         Parameters
         ----------
-        camera : courtside.geometry.cameras.Camera
+        camera : courtside.geometry.camera.Camera
             Its pose is that at mid-exposure of the middle row.
         twist : ((3,) float, (3,) float) or None
             How the camera moves. First its angular velocity w in its own frame, rad/s: after a short time t,

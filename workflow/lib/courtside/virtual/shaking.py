@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import cameras
+from courtside.geometry import camera as cameras
 
 WAVES = 7  # of a tremor, per axis
 WAVES_HZ = 0.5, 8.0
@@ -47,7 +47,7 @@ class Shaking:
     Parameters
     ----------
     shake : Shake
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         As it stands before.
     rng : numpy.random.Generator
     """
@@ -94,9 +94,9 @@ class Warp:
 
     Parameters
     ----------
-    camera : courtside.geometry.cameras.Camera
+    camera : courtside.geometry.camera.Camera
         The lens and the size of the pictures wanted.
-    before : courtside.geometry.cameras.Camera
+    before : courtside.geometry.camera.Camera
         The same lens, as the picture that there is has it: perhaps wider.
     """
 

@@ -12,7 +12,7 @@ def of_take(take, cameras, athletes, devices):
     Parameters
     ----------
     take : takes.TakeSettings
-    cameras : dict of int to courtside.geometry.cameras.Camera
+    cameras : dict of int to courtside.geometry.camera.Camera
         Those that film, by their place in the layout.
     athletes : dict of str to athlete.Athlete
     devices : dict of str to take_truth.DeviceTruth

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
-from courtside.geometry import transforms
-from courtside.geometry.cameras import Camera
+from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
 from courtside.virtual import layouts
 
 BESIDE_M = 0.8  # how near the walk comes to each fixed camera
@@ -91,7 +91,7 @@ class Walk:
         place = place + sum(waves.at(time_s) for waves in self.sway)
         upright = layouts.look_at(place, self.aim_at + self.wander.at(time_s))[:, :3]
         turn = sum(waves.at(time_s) for waves in self.shake)
-        rotation = transforms.rotation_from_rodrigues(turn) @ upright
+        rotation = rotations.rotation_from_rodrigues(turn) @ upright
         return np.column_stack([rotation, -rotation @ place])
 
     def twist(self, time_s):
@@ -107,8 +107,8 @@ class Walk:
         """
         before, after = (self.pose(time_s + step) for step in (-DIFFERENCE_S, DIFFERENCE_S))
         before_from_after = before[:, :3] @ after[:, :3].T
-        angular = transforms.rodrigues_from_rotation(before_from_after) / (2 * DIFFERENCE_S)
-        moved = transforms.invert(after)[:, 3] - transforms.invert(before)[:, 3]
+        angular = rotations.rodrigues_from_rotation(before_from_after) / (2 * DIFFERENCE_S)
+        moved = rotations.invert(after)[:, 3] - rotations.invert(before)[:, 3]
         return angular, moved / (2 * DIFFERENCE_S)
 
     def principal_point_px(self, time_s):

@@ -8,7 +8,8 @@ import numpy as np
 import pycolmap
 import pytest
 
-from courtside.geometry import calibration_files, cameras
+from courtside.geometry import calibration_files
+from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 

@@ -1,4 +1,4 @@
-"""A calibrated camera: its model, projection both ways, and the TOML file that rules hand on."""
+"""Pinhole cameras with lens distortion: projection, its inverse, and camera files."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from courtside.geometry import distortion, fields, transforms
+from courtside.geometry import camera_fields, rotations
 from courtside.study.errors import InputError, reading
 from courtside.study.files import atomic
 
@@ -48,7 +48,7 @@ class Camera:
             value = np.array(getattr(self, field), dtype=float)
             if value.shape != shape or not np.isfinite(value).all():
                 raise ValueError(
-                    f"expected {field} as {shape} finite numbers, found {fields.short(value)}"
+                    f"expected {field} as {shape} finite numbers, found {camera_fields.short(value)}"
                 )
             value.setflags(write=False)
             object.__setattr__(self, field, value)
@@ -56,7 +56,7 @@ class Camera:
         pinhole = np.diag([self.K[0, 0], self.K[1, 1], 1.0])
         pinhole[:2, 2] = self.K[:2, 2]
         if np.diag(self.K).min() <= 0 or not np.array_equal(self.K, pinhole):
-            found = fields.short(self.K)
+            found = camera_fields.short(self.K)
             raise ValueError(f"expected a matrix of positive focal lengths, no skew, found {found}")
         rotation = self.cam_from_world[:, :3]
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0:
@@ -65,18 +65,20 @@ class Camera:
     @property
     def centre_in_world(self):
         """The projection centre, (3,) m."""
-        return transforms.invert(self.cam_from_world)[:, 3]
+        return rotations.invert(self.cam_from_world)[:, 3]
 
     @cached_property
     def fold_radius(self):
         """Radius on the z = 1 plane from where the lens model shows nothing new; inf if there is none."""
-        return distortion.fold_radius(self.dist)
+        return fold_radius(self.dist)
 
 
 def _whole(size):
     whole = tuple(int(length) for length in size)
     if len(whole) != 2 or min(whole) <= 0 or whole != tuple(size):
-        raise ValueError(f"expected size as two positive whole px, found {fields.short(size)}")
+        raise ValueError(
+            f"expected size as two positive whole px, found {camera_fields.short(size)}"
+        )
     return whole
 
 
@@ -96,7 +98,7 @@ def project(camera, xyz_in_world):
         or so far aside that the lens model folds back.
     """
     normalised, _ = _normalise(camera, xyz_in_world)
-    return distortion.distort(camera.dist, normalised) * _focal(camera) + camera.K[:2, 2]
+    return distort(camera.dist, normalised) * _focal(camera) + camera.K[:2, 2]
 
 
 def projection_jacobian(camera, xyz_in_world):
@@ -114,7 +116,7 @@ def projection_jacobian(camera, xyz_in_world):
         d(x, y) / d(x, y, z), px per metre; NaN where `project` gives NaN.
     """
     normalised, depth = _normalise(camera, xyz_in_world)
-    in_cam = distortion.jacobian_by_place(camera.dist, normalised, depth)
+    in_cam = jacobian_by_place(camera.dist, normalised, depth)
     return _focal(camera)[:, np.newaxis] * (in_cam @ camera.cam_from_world[:, :3])
 
 
@@ -137,7 +139,7 @@ def undistort(camera, xy):
     distorted = (np.where(np.isfinite(xy), xy, np.nan) - camera.K[:2, 2]) / _focal(camera)
     # Of a far-off pixel even the last digit is more than the tolerance near the centre.
     tolerance = TOLERANCE_PX / _focal(camera).max() * (1 + np.abs(distorted).sum(axis=-1))
-    return distortion.undistort(camera.dist, camera.fold_radius, distorted, tolerance)
+    return undistort_below_fold(camera.dist, camera.fold_radius, distorted, tolerance)
 
 
 def _focal(camera):
@@ -177,7 +179,7 @@ def crop(camera, crop_px):
     if min(x, y) < 0 or min(width, height) <= 0 or outside:
         raise InputError(
             f"camera {camera.name}: expected crop_px [x, y, width, height] inside the calibrated "
-            f"{fields.times(camera.size)} px, found {list(crop_px)}; correct crop_px in the session file"
+            f"{camera_fields.times(camera.size)} px, found {list(crop_px)}; correct crop_px in the session file"
         )
     shift = np.zeros((3, 3))
     shift[:2, 2] = x, y
@@ -196,8 +198,8 @@ def check_size(camera, video_size, video_path):
     """
     if tuple(video_size) != camera.size:
         raise InputError(
-            f"{video_path}: expected {fields.times(camera.size)} px, the size that camera {camera.name} was "
-            f"calibrated at, found {fields.times(video_size)}; declare `crop_px: [x, y, width, height]` for "
+            f"{video_path}: expected {camera_fields.times(camera.size)} px, the size that camera {camera.name} was "
+            f"calibrated at, found {camera_fields.times(video_size)}; declare `crop_px: [x, y, width, height]` for "
             "this camera in the session file if the video is a cut-out of the calibrated picture, "
             "else calibrate at the video's size"
         )
@@ -222,17 +224,17 @@ def read_toml(path):
     InputError
         If the file is not TOML or a camera is incomplete, impossible or named twice.
     """
-    with reading(path, "TOML", fields.EXPORT_AGAIN):
-        tables = fields.toml(Path(path).read_text(encoding="utf-8-sig"))
+    with reading(path, "TOML", camera_fields.EXPORT_AGAIN):
+        tables = camera_fields.toml(Path(path).read_text(encoding="utf-8-sig"))
     metadata = tables.get("metadata", {})
     unit = metadata.get("unit", "m") if isinstance(metadata, dict) else metadata
-    metres = fields.unit_in_metres(path, unit)
+    metres = camera_fields.unit_in_metres(path, unit)
     found = []
     for key, table in tables.items():
         if isinstance(table, dict) and key not in OTHER_TABLES:
             name = str(table.get("name", key))
             found.append(build(f"{path}: camera {name}", name, table, metres))
-    return fields.check_distinct(path, found)
+    return camera_fields.check_distinct(path, found)
 
 
 def build(where, name, table, metres):
@@ -251,14 +253,14 @@ def build(where, name, table, metres):
             f"{where}: expected a lens with distortions k1 k2 p1 p2 k3, found fisheye = true; "
             "calibrate with the standard lens model"
         )
-    size = fields.numbers(where, "size", table.get("size"), (2,))
-    matrix = fields.numbers(where, "matrix", table.get("matrix"), (3, 3))
-    dist = fields.five_coefficients(where, table.get("distortions"))
-    pose = fields.pose(where, table.get("rotation"), table.get("translation"), metres)
+    size = camera_fields.numbers(where, "size", table.get("size"), (2,))
+    matrix = camera_fields.numbers(where, "matrix", table.get("matrix"), (3, 3))
+    dist = camera_fields.five_coefficients(where, table.get("distortions"))
+    pose = camera_fields.pose(where, table.get("rotation"), table.get("translation"), metres)
     try:
         return Camera(name, size.tolist(), matrix, dist, pose)
     except ValueError as error:
-        raise InputError(f"{where}: {error}; {fields.EXPORT_AGAIN}") from error
+        raise InputError(f"{where}: {error}; {camera_fields.EXPORT_AGAIN}") from error
 
 
 def write_toml(path, cameras, *, source, unit="m"):
@@ -271,9 +273,9 @@ def write_toml(path, cameras, *, source, unit="m"):
     source : str
         How they were found; kept in `[metadata]`.
     unit : str
-        `fields.UNSCALED` where lengths are not in metres: such files are refused by `read_toml`.
+        `camera_fields.UNSCALED` where lengths are not in metres: such files are refused by `read_toml`.
     """
-    fields.check_distinct(path, cameras)
+    camera_fields.check_distinct(path, cameras)
     digits = len(str(len(cameras) - 1))  # aniposelib sorts the tables by name
     content = {
         f"cam_{index:0{digits}}": {
@@ -281,7 +283,7 @@ def write_toml(path, cameras, *, source, unit="m"):
             "size": list(camera.size),
             "matrix": camera.K.tolist(),
             "distortions": camera.dist.tolist(),
-            "rotation": transforms.rodrigues_from_rotation(camera.cam_from_world[:, :3]).tolist(),
+            "rotation": rotations.rodrigues_from_rotation(camera.cam_from_world[:, :3]).tolist(),
             "translation": camera.cam_from_world[:, 3].tolist(),
             "fisheye": False,
         }
@@ -290,3 +292,131 @@ def write_toml(path, cameras, *, source, unit="m"):
     content["metadata"] = {"adjusted": False, "error": 0.0, "unit": unit, "source": source}
     with atomic(path) as temporary:
         temporary.write_text(tomli_w.dumps(content), encoding="utf-8")
+
+
+MAX_ITERATIONS = 50
+ENTRIES = 2048
+NOTHING = 1e-30  # a coefficient so small beside the others divides them beyond what a float holds
+
+
+def distort(dist, normalised):
+    """Move points (..., 2) to where the lens shows them.
+
+    Brown 1971, in OpenCV's order of coefficients.
+    """
+    x, y = normalised[..., 0], normalised[..., 1]
+    square, product = x * x + y * y, 2 * x * y
+    _, _, p1, p2, _ = dist
+    radial = _radial(dist, square)
+    return np.stack(
+        [
+            x * radial + p1 * product + p2 * (square + 2 * x * x),
+            y * radial + p1 * (square + 2 * y * y) + p2 * product,
+        ],
+        axis=-1,
+    )
+
+
+def jacobian(dist, normalised):
+    """Return the derivative (..., 2, 2) of `distort`; it is symmetric."""
+    along_x, mixed, along_y = _slopes(dist, normalised)
+    return np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*mixed.shape, 2, 2)
+
+
+def _slopes(dist, normalised):
+    """Return the three elements (...) of the symmetric derivative of `distort`."""
+    x, y = normalised[..., 0], normalised[..., 1]
+    square = x * x + y * y
+    k1, k2, p1, p2, k3 = dist
+    radial = _radial(dist, square)
+    slope = 2 * (k1 + square * (2 * k2 + square * 3 * k3))  # of radial, over r
+    mixed = x * y * slope + 2 * (p1 * x + p2 * y)
+    along_x = radial + x * x * slope + 2 * p1 * y + 6 * p2 * x
+    along_y = radial + y * y * slope + 6 * p1 * y + 2 * p2 * x
+    return along_x, mixed, along_y
+
+
+def jacobian_by_place(dist, normalised, depth):
+    """Return the derivative (..., 2, 3) of distorted points by the places that the camera sees them at.
+
+    Parameters
+    ----------
+    dist : (5,) float
+    normalised : (..., 2) float
+        On the z = 1 plane.
+    depth : (..., 1) float
+        Along the camera's axis; the derivative is per unit of it.
+    """
+    pinhole = np.zeros((*normalised.shape, 3))
+    pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
+    pinhole[..., 2] = -normalised
+    return jacobian(dist, normalised) @ pinhole / depth[..., np.newaxis]
+
+
+def fold_radius(dist):
+    """Return the radius at which the radial part turns back, inf if it never does.
+
+    From there on the lens model would show one pixel for several directions.
+    """
+    k1, k2, _, _, k3 = dist
+    coefficients = np.array([7 * k3, 5 * k2, 3 * k1, 1.0])
+    coefficients[np.abs(coefficients) < NOTHING * np.abs(coefficients).max()] = 0.0
+    squares = np.roots(coefficients)
+    real = squares.real[(np.abs(squares.imag) < 1e-9 * np.abs(squares)) & (squares.real > 0)]
+    return float(np.sqrt(real.min(initial=np.inf)))
+
+
+def undistort_below_fold(dist, fold, distorted, tolerance):
+    """Invert `distort` below the fold.
+
+    Parameters
+    ----------
+    dist : (5,) float
+    fold : float
+        From `fold_radius`.
+    distorted : (..., 2) float
+    tolerance : (...) float
+        Accepted error of `distort` at the result.
+
+    Returns
+    -------
+    normalised : (..., 2) float
+        NaN where missing, and where no point below the fold is shown there.
+
+    Notes
+    -----
+    Newton's method from the inverse of the radial part, tabulated up to the fold: it neither diverges
+    under strong distortion nor lands on a direction beyond the fold.
+    """
+    normalised = _undistort_radially(dist, fold, distorted)
+    for _ in range(MAX_ITERATIONS):
+        error = distorted - distort(dist, normalised)
+        solved = np.abs(error).max(axis=-1) <= tolerance
+        a, b, d = _slopes(dist, normalised)
+        determinant = a * d - b * b
+        rising = determinant > 0
+        if (solved | ~rising).all():
+            break
+        step = [d * error[..., 0] - b * error[..., 1], a * error[..., 1] - b * error[..., 0]]
+        divisor = np.where(rising, determinant, np.nan)[..., np.newaxis]
+        normalised = normalised + np.stack(step, axis=-1) / divisor
+    found = solved & rising & (np.hypot(normalised[..., 0], normalised[..., 1]) < fold)
+    return np.where(found[..., np.newaxis], normalised, np.nan)
+
+
+def _radial(dist, square):
+    return 1 + square * (dist[0] + square * (dist[1] + square * dist[4]))
+
+
+def _undistort_radially(dist, fold, distorted):
+    """Undo the radial part to about 1 %: the start for Newton's method."""
+    radius = np.hypot(distorted[..., 0], distorted[..., 1])
+    farthest = np.nan_to_num(radius).max(initial=1.0)
+    limit = 1.0
+    while limit < fold and limit * _radial(dist, limit**2) < farthest:
+        limit *= 2
+    radii = np.geomspace(1e-3, min(limit, fold), ENTRIES)
+    seen = radii * _radial(dist, radii**2)
+    # The entry below: the slope falls towards the fold, so that steps from below cannot jump it.
+    below = np.maximum(np.searchsorted(seen, radius) - 1, 0)
+    return distorted / _radial(dist, radii[below] ** 2)[..., np.newaxis]

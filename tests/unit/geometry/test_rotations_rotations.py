@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation, Slerp
 
-from courtside.virtual import rotations
+from courtside.geometry import rotations
 
 RNG = np.random.default_rng(0)
 UNITS = [vector / np.linalg.norm(vector) for vector in RNG.normal(size=(20, 3))]
@@ -30,7 +30,7 @@ def test_a_swing_to_the_opposite_is_half_a_turn():
 @pytest.mark.parametrize("angle", [-3.0, -0.4, 0.0, 1.2, 2.9])
 def test_a_turn_about_an_axis_and_its_angle(angle):
     for axis in UNITS[:5]:
-        found = rotations.about(axis, angle)
+        found = rotations.about_axis(axis, angle)
         np.testing.assert_allclose(
             found, Rotation.from_rotvec(angle * axis).as_matrix(), atol=1e-12
         )
@@ -42,7 +42,7 @@ def test_a_turn_about_an_axis_and_its_angle(angle):
 def test_the_twist_is_what_is_left_of_a_rotation_without_its_swing():
     axis = UNITS[3]
     for end in UNITS[4:9]:
-        both = rotations.swing(axis, end) @ rotations.about(axis, 0.7)
+        both = rotations.swing(axis, end) @ rotations.about_axis(axis, 0.7)
         assert rotations.twist(both, axis) == pytest.approx(0.7)
 
 

@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation, Slerp
 
-from courtside.motion import rotation_vectors
+from courtside.geometry import rotations as rotation_vectors
 
 RNG = np.random.default_rng(0)
 
 
 def test_matrices_and_back():
     vectors = RNG.normal(size=(4, 5, 3))
-    matrices = rotation_vectors.matrices(vectors)
+    matrices = rotation_vectors.matrices_from_vectors(vectors)
     assert matrices[1, 2] == pytest.approx(Rotation.from_rotvec(vectors[1, 2]).as_matrix())
-    assert rotation_vectors.matrices(rotation_vectors.vectors(matrices)) == pytest.approx(matrices)
+    assert rotation_vectors.matrices_from_vectors(
+        rotation_vectors.vectors_from_matrices(matrices)
+    ) == pytest.approx(matrices)
 
 
 def test_cross_matrices():
@@ -38,11 +40,11 @@ def test_between_is_slerp():
     time_s = np.array([0.0, 0.1, 0.3, 0.4])
     rotations = Rotation.from_rotvec(RNG.normal(size=(4, 3)))
     wanted = np.linspace(0, 0.4, 17)
-    found = rotation_vectors.between(time_s, rotations.as_matrix(), wanted)
+    found = rotation_vectors.interpolate(time_s, rotations.as_matrix(), wanted)
     assert found == pytest.approx(Slerp(time_s, rotations)(wanted).as_matrix(), abs=1e-12)
 
 
 def test_between_stays_at_the_ends():
     rotations = Rotation.from_rotvec([[0, 0, 0], [0, 0, 1.0]]).as_matrix()
-    found = rotation_vectors.between(np.array([0.0, 1.0]), rotations, np.array([-5.0, 5.0]))
+    found = rotation_vectors.interpolate(np.array([0.0, 1.0]), rotations, np.array([-5.0, 5.0]))
     assert found == pytest.approx(rotations)

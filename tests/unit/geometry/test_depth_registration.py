@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import cameras, depth_alignment
-from courtside.geometry.cameras import Camera
+from courtside.geometry import camera as cameras
+from courtside.geometry import depth_registration
+from courtside.geometry.camera import Camera
 
 REST = np.eye(3, 4)
 DEPTH = Camera("d", (160, 120), [[100, 0, 79.2], [0, 101, 59.6], [0, 0, 1]], np.zeros(5), REST)
@@ -17,7 +18,7 @@ NORMAL, OFFSET = np.array([0.3, -0.2, 1.0]), 2.4
 
 
 def directions(camera):
-    rays = depth_alignment.rays(camera)
+    rays = depth_registration.rays(camera)
     return np.concatenate([rays, np.ones((*rays.shape[:2], 1))], axis=-1)
 
 
@@ -39,7 +40,9 @@ def test_rays_look_where_points_are_seen():
 
 def test_every_depth_pixel_lies_on_the_plane():
     depth_m = plane_depth()
-    xy, z = depth_alignment.points_in_colour(depth_m, depth_alignment.rays(DEPTH), COLOUR, APART)
+    xy, z = depth_registration.points_in_colour(
+        depth_m, depth_registration.rays(DEPTH), COLOUR, APART
+    )
     in_colour = (directions(DEPTH) * depth_m[..., None]) @ APART[:, :3].T + APART[:, 3]
     assert np.allclose(z, in_colour[..., 2])
     assert np.allclose(xy, cameras.project(COLOUR, in_colour))
@@ -48,14 +51,16 @@ def test_every_depth_pixel_lies_on_the_plane():
 def test_holes_have_no_place():
     depth_m = plane_depth()
     depth_m[3, 4], depth_m[5, 6] = 0, np.nan
-    xy, z = depth_alignment.points_in_colour(depth_m, depth_alignment.rays(DEPTH), COLOUR, APART)
+    xy, z = depth_registration.points_in_colour(
+        depth_m, depth_registration.rays(DEPTH), COLOUR, APART
+    )
     for place in ((3, 4), (5, 6)):
         assert np.isnan(z[place])
         assert np.isnan(xy[place]).all()
 
 
 def test_a_plane_is_seen_by_every_colour_pixel_inside():
-    aligned = depth_alignment.align(plane_depth(), DEPTH, COLOUR, APART)
+    aligned = depth_registration.align(plane_depth(), DEPTH, COLOUR, APART)
     seen = aligned[20:-20, 20:-20]
     assert np.isfinite(seen).mean() > 0.99
     # A depth pixel is half a pixel wide either way: the plane's slope over that is the error allowed.
@@ -68,7 +73,7 @@ def test_the_nearest_is_seen():
     """A square before a wall: the wall behind it must not show through."""
     depth_m = np.full((120, 160), 4.0)
     depth_m[40:80, 60:100] = 1.0
-    aligned = depth_alignment.align(
+    aligned = depth_registration.align(
         depth_m, DEPTH, COLOUR, np.column_stack([np.eye(3), [0.05, 0, 0]])
     )
     corners = np.array([[60, 40], [99, 79]]) - DEPTH.K[:2, 2]
@@ -86,7 +91,7 @@ def test_the_nearest_is_seen():
 def test_sampling_inverts_the_alignment():
     rng = np.random.default_rng(0)
     xy = rng.uniform((30, 30), (210, 150), (300, 2))
-    found = depth_alignment.sample(plane_depth(), DEPTH, COLOUR, APART, xy)
+    found = depth_registration.sample(plane_depth(), DEPTH, COLOUR, APART, xy)
     u, v = np.rint(xy).astype(int).T
     slope = np.abs(np.gradient(plane_in_colour())).max()
     assert np.isfinite(found).all()
@@ -97,7 +102,7 @@ def test_sampling_passes_over_holes_and_missing_points():
     depth_m = plane_depth()
     depth_m[:, :80] = 0
     xy = np.array([[30.0, 90.0], [200.0, 90.0], [np.nan, np.nan]])
-    found = depth_alignment.sample(depth_m, DEPTH, COLOUR, APART, xy)
+    found = depth_registration.sample(depth_m, DEPTH, COLOUR, APART, xy)
     assert np.isfinite(found).tolist() == [False, True, False]
 
 
@@ -105,5 +110,7 @@ def test_where_the_cameras_stand_in_the_world_does_not_matter():
     placed = np.column_stack([TURNED, [1.0, 2.0, 3.0]])
     there = Camera("c", COLOUR.size, COLOUR.K, COLOUR.dist, placed)
     depth_m = plane_depth()
-    ours = depth_alignment.align(depth_m, DEPTH, COLOUR, APART)
-    assert np.array_equal(ours, depth_alignment.align(depth_m, DEPTH, there, APART), equal_nan=True)
+    ours = depth_registration.align(depth_m, DEPTH, COLOUR, APART)
+    assert np.array_equal(
+        ours, depth_registration.align(depth_m, DEPTH, there, APART), equal_nan=True
+    )

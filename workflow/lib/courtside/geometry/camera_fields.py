@@ -4,7 +4,7 @@ import tomllib
 
 import numpy as np
 
-from courtside.geometry import transforms
+from courtside.geometry import rotations
 from courtside.study.errors import InputError
 
 LARGEST = 1e12  # beyond any length, pixel or coefficient of a lens
@@ -83,9 +83,9 @@ def pose(where, rotation, translation, metres):
     translation = numbers(where, "translation", translation, (3,), (3, 1), (1, 3))
     try:
         if rotation.shape == (3, 3):
-            rotation = transforms.nearest_rotation(rotation)
+            rotation = rotations.nearest_rotation(rotation)
         else:
-            rotation = transforms.rotation_from_rodrigues(rotation.ravel())
+            rotation = rotations.rotation_from_rodrigues(rotation.ravel())
     except ValueError as error:
         raise InputError(f"{where}: {error}; {EXPORT_AGAIN}") from error
     return np.column_stack([rotation, translation.ravel() * metres])

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from courtside.geometry import cameras, transforms
+from courtside.geometry import camera as cameras
+from courtside.geometry import rotations
 
 NEAREST_M, FARTHEST_M = 0.1, 20.0  # beyond what depth cameras for bodies measure
 SLACK_PX = 0.25
@@ -141,7 +142,7 @@ def sample(
     """
     depth_m = np.where(depth_m > 0, depth_m, np.inf)
     xy = np.asarray(xy, dtype=float).reshape(-1, 2)
-    depth_from_colour = transforms.invert(np.asarray(colour_from_depth))
+    depth_from_colour = rotations.invert(np.asarray(colour_from_depth))
     directions = np.concatenate([cameras.undistort(colour, xy), np.ones((len(xy), 1))], axis=-1)
     ends = _in_depth(depth_camera, depth_from_colour, directions, np.array(range_m))
     span_px = np.nan_to_num(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=-1)).max(initial=1.0)

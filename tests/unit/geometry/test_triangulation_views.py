@@ -3,11 +3,11 @@
 import numpy as np
 
 import scene
-from courtside.geometry import views
+from courtside.geometry import triangulation
 
 CAMERAS = scene.ring(3)  # without distortion, pixels are the plane
 XYZ = scene.points(20)
-SEEN = views.Views(CAMERAS, scene.views(CAMERAS, XYZ), np.ones((3, 20)))
+SEEN = triangulation.Views(CAMERAS, scene.views(CAMERAS, XYZ), np.ones((3, 20)))
 NEAR = XYZ + np.random.default_rng(1).normal(0, 0.05, XYZ.shape)
 
 

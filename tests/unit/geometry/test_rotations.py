@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.geometry import transforms
+from courtside.geometry import rotations
 
 VECTORS = [
     [0.0, 0.0, 0.0],
@@ -17,20 +17,20 @@ VECTORS = [
 
 @pytest.mark.parametrize("vector", VECTORS)
 def test_rotation_is_opencvs(vector):
-    rotation = transforms.rotation_from_rodrigues(vector)
+    rotation = rotations.rotation_from_rodrigues(vector)
     np.testing.assert_allclose(rotation, cv2.Rodrigues(np.array(vector))[0], atol=1e-15)
 
 
 @pytest.mark.parametrize("vector", VECTORS)
 def test_rotation_vector_gives_the_rotation_back(vector):
     rotation = cv2.Rodrigues(np.array(vector))[0]
-    again = cv2.Rodrigues(transforms.rodrigues_from_rotation(rotation))[0]
+    again = cv2.Rodrigues(rotations.rodrigues_from_rotation(rotation))[0]
     np.testing.assert_allclose(again, rotation, atol=1e-12)
 
 
 def test_rounded_rotation_becomes_orthonormal():
     rounded = np.round(cv2.Rodrigues(np.array([0.3, -1.2, 2.0]))[0], 5)
-    rotation = transforms.nearest_rotation(rounded)
+    rotation = rotations.nearest_rotation(rounded)
     np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-15)
     np.testing.assert_allclose(rotation, rounded, atol=1e-5)
 
@@ -38,10 +38,10 @@ def test_rounded_rotation_becomes_orthonormal():
 @pytest.mark.parametrize("matrix", [np.diag([1.0, 1.0, -1.0]), np.diag([1.0, 1.0, 1.001])])
 def test_other_matrices_are_refused(matrix):
     with pytest.raises(ValueError, match="expected"):
-        transforms.nearest_rotation(matrix)
+        rotations.nearest_rotation(matrix)
 
 
 def test_inverse_undoes():
     b_from_a = np.column_stack([cv2.Rodrigues(np.array([0.3, -1.2, 2.0]))[0], [1.0, -2.0, 3.0]])
-    square = [np.vstack([m, [0, 0, 0, 1]]) for m in (b_from_a, transforms.invert(b_from_a))]
+    square = [np.vstack([m, [0, 0, 0, 1]]) for m in (b_from_a, rotations.invert(b_from_a))]
     np.testing.assert_allclose(square[0] @ square[1], np.eye(4), atol=1e-14)

@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.geometry import plain_dlt
+from courtside.geometry import triangulation
 
 XYZ = scene.points(50)
 
 
 def test_exact_views_give_the_points_whatever_the_lens():
     cameras = scene.ring(3, dist=(-0.1, 0.02, 1e-3, -1e-3, 0))
-    found = plain_dlt.triangulate_plain(
+    found = triangulation.triangulate_plain(
         cameras, scene.views(cameras, XYZ), np.ones((3, 50)), sigma_px=1.0
     )
     np.testing.assert_allclose(found.xyz, XYZ, atol=1e-7)
@@ -22,7 +22,7 @@ def test_exact_views_give_the_points_whatever_the_lens():
 def test_two_noisy_views_give_nearly_what_opencv_does():
     cameras = scene.ring(5)[:2]
     xy = scene.views(cameras, XYZ) + np.random.default_rng(0).normal(0, 3, (2, 50, 2))
-    found = plain_dlt.triangulate_plain(cameras, xy, np.ones((2, 50)), sigma_px=3.0)
+    found = triangulation.triangulate_plain(cameras, xy, np.ones((2, 50)), sigma_px=3.0)
     matrices = [camera.K @ camera.cam_from_world for camera in cameras]
     other = cv2.triangulatePoints(*matrices, xy[0].T.copy(), xy[1].T.copy())
     apart = np.linalg.norm(found.xyz - (other[:3] / other[3]).T, axis=1)
@@ -36,10 +36,10 @@ def test_a_wrong_view_is_used_and_a_doubtful_one_is_not():
     cameras = scene.ring(4)
     xy, score = scene.views(cameras, XYZ), np.ones((4, 50))
     xy[0] += 200
-    found = plain_dlt.triangulate_plain(cameras, xy, score, sigma_px=1.0)
+    found = triangulation.triangulate_plain(cameras, xy, score, sigma_px=1.0)
     assert np.linalg.norm(found.xyz - XYZ, axis=1).min() > 0.02
     score[0] = 0.1
-    found = plain_dlt.triangulate_plain(cameras, xy, score, sigma_px=1.0, min_score=0.5)
+    found = triangulation.triangulate_plain(cameras, xy, score, sigma_px=1.0, min_score=0.5)
     np.testing.assert_allclose(found.xyz, XYZ, atol=1e-7)
     assert not found.accepted[0].any()
 
@@ -49,8 +49,10 @@ def test_points_of_too_few_views_are_missing():
     xy = scene.views(cameras, XYZ)
     xy[:2, 3] = np.nan
     xy[0, 4] = np.nan
-    found = plain_dlt.triangulate_plain(cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=2)
+    found = triangulation.triangulate_plain(
+        cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=2
+    )
     assert np.isnan(found.xyz[3]).all() and not found.accepted[:, 3].any()
     assert found.accepted[:, 4].tolist() == [False, True, True]
     with pytest.raises(ValueError, match="min_views"):
-        plain_dlt.triangulate_plain(cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=1)
+        triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=1)
