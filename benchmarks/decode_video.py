@@ -17,7 +17,7 @@ import numpy as np
 from av.video.reformatter import Interpolation, VideoReformatter
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
-from courtside.devices import video
+from courtside.video import reader
 
 
 def opencv(path, threads):
@@ -46,10 +46,10 @@ def pyav(path, threads):
 READERS = {
     "cv2, 1 thread": lambda path: opencv(path, 1),
     "av, 1 thread": lambda path: pyav(path, 1),
-    "courtside": lambda path: (image for _, image in video.frames(path)),
+    "courtside": lambda path: (image for _, image in reader.frames(path)),
     "cv2, default": lambda path: opencv(path, 0),
     "av, default": lambda path: pyav(path, 0),
-    "list only": video.frame_times,
+    "list only": reader.frame_times,
 }
 
 
@@ -62,7 +62,7 @@ def seconds(read, path):
 
 
 def largest_difference(path):
-    pairs = zip(opencv(path, 1), (image for _, image in video.frames(path)), strict=True)
+    pairs = zip(opencv(path, 1), (image for _, image in reader.frames(path)), strict=True)
     return max(int(np.abs(a.astype(np.int16) - b).max()) for a, b in pairs)
 
 

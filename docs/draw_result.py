@@ -13,11 +13,11 @@ from matplotlib.patches import Ellipse
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.devices import video  # noqa: E402
 from courtside.figures import close_ups, space, stick, style  # noqa: E402
 from courtside.geometry import courts  # noqa: E402
 from courtside.motion import pose_errors  # noqa: E402
 from courtside.records import derived, footage, keypoints, skeleton, take_truth  # noqa: E402
+from courtside.video import reader  # noqa: E402
 
 SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
 CALIBRATION, FUSION, NETWORK = "sfm-n40", "all-robust", "blazepose-full"
@@ -61,7 +61,7 @@ def main(results, png):
 def show(axis, one, points, frame, drawn):
     """Show the joints found in a camera's picture, and the skeleton projected back into it."""
     at = one.frame_at(points.time_s[frame])
-    _, image = video.read_frame(one.video, one.view.time_s[at])
+    _, image = reader.read_frame(one.video, one.view.time_s[at])
     found, back = drawn.of(one.view.xy[:, at]), drawn.of(one.reprojected(points, at))
     height, width = image.shape[:2]
     whole = one.camera.name == LARGE

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import networks
-from courtside.devices import still, video
 from courtside.exports import trc
 from courtside.geometry import calibration_files, triangulation
 from courtside.geometry import camera as cameras
@@ -20,6 +19,7 @@ from courtside.motion import fusion
 from courtside.pose import decoders, foreground, tracking
 from courtside.records import keypoints, skeleton
 from courtside.study import yaml_files
+from courtside.video import reader, static_picture
 from real_data import REAL, needs_real
 
 pytestmark = needs_real
@@ -81,16 +81,18 @@ def detected(study):
 
 def detect(name, joints, find, place, study):
     path = FOLDER / "videos" / f"{name}.mp4"
-    every_fourth = [image for at, (_, image) in enumerate(video.frames(path)) if at % 4 == 0]
+    every_fourth = [image for at, (_, image) in enumerate(reader.frames(path)) if at % 4 == 0]
     step = study["detect_pose"]
-    scene = foreground.Foreground(still.temporal_median(every_fourth), step["min_difference"])
+    scene = foreground.Foreground(
+        static_picture.temporal_median(every_fourth), step["min_difference"]
+    )
     limits = {"min_presence": step["min_presence"], "redetect": False}
-    track = tracking.track_person(video.frames(path), find, place, scene, **limits)
+    track = tracking.track_person(reader.frames(path), find, place, scene, **limits)
     return keypoints.Keypoints2D(
         camera=name,
         model="blazepose-full",
         joints=np.array(joints),
-        size=np.array(video.probe(path).size),
+        size=np.array(reader.probe(path).size),
         time_s=track.time_s,
         xy=track.xy[None],
         score=track.score[None],

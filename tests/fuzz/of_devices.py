@@ -10,11 +10,12 @@ from bvh_texts import ARM
 
 import depth_recordings_made
 import walker
-from courtside.devices import bvh, depth_recordings, mocopi, nuitrack, openpose, video_writer
+from courtside.devices import bvh, depth_recordings, mocopi, nuitrack, openpose
 from courtside.geometry import camera as cameras
 from courtside.records import skeleton
 from courtside.records.hierarchy import forward
 from courtside.records.keypoints import Keypoints2D
+from courtside.video import writer
 from fuzz.format import Format, require
 from fuzz.of_cameras import real
 from fuzz.of_study import CONFIG
@@ -228,7 +229,7 @@ def depths(folder):
     with (made / "cameras.toml").open("a", encoding="utf-8") as stream:
         stream.write("depth_unit_m = 0.0005\nbaseline_m = 0.05\n")
     frames = depth_recordings_made.frames(3)
-    video_writer.write_video(made / "colour.mp4", [bgr for _, bgr, _ in frames], 30, crf=10)
+    writer.write_video(made / "colour.mp4", [bgr for _, bgr, _ in frames], 30, crf=10)
     for k, (_, _, steps) in enumerate(frames):
         cv2.imwrite(str(made / "depth" / f"{k:04}.png"), steps)
     for name in ("colour", "depth"):

@@ -8,11 +8,12 @@ import numpy as np
 import sfm_made
 import video_files
 
-from courtside.devices import chessboard, survey, video, walks
+from courtside.devices import chessboard, survey
 from courtside.pages import clicking_page
 from courtside.pose import tflite_onnx
 from courtside.sfm import database, model
 from courtside.study import session_advice, session_draft, session_guess, yaml_files
+from courtside.video import reader, walk_frames
 from fuzz.format import Format, require
 from fuzz.of_cameras import clicked, own_toml, real
 from fuzz.of_devices import bags, bvhs
@@ -47,7 +48,7 @@ def read_photo(path):
     """Read a photo as a frame of a walk and as a picture to click in."""
     with contextlib.suppress(ValueError):  # the page takes dark ones too
         clicking_page.frame("c", path, jpeg_quality=80)
-    found = walks.read_photo(path)
+    found = walk_frames.read_photo(path)
     require(found.dtype == np.uint8 and found.ndim == 3, "a picture of another kind")
     return found
 
@@ -89,9 +90,9 @@ def other_videos(folder):
 
 def read_video(path):
     """Read a video's description, times, pictures."""
-    info, times_s = video.probe(path), video.frame_times(path)
+    info, times_s = reader.probe(path), reader.frame_times(path)
     require((np.diff(times_s) > 0).all() and min(info.size) > 0, "times or size")
-    for (time_s, image), expected_s in zip(video.frames(path), times_s, strict=True):
+    for (time_s, image), expected_s in zip(reader.frames(path), times_s, strict=True):
         require(image.shape[1::-1] == info.size and time_s == expected_s, "a picture")
     return info
 

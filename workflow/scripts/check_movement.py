@@ -3,14 +3,14 @@
 import cv2
 import pandas as pd
 
-from courtside.devices import still, walks
 from courtside.records import tables
 from courtside.study import log
+from courtside.video import static_picture, walk_frames
 
 
 def main(static_png, video_path, movement_csv, *, camera, frames, **limits):
-    now = still.temporal_median(walks.spread(video_path, frames))
-    found = still.check_still(camera, cv2.imread(str(static_png)), now, **limits)
+    now = static_picture.temporal_median(walk_frames.spread(video_path, frames))
+    found = static_picture.check_still(camera, cv2.imread(str(static_png)), now, **limits)
     row = {"camera": camera, **found.row()}
     log.logger.info("%s", row)
     tables.write(movement_csv, pd.DataFrame([row]))

@@ -3,18 +3,18 @@
 import cv2
 import numpy as np
 
-from courtside.devices import video
 from courtside.pose import decoders, foreground, tracklets
 from courtside.records import keypoints, skeleton
 from courtside.study import log
+from courtside.video import reader
 
 
 def main(paths, pose2d_npz, names, *, decoder, trim_s, max_people, min_difference, **options):
     cv2.setNumThreads(1)
     joints = skeleton.read(paths.skeleton).joints
     start_s, stop_s = trim_s or (None, None)
-    info = video.probe(paths.video, stop_s=stop_s)
-    frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
+    info = reader.probe(paths.video, stop_s=stop_s)
+    frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)
     changed = foreground.Whole()
     if paths.background:
         changed = foreground.Foreground(cv2.imread(paths.background), min_difference)

@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from courtside.devices import video
 from courtside.figures import badminton_fig05, style
 from courtside.pose import privacy
 from courtside.records import keypoints, skeleton
 from courtside.study import log
+from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
@@ -21,7 +21,7 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
     for example in chosen:
         pose2d, film = files[example["session"], example["camera"]]
         view = keypoints.read_2d(pose2d)
-        _, image = video.read_frame(film, view.time_s[example["frame_idx"]])
+        _, image = reader.read_frame(film, view.time_s[example["frame_idx"]])
         if blur_faces:
             persons = view.xy[:, example["frame_idx"]]
             image = privacy.hide(image, persons, joints.bone_indices(), persons[:, face])

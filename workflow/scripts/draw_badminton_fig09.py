@@ -3,13 +3,13 @@
 import numpy as np
 import pandas as pd
 
-from courtside.devices import video
 from courtside.figures import badminton_fig09, stick, style
 from courtside.geometry import courts
 from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
+from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
@@ -22,7 +22,7 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
     images = {}
     for one in seen:
         at = one.frame_at(points.time_s[frame])
-        _, image = video.read_frame(one.video, one.view.time_s[at])
+        _, image = reader.read_frame(one.video, one.view.time_s[at])
         if blur_faces:
             both = one.view.xy[:, at], one.reprojected(points, at)
             everyone = np.concatenate(both)

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from courtside.devices import video
 from courtside.figures import badminton_fig10, stick, style
 from courtside.geometry import courts
 from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
+from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
@@ -21,7 +21,7 @@ def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
 
     def picture(one, time_s):
         at = one.frame_at(time_s)
-        _, image = video.read_frame(one.video, one.view.time_s[at])
+        _, image = reader.read_frame(one.video, one.view.time_s[at])
         if blur_faces:
             both = one.view.xy[:, at], one.reprojected(points, at)
             everyone = np.concatenate(both)

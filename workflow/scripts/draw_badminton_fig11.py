@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from courtside.devices import video
 from courtside.figures import badminton_fig11, stick, style
 from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
+from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
@@ -24,7 +24,7 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
     for one in seen:
         at = one.frame_at(points.time_s[frame])
         both = one.view.xy[:, at], one.reprojected(points, at)
-        _, image = video.read_frame(one.video, one.view.time_s[at])
+        _, image = reader.read_frame(one.video, one.view.time_s[at])
         if blur_faces:
             everyone = np.concatenate(both)
             image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))

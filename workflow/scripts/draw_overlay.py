@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from courtside.devices import video
 from courtside.figures import overlay, style
 from courtside.geometry import camera as cameras
 from courtside.motion import resampling
 from courtside.pose import privacy
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
+from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, n_frames, blur_faces):
@@ -35,7 +35,7 @@ def panel(points, camera, view, own_s, film, time_s, joints, blur_faces):
     at = overlay.nearest(view, time_s)
     column = points.cameras.tolist().index(camera.name)
     both = view.xy[:, at], overlay.reproject(camera, points, time_s)
-    image = video.read_frame(film, own_s[at])[1]
+    image = reader.read_frame(film, own_s[at])[1]
     if blur_faces:
         face = [joints.index(name) for name in joints.groups["face"]]
         faces = np.concatenate([xy[:, face] for xy in both], axis=1)

@@ -2,18 +2,18 @@
 
 import numpy as np
 
-from courtside.devices import still, video
 from courtside.study import log
+from courtside.video import reader, static_picture
 
 
 def main(source, background_png, *, trim_s, n_frames):
     start_s, stop_s = trim_s or (None, None)
-    times_s = video.frame_times(source, stop_s=stop_s)
+    times_s = reader.frame_times(source, stop_s=stop_s)
     count = (times_s >= (start_s or 0.0)).sum()
     chosen = set(np.unique(np.linspace(0, count - 1, n_frames).round().astype(int)).tolist())
-    frames = video.frames(source, start_s=start_s, stop_s=stop_s)
+    frames = reader.frames(source, start_s=start_s, stop_s=stop_s)
     images = [image for at, (_, image) in enumerate(frames) if at in chosen]
-    video.write_png(background_png, still.temporal_median(images))
+    reader.write_png(background_png, static_picture.temporal_median(images))
 
 
 if __name__ == "__main__":

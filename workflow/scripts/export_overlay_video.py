@@ -1,11 +1,11 @@
 """Burn detections, 3D skeleton and time into a camera's video: video, 2D, people, clocks, 3D -> MP4."""
 
-from courtside.devices import video, video_writer
 from courtside.exports import overlay_video
 from courtside.figures import style
 from courtside.geometry import camera as cameras
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
+from courtside.video import reader, writer
 
 COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
 
@@ -22,13 +22,13 @@ def main(paths, mp4, camera, *, blur_faces, trim_s, crf, effort, keep_background
         skeleton.read(paths.skeleton),
     )
     start_s, stop_s = trim_s or (None, None)
-    rate_hz = video.probe(paths.video, stop_s=stop_s).rate_hz
-    frames = video.frames(paths.video, start_s=start_s, stop_s=stop_s)
+    rate_hz = reader.probe(paths.video, stop_s=stop_s).rate_hz
+    frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)
     drawn = overlay_video.pictures(
         frames, track, colours=COLOURS, hide_faces=blur_faces, keep_background=keep_background
     )
     said = log.progress(drawn, len(track.own_s), f"{camera}: frames")
-    video_writer.write_video(mp4, said, rate_hz, crf=crf, effort=effort)
+    writer.write_video(mp4, said, rate_hz, crf=crf, effort=effort)
 
 
 if __name__ == "__main__":

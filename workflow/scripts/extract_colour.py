@@ -1,9 +1,10 @@
 """Extract the colour of a depth camera's recording: recording -> video, its frames' times, colour camera."""
 
-from courtside.devices import depth_recordings, video_writer
+from courtside.devices import depth_recordings
 from courtside.geometry import camera
 from courtside.records import frame_times
 from courtside.study import log
+from courtside.video import writer
 
 
 def main(recording, video, frames_csv, camera_toml, *, device, crf):
@@ -13,7 +14,7 @@ def main(recording, video, frames_csv, camera_toml, *, device, crf):
     table = found.colour_index()
     pictures = log.progress(found.colour_frames(), len(table.time_s), f"{device}: frames")
     images = (image for _, image in pictures)
-    video_writer.write_video(video, images, table.rate_hz, crf=crf)
+    writer.write_video(video, images, table.rate_hz, crf=crf)
     frame_times.write(frames_csv, table)
     camera.write_toml(camera_toml, [found.colour], source=f"recorded by {device}")
 

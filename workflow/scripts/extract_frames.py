@@ -2,18 +2,18 @@
 
 from pathlib import Path
 
-from courtside.devices import walks
 from courtside.records import frame_table
 from courtside.sfm import usable
 from courtside.study import log
 from courtside.study.errors import InputError
 from courtside.study.files import atomic_folder
+from courtside.video import walk_frames
 
 
 def main(video_path, folder, table_csv, *, every_s=None, every_frame=None, walk="walk"):
     with atomic_folder(folder) as beside:
-        found = walks.frames(video_path, every_s=every_s, every_frame=every_frame)
-        table, small = walks.extract(log.progress(found, None, f"{walk}: frames"), beside)
+        found = walk_frames.frames(video_path, every_s=every_s, every_frame=every_frame)
+        table, small = walk_frames.extract(log.progress(found, None, f"{walk}: frames"), beside)
         kept, reason = usable.judge(table, small)
         if not kept.any():
             raise InputError(

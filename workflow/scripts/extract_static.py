@@ -2,22 +2,22 @@
 
 import pandas as pd
 
-from courtside.devices import still, video, walks
 from courtside.records import tables
 from courtside.study import log
+from courtside.video import reader, static_picture, walk_frames
 
 
 def main(
     video_path, out_png, out_csv=None, *, frames, max_shift_px, max_zoom_percent, camera="camera"
 ):
-    image, moved = still.static_picture(
+    image, moved = static_picture.static_picture(
         camera,
         video_path,
-        walks.spread(video_path, frames),
+        walk_frames.spread(video_path, frames),
         max_shift_px=max_shift_px,
         max_zoom_percent=max_zoom_percent,
     )
-    video.write_png(out_png, image)
+    reader.write_png(out_png, image)
     row = {"camera": camera, **moved.row()}
     log.logger.info("%s", row)
     if out_csv:

@@ -1,20 +1,21 @@
 """Import one camera's 2D keypoints of another program: folder of OpenPose's JSON, video -> 2D keypoints."""
 
-from courtside.devices import openpose, video
+from courtside.devices import openpose
 from courtside.records import keypoints, skeleton
 from courtside.study import log
+from courtside.video import reader
 
 
 def main(paths, pose2d_npz, names, *, trim_s):
     stop_s = trim_s[1] if trim_s else None
-    info = video.probe(paths.video, stop_s=stop_s)
+    info = reader.probe(paths.video, stop_s=stop_s)
     found = openpose.read(
         paths.folder,
         skeleton.read(paths.skeleton),
         camera=names.camera,
         model=names.model,
         size=info.size,
-        time_s=video.frame_times(paths.video, stop_s=stop_s),
+        time_s=reader.frame_times(paths.video, stop_s=stop_s),
         trim_s=trim_s,
     )
     log.logger.info("%s: %d tracklets, %d frames", names.camera, len(found.xy), len(found.time_s))

@@ -3,19 +3,19 @@
 import cv2
 import numpy as np
 
-from courtside.devices import shake, video
 from courtside.records import shake_table
 from courtside.study import log
+from courtside.video import reader, shake_tracking
 
 
 def main(static_png, video_path, shake_csv, *, camera, trim_s):
     cv2.setNumThreads(1)
     start_s, stop_s = trim_s or (None, None)
-    times_s = video.frame_times(video_path, stop_s=stop_s)
+    times_s = reader.frame_times(video_path, stop_s=stop_s)
     first = 0 if start_s is None else int(np.count_nonzero(times_s < start_s))
-    frames = video.frames(video_path, start_s=start_s, stop_s=stop_s)
+    frames = reader.frames(video_path, start_s=start_s, stop_s=stop_s)
     frames = log.progress(frames, len(times_s) - first, f"{camera}: frames")
-    table = shake.measure_take(cv2.imread(str(static_png)), frames, first)
+    table = shake_tracking.measure_take(cv2.imread(str(static_png)), frames, first)
     shake_table.write(shake_csv, table)
 
 

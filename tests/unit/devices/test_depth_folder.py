@@ -4,9 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.devices import depth_folder, video_writer
+from courtside.devices import depth_folder
 from courtside.geometry import camera
 from courtside.study.errors import InputError
+from courtside.video import writer
 from depth_recordings_made import PLACED
 
 RNG = np.random.default_rng(2)
@@ -28,7 +29,7 @@ def write(folder):
     with (folder / "cameras.toml").open("a") as stream:
         stream.write("depth_unit_m = 0.0005\nbaseline_m = 0.05\n")
     pictures = [np.full((32, 48, 3), grey, np.uint8) for grey in GREYS]
-    video_writer.write_video(folder / "colour.mp4", pictures, 30, crf=10)
+    writer.write_video(folder / "colour.mp4", pictures, 30, crf=10)
     (folder / "depth").mkdir()
     for k, steps in enumerate(DEPTHS):
         cv2.imwrite(str(folder / "depth" / f"{k:04}.png"), steps)

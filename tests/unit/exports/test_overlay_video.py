@@ -7,11 +7,11 @@ import pytest
 
 import scene
 import walker
-from courtside.devices import video, video_writer
 from courtside.exports import overlay_video
 from courtside.figures import style
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
+from courtside.video import reader, writer
 
 COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
 N = 12
@@ -151,15 +151,15 @@ def test_the_file_is_like_its_source(take, tmp_path):
     source, result = tmp_path / "source.mp4", tmp_path / "overlay.mp4"
     width, height = camera.size
     frames = grey_frames(camera, points.time_s, (width // 2 * 2, height // 2 * 2))
-    video_writer.write_video(source, (image for _, image in frames), 50, crf=18)
+    writer.write_video(source, (image for _, image in frames), 50, crf=18)
     pictures = overlay_video.pictures(
-        video.frames(source), tracked(take), colours=COLOURS, hide_faces=True
+        reader.frames(source), tracked(take), colours=COLOURS, hide_faces=True
     )
-    video_writer.write_video(result, pictures, video.probe(source).rate_hz, crf=18)
-    before, after = video.probe(source), video.probe(result)
+    writer.write_video(result, pictures, reader.probe(source).rate_hz, crf=18)
+    before, after = reader.probe(source), reader.probe(result)
     assert (after.n_frames, after.size, after.rate_hz) == (N, before.size, pytest.approx(50))
-    np.testing.assert_allclose(video.frame_times(result), video.frame_times(source), atol=1e-6)
-    image = video.read_frame(result, points.time_s[7])[1].astype(float)
+    np.testing.assert_allclose(reader.frame_times(result), reader.frame_times(source), atol=1e-6)
+    image = reader.read_frame(result, points.time_s[7])[1].astype(float)
     x, y = np.round(take[1].xy[0, 7, WRIST]).astype(int)
     assert np.abs(image[y, x] - COLOURS[0]).max() < 60  # H.264 keeps half the colour's resolution
     assert np.abs(image[20, -20] - 90).max() < 6  # grey stays grey

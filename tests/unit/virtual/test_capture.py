@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.devices import video
 from courtside.geometry import courts
 from courtside.geometry.camera import Camera
 from courtside.records import clicks, truth
+from courtside.video import reader
 from courtside.virtual import capture, layouts
 
 COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
@@ -80,9 +80,9 @@ def test_a_session_has_its_files_and_no_others(folder):
 
 def test_videos_have_the_size_frames_and_times_that_were_asked(folder, known):
     for name in ("side", "back"):
-        info = video.probe(folder / f"{name}.mp4")
+        info = reader.probe(folder / f"{name}.mp4")
         assert (info.size, info.n_frames) == ((480, 270), 3)
-    times_s = video.frame_times(folder / "walk.mp4")
+    times_s = reader.frame_times(folder / "walk.mp4")
     np.testing.assert_allclose(times_s, known.walks["walk"].time_s, rtol=1e-6, atol=1e-9)
     expected_s = (21 * np.pi / 2 - 1.6) / (2 / 3.6)
     assert times_s[-1] == pytest.approx(expected_s, rel=0.02)
@@ -91,7 +91,7 @@ def test_videos_have_the_size_frames_and_times_that_were_asked(folder, known):
 def test_the_fixed_cameras_see_the_court_where_the_truth_says(folder, known):
     camera = known.cameras[1]
     assert camera.name == "back"
-    frames = [image for _, image in video.frames(folder / "back.mp4")]
+    frames = [image for _, image in reader.frames(folder / "back.mp4")]
     assert line_contrast(np.median(frames, axis=0).astype(np.uint8), camera) > 15
     beside = replace(camera, K=camera.K + np.outer([4, 0, 0], [0, 0, 1]))
     assert line_contrast(frames[0], beside) < 5, "four pixels beside, there are no lines"
@@ -99,7 +99,7 @@ def test_the_fixed_cameras_see_the_court_where_the_truth_says(folder, known):
 
 
 def test_the_walk_sees_the_court_where_the_truth_says(folder, known):
-    frames = [image for _, image in video.frames(folder / "walk.mp4")]
+    frames = [image for _, image in reader.frames(folder / "walk.mp4")]
     assert len(frames) == 4
     # At its end, beside `back`, the walk looks along lines.
     assert line_contrast(frames[3], walked(known, 3)) > 10

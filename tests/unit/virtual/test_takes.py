@@ -10,9 +10,9 @@ import pytest
 import balls
 import mannequin
 import scene
-from courtside.devices import video
 from courtside.geometry import courts
 from courtside.records import take_truth
+from courtside.video import reader
 from courtside.virtual import body, capture, takes
 
 COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
@@ -62,7 +62,7 @@ def files(folder):
 
 
 def frames(path):
-    return [image.astype(int) for _, image in video.frames(path)]
+    return [image.astype(int) for _, image in reader.frames(path)]
 
 
 def assert_shown(image, xy):
@@ -82,9 +82,9 @@ def test_a_take_has_its_files_which_do_not_depend_on_the_number_of_processes(tmp
     assert files(one).keys() == {"side.mp4", "back.mp4", "racket.csv", "truth.npz"}
     assert files(one) == files(two)
     for name in ("side", "back"):
-        info = video.probe(one / f"{name}.mp4")
+        info = reader.probe(one / f"{name}.mp4")
         assert (info.size, info.n_frames) == ((320, 180), 3)
-        np.testing.assert_allclose(video.frame_times(one / f"{name}.mp4"), np.arange(3) / 30)
+        np.testing.assert_allclose(reader.frame_times(one / f"{name}.mp4"), np.arange(3) / 30)
     known = take_truth.read(one / "truth.npz")
     assert known.joints.tolist() == list(body.JOINTS)
     assert list(worn) == list(known.devices) == ["suit"], "cameras and devices in one take"

@@ -6,8 +6,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from courtside.devices import image_files
 from courtside.study.errors import InputError
+from courtside.video import images
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 FEWEST = 4  # boards
@@ -108,7 +108,7 @@ def find(pictures, inner_corners):
         )
     paths, found, dropped, size = [], [], {}, None
     for path in _paths(pictures):
-        image = image_files.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
+        image = images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
         size = _same_size(path, image, size)
         xy, why = _corners(image, (columns, rows))
         if why:

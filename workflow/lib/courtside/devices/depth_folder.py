@@ -36,12 +36,12 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from courtside.devices import image_files, video
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.geometry import camera as cameras
 from courtside.geometry import camera_fields, rotations
 from courtside.records.frame_times import FrameTimes
 from courtside.study.errors import InputError, reading
+from courtside.video import images, reader
 
 VIDEOS = (".mp4", ".mkv", ".mov", ".avi")
 EXPORT = "export depth again, without conversion"
@@ -77,7 +77,7 @@ def read(path, name="rgbd"):
     film, pictures = _film(folder), _pictures(folder / "depth")
     colour_index, depth_index = _indices(folder, film, len(pictures))
     colour, depth = found["colour"], found["depth"]
-    cameras.check_size(colour, video.probe(film).size, film)
+    cameras.check_size(colour, reader.probe(film).size, film)
     back = rotations.invert(depth.cam_from_world)
     turn, shift = colour.cam_from_world[:, :3], colour.cam_from_world[:, 3]
     return DepthRecording(
@@ -135,7 +135,7 @@ def _pictures(folder):
 
 def _indices(folder, film, n_depth):
     """Return the `FrameTimes` of colour and of depth."""
-    times_s = video.frame_times(film)
+    times_s = reader.frame_times(film)
     tables = [folder / "colour.csv", folder / "depth.csv"]
     given = [path.is_file() for path in tables]
     if all(given):
@@ -166,14 +166,14 @@ def _table(path, n_frames):
 
 
 def _colour(film, times_s):
-    for time_s, (_, image) in zip(times_s.tolist(), video.frames(film), strict=True):
+    for time_s, (_, image) in zip(times_s.tolist(), reader.frames(film), strict=True):
         yield time_s, image
 
 
 def _depth(pictures, times_s, size):
     for path, time_s in zip(pictures, times_s.tolist(), strict=True):
         what = f"a 16-bit picture of one channel, {camera_fields.times(size)} px"
-        image = image_files.read(path, cv2.IMREAD_UNCHANGED, what=what, advice=EXPORT)
+        image = images.read(path, cv2.IMREAD_UNCHANGED, what=what, advice=EXPORT)
         if image.dtype != np.uint16 or image.shape != size[::-1]:
             raise InputError(
                 f"{path}: expected {what}, found {image.dtype} {image.shape}; {EXPORT}"

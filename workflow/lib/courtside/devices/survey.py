@@ -5,11 +5,12 @@ import math
 import os
 from pathlib import Path
 
-from courtside.devices import video, walks
 from courtside.geometry import calibration_files
 from courtside.records import clicks
 from courtside.study.errors import InputError
 from courtside.study.session_guess import Recording
+from courtside.video import reader as video
+from courtside.video import walk_frames
 
 VIDEOS = {
     ".mp4",
@@ -62,7 +63,11 @@ def survey(folder, *, root):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
         files = [Path(at) / name for name in sorted(names) if not name.startswith(".")]
         files = [path for path in files if path.is_file()]  # a pipe would be waited for
-        photos = [path for path in files if path.suffix.lower() in walks.PHOTOS + walks.UNREADABLE]
+        photos = [
+            path
+            for path in files
+            if path.suffix.lower() in walk_frames.PHOTOS + walk_frames.UNREADABLE
+        ]
         together = len(photos) > 1 and Path(at) != folder
         if together:
             found.append(_described(Path(at), folder, root, _photos))
@@ -77,7 +82,7 @@ def _kind(path):
     suffix = path.suffix.lower()
     for kind, suffixes in (
         ("video", VIDEOS),
-        ("photo", {*walks.PHOTOS, *walks.UNREADABLE}),
+        ("photo", {*walk_frames.PHOTOS, *walk_frames.UNREADABLE}),
         ("bag", BAGS),
         ("calibration", CALIBRATIONS),
     ):
@@ -119,13 +124,13 @@ def _video(path):
 
 
 def _photo(path):
-    height, width = walks.read_photo(walks.photo_paths(path)[0]).shape[:2]
+    height, width = walk_frames.read_photo(walk_frames.photo_paths(path)[0]).shape[:2]
     return {"kind": "photo", "size": (width, height)}
 
 
 def _photos(path):
-    photos = walks.photo_paths(path)
-    height, width = walks.read_photo(photos[0]).shape[:2]
+    photos = walk_frames.photo_paths(path)
+    height, width = walk_frames.read_photo(photos[0]).shape[:2]
     return {"kind": "photos", "size": (width, height), "n_photos": len(photos)}
 
 

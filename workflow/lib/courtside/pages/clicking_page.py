@@ -9,9 +9,9 @@ from string import Template
 import cv2
 import numpy as np
 
-from courtside.devices import image_files
 from courtside.geometry import court_edges
 from courtside.pages import page
+from courtside.video import images
 
 SCRIPTS = (
     "clicking_table.js",
@@ -92,7 +92,7 @@ def frame(camera, path, *, jpeg_quality=None, clicks=None, proposals=None, **whi
     """
     path = Path(path)
     content = path.read_bytes() if path.is_file() else b""
-    image = image_files.decode(path, content, what="a PNG or JPEG picture", advice="make it again")
+    image = images.decode(path, content, what="a PNG or JPEG picture", advice="make it again")
     mime = page.PNG if content.startswith(b"\x89PNG") else "image/jpeg"
     if jpeg_quality is not None:
         content = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality])[1].tobytes()

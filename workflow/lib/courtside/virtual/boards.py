@@ -5,9 +5,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from courtside.devices import video
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
+from courtside.video import reader
 
 INNER_CORNERS = (7, 4)  # along the board's x and y
 SQUARE_M = 0.06
@@ -126,7 +126,7 @@ def simulate(camera, folder, background, rng, *, n_boards=12, noise=2.0):
     held = poses(camera, n_boards, rng)
     for at, pose in enumerate(held):
         image = picture(camera, pose, background, rng, noise=noise)
-        video.write_png(Path(folder) / f"{at:06d}.png", image)
+        reader.write_png(Path(folder) / f"{at:06d}.png", image)
     return held
 
 

@@ -6,10 +6,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from courtside.devices import video_writer
 from courtside.records import clicks as click_records
 from courtside.records import truth
 from courtside.study import log
+from courtside.video import writer
 from courtside.virtual import (
     backdrop,
     boards,
@@ -248,7 +248,7 @@ def _film_fixed(settings, folder, at, camera, picture):
     rng = crews.generator(settings.seed, STATIC, at)
     count = range(settings.static_frames)
     frames = (_trembled(picture, preset.noise_sigma, rng) for _ in count)
-    video_writer.write_video(folder / f"{camera.name}.mp4", frames, STATIC_HZ, crf=preset.crf)
+    writer.write_video(folder / f"{camera.name}.mp4", frames, STATIC_HZ, crf=preset.crf)
     if settings.boards:
         rng = crews.generator(settings.seed, BOARDS, at)
         place = folder / "boards" / camera.name
@@ -259,7 +259,7 @@ def _film_walk(settings, folder, walked, frames):
     rate_hz = (settings.walk_frames - 1) / walked.duration_s  # frame k is at the grid's time k
     frames = log.progress(frames, settings.walk_frames, f"{WALK}: frames")
     crf = presets.PRESETS[settings.preset].crf
-    video_writer.write_video(folder / f"{WALK}.mp4", frames, rate_hz, crf=crf)
+    writer.write_video(folder / f"{WALK}.mp4", frames, rate_hz, crf=crf)
 
 
 def _trembled(picture, noise, rng):

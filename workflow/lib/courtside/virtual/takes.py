@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.devices import video_writer
 from courtside.records import take_truth
 from courtside.study import log
+from courtside.video import writer
 from courtside.virtual import (
     athlete,
     bodies,
@@ -179,7 +179,7 @@ class Set:
 
         what = f"{film.camera.name}: frames"
         shown = log.progress(frames(), len(take.frame_times(film.camera.name)), what)
-        video_writer.write_video(path, shown, take.rate_hz, crf=preset.crf, effort="veryfast")
+        writer.write_video(path, shown, take.rate_hz, crf=preset.crf, effort="veryfast")
         return film.camera.name
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from video_files import H264, draw, good_frames, number_in, numbers, packets, write
 
-from courtside.devices import decoding, video
-from courtside.devices.packets import list_packets
 from courtside.study.errors import InputError
+from courtside.video import decoder, reader
+from courtside.video.packets import list_packets
 
 OPEN_GOP = {
     "g": "12",
@@ -66,7 +66,7 @@ def altered(tmp_path, path, at, values):
 
 @pytest.mark.parametrize("name", KINDS)
 def test_every_frame_comes_once_and_in_the_order_shown(files, name):
-    read = list(video.frames(files[name]))
+    read = list(reader.frames(files[name]))
     assert numbers(read) == list(range(60))
     np.testing.assert_allclose([t for t, _ in read], np.arange(60) / 30, atol=0.0006)
     drawn = np.array([draw(k) for k in range(60)], dtype=float)
@@ -75,7 +75,7 @@ def test_every_frame_comes_once_and_in_the_order_shown(files, name):
 
 @pytest.mark.parametrize("name", KINDS)
 def test_opencv_decodes_the_same_pixels(files, name):
-    ours = np.array([image for _, image in video.frames(files[name])])
+    ours = np.array([image for _, image in reader.frames(files[name])])
     theirs = by_opencv(files[name])
     assert ours.shape == theirs.shape
     np.testing.assert_array_equal(ours, theirs)
@@ -83,11 +83,11 @@ def test_opencv_decodes_the_same_pixels(files, name):
 
 @pytest.mark.parametrize("name", KINDS)
 def test_a_range_holds_the_pictures_of_the_whole(files, name):
-    whole = list(video.frames(files[name]))
+    whole = list(reader.frames(files[name]))
     for first in (0, 1, 11, 12, 13, 25, 38, 59):
         start_s = whole[first][0]
         stop_s = start_s + 0.1001
-        part = list(video.frames(files[name], start_s=start_s, stop_s=stop_s))
+        part = list(reader.frames(files[name], start_s=start_s, stop_s=stop_s))
         expected = [(t, image) for t, image in whole if start_s <= t < stop_s]
         assert [t for t, _ in part] == [t for t, _ in expected]
         np.testing.assert_array_equal([i for _, i in part], [i for _, i in expected])
@@ -110,15 +110,15 @@ class Counted:
 
 def test_a_late_range_reads_only_from_the_key_frame_before(files, monkeypatch):
     taken = []
-    opened = decoding.opened
+    opened = decoder.opened
 
     @contextlib.contextmanager
     def counted(path):
         with opened(path) as (container, stream):
             yield Counted(container, taken), stream
 
-    monkeypatch.setattr(decoding, "opened", counted)
-    assert numbers(video.frames(files["b_frames.mp4"], start_s=51 / 30)) == list(range(51, 60))
+    monkeypatch.setattr(decoder, "opened", counted)
+    assert numbers(reader.frames(files["b_frames.mp4"], start_s=51 / 30)) == list(range(51, 60))
     # The key frames are every twelve, so from 48 on; then the sign for the end.
     assert len(taken) == 12 + 1
 
@@ -126,9 +126,9 @@ def test_a_late_range_reads_only_from_the_key_frame_before(files, monkeypatch):
 def test_damage_before_the_range_does_not_matter(files, tmp_path):
     _, at, size = packets(files["b_frames.mp4"])[1]
     path = altered(tmp_path, files["b_frames.mp4"], at, bytes(size))
-    assert numbers(video.frames(path, start_s=0.8)) == list(range(24, 60))
+    assert numbers(reader.frames(path, start_s=0.8)) == list(range(24, 60))
     with pytest.raises(InputError, match="no frame is known to be good"):
-        list(video.frames(path))
+        list(reader.frames(path))
 
 
 @pytest.mark.parametrize(
@@ -141,15 +141,15 @@ def test_altered_bytes_stop_at_the_last_good_frame(files, tmp_path, name, k):
     path = altered(tmp_path, files[name], start, bytes([255, 3, 77, 0] * 4))
     damaged = sorted(p[0] for p in packets(files[name])).index(pts)
     with pytest.raises(InputError) as caught:
-        list(video.frames(path))
+        list(reader.frames(path))
     message = str(caught.value)
     assert str(path) in message and "\n" not in message
     index, time_s = re.search(r"last good frame is (\d+) at ([\d.]+) s", message).groups()
     # Good for sure are the frames before all that may lean on the damaged one; a decoder that fails takes the
     # frames with it that wait for their turn.
     assert good_frames(files[name], at) - 1 - 3 <= int(index) < damaged
-    good = list(video.frames(path, stop_s=float(time_s)))
-    truth = list(video.frames(files[name], stop_s=float(time_s)))
+    good = list(reader.frames(path, stop_s=float(time_s)))
+    truth = list(reader.frames(files[name], stop_s=float(time_s)))
     assert len(good) in (int(index), int(index) + 1)
     np.testing.assert_array_equal([image for _, image in good], [image for _, image in truth])
 
@@ -159,7 +159,7 @@ def test_what_is_good_comes_before_the_error(files, tmp_path):
     path = altered(tmp_path, files["ffv1.mkv"], at + size // 2, b"abcdefgh")
     read = []
     with pytest.raises(InputError, match=r"last good frame is 29 at 0\.967 s"):
-        for item in video.frames(path):
+        for item in reader.frames(path):
             read.append(item)
     assert numbers(read) == list(range(30))
 
@@ -177,7 +177,7 @@ def test_damage_the_decoder_would_paper_over_is_found(files, tmp_path, name, k, 
     assert len(by_opencv(path)) == 60
     damaged = sorted(p[0] for p in packets(files[name])).index(pts)
     with pytest.raises(InputError, match=f"last good frame is {damaged - 1} at"):
-        list(video.frames(path))
+        list(reader.frames(path))
 
 
 def test_damaged_frames_shown_before_the_key_frame_do_not_matter(files, tmp_path):
@@ -192,8 +192,8 @@ def test_damaged_frames_shown_before_the_key_frame_do_not_matter(files, tmp_path
     for _, at, size in leading:
         path = altered(tmp_path, path, at, bytes(size))
     start_s = float(listing.seconds(key))
-    whole = [(t, i) for t, i in video.frames(files["open_gop.mp4"]) if t >= start_s]
-    part = list(video.frames(path, start_s=start_s))
+    whole = [(t, i) for t, i in reader.frames(files["open_gop.mp4"]) if t >= start_s]
+    part = list(reader.frames(path, start_s=start_s))
     assert [t for t, _ in part] == [t for t, _ in whole]
     np.testing.assert_array_equal([i for _, i in part], [i for _, i in whole])
 
@@ -206,7 +206,7 @@ def test_a_packet_missing_from_the_middle_is_found(tmp_path):
     _, at, size = packets(source)[20]
     path = altered(tmp_path, source, at, bytes(size))
     with pytest.raises(InputError, match="last good frame is 19"):
-        list(video.frames(path))
+        list(reader.frames(path))
 
 
 def corners(image):
@@ -243,8 +243,8 @@ def test_pictures_stand_upright(tmp_path, suffix, degrees_ccw, mirrored, shown, 
         size=(120, 80),
         turn=(degrees_ccw, mirrored),
     )
-    info = video.probe(path)
-    images = [image for _, image in video.frames(path)]
+    info = reader.probe(path)
+    images = [image for _, image in reader.frames(path)]
     assert [corners(image) for image in images] == [shown] * 3
     assert (
         info.size == images[0].shape[1::-1] == ((120, 80) if degrees_ccw in (0, 180) else (80, 120))
@@ -256,7 +256,7 @@ def test_pictures_stand_upright(tmp_path, suffix, degrees_ccw, mirrored, shown, 
 
 def test_a_slanted_picture_is_refused(tmp_path):
     path = write(tmp_path / "slanted.mp4", n=3, turn=(45, False))
-    for read in (video.probe, lambda p: next(video.frames(p))):
+    for read in (reader.probe, lambda p: next(reader.frames(p))):
         with pytest.raises(InputError, match=r"turned by quarters.*0\.707"):
             read(path)
 
@@ -272,8 +272,8 @@ def test_a_slanted_picture_is_refused(tmp_path):
 )
 def test_odd_sizes(tmp_path, name, how):
     path = write(tmp_path / name, size=(101, 77), n=8, **how)
-    assert video.probe(path).size == (101, 77)
-    read = list(video.frames(path))
+    assert reader.probe(path).size == (101, 77)
+    read = list(reader.frames(path))
     assert numbers(read) == list(range(8))
     images = np.array([image for _, image in read])
     assert images.shape == (8, 77, 101, 3)
@@ -284,9 +284,9 @@ def test_odd_sizes(tmp_path, name, how):
 
 def test_a_crop_is_a_part_of_the_upright_picture(tmp_path):
     path = write(tmp_path / "turned.mp4", n=3, turn=(90, False))
-    whole = [image for _, image in video.frames(path)]
+    whole = [image for _, image in reader.frames(path)]
     assert whole[0].shape == (160, 120, 3)
-    part = [image for _, image in video.frames(path, crop_px=(7, 100, 113, 60))]
+    part = [image for _, image in reader.frames(path, crop_px=(7, 100, 113, 60))]
     np.testing.assert_array_equal(part, [image[100:160, 7:120] for image in whole])
     assert part[0].flags.c_contiguous and part[0].base is None
 
@@ -296,17 +296,17 @@ def test_a_crop_is_a_part_of_the_upright_picture(tmp_path):
 )
 def test_a_crop_outside_is_refused(files, crop_px):
     with pytest.raises(InputError, match=r"crop .* within 160x120"):
-        next(video.frames(files["b_frames.mp4"], crop_px=crop_px))
+        next(reader.frames(files["b_frames.mp4"], crop_px=crop_px))
 
 
 def test_a_crop_is_whole_pixels(files):
     with pytest.raises(TypeError):
-        next(video.frames(files["b_frames.mp4"], crop_px=(0.5, 0, 5, 5)))
+        next(reader.frames(files["b_frames.mp4"], crop_px=(0.5, 0, 5, 5)))
 
 
 def test_pictures_kept_are_not_overwritten(files):
-    kept = list(video.frames(files["b_frames.mp4"]))
-    copies = [image.copy() for _, image in video.frames(files["b_frames.mp4"])]
+    kept = list(reader.frames(files["b_frames.mp4"]))
+    copies = [image.copy() for _, image in reader.frames(files["b_frames.mp4"])]
     np.testing.assert_array_equal([image for _, image in kept], copies)
     kept[0][1][:] = 0
     assert number_in(kept[1][1]) == 1
@@ -328,12 +328,12 @@ def test_a_change_of_size_is_refused(tmp_path):
                     packet.stream = stream
                     out.mux(packet)
     with pytest.raises(InputError, match=r"one size, 160x120, found 80x60 at frame 5"):
-        list(video.frames(path))
+        list(reader.frames(path))
 
 
 def test_wanted_indices_only(files):
     listing = list_packets(files["b_frames.mp4"])
-    read = list(decoding.pictures(listing, [3, 14, 15, 40], None))
+    read = list(decoder.pictures(listing, [3, 14, 15, 40], None))
     assert (
         [index for index, _ in read] == [number_in(image) for _, image in read] == [3, 14, 15, 40]
     )
@@ -353,12 +353,12 @@ def test_mutated_files_end_well_or_in_one_line(files, tmp_path, name):
         if rng.random() < 0.3:
             path.write_bytes(path.read_bytes()[: int(rng.integers(len(data)))])
         try:
-            times_s = [t for t, _ in video.frames(path)]
+            times_s = [t for t, _ in reader.frames(path)]
         except InputError as error:
             n_refused += 1
             assert "\n" not in str(error) and str(path) in str(error)
         else:
-            assert times_s == video.frame_times(path).tolist()
+            assert times_s == reader.frame_times(path).tolist()
     assert n_refused > 40
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from av.error import FFmpegError
 from av.video.reformatter import Interpolation, VideoReformatter
 
-from courtside.devices.packets import damage, opened, raise_logged
 from courtside.study.errors import InputError, reading
+from courtside.video.packets import damage, opened, raise_logged
 
 STRICT = {"err_detect": "crccheck+bitstream+buffer+explode"}
 ONE = 65536  # display matrices are in 16.16 fixed point

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from courtside.devices.movement import MIN_MATCHES, movement, unknown
 from courtside.study.errors import InputError
+from courtside.video.camera_movement import MIN_MATCHES, movement, unknown
 
 BAND_PX = 64  # rows of the median at a time: bounds the memory
 TAKE = "its static picture and in its take"

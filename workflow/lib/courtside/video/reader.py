@@ -11,10 +11,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from courtside.devices.decoding import decode_checked, display_matrix, pictures
-from courtside.devices.packets import list_packets
 from courtside.study.errors import InputError
 from courtside.study.files import atomic
+from courtside.video.decoder import decode_checked, display_matrix, pictures
+from courtside.video.packets import list_packets
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from turned_pictures import CENTRE, DIST, SIZE, K, true_movement, undistorted
 
-from courtside.devices import turn_field
+from courtside.video import camera_movement
 
 HALF = SIZE[0] / 2
 VECTORS = np.array([[0.001, -0.0012, 0.0005], [0.006, 0.007, -0.004], [0, 0, 0.02]])
@@ -27,7 +27,7 @@ def tracked(vector, sigma_px, n_wrong=0, seed=0, n=220):
 @pytest.mark.parametrize("vector", VECTORS)
 def test_a_turn_is_found_among_wrong_points(vector):
     places, by = tracked(vector, sigma_px=0.2, n_wrong=60)
-    found = turn_field.fit(places, by, SIZE[::-1], len(places))
+    found = camera_movement.fit_turn(places, by, SIZE[::-1], len(places))
     shift, turn = true_movement(vector)
     assert found.known and 120 < found.n_matches <= 170
     np.testing.assert_allclose(found.model[:2] * HALF, shift, atol=0.08)
@@ -39,7 +39,7 @@ def test_the_stated_sigma_is_the_scatter():
     off = []
     for seed in range(60):
         places, by = tracked(VECTORS[0], sigma_px=0.2, n_wrong=30, seed=seed)
-        found = turn_field.fit(places, by, SIZE[::-1], len(places))
+        found = camera_movement.fit_turn(places, by, SIZE[::-1], len(places))
         off.append((found.model[:2] * HALF - true_movement(VECTORS[0])[0]) / (found.sigma * HALF))
     assert 0.75 < np.sqrt(np.mean(np.square(off))) < 1.3
 
@@ -48,19 +48,20 @@ def test_the_derivative_is_that_of_the_field():
     places, model = tracked(VECTORS[0], 0)[0], np.array([0.01, -0.02, 0.003, 0.004, -0.05, 0.4])
     step = 1e-6
     numeric = [
-        (turn_field.moved(places, model + row) - turn_field.moved(places, model - row)) / (2 * step)
+        (camera_movement.moved(places, model + row) - camera_movement.moved(places, model - row))
+        / (2 * step)
         for row in step * np.eye(6)
     ]
     np.testing.assert_allclose(
-        turn_field._jacobian(places, model), np.moveaxis(numeric, 0, -1), atol=1e-8
+        camera_movement._jacobian(places, model), np.moveaxis(numeric, 0, -1), atol=1e-8
     )
 
 
 def test_too_few_or_bunched_points_tell_nothing():
     places, by = tracked(VECTORS[0], 0.1)
     bunched = 0.05 * places + [0.5, 0.2]
-    assert not turn_field.fit(bunched, by, SIZE[::-1], len(places)).known
-    assert not turn_field.fit(places[:15], by[:15], SIZE[::-1], 15).known
-    assert not turn_field.fit(places[:40], by[:40], SIZE[::-1], 300).known
+    assert not camera_movement.fit_turn(bunched, by, SIZE[::-1], len(places)).known
+    assert not camera_movement.fit_turn(places[:15], by[:15], SIZE[::-1], 15).known
+    assert not camera_movement.fit_turn(places[:40], by[:40], SIZE[::-1], 300).known
     scattered = np.random.default_rng(5).uniform(-40, 40, by.shape)
-    assert not turn_field.fit(places, scattered, SIZE[::-1], len(places)).known
+    assert not camera_movement.fit_turn(places, scattered, SIZE[::-1], len(places)).known

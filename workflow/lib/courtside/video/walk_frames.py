@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from courtside.devices import image_files, video
-from courtside.devices.decoding import pictures
-from courtside.devices.packets import list_packets
-from courtside.devices.still import check_light
 from courtside.study.errors import InputError
+from courtside.video import images, reader
+from courtside.video.decoder import pictures
+from courtside.video.packets import list_packets
+from courtside.video.static_picture import check_light
 
 PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")
 UNREADABLE = (".heic", ".heif", ".avif", ".dng", ".raw", ".cr2", ".cr3", ".nef", ".arw", ".orf")
@@ -28,7 +28,7 @@ def frames(source, *, every_s=None, every_frame=None):
         A video; a photo, photos, or the folder of photos. Those come in name order, numbers by value, all
         of them.
     every_s : float or None
-        Spacing of the grid in seconds, as for `video.extract_frames`.
+        Spacing of the grid in seconds, as for `reader.extract_frames`.
     every_frame : int or None
         Or else: every so many frames of the video, from the first.
 
@@ -53,7 +53,7 @@ def frames(source, *, every_s=None, every_frame=None):
     if paths:
         yield from ((at, np.nan, image) for at, image in enumerate(_photos(paths)))
     elif every_frame is None and every_s is not None:
-        yield from video.extract_frames(_single(source), every_s)
+        yield from reader.extract_frames(_single(source), every_s)
     elif every_s is None and isinstance(every_frame, int) and every_frame > 0:
         listing = list_packets(_single(source))
         for index, image in pictures(listing, range(0, len(listing.times_s), every_frame), None):
@@ -110,8 +110,8 @@ def extract(found, folder):
     rows, small = [], []
     for frame_idx, time_s, image in found:
         name = f"{frame_idx:06d}.png"
-        video.write_png(Path(folder) / name, image)
-        rows.append((frame_idx, time_s, name, video.sharpness(image)))
+        reader.write_png(Path(folder) / name, image)
+        rows.append((frame_idx, time_s, name, reader.sharpness(image)))
         small.append(_small(image))
     return pd.DataFrame(rows, columns=["frame_idx", "time_s", "name", "sharpness"]), small
 
@@ -173,9 +173,9 @@ def read_photo(path):
     """
     path = Path(path)
     data = path.read_bytes() if path.is_file() else b""
-    image = image_files.decode(path, data, what=PHOTO)
+    image = images.decode(path, data, what=PHOTO)
     if _cut_short(data):
-        raise InputError(f"{path}: expected {PHOTO}, found one cut short; {image_files.AGAIN}")
+        raise InputError(f"{path}: expected {PHOTO}, found one cut short; {images.AGAIN}")
     check_light(path, image)
     return image
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pandas as pd
 
-from courtside.devices import movement, turn_field
+from courtside.video import camera_movement
 
 WIDEST_PX = 2048  # larger pictures are reduced: a camera's movement needs no more
 N_CORNERS = 300
@@ -78,7 +78,7 @@ class Tracker:
         self._grey = grey
         self._half = max(grey.shape) / 2
         self._places = (self._corners - (np.array(grey.shape[::-1]) - 1) / 2) / self._half
-        self._static, self._last = static, np.r_[np.zeros(4), turn_field.LENS_MEAN]
+        self._static, self._last = static, np.r_[np.zeros(4), camera_movement.LENS_MEAN]
         self._lost, self._next_search = 0, 0
 
     def measure(self, frame):
@@ -122,19 +122,23 @@ class Tracker:
     def _search(self, grey, frame):
         """Find the picture again: from rest, by correlation, else by features: slow, so not every time."""
         for shift_px in (np.zeros(2), self._correlate(grey)):
-            found = self._follow(grey, np.r_[shift_px / self._half, 0, 0, turn_field.LENS_MEAN])
+            found = self._follow(
+                grey, np.r_[shift_px / self._half, 0, 0, camera_movement.LENS_MEAN]
+            )
             if found.known:
                 return found
         self._lost += 1
         if self._lost <= self._next_search:
             return found
         self._next_search = self._lost + min(self._lost, SPARSE)
-        rough = movement.movement(self._static, frame)
+        rough = camera_movement.movement(self._static, frame)
         if not rough.known:
             return found
         linear = rough.zoom * np.exp(1j * np.radians(rough.rotation_deg))
         shift = rough.shift_px / self.shrink / self._half
-        return self._follow(grey, np.r_[shift, linear.real - 1, linear.imag, turn_field.LENS_MEAN])
+        return self._follow(
+            grey, np.r_[shift, linear.real - 1, linear.imag, camera_movement.LENS_MEAN]
+        )
 
     def _correlate(self, grey):
         """Return the shift (2,) px that correlates best, whatever its size."""
@@ -149,10 +153,10 @@ class Tracker:
 
     def _follow(self, grey, start):
         """Track the corners from a guessed movement."""
-        guess = self._corners + self._half * turn_field.moved(self._places, start)
+        guess = self._corners + self._half * camera_movement.moved(self._places, start)
         inside = ((guess >= 0) & (guess <= np.array(grey.shape[::-1]) - 1)).all(axis=1)
-        if inside.sum() < movement.MIN_MATCHES:
-            return turn_field.unknown()
+        if inside.sum() < camera_movement.MIN_MATCHES:
+            return camera_movement.unknown_turn()
         places, corners = self._places[inside], self._corners[inside].astype(np.float32)
         moved, tracked, _ = cv2.calcOpticalFlowPyrLK(
             self._grey,
@@ -165,7 +169,9 @@ class Tracker:
             criteria=(cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 20, 0.01),
         )
         good = tracked[:, 0] > 0
-        return turn_field.fit(places[good], (moved - corners)[good], grey.shape, inside.sum())
+        return camera_movement.fit_turn(
+            places[good], (moved - corners)[good], grey.shape, inside.sum()
+        )
 
     def _even(self, image):
         """Return grey values, reduced, without what is even over the surroundings."""
@@ -191,7 +197,7 @@ def measure_take(static, frames, first=0):
     static : (H, W, 3) uint8
         Its static picture, BGR.
     frames : iterable of (time_s, (H, W, 3) uint8)
-        The take, in order, such as `courtside.devices.video.frames` yields.
+        The take, in order, such as `courtside.video.reader.frames` yields.
     first : int
         Index in the file of the first frame.
 

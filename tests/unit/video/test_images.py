@@ -7,16 +7,16 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.devices import image_files
 from courtside.study.errors import InputError
+from courtside.video import images
 
 PICTURE = np.random.default_rng(0).integers(0, 256, (6, 8, 3), dtype=np.uint8)
 
 
 def test_a_picture_comes_back(tmp_path):
     cv2.imwrite(str(tmp_path / "a.png"), PICTURE)
-    np.testing.assert_array_equal(image_files.read(tmp_path / "a.png"), PICTURE)
-    grey = image_files.read(tmp_path / "a.png", cv2.IMREAD_GRAYSCALE)
+    np.testing.assert_array_equal(images.read(tmp_path / "a.png"), PICTURE)
+    grey = images.read(tmp_path / "a.png", cv2.IMREAD_GRAYSCALE)
     assert grey.shape == (6, 8)
 
 
@@ -36,10 +36,10 @@ def test_what_is_no_picture_is_one_line(tmp_path, content):
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(InputError, match=r"a\.png: expected depth, found .*; do so") as caught:
-        image_files.read(path, what="depth", advice="do so")
+        images.read(path, what="depth", advice="do so")
     assert len(str(caught.value).splitlines()) == 1
 
 
 def test_a_folder_is_no_picture(tmp_path):
     with pytest.raises(InputError, match="no file or an empty one"):
-        image_files.read(tmp_path)
+        images.read(tmp_path)

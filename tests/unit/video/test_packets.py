@@ -10,9 +10,9 @@ import pytest
 from av.stream import Disposition
 from video_files import draw, good_frames, number_in, numbers, packets, write
 
-from courtside.devices import video
-from courtside.devices.packets import list_packets
 from courtside.study.errors import InputError
+from courtside.video import reader
+from courtside.video.packets import list_packets
 
 FAST = {"movflags": "faststart"}
 FRAGMENTED = {"movflags": "frag_keyframe+empty_moov"}
@@ -49,7 +49,7 @@ def cut_copy(tmp_path, source, n_bytes):
 def test_times_are_those_written(files, name):
     tick_s = 0.0005 if files[name].suffix in (".mkv", ".flv") else 1e-12
     np.testing.assert_allclose(
-        video.frame_times(files[name]), np.arange(60) / 30, atol=tick_s + 1e-12
+        reader.frame_times(files[name]), np.arange(60) / 30, atol=tick_s + 1e-12
     )
 
 
@@ -57,20 +57,20 @@ def test_times_of_a_variable_rate_are_those_written(tmp_path):
     ticks = np.cumsum([0, 33, 34, 33, 100, 5, 33, 250, 33, 33, 17, 40])
     for name in ("a.mp4", "a.mkv"):
         path = write(tmp_path / name, ticks=ticks.tolist(), n=len(ticks))
-        np.testing.assert_array_equal(video.frame_times(path), ticks / 1000)
-        assert numbers(video.frames(path)) == list(range(len(ticks)))
+        np.testing.assert_array_equal(reader.frame_times(path), ticks / 1000)
+        assert numbers(reader.frames(path)) == list(range(len(ticks)))
 
 
 def test_the_first_frame_is_at_zero_wherever_the_clock_starts(tmp_path):
     path = write(tmp_path / "late.mkv", ticks=[5000 + 40 * k for k in range(20)], n=20)
     assert packets(path)[0][0] == 5000
-    np.testing.assert_array_equal(video.frame_times(path), 0.04 * np.arange(20))
+    np.testing.assert_array_equal(reader.frame_times(path), 0.04 * np.arange(20))
 
 
 def test_a_colon_in_the_name_is_no_protocol(tmp_path, monkeypatch):
     write(tmp_path / "take.mp4", n=3).rename(tmp_path / "take:1.mp4")
     monkeypatch.chdir(tmp_path)
-    assert len(video.frame_times("take:1.mp4")) == 3
+    assert len(reader.frame_times("take:1.mp4")) == 3
 
 
 def test_opencv_finds_the_same_times(files):
@@ -78,7 +78,7 @@ def test_opencv_finds_the_same_times(files):
     expected = []
     while capture.read()[0]:
         expected.append(capture.get(cv2.CAP_PROP_POS_MSEC) / 1000)
-    np.testing.assert_allclose(video.frame_times(files["plain.mp4"]), expected, atol=1e-9)
+    np.testing.assert_allclose(reader.frame_times(files["plain.mp4"]), expected, atol=1e-9)
 
 
 def test_an_edit_list_trims_without_being_taken_for_a_loss(files, tmp_path):
@@ -91,9 +91,9 @@ def test_an_edit_list_trims_without_being_taken_for_a_loss(files, tmp_path):
     struct.pack_into(">Ii", data, at, movie_timescale, media_time + 20 * timescale // 30)
     path = tmp_path / "trimmed.mp4"
     path.write_bytes(data)
-    np.testing.assert_allclose(video.frame_times(path), np.arange(30) / 30)
-    assert numbers(video.frames(path)) == list(range(20, 50))
-    assert numbers(video.frames(path, start_s=0.5)) == list(range(35, 50))
+    np.testing.assert_allclose(reader.frame_times(path), np.arange(30) / 30)
+    assert numbers(reader.frames(path)) == list(range(20, 50))
+    assert numbers(reader.frames(path, start_s=0.5)) == list(range(35, 50))
 
 
 def test_frames_an_avi_recorder_dropped_are_gaps_not_losses(files, tmp_path):
@@ -109,8 +109,8 @@ def test_frames_an_avi_recorder_dropped_are_gaps_not_losses(files, tmp_path):
     path = tmp_path / "dropped.avi"
     path.write_bytes(data)
     kept = [k for k in range(60) if k not in (10, 11, 30)]
-    np.testing.assert_allclose(video.frame_times(path), np.array(kept) / 30)
-    assert numbers(video.frames(path)) == kept
+    np.testing.assert_allclose(reader.frame_times(path), np.array(kept) / 30)
+    assert numbers(reader.frames(path)) == kept
 
 
 @pytest.mark.parametrize("sound_s", [2.0, 2.4])
@@ -118,13 +118,13 @@ def test_sound_may_outlast_the_pictures(tmp_path, sound_s):
     path = write(tmp_path / "sound.mkv", sound_s=sound_s)
     # Without a duration of the pictures alone, as some recorders write it.
     path.write_bytes(path.read_bytes().replace(b"DURATION", b"ANYTHING"))
-    assert len(video.frame_times(path)) == 60
+    assert len(reader.frame_times(path)) == 60
 
 
 def test_one_frame_has_a_time_and_no_rate(tmp_path):
     path = write(tmp_path / "one.mp4", n=1)
-    assert video.frame_times(path).tolist() == [0.0]
-    assert np.isnan(video.probe(path).rate_hz)
+    assert reader.frame_times(path).tolist() == [0.0]
+    assert np.isnan(reader.probe(path).rate_hz)
 
 
 @pytest.mark.parametrize("fraction", [0.3, 0.6, 0.95, 0.9999])
@@ -138,7 +138,7 @@ def test_a_cut_file_is_refused_with_its_last_good_frame(files, tmp_path, name, f
     n_bytes = int(listed[0][1] + fraction * (end - listed[0][1]))
     path = cut_copy(tmp_path, files[name], n_bytes)
     with pytest.raises(InputError) as caught:
-        list(video.frames(path))
+        list(reader.frames(path))
     message = str(caught.value)
     assert str(path) in message and "\n" not in message
     index, time_s = re.search(r"last good frame is (\d+) at ([\d.]+) s", message).groups()
@@ -147,12 +147,12 @@ def test_a_cut_file_is_refused_with_its_last_good_frame(files, tmp_path, name, f
     # With B-frames, what follows the last packet cannot be known: the word may come a little early.
     assert true_last - (0 if name == "mjpeg.avi" else 3) <= index <= true_last
     assert time_s == pytest.approx(index / 30, abs=0.002)
-    assert numbers(video.frames(path, stop_s=time_s)) == list(
-        range(np.count_nonzero(video.frame_times(files[name]) < time_s))
+    assert numbers(reader.frames(path, stop_s=time_s)) == list(
+        range(np.count_nonzero(reader.frame_times(files[name]) < time_s))
     )
     with pytest.raises(InputError, match="last good frame"):
-        next(video.frames(path, stop_s=(true_last + 2) / 30))
-    for read in (video.probe, video.frame_times):
+        next(reader.frames(path, stop_s=(true_last + 2) / 30))
+    for read in (reader.probe, reader.frame_times):
         with pytest.raises(InputError, match="last good frame"):
             read(path)
 
@@ -162,7 +162,7 @@ def test_a_cut_file_is_refused_with_its_last_good_frame(files, tmp_path, name, f
 def test_a_matroska_cut_within_a_packet_is_refused(files, tmp_path, name, fraction):
     _, at, size = packets(files[name])[int(60 * fraction)]
     path = cut_copy(tmp_path, files[name], at + size // 2)
-    for read in (video.frame_times, lambda p: list(video.frames(p))):
+    for read in (reader.frame_times, lambda p: list(reader.frames(p))):
         with pytest.raises(InputError, match=r"breaks off|ends early") as caught:
             read(path)
     index = int(re.search(r"last good frame is (\d+)", str(caught.value))[1])
@@ -175,7 +175,7 @@ def test_a_file_cut_between_packets_is_refused(files, tmp_path, name):
     header = 8 if name.endswith("avi") else 0  # the position is behind it
     path = cut_copy(tmp_path, files[name], packets(files[name])[40][1] - header)
     with pytest.raises(InputError, match="the file ends early"):
-        video.frame_times(path)
+        reader.frame_times(path)
 
 
 def test_an_mp4_is_judged_by_its_index_not_its_duration(files, tmp_path):
@@ -185,7 +185,7 @@ def test_an_mp4_is_judged_by_its_index_not_its_duration(files, tmp_path):
         struct.pack_into(">I", data, data.index(box) + at, 3 * duration)
     path = tmp_path / "long.mp4"
     path.write_bytes(data)
-    assert len(video.frame_times(path)) == 60
+    assert len(reader.frame_times(path)) == 60
 
 
 def test_a_matroska_cut_between_clusters_is_caught_by_its_duration(tmp_path):
@@ -203,7 +203,7 @@ def test_a_matroska_cut_between_clusters_is_caught_by_its_duration(tmp_path):
     left = sum(position < clusters[2] for _, position, _ in packets(source))
     expected = rf"declares a duration of 2\.000 s.* end at {left / 30:.3f} s"
     with pytest.raises(InputError, match=expected) as caught:
-        video.frame_times(path)
+        reader.frame_times(path)
     assert int(re.search(r"last good frame is (\d+)", str(caught.value))[1]) == left - 1
 
 
@@ -217,13 +217,13 @@ def test_a_fragmented_file_cut_between_fragments_is_caught_where_it_declares_a_d
     path = tmp_path / "cut.mp4"
     path.write_bytes(data[: fragments[2]])
     with pytest.raises(InputError, match=r"declares a duration of 2\.0"):
-        video.frame_times(path)
+        reader.frame_times(path)
 
 
 def test_a_cut_index_at_the_end_is_a_missing_header(files, tmp_path):
     path = cut_copy(tmp_path, files["plain.mp4"], files["plain.mp4"].stat().st_size - 200)
     with pytest.raises(InputError, match="cut short"):
-        video.probe(path)
+        reader.probe(path)
 
 
 def test_two_frames_at_one_time_are_refused(tmp_path):
@@ -236,7 +236,7 @@ def test_two_frames_at_one_time_are_refused(tmp_path):
     data[at[1] : at[1] + 2] = data[at[0] : at[0] + 2]
     path.write_bytes(data)
     with pytest.raises(InputError, match=r"one frame at a time, found two at 0\.133 s"):
-        video.frame_times(path)
+        reader.frame_times(path)
 
 
 def write_sound(path, *, cover):
@@ -290,10 +290,10 @@ def test_what_is_no_video_is_one_clear_line(tmp_path, kind, found):
     path = tmp_path / name
     make(path)
     for read in (
-        video.probe,
-        video.frame_times,
-        lambda p: next(video.frames(p)),
-        lambda p: video.read_frame(p, 0),
+        reader.probe,
+        reader.frame_times,
+        lambda p: next(reader.frames(p)),
+        lambda p: reader.read_frame(p, 0),
     ):
         with pytest.raises(InputError, match=found) as caught:
             read(path)
@@ -306,4 +306,4 @@ def test_a_listing_knows_where_decoding_can_begin(files):
         [0.0, 0.4, 0.8, 1.2, 1.6]
     )
     assert listing.n_declared == 60 and listing.duration_s == pytest.approx(2.0)
-    assert number_in(next(video.frames(files["plain.mp4"], start_s=0.4))[1]) == 12
+    assert number_in(next(reader.frames(files["plain.mp4"], start_s=0.4))[1]) == 12

@@ -6,31 +6,31 @@ import numpy as np
 import pytest
 from video_files import draw, number_in
 
-from courtside.devices import video, video_writer
+from courtside.video import reader, writer
 
 
 def write(path, n=40, rate_hz=30.0, crf=18, size=(160, 120)):
-    video_writer.write_video(path, (draw(k, size) for k in range(n)), rate_hz, crf=crf)
+    writer.write_video(path, (draw(k, size) for k in range(n)), rate_hz, crf=crf)
     return path
 
 
 @pytest.mark.parametrize("rate_hz", [30.0, 29.97, 2.6542, 0.5, 240.0, 149 / 56.4261])
 def test_every_frame_is_there_at_its_time(tmp_path, rate_hz):
     path = write(tmp_path / "a.mp4", rate_hz=rate_hz)
-    times_s = video.frame_times(path)
+    times_s = reader.frame_times(path)
     np.testing.assert_allclose(times_s, np.arange(40) / rate_hz, rtol=1e-6, atol=1e-9)
-    info = video.probe(path)
+    info = reader.probe(path)
     assert (info.size, info.n_frames, info.variable_rate) == ((160, 120), 40, False)
-    assert [number_in(image) for _, image in video.frames(path)] == list(range(40))
+    assert [number_in(image) for _, image in reader.frames(path)] == list(range(40))
 
 
 def test_any_frame_can_be_sought(tmp_path):
     path = write(tmp_path / "a.mp4", rate_hz=10.0)
     for k in (39, 0, 17, 25):
-        assert number_in(video.read_frame(path, k / 10)[1]) == k
+        assert number_in(reader.read_frame(path, k / 10)[1]) == k
     with av.open(str(path)) as container:
         keys = [k for k, frame in enumerate(container.decode(video=0)) if frame.key_frame]
-    assert max(np.diff([*keys, 40])) <= video_writer.KEYFRAME_EVERY
+    assert max(np.diff([*keys, 40])) <= writer.KEYFRAME_EVERY
 
 
 def test_opencv_reads_the_same_pictures(tmp_path):
@@ -50,8 +50,8 @@ def test_a_lower_crf_is_nearer_to_the_pictures(tmp_path):
     errors = []
     for crf in (1, 18, 34):
         path = tmp_path / f"{crf}.mp4"
-        video_writer.write_video(path, noisy(10), 30, crf=crf)
-        pairs = zip(video.frames(path), noisy(10), strict=True)
+        writer.write_video(path, noisy(10), 30, crf=crf)
+        pairs = zip(reader.frames(path), noisy(10), strict=True)
         grey = [(cv2.cvtColor(a, 6).astype(int), cv2.cvtColor(b, 6)) for (_, a), b in pairs]
         errors.append(np.mean([np.abs(a - b).mean() for a, b in grey]))
     assert errors[0] < 1.5 and errors[0] < errors[1] < errors[2]
@@ -74,7 +74,7 @@ def test_the_same_pictures_give_the_same_bytes(tmp_path):
         # What lies in memory that was freed must not matter.
         used = [rng.integers(0, 255, rng.integers(1000, 300_000), np.uint8) for _ in range(100)]
         del used
-        assert video_writer.write_video(tmp_path / "a.mp4", pictures, 2.5, crf=26) == 12
+        assert writer.write_video(tmp_path / "a.mp4", pictures, 2.5, crf=26) == 12
         found.add((tmp_path / "a.mp4").read_bytes())
     assert len(found) == 1
 
@@ -94,5 +94,5 @@ def test_the_same_pictures_give_the_same_bytes(tmp_path):
 )
 def test_what_cannot_be_written_is_refused_and_leaves_no_file(tmp_path, images, rate_hz, message):
     with pytest.raises(ValueError, match=message):
-        video_writer.write_video(tmp_path / "a.mp4", images, rate_hz, crf=20)
+        writer.write_video(tmp_path / "a.mp4", images, rate_hz, crf=20)
     assert list(tmp_path.iterdir()) == []

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from still_pictures import moved, texture
 
-from courtside.devices import movement, video
+from courtside.video import camera_movement, reader
 from real_data import REAL, needs_real
 
 LATER = 60  # frames: a second, in which the person moves
@@ -25,14 +25,14 @@ def another_exposure(image, seed):
 def real_pair(request):
     """Two frames of one fixed camera, a second apart."""
     path = REAL / "walk-4cams" / "videos" / f"cam0{request.param}.mp4"
-    return [image for k, (_, image) in enumerate(video.frames(path)) if k in (0, LATER)]
+    return [image for k, (_, image) in enumerate(reader.frames(path)) if k in (0, LATER)]
 
 
 @needs_real
 @pytest.mark.parametrize(("shift_px", "zoom", "rotation_deg"), CASES)
 def test_known_movements_of_real_pictures_are_measured(real_pair, shift_px, zoom, rotation_deg):
     other = another_exposure(moved(real_pair[1], shift_px, zoom, rotation_deg), seed=1)
-    found = movement.movement(real_pair[0], other)
+    found = camera_movement.movement(real_pair[0], other)
     assert found.known and found.n_matches > 200
     assert np.hypot(*(found.shift_px - shift_px)) < 0.3
     assert abs(found.zoom - zoom) < 5e-4
@@ -44,13 +44,13 @@ def test_people_are_outliers():
     after = moved(before, (2.0, -1.0))
     for image, x, seed in [(before, 60, 5), (before, 400, 6), (after, 120, 5), (after, 330, 6)]:
         image[60:360, x : x + 90] = texture(seed, (90, 300))
-    found = movement.movement(before, after)
+    found = camera_movement.movement(before, after)
     np.testing.assert_allclose(found.shift_px, (2, -1), atol=0.1)
     assert abs(found.zoom - 1) < 5e-4
 
 
 def test_an_unmoved_picture_has_not_moved():
-    found = movement.movement(texture(3), texture(3))
+    found = camera_movement.movement(texture(3), texture(3))
     np.testing.assert_allclose(
         [*found.shift_px, found.zoom, found.rotation_deg], [0, 0, 1, 0], atol=1e-4
     )
@@ -64,16 +64,16 @@ def test_an_unmoved_picture_has_not_moved():
 )
 def test_what_cannot_be_told_is_unknown(other):
     for pair in [(texture(0), other), (other, texture(0))]:
-        found = movement.movement(*pair)
+        found = camera_movement.movement(*pair)
         assert not found.known and np.isnan(found.shift_px).all() and np.isnan(found.rotation_deg)
 
 
 def test_points_in_one_corner_tell_nothing():
     picture = np.full((360, 640, 3), 90, np.uint8)
     picture[:60, :80] = texture(0, (80, 60))
-    assert not movement.movement(picture, picture).known
+    assert not camera_movement.movement(picture, picture).known
 
 
 def test_pictures_of_two_sizes_are_a_fault():
     with pytest.raises(ValueError, match="two sizes"):
-        movement.movement(texture(0), texture(0, (320, 180)))
+        camera_movement.movement(texture(0), texture(0, (320, 180)))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from still_pictures import moved, texture
 
-from courtside.devices import still
 from courtside.study.errors import InputError
+from courtside.video import static_picture
 
 LIMITS = {"max_shift_px": 1.0, "max_zoom_percent": 0.2}
 
@@ -14,7 +14,7 @@ LIMITS = {"max_shift_px": 1.0, "max_zoom_percent": 0.2}
 def test_the_median_is_that_of_numpy(n):
     frames = np.random.default_rng(n).integers(0, 256, (n, 131, 20, 3), dtype=np.uint8)
     expected = np.floor(np.median(frames.astype(int), axis=0) + 0.5)
-    found = still.temporal_median(list(frames))
+    found = static_picture.temporal_median(list(frames))
     assert found.dtype == np.uint8
     np.testing.assert_array_equal(found, expected)
 
@@ -22,7 +22,7 @@ def test_the_median_is_that_of_numpy(n):
 @pytest.mark.parametrize("frames", [[], [texture(0), texture(0, (320, 180))]])
 def test_the_median_wants_pictures_of_one_size(frames):
     with pytest.raises(ValueError, match="one size"):
-        still.temporal_median(frames)
+        static_picture.temporal_median(frames)
 
 
 def walkers(n):
@@ -36,13 +36,13 @@ def walkers(n):
 
 def test_the_static_picture_is_the_empty_room():
     empty, frames = walkers(11)
-    image, found = still.static_picture("left", "left.mp4", frames, **LIMITS)
+    image, found = static_picture.static_picture("left", "left.mp4", frames, **LIMITS)
     np.testing.assert_array_equal(image, empty)
     assert found.known and np.hypot(*found.shift_px) < 0.1
 
 
 def test_one_picture_is_not_checked():
-    image, found = still.static_picture("left", "left.jpg", [texture(0)], **LIMITS)
+    image, found = static_picture.static_picture("left", "left.jpg", [texture(0)], **LIMITS)
     np.testing.assert_array_equal(image, texture(0))
     assert not found.known
 
@@ -58,14 +58,16 @@ def test_one_picture_is_not_checked():
 def test_a_camera_that_moves_meanwhile_is_named(change, said):
     frames = [texture(0)] * 4 + [moved(texture(0), *change)] * 5
     with pytest.raises(InputError, match=said) as caught:
-        still.static_picture("left", "left.mp4", frames, **LIMITS)
+        static_picture.static_picture("left", "left.mp4", frames, **LIMITS)
     message = str(caught.value)
     assert message.startswith("camera left: ") and "last third of left.mp4" in message
     assert "\n" not in message and "film it again" in message
 
 
 def test_small_movements_pass():
-    found = still.check_still("left", texture(0), moved(texture(0), (0.5, -0.5), 1.001), **LIMITS)
+    found = static_picture.check_still(
+        "left", texture(0), moved(texture(0), (0.5, -0.5), 1.001), **LIMITS
+    )
     np.testing.assert_allclose(found.shift_px, (0.5, -0.5), atol=0.1)
     assert found.zoom == pytest.approx(1.001, abs=5e-4)
 
@@ -79,17 +81,17 @@ def test_small_movements_pass():
 )
 def test_views_that_cannot_be_compared_are_said(other, said):
     with pytest.raises(InputError, match=said):
-        still.check_still("left", texture(0), other, **LIMITS)
+        static_picture.check_still("left", texture(0), other, **LIMITS)
 
 
 def test_mostly_black_pictures_are_refused():
     lamp = np.full((100, 200, 3), 15, np.uint8)
     lamp[:, :36] = 255  # 18 % are bright
-    assert still.too_dark(lamp)
+    assert static_picture.too_dark(lamp)
     with pytest.raises(InputError, match=r"left.mp4: .* 82 % of it black"):
-        still.static_picture("left", "left.mp4", [lamp], **LIMITS)
+        static_picture.static_picture("left", "left.mp4", [lamp], **LIMITS)
     lamp[:, :44] = 255
-    assert not still.too_dark(lamp)
+    assert not static_picture.too_dark(lamp)
     blue = np.zeros((100, 200, 3), np.uint8)
     blue[..., 0] = 60  # a dark grey value, but light
-    still.check_light("left.mp4", blue)
+    static_picture.check_light("left.mp4", blue)

@@ -6,7 +6,7 @@ import pytest
 from still_pictures import moved, texture
 from turned_pictures import SIZE, Grain, K, Turning, true_movement, wall
 
-from courtside.devices import shake, video, video_writer
+from courtside.video import reader, shake_tracking, writer
 from real_data import REAL, needs_real
 
 N_FRAMES, KNOCK = 16, 10
@@ -53,8 +53,8 @@ def test_a_trembling_and_knocked_camera_is_followed(tmp_path, turning, static, p
         grain.added(with_person(turning.picture(vector), person, at))
         for at, vector in enumerate(vectors)
     )
-    video_writer.write_video(tmp_path / "take.mp4", frames, 30, crf=26)
-    table = shake.measure_take(static, video.frames(tmp_path / "take.mp4"), first=5)
+    writer.write_video(tmp_path / "take.mp4", frames, 30, crf=26)
+    table = shake_tracking.measure_take(static, reader.frames(tmp_path / "take.mp4"), first=5)
     true = [true_movement(vector) for vector in vectors]
     off = values(table) - [shift for shift, _ in true]
     assert np.sqrt(np.mean(off**2)) < 0.1
@@ -71,7 +71,7 @@ def test_a_camera_that_stands_still_is_said_to(turning, static, person):
     frames = [
         (at / 30, grain.added(with_person(picture.copy(), person, 2 * at))) for at in range(8)
     ]
-    found = shake.measure_take(static, frames)
+    found = shake_tracking.measure_take(static, frames)
     assert np.abs(values(found)).max() < 0.05
     assert found.sigma_px.max() < 0.1
 
@@ -80,14 +80,14 @@ def test_another_exposure_and_a_shadow_move_nothing(turning, static):
     other = turning.picture(np.array([0.002, 0.001, 0])).astype(float)
     other[200:530, 330:800] *= 0.7
     other = Grain(3.0).added(np.clip(0.8 * other + 6, 0, 255).astype(np.uint8))
-    found = shake.Tracker(static).measure(other)
+    found = shake_tracking.Tracker(static).measure(other)
     np.testing.assert_allclose(
         found.shift_px, true_movement(np.array([0.002, 0.001, 0]))[0], atol=0.1
     )
 
 
 def test_a_lost_picture_is_unknown_and_found_again_elsewhere(turning, static):
-    tracker = shake.Tracker(static)
+    tracker = shake_tracking.Tracker(static)
     assert tracker.measure(static).known
     for _ in range(3):
         lost = tracker.measure(texture(4, SIZE))
@@ -104,7 +104,7 @@ def test_a_lost_picture_is_unknown_and_found_again_elsewhere(turning, static):
 def test_pictures_of_any_size_are_measured_in_their_own_pixels(size, zoom):
     before = texture(0, (size[0] // 2, size[1] // 2))
     before = cv2.resize(before, size, interpolation=cv2.INTER_CUBIC)
-    found = shake.Tracker(before).measure(moved(before, (4.0, -2.5), zoom, 0.1))
+    found = shake_tracking.Tracker(before).measure(moved(before, (4.0, -2.5), zoom, 0.1))
     np.testing.assert_allclose(found.shift_px, (4.0, -2.5), atol=0.1)
     assert found.rotation_deg == pytest.approx(0.1, abs=0.01)
     assert found.zoom == pytest.approx(zoom, abs=2e-4)
@@ -113,18 +113,18 @@ def test_pictures_of_any_size_are_measured_in_their_own_pixels(size, zoom):
 def test_nothing_to_see_tells_nothing():
     flat = np.full((360, 640, 3), 90, np.uint8)
     for static, frame in [(flat, texture(0)), (texture(0), flat), (flat, flat)]:
-        assert not shake.Tracker(static).measure(frame).known
+        assert not shake_tracking.Tracker(static).measure(frame).known
 
 
 def test_pictures_of_two_sizes_are_a_fault():
     with pytest.raises(ValueError, match="two sizes"):
-        shake.Tracker(texture(0)).measure(texture(0, (320, 180)))
+        shake_tracking.Tracker(texture(0)).measure(texture(0, (320, 180)))
 
 
 @needs_real
 def test_a_real_tripod_stands_still_while_a_person_walks_by():
     path = REAL / "walk-4cams" / "videos" / "cam03.mp4"
-    frames = [found for at, found in enumerate(video.frames(path)) if at % 16 == 0]
+    frames = [found for at, found in enumerate(reader.frames(path)) if at % 16 == 0]
     static = np.median([image for _, image in frames], axis=0).astype(np.uint8)
-    table = shake.measure_take(static, frames)
+    table = shake_tracking.measure_take(static, frames)
     assert np.abs(values(table)).max() < 0.05 and np.abs(table.rotation_deg).max() < 0.003
