@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.motion import arcs
+from courtside.kinematics import wrist_arcs
 from courtside.records.body_motion import BodyMotion
 
 HALF_SHOULDERS, ARM = 0.3, 0.7  # units: the wrists of the T-pose are at 1
@@ -29,10 +29,10 @@ def body(source="mocopi", kind="inertial", depth=1.0, rate_hz=60.0, unit_m=0.75)
 
 def tables(bodies, sparc=-1.6):
     """Return (paths, distortion) as the rule that measures arcs writes them."""
-    found = {one.source: (one, arcs.arcs(one)) for one in bodies}
-    paths = [arcs.paths(arc).assign(source=name) for name, (_, arc) in found.items()]
+    found = {one.source: (one, wrist_arcs.arcs(one)) for one in bodies}
+    paths = [wrist_arcs.paths(arc).assign(source=name) for name, (_, arc) in found.items()]
     distortion = [
-        arcs.distortion(arc).assign(source=name, unit_m=one.unit_m, sparc=sparc)
+        wrist_arcs.distortion(arc).assign(source=name, unit_m=one.unit_m, sparc=sparc)
         for name, (one, arc) in found.items()
     ]
     return pd.concat(paths, ignore_index=True), pd.concat(distortion, ignore_index=True)

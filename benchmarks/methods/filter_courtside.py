@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "workflow" / "lib"))
-from courtside.motion import filtering
+from courtside.kinematics import filtering
 
 
 def main(noisy_npz, result_npz, repeats):

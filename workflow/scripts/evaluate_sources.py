@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from courtside.motion import arcs, bodyframe, common_frame, smoothness, source_errors
+from courtside.kinematics import smoothness, wrist_arcs
+from courtside.motion import bodyframe, common_frame, source_errors
 from courtside.records import body_motion, derived, device_motion, tables, take_truth
 from courtside.records.sync import Clock
 from courtside.study import log
@@ -26,9 +27,9 @@ def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_h
         for form in ("fixed", "following"):
             part = source_errors.split(body, reference, form=form)
             parts.append(part.assign(source=body.source, frame=form))
-        swept = arcs.arcs(replace(reference, clap_s=body.clap_s))
-        paths.append(arcs.paths(swept).assign(source=body.source))
-        row = arcs.distortion(swept).assign(source=body.source, unit_m=reference.unit_m)
+        swept = wrist_arcs.arcs(replace(reference, clap_s=body.clap_s))
+        paths.append(wrist_arcs.paths(swept).assign(source=body.source))
+        row = wrist_arcs.distortion(swept).assign(source=body.source, unit_m=reference.unit_m)
         distortion.append(row.assign(sparc=smoothness.of_arcs(reference, swept, sparc_rate_hz)))
     made = (
         (out.errors, errors),

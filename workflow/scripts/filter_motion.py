@@ -1,6 +1,6 @@
 """Filter one take: raw 3D keypoints -> short gaps filled, noise removed without delay."""
 
-from courtside.motion import filtering
+from courtside.kinematics import filtering
 from courtside.records import keypoints, skeleton
 from courtside.study import log
 

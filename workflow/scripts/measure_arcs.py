@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.motion import arcs, smoothness
+from courtside.kinematics import smoothness, wrist_arcs
 from courtside.records import body_motion, tables
 from courtside.study import log
 
@@ -10,9 +10,9 @@ from courtside.study import log
 def main(body_npz, paths_csv, distortion_csv, *, sparc_rate_hz):
     paths, rows = [], []
     for body in map(body_motion.read, body_npz):
-        found = arcs.arcs(body)
-        paths.append(arcs.paths(found).assign(source=body.source))
-        row = arcs.distortion(found).assign(source=body.source, unit_m=body.unit_m)
+        found = wrist_arcs.arcs(body)
+        paths.append(wrist_arcs.paths(found).assign(source=body.source))
+        row = wrist_arcs.distortion(found).assign(source=body.source, unit_m=body.unit_m)
         rows.append(row.assign(sparc=smoothness.of_arcs(body, found, sparc_rate_hz)))
     for path, parts in ((paths_csv, paths), (distortion_csv, rows)):
         table = pd.concat(parts, ignore_index=True)

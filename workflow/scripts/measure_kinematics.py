@@ -1,7 +1,8 @@
 """Measure one take: raw 3D keypoints -> speeds, distances, accelerations and angles with uncertainty."""
 
 from courtside.exports import measures
-from courtside.motion import cutoffs, filtering, kinematics
+from courtside.kinematics import cutoffs, filtering
+from courtside.kinematics import measures as kinematics
 from courtside.records import derived, keypoints, skeleton, tables
 from courtside.study import log
 

@@ -9,7 +9,8 @@ import pytest
 import footwork
 import walker
 from courtside.exports import measures
-from courtside.motion import cutoffs, joint_angles, kinematics
+from courtside.kinematics import cutoffs, joint_angles
+from courtside.kinematics import measures as kinematics
 from courtside.records import derived, reasons, tables
 
 TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")

@@ -11,7 +11,7 @@ import walker
 from courtside.exports import measures
 from courtside.figures import speeds
 from courtside.geometry import courts
-from courtside.motion import kinematics
+from courtside.kinematics import measures as kinematics
 from courtside.records import derived
 
 CONFIG = Path(__file__).parents[3] / "config"

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.motion import kinematics, path_length
+from courtside.kinematics import measures, path_length
 from courtside.records import reasons
 
 LEAST_EXTENT_M = 1.0
@@ -25,7 +25,7 @@ FRAME_DICTIONARY = {
     "POINT_acceleration_m_s2": ("m/s2", "length of the acceleration, without gravity", "missing"),
     "POINT_acceleration_sd_m_s2": ("m/s2", "its standard deviation", "missing or unknown"),
     "POINT_reason": ("", f"one of {', '.join(reasons.WORDS.values())}", "never empty"),
-    "ANGLE_deg": ("degrees", "see courtside.motion.joint_angles", "a joint is missing"),
+    "ANGLE_deg": ("degrees", "see courtside.kinematics.joint_angles", "a joint is missing"),
     "ANGLE_sd_deg": ("degrees", "its standard deviation", "missing or unknown"),
 }
 SUMMARY_DICTIONARY = {
@@ -49,7 +49,7 @@ def frames(people):
 
     Parameters
     ----------
-    people : list of courtside.motion.kinematics.Person
+    people : list of courtside.kinematics.measures.Person
 
     Returns
     -------
@@ -75,9 +75,9 @@ def _frames_of(person):
 
 def _columns(point):
     position, velocity, acceleration = point.covariance
-    speed, speed_sd = kinematics.size(point.velocity, velocity)
-    ground, ground_sd = kinematics.size(point.velocity, velocity, path_length.GROUND)
-    change, change_sd = kinematics.size(point.acceleration, acceleration)
+    speed, speed_sd = measures.size(point.velocity, velocity)
+    ground, ground_sd = measures.size(point.velocity, velocity, path_length.GROUND)
+    change, change_sd = measures.size(point.acceleration, acceleration)
     return {
         **{f"{axis}_m": point.position[:, at].round(5) for at, axis in enumerate("xyz")},
         "sd_mm": (1000 * np.sqrt(np.trace(position, axis1=1, axis2=2))).round(2),
@@ -96,7 +96,7 @@ def summary(people):
 
     Parameters
     ----------
-    people : list of courtside.motion.kinematics.Person
+    people : list of courtside.kinematics.measures.Person
 
     Returns
     -------
@@ -152,7 +152,7 @@ def _extremes(point):
         ("speed_max", point.velocity, point.covariance[1], "m/s"),
         ("acceleration_max", point.acceleration, point.covariance[2], "m/s2"),
     ):
-        value, sigma = kinematics.size(vectors, covariance)
+        value, sigma = measures.size(vectors, covariance)
         at, n_frames = _largest(value)
         yield name, value[at], sigma[at], share * value[at], unit, n_frames
 
@@ -183,7 +183,7 @@ def cutoffs(choices):
 
     Parameters
     ----------
-    choices : dict of str to courtside.motion.cutoffs.Choice
+    choices : dict of str to courtside.kinematics.cutoffs.Choice
 
     Returns
     -------

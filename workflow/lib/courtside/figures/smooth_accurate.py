@@ -22,7 +22,7 @@ def table(distortion, errors=None, truth=None):
     Parameters
     ----------
     distortion : pandas.DataFrame
-        Of `courtside.motion.arcs`, with session, take, source, unit_m and sparc.
+        Of `courtside.kinematics.wrist_arcs`, with session, take, source, unit_m and sparc.
     errors : pandas.DataFrame, optional
         Of `courtside.motion.source_errors`, with session, take and source, of the takes that have a truth.
     truth : pandas.DataFrame, optional

@@ -24,7 +24,7 @@ def table(paths, distortion, sources=None):
     Parameters
     ----------
     paths, distortion : pandas.DataFrame
-        Of `courtside.motion.arcs`, with `source`; distortion also with `unit_m`.
+        Of `courtside.kinematics.wrist_arcs`, with `source`; distortion also with `unit_m`.
     sources : list of str, optional
         All of them otherwise.
     """

@@ -8,7 +8,8 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from courtside.motion import clap_fit, filtering
+from courtside.kinematics import filtering
+from courtside.motion import clap_fit
 from courtside.motion import tpose as tposes
 from courtside.study.errors import InputError
 

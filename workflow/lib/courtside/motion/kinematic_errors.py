@@ -5,7 +5,7 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from courtside.geometry import uncertainty
-from courtside.motion import kinematics
+from courtside.kinematics import measures
 from courtside.records import derived as derived_joints
 
 FINE = 10  # true points per frame, for the length of the true path
@@ -44,7 +44,7 @@ def table(frames, truth, derived, sex_of):
     rows = []
     for person, part in frames.groupby("person", sort=False):
         of = truth.person_id.tolist().index(person)
-        weights, _ = kinematics.definitions(
+        weights, _ = measures.definitions(
             derived, derived_joints.RIG, truth.joints, sex_of.get(person)
         )
         time_s = part["time_s"].to_numpy()
@@ -82,7 +82,7 @@ def distances(rows, frames, summary, truth, derived, sex_of):
         if not whole or time_s[0] < truth.time_s[0] or time_s[-1] > truth.time_s[-1]:
             continue
         of = truth.person_id.tolist().index(row["person"])
-        weights, _ = kinematics.definitions(
+        weights, _ = measures.definitions(
             derived, derived_joints.RIG, truth.joints, sex_of.get(row["person"])
         )
         path = np.einsum("j,tjk->tk", weights[row["point"]], truth.xyz[of])

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from courtside.geometry import rotations
-from courtside.motion import filtering
+from courtside.kinematics import filtering
 from courtside.study.errors import InputError
 
 MEDIAN_S = 0.35  # joints are medians over that

@@ -7,7 +7,7 @@ import pytest
 
 import footwork
 import walker
-from courtside.motion import cutoffs, filtering
+from courtside.kinematics import cutoffs, filtering
 from courtside.study.errors import InputError
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from courtside.motion import smoothness
+from courtside.kinematics import smoothness
 
 RATE_HZ = 200.0
 

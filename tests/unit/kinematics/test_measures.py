@@ -8,8 +8,8 @@ import pytest
 
 import footwork
 import walker
-from courtside.motion import filtering, kinematics
-from courtside.motion.noise_gain import Noise
+from courtside.kinematics import filtering, measures
+from courtside.kinematics.noise_propagation import Noise
 from courtside.records import derived, reasons
 
 TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
@@ -27,8 +27,8 @@ def circling(rate_hz=60.0, seconds=12.0, radius_m=2.0, turn_s=4.0):
 
 
 def measured(record, how=None, sex="m"):
-    how = how or kinematics.Filter(CUTOFFS_HZ)
-    return kinematics.measure(record, TABLE, "blazepose33", how, {"p1": sex})[0]
+    how = how or measures.Filter(CUTOFFS_HZ)
+    return measures.measure(record, TABLE, "blazepose33", how, {"p1": sex})[0]
 
 
 def test_a_circle_has_its_speed_acceleration_and_length():
@@ -39,9 +39,9 @@ def test_a_circle_has_its_speed_acceleration_and_length():
     middle = slice(60, -60)
     assert set(person.points) == {"neck", "centre", "mass"}
     for point in person.points.values():
-        found, _ = kinematics.size(point.velocity, point.covariance[1])
+        found, _ = measures.size(point.velocity, point.covariance[1])
         np.testing.assert_allclose(found[middle], speed, rtol=2e-3)
-        found, _ = kinematics.size(point.acceleration, point.covariance[2])
+        found, _ = measures.size(point.acceleration, point.covariance[2])
         np.testing.assert_allclose(found[middle], speed**2 / 2.0, rtol=1e-2)
         assert point.distance.corrected_m == pytest.approx(speed * 12, rel=2e-3)
         assert point.ground_distance.corrected_m == pytest.approx(speed * 12, rel=2e-3)
@@ -70,7 +70,7 @@ def test_points_are_where_they_are_defined():
 @pytest.mark.parametrize("told", [True, False], ids=["told", "found"])
 def test_sigmas_hold_ninety_percent(memory_s, told):
     time_s, xyz = circling(rate_hz=30.0, seconds=20.0)
-    how = kinematics.Filter(CUTOFFS_HZ, noise=Noise(memory_s) if told else None)
+    how = measures.Filter(CUTOFFS_HZ, noise=Noise(memory_s) if told else None)
     clean = measured(footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(9)), how)
     inside = {"speed": [], "acceleration": [], "position": [], "angle": []}
     for seed in range(4):
@@ -79,8 +79,8 @@ def test_sigmas_hold_ninety_percent(memory_s, told):
         person = measured(record, how)
         for name, point in person.points.items():
             truth = clean.points[name]
-            speed, sigma = kinematics.size(point.velocity, point.covariance[1])
-            ideal, _ = kinematics.size(truth.velocity, truth.covariance[1])
+            speed, sigma = measures.size(point.velocity, point.covariance[1])
+            ideal, _ = measures.size(truth.velocity, truth.covariance[1])
             inside["speed"].append(np.abs(speed - ideal) < 1.645 * sigma)
             sigma = np.sqrt(point.covariance[2][:, 0, 0])
             off = point.acceleration[:, 0] - truth.acceleration[:, 0]
@@ -105,9 +105,9 @@ def test_the_speed_of_a_player_is_right_to_a_stated_error():
     record = footwork.record(xyz, time_s, 0.020, 0.08, np.random.default_rng(1))
     errors = {}
     for cutoff_hz in (4.0, 6.0):
-        how = kinematics.Filter(np.full(33, cutoff_hz))
+        how = measures.Filter(np.full(33, cutoff_hz))
         point = measured(record, how).points["neck"]
-        speed, _ = kinematics.size(point.velocity, point.covariance[1])
+        speed, _ = measures.size(point.velocity, point.covariance[1])
         errors[cutoff_hz] = np.sqrt(np.mean((speed - truth) ** 2))
     assert errors[4.0] < 0.17
     assert errors[6.0] < 0.24
@@ -175,8 +175,8 @@ def test_two_people_are_measured_as_each_alone():
         person_id=np.array(["p1", "p2"]),
         **{name: np.concatenate([getattr(one, name), getattr(other, name)]) for name in names},
     )
-    how = kinematics.Filter(CUTOFFS_HZ)
-    people = kinematics.measure(both, TABLE, "blazepose33", how, {"p1": "m", "p2": "m"})
+    how = measures.Filter(CUTOFFS_HZ)
+    people = measures.measure(both, TABLE, "blazepose33", how, {"p1": "m", "p2": "m"})
     assert [person.person for person in people] == ["p1", "p2"]
     np.testing.assert_allclose(
         people[1].points["mass"].velocity, measured(other).points["mass"].velocity, atol=1e-9

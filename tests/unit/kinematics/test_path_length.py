@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import footwork
-from courtside.motion import filtering, noise_gain, path_length
-from courtside.motion.noise_gain import Noise
+from courtside.kinematics import filtering, noise_propagation, path_length
+from courtside.kinematics.noise_propagation import Noise
 
 SECONDS = 24
 
@@ -62,7 +62,7 @@ def test_a_player_goes_the_true_distance_within_one_percent(rate_hz, sigma_m, me
     else:
         noisy = path + footwork.noise(len(path), rate_hz, sigma_m, memory_s, rng)
     stated = covariance(len(path), sigma_m)
-    noise = noise_gain.estimate(noisy, stated, rate_hz)
+    noise = noise_propagation.estimate(noisy, stated, rate_hz)
     found = path_length.measure(noisy, stated, rate_hz, noise, 6.0, 4)
     assert found.corrected_m == pytest.approx(truth, rel=0.01)
     # The filtered path without noise is what the bias is counted from.

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import signal
 from scipy.interpolate import CubicSpline
 
-from courtside.motion import filtering
+from courtside.kinematics import filtering
 
 EDGE_PERIODS = 2.0  # of the cut-off: nearer to an end of a run, the ends change the filter
 MEMORIES_S = np.geomspace(0.01, 2.0, 40)  # tried for the noise

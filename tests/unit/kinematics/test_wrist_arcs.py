@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from bodies_made import body
-from courtside.motion import arcs
+from courtside.kinematics import wrist_arcs
 from courtside.study.errors import InputError
 
 JOINTS = ["left_shoulder", "right_shoulder", "left_wrist", "right_wrist"]
@@ -29,7 +29,7 @@ def swing(off=0.0, stretch_z=1.0):
 
 
 def test_a_path_about_the_shoulder_has_no_distortion():
-    left, right = arcs.arcs(swing())
+    left, right = wrist_arcs.arcs(swing())
     assert left.side == "left" and right.side == "right"
     for arc, sign in ((left, 1), (right, -1)):
         np.testing.assert_allclose(arc.shoulder, [sign * ASIDE, BACK])
@@ -37,7 +37,7 @@ def test_a_path_about_the_shoulder_has_no_distortion():
         np.testing.assert_allclose(arc.off_arc, 0, atol=1e-12)
         np.testing.assert_allclose(arc.meeting, [0, BACK + np.sqrt(ARM**2 - ASIDE**2)])
         assert arc.time_s[0] >= 1.0 and arc.time_s[-1] <= 2.0
-    row = arcs.distortion([left]).iloc[0]
+    row = wrist_arcs.distortion([left]).iloc[0]
     assert row.end_radius == pytest.approx(row.meeting_z, abs=0.02)
     assert row.end_radius == pytest.approx(0.657, abs=0.02)  # not 1: the circle is out of reach
     assert row.mean_off_circle > 0.1
@@ -45,34 +45,34 @@ def test_a_path_about_the_shoulder_has_no_distortion():
 
 @pytest.mark.parametrize("off", [0.04, -0.03])
 def test_a_path_outside_or_inside_is_off_by_that(off):
-    rows = arcs.distortion(arcs.arcs(swing(off=off)))
+    rows = wrist_arcs.distortion(wrist_arcs.arcs(swing(off=off)))
     np.testing.assert_allclose(rows.mean_signed, off, atol=abs(off) / 30)
     np.testing.assert_allclose(rows.mean_distance, abs(off), atol=abs(off) / 30)
     np.testing.assert_allclose(rows.p95_distance, abs(off), rtol=1e-9)
 
 
 def test_depth_that_is_pressed_flat_shows():
-    rows = arcs.distortion(arcs.arcs(swing(stretch_z=0.7)))
+    rows = wrist_arcs.distortion(wrist_arcs.arcs(swing(stretch_z=0.7)))
     assert np.all(rows.mean_signed < -0.05)
     assert np.all(rows.p95_distance > rows.mean_distance)
 
 
 def test_the_arms_that_cannot_meet():
-    left, _ = arcs.arcs(swing())
-    short = arcs.Arc("left", left.time_s, left.path, np.array([0.25, 0.0]), 0.2)
+    left, _ = wrist_arcs.arcs(swing())
+    short = wrist_arcs.Arc("left", left.time_s, left.path, np.array([0.25, 0.0]), 0.2)
     assert np.isnan(short.meeting[1])
 
 
 def test_missing_points_are_counted_out():
     made = swing()
     made.fixed[70:80, 2] = np.nan
-    rows = arcs.distortion(arcs.arcs(made)).set_index("side")
+    rows = wrist_arcs.distortion(wrist_arcs.arcs(made)).set_index("side")
     assert rows.n["right"] - rows.n["left"] == 10
     assert rows.mean_distance["left"] == pytest.approx(0, abs=1e-12)
 
 
 def test_the_paths_are_a_table():
-    rows = arcs.paths(arcs.arcs(swing()))
+    rows = wrist_arcs.paths(wrist_arcs.arcs(swing()))
     assert isinstance(rows, pd.DataFrame)
     assert list(rows.columns) == ["side", "time_s", "x", "z", "off_arc", "off_circle"]
     first = rows[rows.side == "left"].iloc[0]
@@ -83,4 +83,4 @@ def test_no_clap_after_the_t_pose():
     made = swing()
     made.clap_s[:] = 0.5
     with pytest.raises(InputError, match=r"made: expected a clap .* claps at 0\.50"):
-        arcs.arcs(made)
+        wrist_arcs.arcs(made)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.motion import filtering, noise_gain
+from courtside.kinematics import filtering, noise_propagation
 
 N_NODES = 48  # of the quadrature
 SLOWER = 2.0  # the true speed is taken from a path filtered at the cut-off divided by this
@@ -94,7 +94,7 @@ def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE, model
     covariance : (T, 3, 3) float
         Of the raw points; NaN where unknown.
     rate_hz : float
-    noise : courtside.motion.noise_gain.Noise
+    noise : courtside.kinematics.noise_propagation.Noise
     cutoff_hz, order : float, int
         Of the zero-lag filter. High enough to keep the motion: the noise that is let through is known and
         taken off, what is cut from the motion is not known.
@@ -149,10 +149,10 @@ def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE, model
 
 def _velocity(xyz, covariance, known, rate_hz, noise, cutoff_hz, order):
     path = filtering.zero_lag(xyz, rate_hz, cutoff_hz, order)
-    spread = noise_gain.filtered_covariance(
+    spread = noise_propagation.filtered_covariance(
         covariance, known, noise, rate_hz, float(cutoff_hz), order, 1
     )
-    return noise_gain.differentiate(path, rate_hz), spread
+    return noise_propagation.differentiate(path, rate_hz), spread
 
 
 def _weights_s(known, rate_hz):
@@ -177,16 +177,16 @@ def _lengthening(velocity, spread):
 
 def _correlation(n_frames, rate_hz, noise, cutoff_hz, order):
     """Return the velocity noise's correlation at 0, 1, ... frames, for as long as it lasts."""
-    seconds = noise_gain.EDGE_PERIODS / cutoff_hz + MEMORIES * noise.memory_s
+    seconds = noise_propagation.EDGE_PERIODS / cutoff_hz + MEMORIES * noise.memory_s
     n_lags = min(n_frames, int(np.ceil(seconds * rate_hz)) + 1)
-    return noise_gain.autocorrelation(n_lags, rate_hz, float(cutoff_hz), order, noise, 1)
+    return noise_propagation.autocorrelation(n_lags, rate_hz, float(cutoff_hz), order, noise, 1)
 
 
 def _most(rate_hz, noise, cutoff_hz, order):
     """Return the largest variance of the velocity's noise for any memory, over that for the noise's own."""
-    others = [noise_gain.Noise(float(memory), scale=noise.scale) for memory in MEMORIES_S]
+    others = [noise_propagation.Noise(float(memory), scale=noise.scale) for memory in MEMORIES_S]
     found = [
-        noise_gain.gains(10**3, rate_hz, float(cutoff_hz), order, one, 1)[500]
+        noise_propagation.gains(10**3, rate_hz, float(cutoff_hz), order, one, 1)[500]
         for one in (noise, *others)
     ]
     return max(found) / found[0]

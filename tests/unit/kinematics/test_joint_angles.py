@@ -5,7 +5,7 @@ import pytest
 
 import footwork
 import walker
-from courtside.motion import joint_angles
+from courtside.kinematics import joint_angles
 
 NONE = np.zeros((1, 3, 3))
 

@@ -7,7 +7,7 @@ import pytest
 
 import footwork
 import walker
-from courtside.motion import body_mass
+from courtside.kinematics import centre_of_mass
 from courtside.records import derived
 from courtside.study.errors import InputError
 
@@ -23,33 +23,33 @@ FOREARM = {"m": 268.9, "f": 264.3}
 
 
 def weights(sex):
-    return body_mass.weights(TABLE, "blazepose33", walker.SKELETON.joints, sex)
+    return centre_of_mass.weights(TABLE, "blazepose33", walker.SKELETON.joints, sex)
 
 
 @pytest.mark.parametrize("sex", ["m", "f", None])
 def test_all_mass_is_somewhere(sex):
-    assert sum(body_mass.shares(sex).values()) == pytest.approx(1.0, abs=1e-12)
+    assert sum(centre_of_mass.shares(sex).values()) == pytest.approx(1.0, abs=1e-12)
     assert weights(sex).sum() == pytest.approx(1.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("sex", ["m", "f"])
 def test_the_masses_are_percent_of_the_body(sex):
-    total = sum(s.mass[sex] * (2 if s.paired else 1) for s in body_mass.SEGMENTS.values())
+    total = sum(s.mass[sex] * (2 if s.paired else 1) for s in centre_of_mass.SEGMENTS.values())
     assert total == pytest.approx(100.0, abs=0.02)
 
 
 @pytest.mark.parametrize("sex", ["m", "f"])
 def test_the_places_agree_with_the_second_definitions_of_the_table(sex):
     length, percent = TRUNK_FROM_SUPRASTERNALE[sex]
-    own = body_mass.SEGMENTS["trunk"].place[sex]
+    own = centre_of_mass.SEGMENTS["trunk"].place[sex]
     assert TRUNK_FROM_MID_SHOULDER[sex] * (100 - own) == pytest.approx(
         length * (100 - percent), rel=2e-3
     )
     length, percent = SHANK_TO_MALLEOLUS[sex]
-    own = body_mass.SEGMENTS["shank"].place[sex]
+    own = centre_of_mass.SEGMENTS["shank"].place[sex]
     assert SHANK_TO_ANKLE[sex] * own == pytest.approx(length * percent, rel=2e-3)
     length, percent = HAND_TO_FINGERTIP[sex]
-    beyond = body_mass.SEGMENTS["hand"].place[sex] - 100
+    beyond = centre_of_mass.SEGMENTS["hand"].place[sex] - 100
     assert FOREARM[sex] * beyond == pytest.approx(length * percent, rel=2e-3)
 
 
@@ -85,4 +85,4 @@ def test_a_raised_arm_raises_the_centre_by_its_share():
 
 def test_an_unknown_sex_is_one_line():
     with pytest.raises(InputError, match=r"expected m or f.*found 'x'"):
-        body_mass.shares("x")
+        centre_of_mass.shares("x")

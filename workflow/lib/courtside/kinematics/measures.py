@@ -4,7 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.motion import body_mass, filtering, joint_angles, noise_gain, path_length
+from courtside.kinematics import (
+    centre_of_mass,
+    filtering,
+    joint_angles,
+    noise_propagation,
+    path_length,
+)
 from courtside.records import derived, limbs
 
 CENTRE = (
@@ -30,14 +36,14 @@ class Filter:
         Its effective order.
     distance_cutoff_hz : float
         For distances, of all points (`path_length.measure`).
-    noise : courtside.motion.noise_gain.Noise or None
+    noise : courtside.kinematics.noise_propagation.Noise or None
         Of the keypoints; found from each path where None.
     """
 
     cutoff_hz: np.ndarray
     order: int = 4
     distance_cutoff_hz: float = 6.0
-    noise: noise_gain.Noise | None = None
+    noise: noise_propagation.Noise | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +61,7 @@ class Point:
     camera_sigma_m : (T,) float
         Standard deviation of the position from the calibration, root of the sum over the axes: one error for
         all frames, which changes slowly over the hall and so hardly touches speeds.
-    noise : courtside.motion.noise_gain.Noise
+    noise : courtside.kinematics.noise_propagation.Noise
     reason : (T,) uint8
         `courtside.records.reasons`.
     distance, ground_distance : Distance
@@ -68,7 +74,7 @@ class Point:
     acceleration: np.ndarray
     covariance: tuple
     camera_sigma_m: np.ndarray
-    noise: noise_gain.Noise
+    noise: noise_propagation.Noise
     reason: np.ndarray
     distance: path_length.Distance
     ground_distance: path_length.Distance
@@ -83,9 +89,9 @@ class Person:
     person : str
     time_s : (T,) float
     points : dict of str to Point
-        `neck`, `centre` (plain mean of `CENTRE`), `mass` (`courtside.motion.body_mass`).
+        `neck`, `centre` (plain mean of `CENTRE`), `mass` (`courtside.kinematics.centre_of_mass`).
     angles : dict of str to Angle
-        `courtside.motion.joint_angles.measure`.
+        `courtside.kinematics.joint_angles.measure`.
     """
 
     person: str
@@ -147,7 +153,7 @@ def definitions(table, skeleton, joints, sex):
     weights = {
         "neck": table.weights(skeleton, "neck", joints),
         "centre": np.mean(centre, axis=0),
-        "mass": body_mass.weights(table, skeleton, joints, sex),
+        "mass": centre_of_mass.weights(table, skeleton, joints, sex),
     }
     words = {
         "neck": of["neck"],
@@ -199,7 +205,7 @@ def _point(take, weights, words):
     )
     noise = _noise(xyz, covariance, take)
     position = np.einsum("j,tjk->tk", weights[used], take.filtered[:, used])
-    velocity = noise_gain.differentiate(position, raw.rate_hz)
+    velocity = noise_propagation.differentiate(position, raw.rate_hz)
     camera = np.trace(raw.covariance_camera[take.person][:, used], axis1=-2, axis2=-1)
     distances = [
         path_length.measure(
@@ -211,7 +217,7 @@ def _point(take, weights, words):
         words,
         position,
         velocity,
-        noise_gain.differentiate(velocity, raw.rate_hz),
+        noise_propagation.differentiate(velocity, raw.rate_hz),
         tuple(_spread(take, weights, noise, derivative) for derivative in (0, 1, 2)),
         np.sqrt(camera @ np.abs(weights[used])),
         noise,
@@ -223,7 +229,7 @@ def _point(take, weights, words):
 def _noise(xyz, covariance, take):
     if take.how.noise is not None:
         return take.how.noise
-    return noise_gain.estimate(xyz, covariance, take.raw.rate_hz)
+    return noise_propagation.estimate(xyz, covariance, take.raw.rate_hz)
 
 
 def _spread(take, weights, noise, derivative):
@@ -236,7 +242,7 @@ def _spread(take, weights, noise, derivative):
         raw = np.einsum(
             "j,tjkl->tkl", share[used] ** 2, take.raw.covariance_2d[take.person][:, used]
         )
-        total = total + noise_gain.filtered_covariance(
+        total = total + noise_propagation.filtered_covariance(
             raw, known, noise, take.raw.rate_hz, float(cutoff_hz), take.how.order, derivative
         )
     return total

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.motion import filtering
+from courtside.kinematics import filtering
 from courtside.study.errors import InputError
 
 RESIDUAL = "residual"  # in place of a number: choose by residual analysis

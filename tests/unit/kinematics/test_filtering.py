@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.motion import filtering
+from courtside.kinematics import filtering
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
 from courtside.study.errors import InputError
