@@ -2,23 +2,23 @@
 
 import pandas as pd
 
-from courtside.motion import exchange, measure_tables
 from courtside.records import keypoints, tables
+from courtside.statistics import agreement, longitudinal
 from courtside.study import log
 
 
 def main(measures_csv, pose3d_npz, pairs_csv, table_csv, *, labels, joint_labels, networks, **step):
-    parts = [measure_tables.read(measures_csv, labels)]
+    parts = [longitudinal.read(measures_csv, labels)]
     parts += [
-        measure_tables.of_joints(keypoints.read_3d(path), label)
+        longitudinal.of_joints(keypoints.read_3d(path), label)
         for path, label in zip(pose3d_npz, joint_labels, strict=True)
     ]
     left_out = step.pop("left_out")
-    rows = measure_tables.check_single(pd.concat(parts, ignore_index=True))
+    rows = longitudinal.check_single(pd.concat(parts, ignore_index=True))
     for part in left_out:
         rows = rows[~rows["measure"].str.contains(part, regex=False)]
-    pairs = exchange.pair(rows, networks)
-    table = exchange.compare(pairs, networks, **step)
+    pairs = agreement.pair(rows, networks)
+    table = agreement.compare(pairs, networks, **step)
     for sentence in table["sentence"]:
         log.logger.info("%s", sentence)
     tables.write(pairs_csv, pairs)

@@ -3,16 +3,16 @@
 import pandas as pd
 
 from courtside.figures import archive, style
-from courtside.motion import measure_tables, session_changes
+from courtside.statistics import longitudinal
 from courtside.study import log
 
 
 def main(measures_csv, agreement_csv, pdf, png, csv, *, labels, subject, measures, allow_mixed):
-    rows = measure_tables.read(measures_csv, labels)
-    rows = session_changes.of_subject(rows, subject, measures, allow_mixed=allow_mixed)
+    rows = longitudinal.read(measures_csv, labels)
+    rows = longitudinal.of_subject(rows, subject, measures, allow_mixed=allow_mixed)
     known = pd.read_csv(agreement_csv) if agreement_csv else None
-    values = session_changes.over_sessions(rows)
-    changes = session_changes.changes(values, session_changes.errors_of_measurement(rows, known))
+    values = longitudinal.over_sessions(rows)
+    changes = longitudinal.changes(values, longitudinal.errors_of_measurement(rows, known))
     log.logger.info("%s: %s", subject, changes["verdict"].value_counts().to_dict())
     numbers = archive.table(values, changes)
     style.save(archive.draw(numbers, subject), numbers, pdf, png, csv)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.figures import agreement
-from courtside.motion import exchange
+from courtside.statistics import agreement as exchange
 
 NETWORKS = ("old", "new")
 NOISE = {"a": 0.1, "b": 0.4, "c": 0.9, "d": 2.0, "e": 5.0}

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.colors import to_hex
 
 from courtside.figures import archive
-from courtside.motion import session_changes
+from courtside.statistics import longitudinal
 
 VALUES = pd.DataFrame(
     [
@@ -14,7 +14,7 @@ VALUES = pd.DataFrame(
         ("speed", "m/s", "c", "", 2, "other", "file", "", 1, 2.4, np.nan),
         ("knee", "degrees", "a", "", 0, "net", "file", "", 1, 90.0, np.nan),
     ],
-    columns=session_changes.VALUES,
+    columns=longitudinal.VALUES,
 )
 CHANGES = pd.DataFrame(
     [

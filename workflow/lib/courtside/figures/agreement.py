@@ -24,7 +24,7 @@ def read(pairs_csv, table_csv):
     Parameters
     ----------
     pairs_csv, table_csv : str or Path
-        Of `courtside.motion.exchange`.
+        Of `courtside.statistics.agreement`.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def choose(table, count=SHOWN):
     Parameters
     ----------
     table : pandas.DataFrame
-        Of `courtside.motion.exchange.compare`.
+        Of `courtside.statistics.agreement.compare`.
     count : int
 
     Returns
@@ -66,7 +66,7 @@ def draw(pairs, table, networks, measures=None):
     Parameters
     ----------
     pairs, table : pandas.DataFrame
-        Of `courtside.motion.exchange`.
+        Of `courtside.statistics.agreement`.
     networks : (str, str)
     measures : list of str, optional
         Those of the upper panels; `choose` otherwise.

@@ -24,7 +24,7 @@ def table(values, changes):
     Parameters
     ----------
     values, changes : pandas.DataFrame
-        Of `courtside.motion.session_changes`.
+        Of `courtside.statistics.longitudinal`.
 
     Returns
     -------

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.lines import Line2D
 
 from courtside.figures import close_ups, style
-from courtside.motion import shares
+from courtside.statistics import autocorrelation
 
 ALL, STROKE, TOGETHER = "all joints", "all joints, stroke", "together"
 POSE_S = 0.2  # a pose lasts about so long: frames of it are one trial
@@ -52,15 +52,15 @@ def table(rows, layouts):
         for camera, own in part.groupby("camera", sort=False):
             for joint, span in spans.items():
                 whole = span[span.camera == camera].groupby(KEY[::2]).placed.all()
-                stats = shares.share(whole.to_numpy(), POSE_S / step_s)
+                stats = autocorrelation.share(whole.to_numpy(), POSE_S / step_s)
                 found.append({**labels, "camera": camera, "joint": joint, **stats})
             for joint, seen in own.groupby("joint", sort=False):
-                stats = shares.share(seen.placed.to_numpy(), POSE_S / step_s)
+                stats = autocorrelation.share(seen.placed.to_numpy(), POSE_S / step_s)
                 stats["exchanged_share"] = seen.exchanged.mean()
                 stats["median_error_torso"] = seen.error_torso.median()
                 found.append({**labels, "camera": camera, "joint": joint, **stats})
         for joint, span in spans.items():
-            stats = shares.share(together(span, cameras, step_s), POSE_S / step_s)
+            stats = autocorrelation.share(together(span, cameras, step_s), POSE_S / step_s)
             found.append({**labels, "camera": TOGETHER, "joint": joint, **stats})
     return pd.DataFrame(found, columns=COLUMNS)
 

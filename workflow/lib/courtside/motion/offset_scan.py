@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from courtside.motion import long_run
+from courtside.statistics import autocorrelation
 
 SEPARATE_S = 0.25  # minima closer than this are one
 DISTINCT = 3.0  # standard deviations by which the best offset must beat another one
@@ -129,10 +129,10 @@ def _margin(best, other):
     """Return by how many standard deviations the loss `other` (N,) is above `best` (N,)."""
     both = np.isfinite(best) & np.isfinite(other)
     if both.sum() >= max(10, 0.3 * np.isfinite(best).sum()):
-        return long_run.distinct((other - best)[both])
+        return autocorrelation.distinct((other - best)[both])
     best, other = best[np.isfinite(best)], other[np.isfinite(other)]
     spread = [
-        long_run.covariance_of_sum((x - x.mean())[:, None])[0, 0] / len(x) ** 2
+        autocorrelation.covariance_of_sum((x - x.mean())[:, None])[0, 0] / len(x) ** 2
         for x in (best, other)
     ]
     return float((other.mean() - best.mean()) / np.sqrt(max(sum(spread), 1e-300)))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.motion import shares
+from courtside.statistics import autocorrelation
 
 
 def chain(rng, n, stay):
@@ -16,14 +16,14 @@ def test_correlated_frames_count_as_the_theory_says():
     rng = np.random.default_rng(0)
     for stay in (0.5, 0.8, 0.95):
         rho = 2 * stay - 1
-        found = np.mean([shares.runs(chain(rng, 4000, stay)) for _ in range(20)])
+        found = np.mean([autocorrelation.runs(chain(rng, 4000, stay)) for _ in range(20)])
         # The positive sequence errs towards too few trials, by some tenths at most.
         assert 0.95 < found / ((1 + rho) / (1 - rho)) < 1.25
 
 
 def test_frames_that_are_alike_count_as_the_least():
-    assert shares.runs(np.ones(90, bool)) == 1.0
-    found = shares.share(np.ones(90, bool), least_frames=6)
+    assert autocorrelation.runs(np.ones(90, bool)) == 1.0
+    found = autocorrelation.share(np.ones(90, bool), least_frames=6)
     assert found["n_effective"] == pytest.approx(15)
     # Wilson's interval of k = n is n / (n + z^2) to 1.
     assert found["low"] == pytest.approx(15 / (15 + 1.959964**2), rel=1e-6)
@@ -32,7 +32,7 @@ def test_frames_that_are_alike_count_as_the_least():
 
 def test_the_interval_solves_wilsons_equation():
     for share, n in ((0.3, 20), (0.5, 7.5), (0.05, 100)):
-        for limit in shares.interval(share, n):
+        for limit in autocorrelation.interval(share, n):
             assert abs(share - limit) == pytest.approx(
                 1.959964 * np.sqrt(limit * (1 - limit) / n), rel=1e-6
             )
@@ -42,11 +42,11 @@ def test_intervals_hold_the_truth_as_often_as_stated():
     rng = np.random.default_rng(1)
     held = 0
     for _ in range(400):
-        found = shares.share(chain(rng, 300, 0.85))
+        found = autocorrelation.share(chain(rng, 300, 0.85))
         held += found["low"] <= 0.5 <= found["high"]
     assert 0.88 < held / 400 < 0.99
 
 
 def test_no_frames_say_nothing():
-    found = shares.share(np.zeros(0, bool))
+    found = autocorrelation.share(np.zeros(0, bool))
     assert np.isnan(found["share"]) and (found["low"], found["high"]) == (0.0, 1.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.motion import exchange
+from courtside.statistics import agreement
 from courtside.study.errors import InputError
 
 NETWORKS = ("old", "new")
@@ -27,7 +27,7 @@ def values(measures, *, subjects=12, repeats=6, seed=0):
 
 def compared(measures, **options):
     rows = values(measures, **options)
-    return exchange.compare(exchange.pair(rows, NETWORKS), NETWORKS).set_index("measure")
+    return agreement.compare(agreement.pair(rows, NETWORKS), NETWORKS).set_index("measure")
 
 
 def test_networks_are_exchanged_only_where_they_differ_less_than_repeats():
@@ -63,7 +63,7 @@ def test_independent_errors_of_one_size_have_limits_as_wide_as_the_smallest_chan
     rng = np.random.default_rng(5)
     rows = values({"equal": (0.0, 0.0, 0.0)}, subjects=300, repeats=10)
     rows["value"] += rng.normal(0, 2.0, len(rows))
-    row = exchange.compare(exchange.pair(rows, NETWORKS), NETWORKS).iloc[0]
+    row = agreement.compare(agreement.pair(rows, NETWORKS), NETWORKS).iloc[0]
     assert row["upper"] - row["bias"] == pytest.approx(row["detectable"], rel=0.03)
     assert row["detectable_second"] == pytest.approx(row["detectable"], rel=0.05)
 
@@ -73,26 +73,26 @@ def test_too_few_repeats_are_refused_or_said():
         compared({"close": (1.0, 0.0, 0.3)}, subjects=3, repeats=4)
     rows = values({"full": (1.0, 0.0, 0.3), "rare": (1.0, 0.0, 0.3)})
     rows.loc[(rows["measure"] == "rare") & (rows["subject"] != "p1"), "value"] = np.nan
-    table = exchange.compare(exchange.pair(rows, NETWORKS), NETWORKS).set_index("measure")
+    table = agreement.compare(agreement.pair(rows, NETWORKS), NETWORKS).set_index("measure")
     assert table["verdict"].to_dict() == {"full": "yes", "rare": "unknown"}
     assert np.isnan(table.loc["rare", "upper"])
 
 
 def test_pairs_are_of_one_take_and_calibration():
     rows = values({"a": (1.0, 0.0, 0.0)}, subjects=2, repeats=2)
-    assert (lambda p: (p["first"] == p["second"]).all())(exchange.pair(rows, NETWORKS))
+    assert (lambda p: (p["first"] == p["second"]).all())(agreement.pair(rows, NETWORKS))
     with pytest.raises(
         InputError, match=r"expected values of third, found those of \['new', 'old'\]"
     ):
-        exchange.pair(rows, ("old", "third"))
+        agreement.pair(rows, ("old", "third"))
     rows.loc[rows["model"] == "new", "calibration"] = "other"
     with pytest.raises(InputError, match="same takes and calibration"):
-        exchange.pair(rows, NETWORKS)
+        agreement.pair(rows, NETWORKS)
 
 
 def test_different_definitions_are_marked():
     rows = values({"neck": (1.0, 0.0, 0.1), "knee": (1.0, 0.0, 0.1)})
     rows.loc[(rows["model"] == "new") & (rows["measure"] == "neck"), "definition"] = "trained"
-    table = exchange.compare(exchange.pair(rows, NETWORKS), NETWORKS).set_index("measure")
+    table = agreement.compare(agreement.pair(rows, NETWORKS), NETWORKS).set_index("measure")
     assert table["definitions_differ"].to_dict() == {"neck": "same / trained", "knee": ""}
     assert table.loc["neck", "sentence"].endswith("defined differently: same / trained")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.motion import limits_of_agreement
+from courtside.statistics import agreement
 
 # Cardiac output of 12 subjects by radionuclide ventriculography, and less that by impedance cardiography:
 # Bland & Altman 2007, table 1.
@@ -32,7 +32,7 @@ def simulated(rng, counts, sd_between, sd_within, bias=0.0):
 def test_the_published_example():
     """The paper gives a mean difference of 0.60, a standard deviation of 0.99 of single differences."""
     pairs = [(subject, rv - ic) for subject, values in OUTPUT.items() for rv, ic in values]
-    found = limits_of_agreement.limits(*zip(*pairs, strict=True))
+    found = agreement.limits(*zip(*pairs, strict=True))
     assert (found.n_subjects, found.n) == (12, 60)
     assert found.bias == pytest.approx(0.60, abs=0.005)
     assert np.hypot(found.sd_between, found.sd_within) == pytest.approx(0.99, abs=0.005)
@@ -42,7 +42,7 @@ def test_the_published_example():
 
 def test_known_components_are_found():
     subject, difference = simulated(np.random.default_rng(1), [8] * 4000, 2.0, 1.0, bias=0.7)
-    found = limits_of_agreement.limits(subject, difference)
+    found = agreement.limits(subject, difference)
     assert found.bias == pytest.approx(0.7, abs=0.1)
     assert found.sd_between == pytest.approx(2.0, rel=0.03)
     assert found.sd_within == pytest.approx(1.0, rel=0.02)
@@ -65,7 +65,7 @@ def test_intervals_hold_the_true_limits_as_often_as_they_say(counts, between, wi
     true = 1.959964 * np.hypot(between, within)
     inside = []
     for _ in range(800):
-        found = limits_of_agreement.limits(*simulated(rng, counts, between, within))
+        found = agreement.limits(*simulated(rng, counts, between, within))
         inside.append(found.upper_interval[0] <= true <= found.upper_interval[1])
         inside.append(found.lower_interval[0] <= -true <= found.lower_interval[1])
     assert 0.92 <= np.mean(inside) <= 0.985
@@ -74,7 +74,7 @@ def test_intervals_hold_the_true_limits_as_often_as_they_say(counts, between, wi
 def test_the_smallest_detectable_change_of_a_known_error():
     rng = np.random.default_rng(3)
     subject, value = simulated(rng, [20] * 500, 30.0, 1.5)
-    change, interval, freedom = limits_of_agreement.smallest_detectable_change(subject, value)
+    change, interval, freedom = agreement.smallest_detectable_change(subject, value)
     assert change == pytest.approx(1.96 * np.sqrt(2) * 1.5, rel=0.02)
     assert freedom == 500 * 19
     assert interval[0] < change < interval[1]
@@ -85,9 +85,7 @@ def test_the_interval_of_the_smallest_detectable_change_covers():
     true = 1.96 * np.sqrt(2)
     inside = []
     for _ in range(1500):
-        _, interval, _ = limits_of_agreement.smallest_detectable_change(
-            *simulated(rng, [5] * 3, 9.0, 1.0)
-        )
+        _, interval, _ = agreement.smallest_detectable_change(*simulated(rng, [5] * 3, 9.0, 1.0))
         inside.append(interval[0] <= true <= interval[1])
     assert 0.93 <= np.mean(inside) <= 0.97
 
@@ -95,4 +93,4 @@ def test_the_interval_of_the_smallest_detectable_change_covers():
 def test_nothing_is_said_of_one_subject_or_without_repeats():
     for subject in ([1, 1, 1], [1, 2, 3]):
         with pytest.raises(ValueError, match="two subjects at least"):
-            limits_of_agreement.limits(subject, [0.1, 0.2, 0.3])
+            agreement.limits(subject, [0.1, 0.2, 0.3])

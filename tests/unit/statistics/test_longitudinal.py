@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.motion import measure_tables, session_changes
+from courtside.statistics import longitudinal
 from courtside.study.errors import InputError
 
 
@@ -18,15 +18,15 @@ def rows(sessions, measure="neck_distance", subject="p1"):
             )
             label = {"session": name, "date": date, "take": f"t{at}", "model": "net"}
             label |= {"calibration": "sfm-n40", **labels}
-            tables.append(measure_tables.labelled(take, label))
+            tables.append(longitudinal.labelled(take, label))
     return pd.concat(tables, ignore_index=True)
 
 
 def compared(table, detectable=None, **options):
-    own = session_changes.of_subject(table, "p1", **options)
-    values = session_changes.over_sessions(own)
-    errors = session_changes.errors_of_measurement(own, detectable)
-    return values, session_changes.changes(values, errors)
+    own = longitudinal.of_subject(table, "p1", **options)
+    values = longitudinal.over_sessions(own)
+    errors = longitudinal.errors_of_measurement(own, detectable)
+    return values, longitudinal.changes(values, errors)
 
 
 def test_changes_are_of_means_in_the_order_of_dates():
@@ -116,8 +116,8 @@ def test_mixtures_are_refused_or_marked(label, found):
 def test_unknown_subjects_and_measures_are_named():
     table = rows([("a", "", [8.0], {})])
     with pytest.raises(InputError, match=r"subject p9: expected one of \['p1'\]"):
-        session_changes.of_subject(table, "p9")
+        longitudinal.of_subject(table, "p9")
     with pytest.raises(
         InputError, match=r"expected values of \['mass_speed'\], found \['neck_dist"
     ):
-        session_changes.of_subject(table, "p1", ["mass_speed"])
+        longitudinal.of_subject(table, "p1", ["mass_speed"])

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import walker
-from courtside.motion import measure_tables
+from courtside.statistics import longitudinal
 from courtside.study.errors import InputError
 
 LABEL = {"session": "s", "take": "t1", "model": "net", "calibration": "file"}
@@ -30,8 +30,8 @@ def summary(path, value=2.0):
 def test_rows_carry_their_labels(tmp_path):
     paths = [summary(tmp_path / "a.csv"), summary(tmp_path / "b.csv", 3.0)]
     labels = [LABEL, LABEL | {"take": "t2", "date": "2024-05-01"}]
-    rows = measure_tables.read(paths, labels)
-    assert list(rows.columns) == measure_tables.COLUMNS
+    rows = longitudinal.read(paths, labels)
+    assert list(rows.columns) == longitudinal.COLUMNS
     assert rows["take"].tolist() == ["t1", "t1", "t2", "t2"]
     assert rows["date"].tolist() == ["", "", "2024-05-01", "2024-05-01"]
     assert rows["value"].tolist() == [2.0, 90.0, 3.0, 90.0]
@@ -42,10 +42,10 @@ def test_rows_carry_their_labels(tmp_path):
 def test_a_take_named_twice_and_a_table_without_units_are_refused(tmp_path):
     path = summary(tmp_path / "a.csv")
     with pytest.raises(InputError, match="found two of session s, take t1"):
-        measure_tables.read([path, path], [LABEL, LABEL])
+        longitudinal.read([path, path], [LABEL, LABEL])
     pd.read_csv(path).drop(columns="unit").to_csv(path, index=False)
     with pytest.raises(InputError, match=r"a\.csv: expected the columns .* missing: \['unit'\]"):
-        measure_tables.read([path], [LABEL])
+        longitudinal.read([path], [LABEL])
 
 
 def test_joints_are_measured_wherever_somebody_stands():
@@ -58,7 +58,7 @@ def test_joints_are_measured_wherever_somebody_stands():
     )
     points.xyz[0, :, wrist] = points.xyz[0, :, left] + [0.3, 0.0, 0.4]
     points.xyz[0, 7, wrist] = np.nan
-    rows = measure_tables.of_joints(points, {"session": "s", "take": "t", "calibration": "file"})
+    rows = longitudinal.of_joints(points, {"session": "s", "take": "t", "calibration": "file"})
     found = rows.set_index("measure")["value"]
     assert found["left_wrist_height_mean"] == pytest.approx(1300.0)
     assert found["left_wrist_reach_mean"] == pytest.approx(500.0)
@@ -66,5 +66,5 @@ def test_joints_are_measured_wherever_somebody_stands():
     assert set(rows["model"]) == {"blazepose-full"}
     turned = points.xyz @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]]) + [5.0, -3.0, 0.0]
     points.xyz[:] = turned
-    again = measure_tables.of_joints(points, {"session": "s", "take": "t", "calibration": "file"})
+    again = longitudinal.of_joints(points, {"session": "s", "take": "t", "calibration": "file"})
     np.testing.assert_allclose(again["value"], rows["value"])
