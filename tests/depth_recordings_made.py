@@ -6,7 +6,7 @@ import numpy as np
 from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
 
-from courtside.devices import bag_writer
+from courtside.devices.realsense import writer
 from courtside.geometry.camera import Camera
 
 AT_REST = np.eye(3, 4)
@@ -42,9 +42,9 @@ def frames(n=6, start_s=START_S):
 
 def write_bag(path, made=None):
     """Write the frames as a `.bag`."""
-    device = bag_writer.Device(baseline_m=BASELINE_M)
+    device = writer.Device(baseline_m=BASELINE_M)
     made = frames() if made is None else made
-    bag_writer.write(path, COLOUR, DEPTH, PLACED, UNIT_M, made, device=device)
+    writer.write(path, COLOUR, DEPTH, PLACED, UNIT_M, made, device=device)
     return path
 
 

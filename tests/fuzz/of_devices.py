@@ -10,7 +10,7 @@ from bvh_texts import ARM
 
 import depth_recordings_made
 import walker
-from courtside.devices import bvh, depth_recordings, mocopi, nuitrack, openpose
+from courtside.devices import bvh, mocopi, nuitrack, open_depth, openpose
 from courtside.geometry import camera as cameras
 from courtside.records import skeleton
 from courtside.records.hierarchy import forward
@@ -239,7 +239,7 @@ def depths(folder):
 
 def read_depth(path):
     """Read a recording of colour and depth, all its pictures."""
-    found = depth_recordings.read(path, "d")
+    found = open_depth.read(path, "d")
     for frames, camera in ((found.colour_frames, found.colour), (found.depth_frames, found.depth)):
         for time_s, picture in frames():
             require(np.isfinite(time_s) and picture.shape[1::-1] == camera.size, "a picture")

@@ -1,6 +1,6 @@
 """Extract the colour of a depth camera's recording: recording -> video, its frames' times, colour camera."""
 
-from courtside.devices import depth_recordings
+from courtside.devices import open_depth
 from courtside.geometry import camera
 from courtside.records import frame_times
 from courtside.study import log
@@ -8,7 +8,7 @@ from courtside.video import writer
 
 
 def main(recording, video, frames_csv, camera_toml, *, device, crf):
-    found = depth_recordings.read(recording, device)
+    found = open_depth.read(recording, device)
     for remark in found.remarks:
         log.logger.warning("%s: %s", device, remark)
     table = found.colour_index()

@@ -1,13 +1,13 @@
 """Lift the 2D joints of a depth camera's colour: recording, 2D keypoints -> the device's motion."""
 
-from courtside.devices import depth_recordings
+from courtside.devices import open_depth
 from courtside.motion import depth_lift, depth_samples, single_view
 from courtside.records import device_motion, frame_times, keypoints, skeleton
 from courtside.study import log
 
 
 def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m=None, **sampling):
-    recording = depth_recordings.read(paths.recording, device)
+    recording = open_depth.read(paths.recording, device)
     view = frame_times.on_device_clock(keypoints.read_2d(paths.pose2d), paths.frames)
     motion, sigma_m = depth_lift.lift_take(
         source,
@@ -15,7 +15,7 @@ def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m
         log.progress(recording.depth_frames(), None, f"{device}: depth pictures"),
         recording,
         bones=skeleton.read(paths.skeleton).bones,
-        baseline_m=depth_recordings.baseline(recording, baseline_m),
+        baseline_m=open_depth.baseline(recording, baseline_m),
         skin_m=skin_m,
         beyond_m=beyond_m,
         sampling=depth_samples.Sampling(**sampling),

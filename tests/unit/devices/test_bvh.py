@@ -10,7 +10,7 @@ import pytest
 from bvh_texts import ARM
 from scipy.spatial.transform import Rotation
 
-from courtside.devices import bvh, bvh_text
+from courtside.devices import bvh
 from courtside.records.hierarchy import NO_PARENT, forward
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
@@ -54,7 +54,7 @@ def test_the_tree_and_the_channels_are_the_file_s(tmp_path):
         "leg": pytest.approx([0, -0.8, 0]),
     }
     np.testing.assert_allclose(posed.time_s, [0, 0.0166667, 0.0333334])
-    rows = bvh_text.read(tmp_path / "take.bvh").rows
+    rows = bvh.read_text(tmp_path / "take.bvh").rows
     for joint, order, columns in (
         (0, "ZXY", [3, 4, 5]),
         (1, "YXZ", [7, 8, 9]),
@@ -143,7 +143,7 @@ def fixtures(status):
 @pytest.mark.parametrize("fixture", fixtures("valid"))
 def test_an_edge_case_is_what_its_manifest_says(fixture):
     path = MOCOPI / "edge-cases" / fixture["file"]
-    text, posed = bvh_text.read(path), bvh.read(path)
+    text, posed = bvh.read_text(path), bvh.read(path)
     assert len(posed.hierarchy.joints) == fixture["joints"]
     assert text.rows.shape == (fixture["frames"], fixture["channels"])
     assert text.frame_time_s == fixture["frameTime"]

@@ -8,7 +8,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import mannequin
-from courtside.devices import realsense
+from courtside.devices.realsense import recording
 from courtside.geometry import camera, courts
 from courtside.records import take_truth
 from courtside.records.hierarchy import forward
@@ -50,7 +50,7 @@ def test_a_take_of_devices_only_has_their_files_and_truth(recorded):
 
 def test_the_bag_shows_the_truth(recorded):
     folder, _, truth = recorded
-    found = realsense.read(folder / "d415.bag")
+    found = recording.read(folder / "d415.bag")
     assert found.colour.size == found.depth.size == (212, 120)
     assert (found.depth_unit_m, found.baseline_m) == (0.001, pytest.approx(0.055))
     assert found.separation_m == pytest.approx(0.015)

@@ -1,21 +1,16 @@
-"""BVH: a body's joints and their motion, as mocopi and other suits write it.
+"""BVH files: header, rows of motion, and the joints that they pose."""
 
-`bvh_text` checks the file and brings it to one form; bvhio then reads the joints from that: names, which
-hangs from which, channels. Three things are not left to bvhio. Numbers are taken from the text, because bvhio
-keeps them in single precision. The rows are read by numpy and solved for all frames at once, because bvhio
-makes an object of every joint in every frame. And what bvhio refuses or mistakes (lower case, blanks before
-colons, names that are not ASCII) never reaches it.
-"""
-
+import re
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
-from urllib.parse import unquote
+from urllib.parse import quote, unquote
 
 import bvhio
 import numpy as np
 
-from courtside.devices import bvh_text
 from courtside.records.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
+from courtside.study.errors import InputError
 
 CENTIMETRES_M = 0.01
 TURNED = {"X": (1, 2), "Y": (2, 0), "Z": (0, 1)}  # the columns that a turn about an axis mixes
@@ -47,7 +42,7 @@ def read(path, *, unit_m=CENTIMETRES_M):
     Zrotation Xrotation Yrotation is R = Rz Rx Ry, Tait-Bryan, not the proper Euler angles (z-x-z) of some
     descriptions.
     """
-    text = bvh_text.read(path)
+    text = read_text(path)
     names, parents, channels = _joints(text)
     hierarchy = Hierarchy(
         joints=tuple(names),
@@ -89,7 +84,7 @@ def _translations(text, columns):
     found = np.repeat(text.offsets[None], len(text.rows), axis=0)
     for (joint, channel), column in columns.items():
         if channel.endswith("position"):
-            found[:, joint, bvh_text.AXES.index(channel[0])] = text.rows[:, column]
+            found[:, joint, AXES.index(channel[0])] = text.rows[:, column]
     return found
 
 
@@ -110,3 +105,341 @@ def _rotations(rows, channels, columns):
             turned[:, second] = cosine * turned[:, second] - sine * before
         found[:, joints] = np.moveaxis(turned, (3, 2), (0, 1))
     return found
+
+
+LARGEST = 1e9  # of any number: sums and products of such stay finite
+MAX_DIGITS = 40
+MAX_PER_CHANNEL = 100  # characters of a row for each channel, blanks included
+NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+EXPORT_AGAIN = "export the file again"
+
+
+def is_number(word, least=-LARGEST, most=LARGEST):
+    """Say whether a word is a plain decimal number between two bounds.
+
+    Parameters
+    ----------
+    word : str
+    least, most : float
+        The bounds, included.
+    """
+    return (
+        len(word) <= MAX_DIGITS
+        and NUMBER.fullmatch(word) is not None
+        and least <= float(word) <= most
+    )
+
+
+def shown(word):
+    """Return a word as an error shows it: short, on one line."""
+    if not word:
+        return "nothing"
+    return repr(word if len(word) <= MAX_DIGITS else word[:MAX_DIGITS] + "...")
+
+
+def read_rows(path, text, at, n_frames, n_channels):
+    """Read the rows at the end of a BVH file.
+
+    Parameters
+    ----------
+    path : str or Path
+        For the errors.
+    text : str
+        The whole file.
+    at : int
+        Where in it the rows begin.
+    n_frames, n_channels : int
+        Rows and columns that there must be.
+
+    Returns
+    -------
+    rows : (T, C) float
+
+    Raises
+    ------
+    InputError
+        If there are more or fewer rows, or a row is not so many finite numbers.
+    """
+    lines = text[at:].split("\n")
+    filled = [line for line in lines if line and not line.isspace()]
+    if len(filled) != n_frames:
+        raise InputError(
+            f"{path}: expected {n_frames} rows of motion as `Frames:` says, found {len(filled)}; "
+            "the file may be cut off, or correct the count"
+        )
+    if not n_frames:
+        return np.empty((0, n_channels))
+    if not n_channels:
+        raise InputError(f"{path}: expected a channel in some joint, found none; {EXPORT_AGAIN}")
+    _check_width(path, lines, text.count("\n", 0, at) + 1, n_channels)
+    try:
+        rows = np.loadtxt(filled, comments=None, ndmin=2)
+    except ValueError:
+        rows = np.empty((0, 0))
+    if rows.shape != (n_frames, n_channels) or not (np.abs(rows) <= LARGEST).all():
+        raise _bad_row(path, lines, text.count("\n", 0, at) + 1, n_channels)
+    return rows
+
+
+def _check_width(path, lines, first, n_channels):
+    """Refuse rows so wide that splitting them would already take long."""
+    most = MAX_PER_CHANNEL * n_channels
+    for number, line in enumerate(lines, start=first):
+        if len(line) > most:
+            raise InputError(
+                f"{path}: line {number}: expected {n_channels} numbers, one for each channel, "
+                f"found a line of {len(line)} characters; {EXPORT_AGAIN}"
+            )
+
+
+def _bad_row(path, lines, first, n_channels):
+    """Return the error of the first row that is not `n_channels` numbers."""
+    for number, line in enumerate(lines, start=first):
+        words = line.split()
+        if words and len(words) != n_channels:
+            return InputError(
+                f"{path}: line {number}: expected {n_channels} numbers, one for each channel, "
+                f"found {len(words)}; {EXPORT_AGAIN}"
+            )
+        for word in words:
+            if not is_number(word):
+                return InputError(
+                    f"{path}: line {number}: expected finite numbers of at most {LARGEST:g}, "
+                    f"found {shown(word)}; {EXPORT_AGAIN}"
+                )
+    return InputError(
+        f"{path}: expected rows of {n_channels} numbers, found others; {EXPORT_AGAIN}"
+    )
+
+
+AXES = ("X", "Y", "Z")
+CHANNELS = {
+    f"{axis}{kind}".lower(): f"{axis}{kind}" for kind in ("position", "rotation") for axis in AXES
+}
+MAX_BYTES = 64 << 20  # 12 minutes of mocopi at 60 frames a second
+MAX_LINES = 1_000_000
+MAX_JOINTS = 1000
+MAX_DEPTH = 100  # bvhio calls itself once a level
+MAX_JOINT_FRAMES = 5_000_000  # the rotations of all joints and frames then take 360 MB
+MAX_NAME = 100
+LONGEST_FRAME_S = 3600.0
+FRAMES = re.compile(r"\s*frames\s*:[^\S\n]*(\S*)[^\S\n]*(?:\n|\Z)", re.IGNORECASE)
+FRAME_TIME = re.compile(r"\s*frame\s+time\s*:[^\S\n]*(\S*)[^\S\n]*(?:\n|\Z)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class BvhText:
+    """What a BVH file holds, checked.
+
+    Attributes
+    ----------
+    hierarchy : str
+        The hierarchy as bvhio reads it: capitals, one thing a line; names percent-encoded, so that they
+        are ASCII.
+    offsets : (J, 3) float
+        OFFSET of each joint in the file's order, in the file's unit.
+    ends : dict of int to (3,) float
+        End Site of the joints that have one, by the joint's index, in the file's unit.
+    frame_time_s : float
+        Seconds from row to row.
+    rows : (T, C) float
+        The motion, a column for each channel, in the file's unit and degrees.
+    """
+
+    hierarchy: str
+    offsets: np.ndarray
+    ends: dict
+    frame_time_s: float
+    rows: np.ndarray
+
+
+class _Words:
+    """The words of a text one after the other, and where they stand."""
+
+    def __init__(self, path, text):
+        self.path, self.text = path, text
+        self.found = re.compile(r"\S+").finditer(text)
+        self.start = self.end = 0
+
+    def take(self):
+        """Return the next word; an empty one at the end of the file."""
+        match = next(self.found, None)
+        self.start, self.end = match.span() if match else (len(self.text), len(self.text))
+        return match.group() if match else ""
+
+    def expect(self, wanted, where):
+        word = self.take()
+        if word.upper() != wanted:
+            raise self.error(f"expected {wanted} {where}", word)
+        return word
+
+    def number(self, where):
+        word = self.take()
+        if not is_number(word):
+            raise self.error(f"expected a number {where}", word)
+        return float(word)
+
+    def error(self, expected, word, mend=EXPORT_AGAIN):
+        line = self.text.count("\n", 0, self.start) + 1
+        return InputError(f"{self.path}: line {line}: {expected}, found {shown(word)}; {mend}")
+
+
+class _Reader:
+    """Reads the hierarchy, joint after joint, with a list of the open ones in place of recursion."""
+
+    def __init__(self, words):
+        self.words = words
+        self.lines, self.offsets, self.ends = ["HIERARCHY"], [], {}
+        self.n_channels = 0
+        self.open = []
+
+    def read(self):
+        self.words.expect("HIERARCHY", "in front of the joints")
+        self.words.expect("ROOT", "after HIERARCHY")
+        self._joint("ROOT")
+        while self.open:
+            index, name = self.open[-1]
+            word = self.words.take()
+            if word.upper() == "JOINT":
+                self._joint("JOINT")
+            elif word.upper() == "END" and index not in self.ends:
+                self._end_site(index, name)
+            elif word == "}":
+                self.lines.append("}")
+                self.open.pop()
+            else:
+                raise self.words.error(f"expected JOINT, one End Site or }} in joint {name}", word)
+        return self
+
+    def _joint(self, kind):
+        name = self.words.take()
+        if not 0 < len(name) <= MAX_NAME or not name.isprintable() or name in ("{", "}"):
+            raise self.words.error(
+                f"expected a joint's name of up to {MAX_NAME} printable letters", name
+            )
+        if len(self.offsets) == MAX_JOINTS or len(self.open) == MAX_DEPTH:
+            limit = f"at most {MAX_JOINTS} joints, {MAX_DEPTH} of them in a chain"
+            raise self.words.error(f"expected {limit}", f"joint {name}")
+        self.words.expect("{", f"after the name of joint {name}")
+        self.open.append((len(self.offsets), name))
+        self.offsets.append(self._offset(f"of joint {name}"))
+        channels = self._channels(name)
+        self.n_channels += len(channels)
+        offset = "OFFSET {} {} {}".format(*self.offsets[-1])
+        self.lines += [
+            f"{kind} {quote(name)}",
+            "{",
+            offset,
+            " ".join(["CHANNELS", str(len(channels)), *channels]),
+        ]
+
+    def _offset(self, where):
+        self.words.expect("OFFSET", where)
+        return [self.words.number(f"in OFFSET {where}") for _ in AXES]
+
+    def _channels(self, name):
+        self.words.expect("CHANNELS", f"after OFFSET of joint {name}")
+        count = self.words.take()
+        if count not in map(str, range(len(CHANNELS) + 1)):
+            raise self.words.error(f"expected 0 to {len(CHANNELS)} CHANNELS of joint {name}", count)
+        channels = []
+        for at in range(int(count)):
+            word = self.words.take()
+            channel = CHANNELS.get(word.lower())
+            if channel is None or channel in channels:
+                raise self.words.error(
+                    f"CHANNELS of joint {name}: expected {count} different ones of "
+                    f"{', '.join(CHANNELS.values())}",
+                    word,
+                    f"correct the one after the first {at}",
+                )
+            channels.append(channel)
+        return channels
+
+    def _end_site(self, index, name):
+        where = f"of the End Site of joint {name}"
+        self.words.expect("SITE", f"after End in joint {name}")
+        self.words.expect("{", f"at the start {where}")
+        self.ends[index] = self._offset(where)
+        self.words.expect("}", f"at the end {where}")
+
+
+def read_text(path):
+    """Read the text of a BVH file and check it.
+
+    Parameters
+    ----------
+    path : str or Path
+        BVH: one ROOT, keywords in any case, blanks and blank lines as they come.
+
+    Returns
+    -------
+    text : BvhText
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is not BVH, or is larger than anything a take can be; the line says where.
+    """
+    text = _load(path)
+    words = _Words(path, text)
+    found = _Reader(words).read()
+    words.expect("MOTION", "after the joints of the one ROOT")
+    n_frames, frame_time_s, at = _motion_header(words)
+    if n_frames * len(found.offsets) > MAX_JOINT_FRAMES:
+        raise InputError(
+            f"{path}: expected at most {MAX_JOINT_FRAMES} joints times frames, found "
+            f"{len(found.offsets)} times {n_frames}; cut the take into pieces"
+        )
+    return BvhText(
+        hierarchy="\n".join(found.lines),
+        offsets=np.array(found.offsets, dtype=float),
+        ends={index: np.array(offset) for index, offset in found.ends.items()},
+        frame_time_s=frame_time_s,
+        rows=read_rows(path, text, at, n_frames, found.n_channels),
+    )
+
+
+def _load(path):
+    path = Path(path)
+    try:
+        if not path.is_file():
+            raise InputError(f"{path}: expected a BVH file, found no file; correct the path")
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            raise InputError(
+                f"{path}: expected a BVH file of at most {MAX_BYTES >> 20} MiB, found {size >> 20} MiB; "
+                "cut the take into pieces"
+            )
+        text = path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: expected a text file, found: {error}; {EXPORT_AGAIN}") from None
+    if text.count("\n") > MAX_LINES:
+        raise InputError(
+            f"{path}: expected at most {MAX_LINES} lines, found more; cut the take into pieces"
+        )
+    return text
+
+
+def _motion_header(words):
+    """Return the number of frames, the frame time, and where the rows begin."""
+    frames, at = _header(words, FRAMES, "`Frames: COUNT`", words.end)
+    if not frames.isascii() or not frames.isdecimal() or len(frames) > len(str(MAX_JOINT_FRAMES)):
+        raise words.error(f"expected 0 to {MAX_JOINT_FRAMES} as the number of Frames", frames)
+    time_s, at = _header(words, FRAME_TIME, "`Frame Time: SECONDS`", at)
+    least = 0.0 if int(frames) <= 1 else np.finfo(float).tiny
+    if not is_number(time_s, least, LONGEST_FRAME_S):
+        positive = "of 0 or more" if least == 0 else "above 0"
+        raise words.error(
+            f"expected a Frame Time {positive} and up to {LONGEST_FRAME_S:g} s", time_s
+        )
+    return int(frames), float(time_s), at
+
+
+def _header(words, pattern, wanted, at):
+    match = pattern.match(words.text, at)
+    words.start = match.start(1) if match else at
+    if not match:
+        rest = words.text[at : at + MAX_DIGITS + 1].strip().partition("\n")[0]
+        raise words.error(f"expected {wanted} alone on its line", rest)
+    return match.group(1), match.end()

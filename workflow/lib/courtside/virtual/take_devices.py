@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from courtside.devices import bag_writer
+from courtside.devices.realsense import writer
 from courtside.records import take_truth
 from courtside.study import log
 from courtside.virtual import capture, crews, depth_camera, hall, inertial, presets
@@ -150,8 +150,8 @@ def _write_bag(path, take, name, sensors, call):
     frames = call("frame", [(name, index, time_s) for index, time_s in enumerate(times_s)])
     own_s = np.arange(len(times_s)) / device.rate_hz
     shown = log.progress(zip(own_s, frames, strict=True), len(own_s), f"{name}: frames")
-    about = bag_writer.Device(baseline_m=device.baseline_m, rate_hz=round(device.rate_hz))
-    bag_writer.write(
+    about = writer.Device(baseline_m=device.baseline_m, rate_hz=round(device.rate_hz))
+    writer.write(
         path,
         colour,
         depth,

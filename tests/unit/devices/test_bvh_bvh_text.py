@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from bvh_texts import ARM
 
-from courtside.devices import bvh_text
+from courtside.devices import bvh
 from courtside.study.errors import InputError
 
 
 def read(tmp_path, text, **how):
     path = tmp_path / "take.bvh"
     path.write_text(text, encoding="utf-8", **how)
-    return bvh_text.read(path)
+    return bvh.read_text(path)
 
 
 def test_a_file_is_read_as_it_stands(tmp_path):
@@ -129,12 +129,12 @@ def test_a_file_cut_anywhere_is_refused(tmp_path):
 
 def test_what_is_no_text_is_refused(tmp_path):
     with pytest.raises(InputError, match="found no file"):
-        bvh_text.read(tmp_path / "none.bvh")
+        bvh.read_text(tmp_path / "none.bvh")
     with pytest.raises(InputError, match="found no file"):
-        bvh_text.read(tmp_path)
+        bvh.read_text(tmp_path)
     (tmp_path / "video.bvh").write_bytes(b"\x00\xff\xfe" * 100)
     with pytest.raises(InputError, match="expected a text file"):
-        bvh_text.read(tmp_path / "video.bvh")
+        bvh.read_text(tmp_path / "video.bvh")
 
 
 JOINT = "JOINT a { OFFSET 0 0 0 CHANNELS 0 "
@@ -167,6 +167,6 @@ def test_a_hostile_file_is_refused_at_once(tmp_path, name):
 
 def test_a_file_too_large_is_not_even_opened(tmp_path):
     with (tmp_path / "large.bvh").open("wb") as stream:
-        stream.truncate(bvh_text.MAX_BYTES + 1)  # a hole: takes no space
+        stream.truncate(bvh.MAX_BYTES + 1)  # a hole: takes no space
     with pytest.raises(InputError, match="at most 64 MiB"):
-        bvh_text.read(tmp_path / "large.bvh")
+        bvh.read_text(tmp_path / "large.bvh")

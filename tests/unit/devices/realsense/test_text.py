@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.devices import realsense_text
+from courtside.devices.realsense import text as realsense_text
 from courtside.study.errors import InputError
 
 TURN = Rotation.from_euler("xyz", [0.1, -0.2, 0.3])

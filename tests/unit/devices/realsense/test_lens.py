@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from courtside.devices import realsense_lens
+from courtside.devices.realsense import lens as realsense_lens
 from courtside.geometry import camera
 from courtside.study.errors import InputError
 

@@ -3,7 +3,7 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag1 import Reader
 
-from courtside.devices import bag_writer, realsense
+from courtside.devices.realsense import recording, writer
 from courtside.geometry import depth_registration
 from courtside.geometry.camera import Camera
 from depth_recordings_made import BASELINE_M, COLOUR, DEPTH, PLACED, UNIT_M, frames, write_bag
@@ -49,7 +49,7 @@ def test_topics_and_types_are_those_of_a_real_recording(bag):
 
 
 def test_reading_back_gives_the_same(bag):
-    found = realsense.read(bag)
+    found = recording.read(bag)
     assert np.abs(found.colour_from_depth - PLACED).max() < 1e-12
     assert found.baseline_m == pytest.approx(BASELINE_M)
 
@@ -112,7 +112,7 @@ def test_the_camera_s_own_software_reads_it(sdk, bag):
 def test_the_camera_s_own_software_converts_it(sdk, bag, tmp_path):
     path = tmp_path / "a.db3"
     sdk.context().convert_bag_to_db3(str(bag), str(path))
-    found = realsense.read(path)
+    found = recording.read(path)
     assert np.allclose(found.colour_from_depth, PLACED, atol=2e-6)
     assert found.depth_unit_m == UNIT_M
     for (_, image), (_, steps), (_, bgr, depth) in zip(
@@ -135,7 +135,7 @@ def test_the_camera_s_own_software_aligns_alike(sdk, tmp_path):
     black = np.zeros((240, 320, 3), np.uint8)
     made = [(k / 30, black, steps) for k in range(3)]
     path = tmp_path / "a.bag"
-    bag_writer.write(path, colour, depth, apart, 0.001, made)
+    writer.write(path, colour, depth, apart, 0.001, made)
     theirs = played(sdk, path)[0][3]
     ours = depth_registration.align(steps * 0.001, depth, colour, apart)
     both = (theirs > 0) & np.isfinite(ours)

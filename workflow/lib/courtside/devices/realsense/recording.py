@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.devices import bag_images, bags, realsense_lens, realsense_text
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
+from courtside.devices.realsense import lens, rosbag, text
 from courtside.geometry import camera_fields, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.frame_times import FrameTimes
@@ -53,10 +53,10 @@ def read(path, name="realsense"):
         further in shows when the frames are read.
     """
     path = Path(path)
-    with bags.opened(path) as bag:
+    with rosbag.opened(path) as bag:
         streams = _streams(bag)
         lenses = {kind: _camera(bag, streams[kind], f"{name}-{kind}") for kind in streams}
-        domains = {kind: realsense_text.clock(bag, streams[kind]) for kind in streams}
+        domains = {kind: text.clock(bag, streams[kind]) for kind in streams}
         depth_unit_m, remark = _depth_unit(bag, streams["depth"])
         moved, remarks = _colour_from_depth(bag, streams), (remark,) if remark else ()
         baseline_m = _option(bag, streams["depth"], "Stereo Baseline", np.nan) / 1000
@@ -74,8 +74,8 @@ def read(path, name="realsense"):
             depth=lenses["depth"],
             colour_from_depth=moved,
             depth_unit_m=depth_unit_m,
-            colour_frames=lambda: _pictures(follow(*colour, bag_images.colour)),
-            depth_frames=lambda: _pictures(follow(*depth, bag_images.depth)),
+            colour_frames=lambda: _pictures(follow(*colour, rosbag.colour)),
+            depth_frames=lambda: _pictures(follow(*depth, rosbag.depth)),
             colour_index=lambda: _index(follow(*colour, None)),
             baseline_m=float(baseline_m),
             remarks=remarks,
@@ -106,10 +106,10 @@ def _camera(bag, stream, name):
     info = bag.first(f"{stream}/info/camera_info") or bag.first(f"{stream}/camera_info")
     if info is None:
         raise InputError(f"{where}: expected its lens (camera_info), found none; {RECORD}")
-    size, matrix, model, coefficients = realsense_text.lens(where, info)
+    size, matrix, model, coefficients = text.lens(where, info)
     try:
         camera = Camera(name, size, matrix, np.zeros(5), STANDING_STILL)
-        dist = realsense_lens.five_coefficients(where, model, coefficients, matrix, size)
+        dist = lens.five_coefficients(where, model, coefficients, matrix, size)
         return replace(camera, dist=dist)
     except InputError:
         raise
@@ -121,7 +121,7 @@ def _depth_unit(bag, stream):
     """Return metres per step, and a remark where that is the default."""
     unit = _option(bag, stream, "Depth Units", np.nan)
     if np.isnan(unit):
-        unit = realsense_text.number_in(bag.first(f"{stream}/image/metadata"), "depth_units")
+        unit = text.number_in(bag.first(f"{stream}/image/metadata"), "depth_units")
     if np.isnan(unit):
         return (
             DEFAULT_UNIT_M,
@@ -138,7 +138,7 @@ def _option(bag, stream, option, absent):
     """Return a setting of a stream's sensor."""
     sensor = stream.rpartition("/")[0]
     for name in (option, option.replace(" ", "_")):
-        value = realsense_text.number(bag.first(f"{sensor}/option/{name}/value"))
+        value = text.number(bag.first(f"{sensor}/option/{name}/value"))
         if np.isfinite(value):
             return value
     return absent
@@ -154,7 +154,7 @@ def _colour_from_depth(bag, streams):
                 f"{bag.path}: {stream}: expected its place (tf), found {len(topics)} of them; {RECORD}"
             )
         reference = topics[0].rpartition("/")[2].removeprefix("ref_")
-        places[kind] = reference, realsense_text.place(f"{bag.path}: {stream}", found)
+        places[kind] = reference, text.place(f"{bag.path}: {stream}", found)
     (to_depth, depth_from), (to_colour, colour_from) = places["depth"], places["colour"]
     if to_depth != to_colour:
         raise InputError(
@@ -170,13 +170,11 @@ def _colour_from_depth(bag, streams):
 def _follow(path, name, own_clock, stream, camera, decode):
     """Yield (time_s, number, picture) of a stream; no picture without `decode`."""
     what, last_s, late, n, numbers = f"{name}: {stream.rpartition('/')[2]}", -np.inf, 0, 0, [0, 0]
-    with bags.opened(path) as bag:
-        stamps = realsense_text.stamps(bag, stream) if own_clock else {}
+    with rosbag.opened(path) as bag:
+        stamps = text.stamps(bag, stream) if own_clock else {}
         topics = [t for t in bag.counts if (m := PICTURES.fullmatch(t)) and m[1] == stream]
         for index, (_, time_ns, message) in enumerate(bag.messages(topics)):
-            number, time_s = stamps.get(time_ns) or realsense_text.stamp(
-                message, time_ns, index, own_clock
-            )
+            number, time_s = stamps.get(time_ns) or text.stamp(message, time_ns, index, own_clock)
             if not time_s > last_s:
                 late += 1
                 continue
@@ -193,12 +191,12 @@ def _decoded(where, message, camera, decode):
     try:
         picture = decode(message)
     except (ValueError, TypeError, OverflowError, MemoryError) as error:
-        raise InputError(f"{where}: {error}; {bags.HOW}") from error
+        raise InputError(f"{where}: {error}; {rosbag.HOW}") from error
     size = picture.shape[1], picture.shape[0]
     if size != camera.size:
         raise InputError(
             f"{where}: expected {camera_fields.times(camera.size)} px as its lens, found {camera_fields.times(size)}; "
-            f"{bags.HOW}"
+            f"{rosbag.HOW}"
         )
     return picture
 

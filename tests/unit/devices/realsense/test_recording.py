@@ -5,7 +5,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.devices import realsense
+from courtside.devices.realsense import recording as realsense
 from courtside.study.errors import InputError
 from depth_recordings_made import (
     BASELINE_M,

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.devices import depth_folder, realsense
+from courtside.devices import depth_folder
+from courtside.devices.realsense import recording as realsense
 from courtside.study import log
 
 

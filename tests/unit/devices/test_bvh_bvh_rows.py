@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from courtside.devices import bvh_rows
+from courtside.devices import bvh
 from courtside.study.errors import InputError
 
 
 def test_rows_are_numbers_whatever_their_padding():
     text = "head\n\n 1\t2.5e-1  -3. \n   \n+.5 6 7E2\n\n"
-    found = bvh_rows.read("a.bvh", text, len("head\n"), 2, 3)
+    found = bvh.read_rows("a.bvh", text, len("head\n"), 2, 3)
     np.testing.assert_array_equal(found, [[1, 0.25, -3], [0.5, 6, 700]])
-    assert bvh_rows.read("a.bvh", "head\n \n", 5, 0, 3).shape == (0, 3)
+    assert bvh.read_rows("a.bvh", "head\n \n", 5, 0, 3).shape == (0, 3)
 
 
 @pytest.mark.parametrize(
@@ -33,24 +33,24 @@ def test_rows_are_numbers_whatever_their_padding():
 )
 def test_a_bad_row_is_named(rows, line, told):
     with pytest.raises(InputError, match=told) as caught:
-        bvh_rows.read("a.bvh", "head\n" + rows, 5, 2, 3)
+        bvh.read_rows("a.bvh", "head\n" + rows, 5, 2, 3)
     assert str(caught.value).startswith(f"a.bvh: line {line}: ")
     assert "\n" not in str(caught.value)
 
 
 def test_more_or_fewer_rows_are_refused():
     with pytest.raises(InputError, match="expected 4 rows of motion as `Frames:` says, found 2"):
-        bvh_rows.read("a.bvh", "1 2\n3 4\n", 0, 4, 2)
+        bvh.read_rows("a.bvh", "1 2\n3 4\n", 0, 4, 2)
     with pytest.raises(InputError, match=r"expected 1 rows .*, found 2"):
-        bvh_rows.read("a.bvh", "1 2\n3 4\n", 0, 1, 2)
+        bvh.read_rows("a.bvh", "1 2\n3 4\n", 0, 1, 2)
     with pytest.raises(InputError, match="expected a channel in some joint"):
-        bvh_rows.read("a.bvh", "1\n", 0, 1, 0)
+        bvh.read_rows("a.bvh", "1\n", 0, 1, 0)
 
 
 def test_words_are_numbers_between_bounds():
-    assert bvh_rows.is_number("-9.23872e-007")
-    assert bvh_rows.is_number("0", least=0.0)
-    assert not bvh_rows.is_number("-1e-9", least=0.0)
-    assert not bvh_rows.is_number("٣")  # a digit, but not one of BVH's
-    assert bvh_rows.shown("") == "nothing"
-    assert bvh_rows.shown("a\nb") == "'a\\nb'"
+    assert bvh.is_number("-9.23872e-007")
+    assert bvh.is_number("0", least=0.0)
+    assert not bvh.is_number("-1e-9", least=0.0)
+    assert not bvh.is_number("٣")  # a digit, but not one of BVH's
+    assert bvh.shown("") == "nothing"
+    assert bvh.shown("a\nb") == "'a\\nb'"
