@@ -1,6 +1,6 @@
 """Convert the network's own metric body in one camera: 2D keypoints -> the motion of one more source."""
 
-from courtside.motion import single_view
+from courtside.depth import single_view
 from courtside.records import device_motion, frame_times, keypoints
 from courtside.study import log
 

@@ -1,7 +1,7 @@
 """Lift the 2D joints of a depth camera's colour: recording, 2D keypoints -> the device's motion."""
 
+from courtside.depth import lifting, single_view, surfaces
 from courtside.devices import open_depth
-from courtside.motion import depth_lift, depth_samples, single_view
 from courtside.records import device_motion, frame_times, keypoints, skeleton
 from courtside.study import log
 
@@ -9,7 +9,7 @@ from courtside.study import log
 def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m=None, **sampling):
     recording = open_depth.read(paths.recording, device)
     view = frame_times.on_device_clock(keypoints.read_2d(paths.pose2d), paths.frames)
-    motion, sigma_m = depth_lift.lift_take(
+    motion, sigma_m = lifting.lift_take(
         source,
         single_view.main_person(view),
         log.progress(recording.depth_frames(), None, f"{device}: depth pictures"),
@@ -18,9 +18,9 @@ def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m
         baseline_m=open_depth.baseline(recording, baseline_m),
         skin_m=skin_m,
         beyond_m=beyond_m,
-        sampling=depth_samples.Sampling(**sampling),
+        sampling=surfaces.Sampling(**sampling),
     )
-    log.logger.info("%s", depth_lift.summary(motion, sigma_m))
+    log.logger.info("%s", lifting.summary(motion, sigma_m))
     device_motion.write(device_npz, motion)
 
 

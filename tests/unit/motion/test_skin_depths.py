@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from courtside.depth.lifting import SKIN_TO_JOINT_M
 from courtside.motion import skin_depths
-from courtside.motion.depth_lift import SKIN_TO_JOINT_M
 from courtside.records import limbs
 from courtside.records.take_truth import DeviceTruth, TakeTruth
 

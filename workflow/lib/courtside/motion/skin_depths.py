@@ -10,8 +10,8 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
+from courtside.depth.lifting import SKIN_TO_JOINT_M, by_joint
 from courtside.geometry import rotations
-from courtside.motion.depth_lift import SKIN_TO_JOINT_M, by_joint
 from courtside.motion.pose_errors import at_times
 from courtside.records import limbs, sync
 
@@ -52,7 +52,7 @@ def estimate(pairs, joints, true_joints, skin_m=None, beyond_m=None):
     joints, true_joints : sequence of str
         Names of the J and of the K joints.
     skin_m : dict of str to float, optional
-        With which they were lifted; `depth_lift.SKIN_TO_JOINT_M` by default.
+        With which they were lifted; `lifting.SKIN_TO_JOINT_M` by default.
     beyond_m : dict of str to float, optional
         With which they were lifted; 0 where absent.
 

@@ -4,8 +4,8 @@ from itertools import product
 
 import numpy as np
 
+from courtside.depth.surfaces import TRUNK, Sampler, Sampling
 from courtside.geometry import camera, rotations
-from courtside.motion.depth_samples import TRUNK, Sampler, Sampling
 from courtside.records import limbs, reasons
 from courtside.records.device_motion import DeviceMotion
 

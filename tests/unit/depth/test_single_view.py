@@ -1,6 +1,6 @@
 import numpy as np
 
-from courtside.motion import single_view
+from courtside.depth import single_view
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints2D
 

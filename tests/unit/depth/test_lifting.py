@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import depth_scenes
+from courtside.depth import lifting
+from courtside.depth.surfaces import Sampling
 from courtside.geometry import camera
-from courtside.motion import depth_lift
-from courtside.motion.depth_samples import Sampling
 from courtside.records import limbs, reasons
 from courtside.records.keypoints import Keypoints2D
 from depth_scenes import BONES, RADIUS_M, STANDING
@@ -46,7 +46,7 @@ def seen(places):
 def lift(keypoints, pictures, **options):
     taken = [(t, depth_scenes.steps(z)) for t, z in zip(keypoints.time_s, pictures, strict=True)]
     settings = {"bones": BONES, "baseline_m": 0.055, "skin_m": RADIUS_M} | options
-    return depth_lift.lift_take("cam-depth", keypoints, taken, RIG, **settings)
+    return lifting.lift_take("cam-depth", keypoints, taken, RIG, **settings)
 
 
 @pytest.fixture(scope="module")
@@ -176,29 +176,29 @@ def test_a_lost_depth_picture_is_no_depth(still):
     keypoints = view(xyz)
     taken = [(t, depth_scenes.steps(z)) for t, z in zip(keypoints.time_s, pictures, strict=True)]
     del taken[5]
-    motion, _ = depth_lift.lift_take(
+    motion, _ = lifting.lift_take(
         "d", keypoints, taken, RIG, bones=BONES, baseline_m=0.055, skin_m=RADIUS_M
     )
     assert (motion.reason[5] == reasons.NO_DEPTH).all()
     assert np.count_nonzero(motion.reason) == len(NAMES)
-    assert "91.7%" in depth_lift.summary(motion, np.ones(3))
+    assert "91.7%" in lifting.summary(motion, np.ones(3))
 
 
 def test_frames_are_taken_at_the_nearest_time():
     frames = [(0.0, "a"), (0.1, "b"), (0.3, "c")]
     times = [-0.2, 0.04, 0.06, 0.19, 0.29, 0.5]
-    found = list(depth_lift.nearest_frames(times, iter(frames), 0.06))
+    found = list(lifting.nearest_frames(times, iter(frames), 0.06))
     assert found == [None, "a", "b", None, "c", None]
-    assert list(depth_lift.nearest_frames([1.0], [], 9)) == [None]
+    assert list(lifting.nearest_frames([1.0], [], 9)) == [None]
 
 
 def test_the_skin_of_each_joint_by_its_name():
-    found = depth_lift.by_joint(
+    found = lifting.by_joint(
         ["left_wrist", "nose", "right_wrist"], {"wrist": 0.03, "right_wrist": 0.02}
     )
     assert found.tolist() == [0.03, 0.0, 0.02]
     with pytest.raises(ValueError, match="missing"):
-        depth_lift.by_joint(["tail"], {})
+        lifting.by_joint(["tail"], {})
 
 
 def test_several_people_or_standing_clocks_are_refused(still):
