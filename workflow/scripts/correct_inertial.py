@@ -5,7 +5,7 @@ from math import hypot
 
 from courtside.devices import mocopi
 from courtside.exports import bvh
-from courtside.motion import inertial_correction
+from courtside.inertial import correction
 from courtside.records import device_motion, skeleton, sync
 from courtside.records.hierarchy import forward
 from courtside.study import log
@@ -23,7 +23,7 @@ def main(bvh_file, skeleton_yaml, vision_npz, sync_json, out, *, device, vision_
     if fault := sync.fault_line(sync_json, used):
         raise InputError(fault)
     own, theirs = used[device], used[vision_device]
-    corrected, report = inertial_correction.correct(
+    corrected, report = correction.correct(
         replace(posed, time_s=own.to_reference(posed.time_s)),
         replace(vision, time_s=theirs.to_reference(vision.time_s)),
         sigma_m=sigma_m,

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 import mannequin
 import moved_bodies
 import performers
-from courtside.motion import inertial_correction
+from courtside.inertial import correction
 from courtside.records import skeleton
 from courtside.records.device_motion import DeviceMotion
 from courtside.records.limbs import JOINTS as LIMB_JOINTS
@@ -81,7 +81,7 @@ def errors_m(strength):
         translation=recording.posed.translation[rows],
         parent_from_joint=recording.posed.parent_from_joint[rows],
     )
-    corrected, _ = inertial_correction.correct(posed, vision(), sigma_m=0.025, lag_s=0.006)
+    corrected, _ = correction.correct(posed, vision(), sigma_m=0.025, lag_s=0.006)
     return [median_error_m(each, time_s, true) for each in (posed, corrected)]
 
 

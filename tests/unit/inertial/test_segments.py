@@ -5,15 +5,15 @@ import pytest
 
 import moved_bodies
 from courtside.geometry import rotations
-from courtside.motion import body_segments, segment_model
+from courtside.inertial import segments
 from courtside.records import limbs
 from courtside.records.hierarchy import forward
 
 POSED = moved_bodies.moving(1, seconds=0.1)
 N = len(POSED.time_s)
 OBSERVED = [POSED.hierarchy.joints.index(joint) for joint in limbs.JOINTS]
-MODEL = segment_model.Model(
-    POSED.hierarchy, body_segments.segments_of(POSED.hierarchy), OBSERVED, moved_bodies.UP
+MODEL = segments.Model(
+    POSED.hierarchy, segments.segments_of(POSED.hierarchy), OBSERVED, moved_bodies.UP
 )
 FACING = moved_bodies.about_up(np.linspace(0, 1, N))
 XYZ, WORLD = forward(POSED)
@@ -21,7 +21,7 @@ XYZ, WORLD = forward(POSED)
 
 def frames(velocity=0.0):
     local = FACING.swapaxes(1, 2)[:, None] @ WORLD
-    return segment_model.Frames(
+    return segments.Frames(
         FACING, local, POSED.translation, np.full((N, len(OBSERVED), 3), velocity)
     )
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import moved_bodies
-from courtside.motion import inertial_correction
+from courtside.inertial import correction
 from courtside.records.hierarchy import forward
 
 
@@ -16,7 +16,7 @@ def case():
     true = moved_bodies.moving(3, seconds=10.0)
     raw = moved_bodies.stretched(true, {"left_knee": 0.95, "right_knee": 0.95})
     vision = moved_bodies.seen(true, 3, missing=0.2)
-    return raw, vision, *inertial_correction.correct(raw, vision, sigma_m=0.03)
+    return raw, vision, *correction.correct(raw, vision, sigma_m=0.03)
 
 
 def test_bone_scales_are_those_of_the_body():

@@ -1,13 +1,17 @@
-"""The fit of a correction to vision: rounds of weighted least squares, with all sizes estimated too."""
+"""Fit the correction of an inertial suit to what cameras or a depth camera see of the same motion."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import rotations as rotation_vectors
-from courtside.motion import heading_drift, slow_splines, vision_noise
-from courtside.motion.body_segments import segments_of
-from courtside.motion.segment_model import Frames, Model
+from courtside.inertial import heading as heading_drift
+from courtside.inertial import splines
+from courtside.inertial.segments import Frames, Model, segments_of
+from courtside.records import limbs
 from courtside.records.hierarchy import forward
+from courtside.study.errors import InputError
 
 CHUNK = 500  # frames whose derivatives are held at once
 SAMPLES = 6  # draws, to tell how much of a correction the data determine
@@ -25,14 +29,14 @@ class Fit:
     ----------
     posed : PosedHierarchy
         Performed frames only, times on the reference clock.
-    seen : courtside.motion.inertial_correction.Seen
+    seen : courtside.inertial.correction.Seen
         What vision tells.
     up : (3,) float
     lag_s : float
         Standard deviation of the clocks' offset.
     offsets_m : dict of str to (3,) float
         Known offsets of vision's joints.
-    settings : courtside.motion.inertial_correction.Settings
+    settings : courtside.inertial.correction.Settings
     """
 
     def __init__(self, posed, seen, up, lag_s, offsets_m, settings):
@@ -42,7 +46,7 @@ class Fit:
         self.model = Model(posed.hierarchy, self.segments, observed, up)
         self._align()
         start, stop = posed.time_s[0] - PAD_S, posed.time_s[-1] + PAD_S
-        self.basis = slow_splines.basis_over(start, stop, settings.knot_s)
+        self.basis = splines.basis_over(start, stop, settings.knot_s)
         self.coefficients = np.zeros((self.basis.n, self.model.n_slow))
         self._slow_prior()
         self._fixed_prior(lag_s, offsets_m)
@@ -89,7 +93,7 @@ class Fit:
         }
         self.stated = {kind: sizes[kind] for kind in self.kinds}
         self.size = dict(self.stated)
-        band = {tau: slow_splines.precision(self.basis, tau) for tau in set(memory.values())}
+        band = {tau: splines.precision(self.basis, tau) for tau in set(memory.values())}
         self.band = np.stack([band[memory[name]] for name in names], axis=2)  # (K, 4, P)
 
     def _fixed_prior(self, lag_s, offsets_m):
@@ -122,7 +126,7 @@ class Fit:
         for number in range(1, self.settings.rounds + 1):
             self.round = number
             residual = (self.vision - before) / self.seen.sigma_m[..., None]
-            estimate = vision_noise.stated if number <= FIRST_ROUNDS else vision_noise.estimate
+            estimate = stated if number <= FIRST_ROUNDS else estimate_vision_noise
             self.noise = estimate(residual, self.rate_hz, self.settings.correlation_s)
             solution = self._step(before)
             if number > FIRST_ROUNDS:
@@ -176,7 +180,7 @@ class Fit:
             across = np.concatenate([by_fixed, left], axis=2)
             per_frame = by_slow.swapaxes(1, 2) @ by_slow
             vector = by_slow.swapaxes(1, 2) @ across
-            found = slow_splines.gather(self.basis, first[part], values[part], per_frame, vector)
+            found = splines.gather(self.basis, first[part], values[part], per_frame, vector)
             flat = by_fixed.reshape(-1, self.model.n_fixed)
             found = (*found, flat.T @ across.reshape(len(flat), -1))
             sums = found if sums is None else [a + b for a, b in zip(sums, found, strict=True)]
@@ -186,10 +190,10 @@ class Fit:
         scale = self._inverse_squares()
         diagonal = np.arange(self.model.n_slow)
         blocks[:, :, diagonal, diagonal] += self.band * scale
-        right = border[..., -1] - scale * slow_splines.times(self.band, self.coefficients)
+        right = border[..., -1] - scale * splines.times(self.band, self.coefficients)
         matrix = fixed[:, :-1] + np.diag(self.fixed_precision)
         rest = fixed[:, -1] - self.fixed_precision * (self.fixed - self.fixed_mean)
-        solution = slow_splines.solve(blocks, right, border[..., :-1], matrix, rest)
+        solution = splines.solve(blocks, right, border[..., :-1], matrix, rest)
         self.coefficients = self.coefficients + solution.inner
         self.fixed = self.fixed + solution.border
         return solution
@@ -206,11 +210,9 @@ class Fit:
         MacKay 1992: its energy over the number of coefficients that the data determine.
         """
         draws = solution.samples(SAMPLES, rng)
-        energy = np.sum(
-            self.coefficients * slow_splines.times(self.band, self.coefficients), axis=0
-        )
+        energy = np.sum(self.coefficients * splines.times(self.band, self.coefficients), axis=0)
         free = np.mean(
-            [np.sum(draw * slow_splines.times(self.band, draw), axis=0) for draw in draws], axis=0
+            [np.sum(draw * splines.times(self.band, draw), axis=0) for draw in draws], axis=0
         )
         for kind, columns in self.kinds.items():
             stated = self.stated[kind]
@@ -231,3 +233,196 @@ def _linear(time_s, values, wanted_s):
     before, share = rotation_vectors.interpolation_shares(time_s, wanted_s)
     share = share.reshape((-1,) + (1,) * (values.ndim - 1))
     return values[before] * (1 - share) + values[before + 1] * share
+
+
+LEAST_FRAMES = 30
+LEAST_JOINTS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What vision tells of the joints that it shares with a skeleton.
+
+    Attributes
+    ----------
+    source : str
+    joints : tuple of str, length D
+    time_s : (N,) float
+    xyz : (N, D, 3) float
+        Metres, in vision's frame; NaN where missing.
+    sigma_m : (N, D) float
+    """
+
+    source: str
+    joints: tuple
+    time_s: np.ndarray
+    xyz: np.ndarray
+    sigma_m: np.ndarray
+
+
+def observe(posed, vision, sigma_m):
+    """Pick what vision tells of a skeleton's limbs while it moves.
+
+    Parameters
+    ----------
+    posed : PosedHierarchy
+    vision : DeviceMotion
+        On the same clock.
+    sigma_m : float or (T, J) float
+        Standard deviation per axis; joints where it is not a positive number are not used.
+
+    Returns
+    -------
+    seen : Seen
+
+    Raises
+    ------
+    InputError
+        If vision has no place in space, or too little in common with the skeleton.
+    """
+    if vision.kind == "rgb":
+        raise InputError(
+            f"{vision.source}: expected joints with a place in space, found a skeleton about its own "
+            "hips (kind rgb); correct by a depth camera or by several cameras"
+        )
+    names = list(posed.hierarchy.joints)
+    joints = [name for name in limbs.JOINTS if name in names and name in vision.joints]
+    columns = [list(vision.joints).index(name) for name in joints]
+    inside = (vision.time_s >= posed.time_s[0]) & (vision.time_s <= posed.time_s[-1])
+    inside &= vision.performed
+    sigma = np.broadcast_to(np.asarray(sigma_m, float), vision.xyz.shape[:2])[inside][:, columns]
+    xyz = vision.xyz[inside][:, columns]
+    usable = np.isfinite(xyz).all(axis=2) & np.isfinite(sigma) & (sigma > 0)
+    frames = (usable.sum(axis=1) >= LEAST_JOINTS).sum()
+    if frames < LEAST_FRAMES:
+        raise InputError(
+            f"{vision.source}: expected {LEAST_FRAMES} frames with {LEAST_JOINTS} limb joints during "
+            f"the inertial recording, found {frames}; check the clocks and what the camera saw"
+        )
+    xyz, sigma = np.where(usable[..., None], xyz, np.nan), np.where(usable, sigma, 1.0)
+    return Seen(vision.source, tuple(joints), vision.time_s[inside], xyz, sigma)
+
+
+TAIL = 4.0  # degrees of freedom of Student's t: a robust estimate (Lange et al. 1989)
+ROUNDS = 5
+PRIOR_FRAMES = 5.0  # independent frames that the stated sigma counts for
+LONGEST_S = 0.5  # memory of the noise: beyond, it cannot be told from a slow error of the device
+SHORT_S = 0.1  # lag at which the memory is read
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """Noise of each joint of vision.
+
+    Attributes
+    ----------
+    covariance : (D, 3, 3) float
+        Of residuals divided by their stated sigma.
+    inflation : (D,) float
+        Frames that tell as much as one independent frame would.
+    weight : (N, D) float
+        1 for a frame as expected, towards 0 for an outlier; 0 where there is no residual.
+    """
+
+    covariance: np.ndarray
+    inflation: np.ndarray
+    weight: np.ndarray
+
+    def whitening(self):
+        """Return (N, D, 3, 3): multiply residuals over sigma by it and sum the squares."""
+        root = np.linalg.cholesky(np.linalg.inv(self.covariance)).swapaxes(1, 2)
+        return np.sqrt(self.weight / self.inflation)[..., None, None] * root
+
+
+def estimate_vision_noise(residual, rate_hz, correlation_s):
+    """Estimate the noise of vision from residuals of a fit.
+
+    Parameters
+    ----------
+    residual : (N, D, 3) float
+        Over the stated sigma; NaN where vision has no joint.
+    rate_hz : float
+        Frames per second.
+    correlation_s : float
+        Time over which errors of a network are alike at least; more is found from the residuals.
+
+    Returns
+    -------
+    noise : Noise
+    """
+    seen = np.isfinite(residual).all(axis=2)
+    filled = np.where(seen[..., None], residual, 0.0)
+    covariance = np.tile(np.eye(3), (residual.shape[1], 1, 1)) * _start(filled, seen)
+    lowest = _floor(rate_hz, correlation_s)
+    inflation = np.full(residual.shape[1], lowest)
+    for _ in range(ROUNDS):
+        weight, white = _weights(filled, covariance, seen)
+        inflation = np.maximum(lowest, _inflation(white, weight, seen, rate_hz))
+        n = seen.sum(axis=0) / inflation
+        spread = np.einsum("tj,tja,tjb->jab", weight, filled, filled) / inflation[:, None, None]
+        total = spread + PRIOR_FRAMES * np.eye(3)
+        covariance = total / (n + PRIOR_FRAMES)[:, None, None]
+    weight, _ = _weights(filled, covariance, seen)
+    return Noise(covariance, inflation, weight)
+
+
+def stated(residual, rate_hz, correlation_s):
+    """Return the noise as stated, every frame with its full weight: to begin with.
+
+    Residuals of a skeleton that is not yet corrected would pass for noise, and then no correction would
+    ever be worth it.
+
+    Parameters
+    ----------
+    residual : (N, D, 3) float
+        NaN where vision has no joint.
+    rate_hz, correlation_s : float
+        As for `estimate`.
+
+    Returns
+    -------
+    noise : Noise
+    """
+    n_joints = residual.shape[1]
+    inflation = np.full(n_joints, _floor(rate_hz, correlation_s))
+    weight = np.isfinite(residual).all(axis=2).astype(float)
+    return Noise(np.tile(np.eye(3), (n_joints, 1, 1)), inflation, weight)
+
+
+def _start(filled, seen):
+    length = np.sum(filled**2, axis=2) / 3
+    typical = [np.median(length[at, d]) if at.any() else 1.0 for d, at in enumerate(seen.T)]
+    return np.maximum(typical, 1e-3)[:, None, None]
+
+
+def _floor(rate_hz, correlation_s):
+    alike = np.exp(-1 / max(rate_hz * correlation_s, 1e-6))
+    return (1 + alike) / (1 - alike)
+
+
+def _weights(filled, covariance, seen):
+    root = np.linalg.cholesky(np.linalg.inv(covariance)).swapaxes(1, 2)
+    white = np.einsum("dij,ndj->ndi", root, filled)
+    squared = np.sum(white**2, axis=2)
+    return seen * (TAIL + 3) / (TAIL + squared), white
+
+
+def _inflation(white, weight, seen, rate_hz):
+    """Return the frames per independent one, (D,), of noise that is white and Ornstein-Uhlenbeck.
+
+    From short lags alone: over long ones the fit has taken up part of the noise.
+    """
+    tamed = white * np.sqrt(weight)[..., None]
+    near, far = 1, max(2, round(SHORT_S * rate_hz))
+    if len(white) <= far:
+        return np.ones(white.shape[1])
+    power = np.sum(tamed**2, axis=(0, 2)) / np.maximum(seen.sum(axis=0), 1)
+    alike = {}
+    for lag in (near, far):
+        both = np.maximum((seen[lag:] & seen[:-lag]).sum(axis=0), 1)
+        product = np.sum(tamed[lag:] * tamed[:-lag], axis=(0, 2)) / both
+        alike[lag] = np.clip(product / np.maximum(power, 1e-12), 1e-3, 1.0)
+    decay = (alike[far] / alike[near]) ** (1 / (far - near))
+    decay = np.minimum(decay, np.exp(-1 / (LONGEST_S * rate_hz)))
+    coloured = np.minimum(alike[near] / np.maximum(decay, 1e-3), 1.0)
+    return 1 - coloured + coloured * (1 + decay) / (1 - decay)

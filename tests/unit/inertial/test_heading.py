@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import moved_bodies
-from courtside.motion import heading_drift
+from courtside.inertial import heading as heading_drift
 from courtside.records.limbs import JOINTS as LIMB_JOINTS
 
 TRUE = moved_bodies.moving(2, seconds=20.0)

@@ -8,16 +8,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import moved_bodies
-from courtside.motion import inertial_correction
+from courtside.inertial import correction
 from courtside.records.hierarchy import PosedHierarchy, forward
 from courtside.records.limbs import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
 
 SECONDS = 15.0
 SIGMA_M = 0.03
-SAME_JOINTS = inertial_correction.Settings(
-    offset_m=0.002, bias_m=0.005
-)  # vision's are the skeleton's
+SAME_JOINTS = correction.Settings(offset_m=0.002, bias_m=0.005)  # vision's are the skeleton's
 LONGER = {
     **{f"{side}_elbow": 1.08 for side in ("left", "right")},
     **{f"{side}_knee": 0.94 for side in ("left", "right")},
@@ -44,7 +42,7 @@ def corrected(case):
         "swivel": moved_bodies.swivelled(true, "left", np.radians(30)),
     }
     vision = moved_bodies.seen(true, 1)
-    found = inertial_correction.correct(bodies[case], vision, sigma_m=SIGMA_M, settings=SAME_JOINTS)
+    found = correction.correct(bodies[case], vision, sigma_m=SIGMA_M, settings=SAME_JOINTS)
     return bodies[case], *found
 
 
@@ -120,7 +118,7 @@ def test_a_right_device_stays_nearly_right():
 
 def test_a_right_device_stays_right_where_vision_is_good():
     vision = moved_bodies.seen(truth(), 2, sd_m=(0.001,) * 3, outliers=0.02)
-    body, report = inertial_correction.correct(truth(), vision, sigma_m=0.001)
+    body, report = correction.correct(truth(), vision, sigma_m=0.001)
     assert np.median(errors_m(body, report)) < 0.004
 
 
@@ -139,7 +137,7 @@ def test_joints_that_nobody_sees_stay_the_devices():
     legs = [joint.split("_")[1] in ("knee", "ankle") for joint in LIMB_JOINTS]
     vision.xyz[:, legs] = np.nan
     raw = moved_bodies.swivelled(truth(), "right", 0.5)
-    body, report = inertial_correction.correct(raw, vision, sigma_m=SIGMA_M)
+    body, report = correction.correct(raw, vision, sigma_m=SIGMA_M)
     time_s = raw.time_s
     turn = np.radians(np.interp(time_s, report.heading_s, report.heading_deg))
     old, new = forward(raw)[1], forward(body)[1]
@@ -154,7 +152,7 @@ def test_joints_that_nobody_sees_stay_the_devices():
 
 def test_a_shift_of_the_clock_is_found():
     vision = moved_bodies.seen(truth(), 4, late_s=0.03)
-    body, report = inertial_correction.correct(truth(), vision, sigma_m=SIGMA_M, lag_s=0.03)
+    body, report = correction.correct(truth(), vision, sigma_m=SIGMA_M, lag_s=0.03)
     assert report.lag_s == pytest.approx(-0.03, abs=0.005)
     assert report.lag_sd_s < 0.005
     assert np.allclose(body.time_s, truth().time_s - report.lag_s)
@@ -168,7 +166,7 @@ def test_known_offsets_are_taken_off_and_not_given_to_bones():
     shifted = moved_bodies.stretched(truth(), {joint: 1.2 for joint in away})  # 5 cm of 25
     vision = moved_bodies.seen(shifted, 5)
     scales = [
-        inertial_correction.correct(truth(), vision, sigma_m=SIGMA_M, offsets_m=known)[1].bone_scale
+        correction.correct(truth(), vision, sigma_m=SIGMA_M, offsets_m=known)[1].bone_scale
         for known in (away, None)
     ]
     assert scales[0]["left_wrist"] == pytest.approx(1.0, abs=0.03)
@@ -187,7 +185,7 @@ def test_a_row_that_nobody_performed_keeps_its_pose():
     )
     performed = np.arange(len(first.time_s)) > 0
     vision = moved_bodies.seen(true, 1)
-    body, _ = inertial_correction.correct(first, vision, sigma_m=SIGMA_M, performed=performed)
+    body, _ = correction.correct(first, vision, sigma_m=SIGMA_M, performed=performed)
     assert np.array_equal(body.parent_from_joint[0], first.parent_from_joint[0])
     assert np.array_equal(body.translation[0, 0], first.translation[0, 0])
     assert np.allclose(body.translation[0, 1:], body.hierarchy.offsets[1:])
@@ -205,4 +203,4 @@ def test_feet_keep_their_floor():
 def test_vision_about_its_own_hips_is_refused():
     vision = replace(moved_bodies.seen(truth(), 1), kind="rgb", source="d415-rgb")
     with pytest.raises(InputError, match="d415-rgb: expected joints with a place in space"):
-        inertial_correction.correct(truth(), vision, sigma_m=SIGMA_M)
+        correction.correct(truth(), vision, sigma_m=SIGMA_M)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import moved_bodies
-from courtside.motion import correction_fit, inertial_correction, vision_joints
+from courtside.inertial import correction
+from courtside.inertial import fit as correction_fit
 
 TRUE = moved_bodies.moving(4, seconds=12.0)
 
@@ -17,8 +18,8 @@ def fitted(drift_m):
     body = moved_bodies.moving(4, seconds=12.0)
     rng = np.random.default_rng(0)
     body.translation[:, 0] += drift_m * moved_bodies.smooth(rng, len(body.time_s), (3,), 2.0)
-    seen = vision_joints.observe(body, moved_bodies.seen(TRUE, 1, sd_m=(0.01,) * 3), 0.01)
-    settings = inertial_correction.Settings()
+    seen = correction_fit.observe(body, moved_bodies.seen(TRUE, 1, sd_m=(0.01,) * 3), 0.01)
+    settings = correction.Settings()
     fit = correction_fit.Fit(body, seen, moved_bodies.UP, 0.0, {}, settings)
     fit.run()
     return fit
@@ -40,7 +41,7 @@ def test_a_wandering_root_is_brought_back():
 
 def test_it_settles():
     changes = fitted(0.5).rms_change_m
-    assert changes[-1] < inertial_correction.Settings().tolerance_m
+    assert changes[-1] < correction.Settings().tolerance_m
     assert changes[-1] < 0.05 * changes[0]
 
 

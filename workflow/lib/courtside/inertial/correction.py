@@ -11,9 +11,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from courtside.motion import correction_report, vision_joints
-from courtside.motion.correction_fit import Fit
-from courtside.motion.segment_model import Frames
+from courtside.inertial import fit as vision_joints
+from courtside.inertial import report
+from courtside.inertial.fit import Fit
+from courtside.inertial.segments import Frames
 from courtside.records.hierarchy import PosedHierarchy, forward
 
 FLOOR_PERCENTILE = 5  # of the lower ankle's height: where the floor is
@@ -129,7 +130,7 @@ def correct(
     -------
     corrected : PosedHierarchy
         In the device's world; its times are those of `posed`, less the clock's shift found.
-    report : courtside.motion.correction_report.CorrectionReport
+    report : courtside.inertial.report.CorrectionReport
 
     Raises
     ------
@@ -145,7 +146,7 @@ def correct(
     )
     fit.run()
     corrected = _whole(posed, performed, _applied(fit), fit)
-    return corrected, correction_report.describe(fit, moving, _only(corrected, performed))
+    return corrected, report.describe(fit, moving, _only(corrected, performed))
 
 
 def _only(posed, at):

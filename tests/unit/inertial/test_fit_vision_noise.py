@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.motion import vision_noise
+from courtside.inertial import fit
 
 N, D, RATE_HZ = 4000, 3, 30.0
 SPREAD = np.array([[0.5, 0, 0], [0.1, 1.0, 0], [0, 0.3, 2.0]])
@@ -22,7 +22,7 @@ def test_spread_is_found_with_outliers():
     residual = drawn(0.0)
     wild = np.random.default_rng(1).uniform(size=(N, D)) < 0.03
     residual[wild] *= 30
-    found = vision_noise.estimate(residual, RATE_HZ, 0.01)
+    found = fit.estimate_vision_noise(residual, RATE_HZ, 0.01)
     # Student's t of 4 degrees of freedom: its scatter is somewhat below the covariance of normal noise.
     ratio = np.linalg.eigvals(found.covariance @ np.linalg.inv(SPREAD @ SPREAD.T)).real
     assert ratio.min() > 0.6 and ratio.max() < 1.1
@@ -32,13 +32,13 @@ def test_spread_is_found_with_outliers():
 
 @pytest.mark.parametrize("memory_s", [0.2, 0.4])
 def test_memory_is_found(memory_s):
-    found = vision_noise.estimate(drawn(memory_s), RATE_HZ, 0.05)
+    found = fit.estimate_vision_noise(drawn(memory_s), RATE_HZ, 0.05)
     keep = np.exp(-1 / (RATE_HZ * memory_s))
     assert found.inflation == pytest.approx((1 + keep) / (1 - keep), rel=0.3)
 
 
 def test_stated_memory_is_the_least():
-    found = vision_noise.estimate(drawn(0.0), RATE_HZ, 0.1)
+    found = fit.estimate_vision_noise(drawn(0.0), RATE_HZ, 0.1)
     keep = np.exp(-1 / 3)
     assert found.inflation == pytest.approx((1 + keep) / (1 - keep))
 
@@ -46,7 +46,7 @@ def test_stated_memory_is_the_least():
 def test_a_joint_never_seen_has_no_weight():
     residual = drawn(0.0)
     residual[:, 1] = np.nan
-    found = vision_noise.estimate(residual, RATE_HZ, 0.1)
+    found = fit.estimate_vision_noise(residual, RATE_HZ, 0.1)
     assert found.weight[:, 1].max() == 0
     assert np.isfinite(found.whitening()).all()
     assert found.covariance[1] == pytest.approx(np.eye(3))
@@ -54,7 +54,7 @@ def test_a_joint_never_seen_has_no_weight():
 
 def test_whitened_residuals_are_of_unit_size():
     residual = drawn(0.0)
-    found = vision_noise.estimate(residual, RATE_HZ, 0.1)
+    found = fit.estimate_vision_noise(residual, RATE_HZ, 0.1)
     white = found.whitening() @ residual[..., None]
     squares = np.sum(white**2, axis=(0, 2, 3)) * found.inflation / N
     assert squares == pytest.approx(3.0, rel=0.1)  # what Student's t makes equal to the dimensions
@@ -63,6 +63,6 @@ def test_whitened_residuals_are_of_unit_size():
 def test_stated_noise_takes_every_frame_whole():
     residual = drawn(0.0)
     residual[5, 2] = np.nan
-    found = vision_noise.stated(residual, RATE_HZ, 0.1)
+    found = fit.stated(residual, RATE_HZ, 0.1)
     assert found.weight.sum() == N * D - 1 and found.weight[5, 2] == 0
     assert found.covariance == pytest.approx(np.tile(np.eye(3), (D, 1, 1)))

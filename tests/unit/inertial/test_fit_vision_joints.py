@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import moved_bodies
-from courtside.motion import vision_joints
+from courtside.inertial import fit
 from courtside.records.limbs import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
 
@@ -17,7 +17,7 @@ VISION = moved_bodies.seen(BODY, missing=0.1)
 def test_joints_frames_and_gaps_are_kept():
     sigma = np.full(VISION.xyz.shape[:2], 0.02)
     sigma[3, 4], sigma[5, 6] = np.nan, 0.0
-    found = vision_joints.observe(BODY, VISION, sigma)
+    found = fit.observe(BODY, VISION, sigma)
     assert found.joints == LIMB_JOINTS
     wanted = VISION.xyz.copy()
     wanted[3, 4] = wanted[5, 6] = np.nan
@@ -29,13 +29,13 @@ def test_joints_frames_and_gaps_are_kept():
 def test_joints_are_found_by_name_not_by_place():
     order = np.random.default_rng(0).permutation(12)
     mixed = replace(VISION, joints=VISION.joints[order], xyz=VISION.xyz[:, order])
-    found = vision_joints.observe(BODY, mixed, 0.02)
+    found = fit.observe(BODY, mixed, 0.02)
     assert np.array_equal(found.xyz, VISION.xyz, equal_nan=True)
 
 
 def test_frames_outside_the_recording_are_left_out():
     late = replace(VISION, time_s=VISION.time_s + 1.0)
-    found = vision_joints.observe(BODY, late, 0.02)
+    found = fit.observe(BODY, late, 0.02)
     assert found.time_s.max() <= BODY.time_s[-1]
     assert len(found.time_s) < len(VISION.time_s)
 
@@ -45,9 +45,9 @@ def test_clocks_that_do_not_meet_are_named():
     with pytest.raises(
         InputError, match=r"d415-depth: expected 30 frames .* found 0; check the clocks"
     ):
-        vision_joints.observe(BODY, far, 0.02)
+        fit.observe(BODY, far, 0.02)
 
 
 def test_a_skeleton_without_place_is_refused():
     with pytest.raises(InputError, match="about its own hips"):
-        vision_joints.observe(BODY, replace(VISION, kind="rgb"), 0.02)
+        fit.observe(BODY, replace(VISION, kind="rgb"), 0.02)

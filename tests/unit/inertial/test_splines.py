@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from courtside.motion import slow_splines
+from courtside.inertial import splines
 
 P, Q, N = 3, 2, 300
 
@@ -12,7 +12,7 @@ P, Q, N = 3, 2, 300
 @pytest.fixture(scope="module")
 def problem():
     rng = np.random.default_rng(0)
-    basis = slow_splines.basis_over(0.0, 10.0, 0.5)
+    basis = splines.basis_over(0.0, 10.0, 0.5)
     time_s = rng.uniform(0, 10, N)
     inner, outer = rng.normal(size=(N, 5, P)), rng.normal(size=(N, 5, Q))
     return basis, time_s, inner, outer, rng.normal(size=(N, 5))
@@ -39,13 +39,11 @@ def solved(basis, time_s, inner, outer, wanted):
     first, values = basis.at(time_s)
     per_frame = inner.swapaxes(1, 2) @ inner
     sides = np.concatenate([outer, wanted[..., None]], axis=2)
-    blocks, right = slow_splines.gather(
-        basis, first, values, per_frame, inner.swapaxes(1, 2) @ sides
-    )
-    band = slow_splines.precision(basis, 2.0)
+    blocks, right = splines.gather(basis, first, values, per_frame, inner.swapaxes(1, 2) @ sides)
+    band = splines.precision(basis, 2.0)
     blocks[:, :, range(P), range(P)] += band[..., None]
     flat = outer.reshape(-1, Q)
-    found = slow_splines.solve(
+    found = splines.solve(
         blocks, right[..., -1], right[..., :-1], flat.T @ flat, flat.T @ wanted.reshape(-1)
     )
     matrix = np.einsum("tk,trp->trkp", design(basis, time_s), inner).reshape(-1, basis.n * P)
@@ -56,7 +54,7 @@ def solved(basis, time_s, inner, outer, wanted):
 
 
 def test_splines_reproduce_a_cubic():
-    basis = slow_splines.basis_over(1.0, 4.0, 0.4)
+    basis = splines.basis_over(1.0, 4.0, 0.4)
     time_s = np.linspace(1, 4, 200)
     cubic = 0.3 * time_s**3 - time_s**2 + 2
     found = np.linalg.lstsq(design(basis, time_s), cubic, rcond=None)[0]
@@ -65,16 +63,16 @@ def test_splines_reproduce_a_cubic():
 
 
 def test_times_outside_are_taken_as_the_ends():
-    basis = slow_splines.basis_over(0.0, 2.0, 0.5)
+    basis = splines.basis_over(0.0, 2.0, 0.5)
     spline = basis.evaluate(np.arange(basis.n, dtype=float), np.array([-1.0, 0.0, 2.0, 3.0]))
     assert spline[0] == spline[1] and spline[2] == spline[3]
 
 
 def test_the_prior_is_the_process():
-    basis = slow_splines.basis_over(0.0, 20.0, 0.1)
+    basis = splines.basis_over(0.0, 20.0, 0.1)
     time_s = np.array([5.0, 6.0, 8.0, 12.0])
     rows = design(basis, time_s)
-    covariance = rows @ np.linalg.inv(dense(slow_splines.precision(basis, 2.0))) @ rows.T
+    covariance = rows @ np.linalg.inv(dense(splines.precision(basis, 2.0))) @ rows.T
     wanted = np.exp(-np.abs(time_s[:, None] - time_s) / 2.0)
     assert covariance == pytest.approx(wanted, abs=0.02)
 
@@ -95,15 +93,15 @@ def test_samples_have_the_covariance(problem):
 
 
 def test_a_band_times_coefficients_is_the_dense_product():
-    basis = slow_splines.basis_over(0.0, 3.0, 0.5)
-    band = slow_splines.precision(basis, 1.0)
+    basis = splines.basis_over(0.0, 3.0, 0.5)
+    band = splines.precision(basis, 1.0)
     coefficients = np.random.default_rng(2).normal(size=(basis.n, P))
-    found = slow_splines.times(np.repeat(band[..., None], P, axis=2), coefficients)
+    found = splines.times(np.repeat(band[..., None], P, axis=2), coefficients)
     assert found == pytest.approx(dense(band) @ coefficients, abs=1e-12)
 
 
 def test_values_are_those_of_a_spline_through_them():
-    basis = slow_splines.basis_over(0.0, 5.0, 0.5)
+    basis = splines.basis_over(0.0, 5.0, 0.5)
     coefficients = np.sin(np.arange(basis.n))
     time_s = np.linspace(0, 5, 101)
     values = basis.evaluate(coefficients, time_s)

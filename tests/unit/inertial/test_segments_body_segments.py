@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import moved_bodies
-from courtside.motion import body_segments
+from courtside.inertial import segments
 from courtside.records.hierarchy import Hierarchy
 from courtside.study.errors import InputError
 
 BODY = moved_bodies.hierarchy()
-SEGMENTS = body_segments.segments_of(BODY)
+SEGMENTS = segments.segments_of(BODY)
 
 
 def members(segment):
@@ -49,7 +49,7 @@ def test_a_difference_is_left_over_right():
 def test_a_missing_joint_is_named():
     names = tuple("l_hand" if joint == "left_wrist" else joint for joint in BODY.joints)
     with pytest.raises(InputError, match=r"walk\.bvh: expected a joint left_wrist"):
-        body_segments.segments_of(replace(BODY, joints=names), "walk.bvh")
+        segments.segments_of(replace(BODY, joints=names), "walk.bvh")
 
 
 def test_a_limb_hung_elsewhere_is_named():
@@ -58,4 +58,4 @@ def test_a_limb_hung_elsewhere_is_named():
     names[a], names[b] = names[b], names[a]
     body = Hierarchy(tuple(names), BODY.parents, BODY.offsets)
     with pytest.raises(InputError, match="expected left_elbow below left_shoulder"):
-        body_segments.segments_of(body)
+        segments.segments_of(body)

@@ -84,7 +84,7 @@ def describe(fit, before, after):
 
     Parameters
     ----------
-    fit : courtside.motion.correction_fit.Fit
+    fit : courtside.inertial.fit.Fit
     before, after : PosedHierarchy
         The performed frames, uncorrected and corrected.
 
