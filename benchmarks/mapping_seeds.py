@@ -21,8 +21,10 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "scripts"))
 import adjust_network
 import map_images
 
-from courtside.geometry import court_trials, courts
-from courtside.records import ties, truth
+from courtside.calibration.court import court as courts
+from courtside.calibration.records import tie_points
+from courtside.geometry import court_trials
+from courtside.records import truth
 from courtside.study import yaml_files
 from courtside.virtual import clicking
 
@@ -64,7 +66,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
             cameras=list(session["cameras"]),
             **config["adjust_network"],
         )
-        record = ties.read(model / "ties.npz")
+        record = tie_points.read(model / "ties.npz")
     if record.outcome:
         return {}
     drawn = {"n_draws": n_draws, "seed": 0, "preset": session["virtual"]["preset"], "session": name}

@@ -26,7 +26,9 @@ import numpy as np
 import pycolmap
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
-from courtside.geometry import alignment, control_points, court_adjustment, court_errors, courts
+from courtside.calibration.bundle import selection
+from courtside.calibration.court import court as courts
+from courtside.calibration.court import joint_adjustment, quality, sfm_alignment
 from courtside.records import clicks, image_names, truth
 from courtside.sfm import database, features, grid, mapping, matching, model, registration
 from courtside.study import yaml_files
@@ -106,12 +108,12 @@ def errors(folder, real, court, marked, parameters):
         return len(images), np.nan, np.nan
     placed = {name: images.index(image) for name, image in fixed.items()}
     size_of = {name: sizes[network.lens_of_image[at]] for name, at in placed.items()}
-    sfm = control_points.fixed_cameras(network, placed, size_of)
-    world_from_sfm, _ = alignment.align(court, alignment.reconstruct(sfm, marked))
+    sfm = selection.fixed_cameras(network, placed, size_of)
+    world_from_sfm, _ = sfm_alignment.align(court, sfm_alignment.reconstruct(sfm, marked))
     bias_px = options.pop("click_bias_px")
-    options["tie_sigma_px"] = options.pop("tie_sigma") * control_points.residual_spread(network)
-    ties, _ = court_adjustment.condense(network, placed, size_of, marked, court, **options)
-    solved = court_adjustment.solve(
+    options["tie_sigma_px"] = options.pop("tie_sigma") * selection.residual_spread(network)
+    ties, _ = joint_adjustment.condense(network, placed, size_of, marked, court, **options)
+    solved = joint_adjustment.solve(
         ties,
         marked,
         court,
@@ -119,9 +121,9 @@ def errors(folder, real, court, marked, parameters):
         click_sigma_px=options["click_sigma_px"],
         click_loss=options["click_loss"],
     )
-    volume = court_errors.volume(court)
+    volume = quality.volume(court)
     return len(images), *(
-        court_errors.over_volume(court_errors.displaced(cameras, real.cameras, volume) - volume)[
+        quality.over_volume(quality.displaced(cameras, real.cameras, volume) - volume)[
             "volume_rms_cm"
         ]
         for cameras in ([world_from_sfm.camera(camera) for camera in sfm], solved.cameras)

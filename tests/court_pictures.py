@@ -6,8 +6,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from courtside.calibration.court import court as courts
 from courtside.geometry import camera as cameras
-from courtside.geometry import courts
 
 ROOT = Path(__file__).parents[1]
 SIZE = (960, 540)

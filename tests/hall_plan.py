@@ -4,11 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.geometry import courts, planned_cameras
-from courtside.geometry.planned_ties import TEXTURES
+from courtside.calibration.court import court
+from courtside.calibration.planning import cameras
+from courtside.calibration.planning.tie_points import TEXTURES
 
 CONFIG = Path(__file__).parents[1] / "config"
-COURT = courts.read(CONFIG / "courts" / "badminton.yaml")
+COURT = court.read(CONFIG / "courts" / "badminton.yaml")
 PLAN = CONFIG / "plans" / "plain-a.yaml"
 SIZE, FOCAL_PX = (1280, 720), 1120.0
 CENTRE = np.array([3.05, 6.7, 0.0])
@@ -37,8 +38,7 @@ def fixed():
     places = {"side": from_centre(-21, 0, 1.9), "back": from_centre(0, -21, 2.1)}
     aim = from_centre(0, 0, 1.3)
     return [
-        planned_cameras.camera(name, place, aim, SIZE, focal_px=FOCAL_PX)
-        for name, place in places.items()
+        cameras.camera(name, place, aim, SIZE, focal_px=FOCAL_PX) for name, place in places.items()
     ]
 
 
@@ -47,6 +47,4 @@ def walked(count, seed=0):
     angles = np.radians(np.linspace(182.2, 267.8, 5))
     way_m = CENTRE[:2] + 21 * np.column_stack([np.cos(angles), np.sin(angles)])
     aim = from_centre(0, 0, 1.25)
-    return planned_cameras.walked_cameras(
-        way_m, count, 1.62, aim, SIZE, seed=seed, focal_px=FOCAL_PX
-    )
+    return cameras.walked_cameras(way_m, count, 1.62, aim, SIZE, seed=seed, focal_px=FOCAL_PX)

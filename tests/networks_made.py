@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from courtside.calibration.bundle.problem import LENS, Network, residuals
 from courtside.geometry.camera import Camera
-from courtside.geometry.network import LENS, Network, residuals
 
 SIZE = (1280, 720)
 LENS_SIGMA = (np.inf, 1e-3, 25.0, 25.0, 0.2, 0.2, 2e-3, 2e-3)

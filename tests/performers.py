@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.geometry import courts
+from courtside.calibration.court import court
 from courtside.virtual import motions, stance
 
-COURT = courts.read(Path(__file__).parents[1] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[1] / "config" / "courts" / "badminton.yaml")
 BODY = stance.Proportions.of_height(1.75)
 RATE_HZ = 100
 

@@ -17,8 +17,9 @@ import pandas as pd
 import pytest
 import yaml
 
-from courtside.geometry import courts
-from courtside.records import clicks, ties, truth
+from courtside.calibration.court import court as courts
+from courtside.calibration.records import tie_points
+from courtside.records import clicks, truth
 from courtside.study import log
 from courtside.study.errors import InputError
 from courtside.virtual import capture, clicking
@@ -88,7 +89,7 @@ class Session:
             cameras=CAMERAS,
             **CONFIG["adjust_network"],
         )
-        return ties.read(out)
+        return tie_points.read(out)
 
 
 @pytest.fixture(scope="module")

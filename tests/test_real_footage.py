@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 import networks
+from courtside.calibration import file_formats
 from courtside.exports import trc
-from courtside.geometry import calibration_files, triangulation
 from courtside.geometry import camera as cameras
+from courtside.geometry import triangulation
 from courtside.motion import fusion
 from courtside.pose import decoders, foreground, tracking
 from courtside.records import keypoints, skeleton
@@ -60,7 +61,7 @@ def reference():
 
 @pytest.fixture(scope="module")
 def views():
-    found = calibration_files.read(FOLDER / "calibration" / "Calib.qca.txt")
+    found = file_formats.read(FOLDER / "calibration" / "Calib.qca.txt")
     return [cameras.crop(c, CUT) if c.name in ("cam01", "cam02") else c for c in found]
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import scene
 import walker
-from courtside.geometry import courts
+from courtside.calibration.court import court
 from courtside.pages import page as pages
 from courtside.pages import viewer, viewer_layers
 
@@ -54,7 +54,7 @@ def made(tmp_path_factory):
         moved = replace(points, xyz=points.xyz + np.array([0, 0, 0.02 * at]))
         layers.append(viewer_layers.of_points(name, moved, walker.SKELETON, shown=at == 0))
     path = tmp_path_factory.mktemp("viewer") / "viewer.html"
-    source = viewer.build("A take", layers, scene.ring(4), courts.read(COURT))
+    source = viewer.build("A take", layers, scene.ring(4), court.read(COURT))
     pages.write(path, source)
     return path, points
 

@@ -7,8 +7,9 @@ import numpy as np
 import tomli_w
 
 import walker
+from courtside.calibration import file_formats
+from courtside.calibration.court import court
 from courtside.exports import pose2sim, trc
-from courtside.geometry import calibration_files, courts
 from courtside.geometry import camera as cameras
 from courtside.motion import joint_offsets
 from courtside.records import clicks, proposals, skeleton
@@ -36,7 +37,7 @@ QUALISYS_CAMERA = """<camera active="1" calibrated="true" serial="{}" viewrotati
  skew="0.0" radialDistortion1="-0.05" radialDistortion2="0.14" radialDistortion3="0.003"
  tangentalDistortion1="0.0006" tangentalDistortion2="-0.0004"/>
 </camera>"""
-COURT = courts.read(CONFIG / "courts" / "badminton.yaml")
+COURT = court.read(CONFIG / "courts" / "badminton.yaml")
 CAMERAS = ["left", "right"]
 
 
@@ -164,7 +165,7 @@ def read_skeleton(path):
 
 def read_cameras(path):
     """Read cameras of any program."""
-    return checked(calibration_files.read(path))
+    return checked(file_formats.read(path))
 
 
 def read_own(path):

@@ -8,7 +8,8 @@ import numpy as np
 import sfm_made
 import video_files
 
-from courtside.devices import chessboard, survey
+from courtside.calibration import chessboard
+from courtside.devices import survey
 from courtside.pages import clicking_page
 from courtside.pose import tflite_onnx
 from courtside.sfm import database, model

@@ -7,11 +7,13 @@ import networks_made
 import scene
 import walker
 from bodies_made import body
-from courtside.geometry import control_points, court_adjustment
+from courtside.calibration.bundle import selection
+from courtside.calibration.court import joint_adjustment
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records import tie_points
 from courtside.pages import viewer_layers
 from courtside.records import (
     body_motion,
-    camera_covariance,
     device_motion,
     frame_table,
     frame_times,
@@ -19,9 +21,8 @@ from courtside.records import (
     people,
     shake_table,
     take_truth,
-    ties,
-    truth,
-)  # fmt: skip
+    truth,  # fmt: skip
+)
 from courtside.sfm import grid
 from fuzz.format import Format, require
 
@@ -75,14 +76,14 @@ def tied(folder):
     made = networks_made.make(2, 8)
     fixed = networks_made.fixed_cameras(made)
     sizes = tuple(camera.size for camera in fixed)
-    known = control_points.what_ties_say(made, [0, 1])
-    record = ties.Record(
+    known = selection.what_ties_say(made, [0, 1])
+    record = tie_points.Record(
         outcome="", fault="", sfm_cameras=fixed, n_points_seen=[8, 5],
-        ties=court_adjustment.Ties(("side", "back"), sizes, known),
+        ties=joint_adjustment.Ties(("side", "back"), sizes, known),
         images=np.array(["static/side.png", "static/back.png", "frames/walk/000000.png"]),
         centres=np.arange(9.0).reshape(3, 3), xyz=np.ones((4, 3)), residual_px=0.4, n_maps=(2, 2),
     )  # fmt: skip
-    ties.write(folder / "ties.npz", record)
+    tie_points.write(folder / "ties.npz", record)
 
 
 def session_truth(folder):
@@ -147,7 +148,7 @@ RECORDS = {
     "people-npz": (persons, people.read),
     "body-npz": (bodies, body_motion.read),
     "covariance-npz": (covariance, camera_covariance.read),
-    "ties-npz": (tied, ties.read),
+    "ties-npz": (tied, tie_points.read),
     "truth-npz": (session_truth, truth.read),
     "take-truth-npz": (of_take, take_truth.read),
 }

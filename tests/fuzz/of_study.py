@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from courtside.geometry import courts
+from courtside.calibration.court import court
 from courtside.records import derived, skeleton, sync
 from courtside.study import (
     artefacts,
@@ -226,7 +226,7 @@ FORMATS = [
     Format("config", 700, studies, load, "config/config.yaml"),
     Format("models", 400, studies, load, "config/[em]*.yaml"),
     Format("plan", 600, laughing(copies("config/plans/*.yaml")), plans.read),
-    Format("court", 1200, laughing(copies("config/courts/*.yaml")), courts.read),
+    Format("court", 1200, laughing(copies("config/courts/*.yaml")), court.read),
     Format("skeleton", 1000, laughing(copies("config/skeletons/*.yaml")), skeleton.read),
     Format("derived-joints", 400, copies("config/derived_joints.yaml"), derived.read),
     Format("wheel", 800, wheels, unpack),

@@ -11,9 +11,10 @@ import pytest
 import scipy.io
 import yaml
 
+from courtside.calibration.records import covariance
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
-from courtside.records import camera_covariance, keypoints, limbs, truth
+from courtside.records import keypoints, limbs, truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
@@ -140,7 +141,7 @@ def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_stu
     # At 480 px, of 14 pictures: nothing but the court tells focal lengths well. Over 20 plain and 20 rich
     # halls the largest was 2.6 degrees, and twice the stated standard deviation.
     assert between < 4
-    stated = camera_covariance.read(results / "calibration/sfm-n12/covariance.npz")
+    stated = covariance.read(results / "calibration/sfm-n12/covariance.npz")
     turn = np.concatenate([np.eye(3), np.zeros((3, 11)), -ours, np.zeros((3, 11))], axis=1)
     sigma_deg = np.degrees(np.sqrt(np.trace(turn @ stated.covariance @ turn.T)))
     assert 0.5 < sigma_deg < 3

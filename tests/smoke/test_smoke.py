@@ -7,9 +7,10 @@ import ezc3d
 import numpy as np
 import pandas as pd
 
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.exports import tidy, trc
 from courtside.geometry import camera as cameras
-from courtside.records import camera_covariance, keypoints, truth
+from courtside.records import keypoints, truth
 from smoke.snakemake_runs import ROOT, planned
 
 TAKE = "walk-4cams-tiny/takes/balancing"

@@ -5,8 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.geometry import control_points, court_adjustment, courts, network_parts
-from courtside.records import clicks, image_names, ties
+from courtside.calibration.bundle import selection, walk_parts
+from courtside.calibration.court import court as courts
+from courtside.calibration.court import joint_adjustment
+from courtside.calibration.records import tie_points
+from courtside.records import clicks, image_names
 from courtside.sfm import model, registration
 from courtside.study import log
 from courtside.study.errors import InputError
@@ -21,34 +24,34 @@ def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points,
     )
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
-    found = control_points.fixed_cameras(network, placed, size_of)
+    found = selection.fixed_cameras(network, placed, size_of)
     known, fault, residual_px = None, "", np.nan
-    places = control_points.centres(network), network.xyz
+    places = selection.centres(network), network.xyz
     if not outcome:
         try:
             known, parts = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
-            places = network_parts.centres(parts), network_parts.points(parts)
-            residual_px = network_parts.residual_spread(parts)
+            places = walk_parts.centres(parts), walk_parts.points(parts)
+            residual_px = walk_parts.residual_spread(parts)
         except InputError as error:
             fault = str(error)
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
     seen = [registration.n_seen(network, images, fixed[camera]) for camera in placed]
     n_maps = summary["n_agreeing"], summary["n_attempts"]
     about = outcome, fault, found, seen, known, images, *places, residual_px, n_maps
-    ties.write(ties_npz, ties.Record(*about))
+    tie_points.write(ties_npz, tie_points.Record(*about))
 
 
 def adjust(
     network, placed, size_of, clicks_csv, court_yaml, *, tie_sigma, click_bias_px, **options
 ):
-    options["tie_sigma_px"] = tie_sigma * control_points.residual_spread(network)
+    options["tie_sigma_px"] = tie_sigma * selection.residual_spread(network)
     if not court_yaml:
         options = {k: v for k, v in options.items() if not k.startswith("click_")}
-        return court_adjustment.condense_free(network, placed, size_of, **options)
+        return joint_adjustment.condense_free(network, placed, size_of, **options)
     court = courts.read(court_yaml)
     marked = clicks.read(clicks_csv, list(placed), list(court.points))
     options["click_sigma_px"] = np.hypot(options["click_sigma_px"], click_bias_px)
-    return court_adjustment.condense(network, placed, size_of, marked, court, **options)
+    return joint_adjustment.condense(network, placed, size_of, marked, court, **options)
 
 
 if __name__ == "__main__":

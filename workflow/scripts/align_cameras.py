@@ -1,32 +1,34 @@
 """Align a model with the court by a similarity: ties, clicks -> cameras as paper or all points say."""
 
-from courtside.geometry import alignment, courts, quality
+from courtside.calibration.court import court as courts
+from courtside.calibration.court import quality, sfm_alignment
+from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
-from courtside.records import clicks, ties
+from courtside.records import clicks
 from courtside.study import log
 from courtside.study.errors import InputError
 from courtside.study.files import write_json
 
 
 def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, **options):
-    record = ties.read(ties_npz)
+    record = tie_points.read(ties_npz)
     if record.outcome:
         raise InputError(record.outcome)
     court = courts.read(court_yaml)
     marked = clicks.read(clicks_csv, [c.name for c in record.sfm_cameras], list(court.points))
-    xyz_in_sfm = alignment.reconstruct(record.sfm_cameras, marked)
+    xyz_in_sfm = sfm_alignment.reconstruct(record.sfm_cameras, marked)
     if name.startswith("paper"):
-        frame = alignment.paper_frame(court, xyz_in_sfm)
+        frame = sfm_alignment.paper_frame(court, xyz_in_sfm)
         world_from_sfm, how = frame.nearest, {"skew_deg": frame.skew_deg}
     else:
-        world_from_sfm, accepted = alignment.align(court, xyz_in_sfm)
+        world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
         how = {"n_points": int(accepted.sum())}
     found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
     report = {
         "calibration": name,
         "scale": world_from_sfm.scale,
         **how,
-        "misfit_cm": round(100 * alignment.misfit_m(court, world_from_sfm, xyz_in_sfm), 2),
+        "misfit_cm": round(100 * sfm_alignment.misfit_m(court, world_from_sfm, xyz_in_sfm), 2),
         "warnings": warnings_of(court, record, marked, **options),
         "left_out": quality.left_out(court, found, marked),
     }

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from courtside.calibration.court import court
 from courtside.geometry import camera as cameras
-from courtside.geometry import courts
 from courtside.motion import association, resampling
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
@@ -32,7 +32,7 @@ def main(paths, people_npz, *, persons):
         len(persons),
         trunk=[at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))],
         mirror=[chosen.index(joints.mirror()[joint]) for joint in chosen],
-        court=courts.read(paths.court) if paths.get("court") else None,
+        court=court.read(paths.court) if paths.get("court") else None,
     )
     frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {

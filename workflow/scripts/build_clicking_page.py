@@ -1,6 +1,6 @@
 """Build the page for clicking: static pictures, court, earlier clicks and proposals -> one HTML file."""
 
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.pages import clicking_page, page
 from courtside.records import clicks, proposals
 from courtside.study import log

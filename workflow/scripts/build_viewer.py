@@ -5,7 +5,8 @@ and whether it is `shown` at first; of a device also the `person`, its `source` 
 whether it is to be `placed` onto the first layer.
 """
 
-from courtside.geometry import camera, courts
+from courtside.calibration.court import court as courts
+from courtside.geometry import camera
 from courtside.pages import page, viewer, viewer_layers
 from courtside.records import skeleton, sync
 from courtside.study import log

@@ -1,8 +1,12 @@
 """Calibrate the fixed cameras in the court's frame: ties, clicks -> cameras, covariance, quality."""
 
+from courtside.calibration.court import court as courts
+from courtside.calibration.court import joint_adjustment, quality
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
-from courtside.geometry import camera_fields, court_adjustment, courts, quality
-from courtside.records import camera_covariance, clicks, ties
+from courtside.geometry import camera_fields
+from courtside.records import clicks
 from courtside.study import log
 from courtside.study.errors import InputError
 from courtside.study.files import write_json
@@ -11,7 +15,7 @@ from courtside.study.files import write_json
 def main(
     ties_npz, clicks_csv, court_yaml, cameras_toml, covariance_npz, quality_json, *, name, **options
 ):
-    record = ties.read(ties_npz)
+    record = tie_points.read(ties_npz)
     if record.outcome or record.fault:
         raise InputError(record.outcome or record.fault)
     names = list(record.ties.cameras)
@@ -41,7 +45,7 @@ def main(
 
 def solve(found, clicks_csv, court_yaml, **options):
     if not court_yaml:
-        return court_adjustment.free(found), {
+        return joint_adjustment.free(found), {
             "warnings": ["no court: scale and frame are arbitrary"]
         }
     court = courts.read(court_yaml)

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from courtside.devices import chessboard
+from courtside.calibration import chessboard
 from courtside.geometry import camera as cameras
 from courtside.study import log
 

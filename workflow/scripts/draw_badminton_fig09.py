@@ -3,8 +3,8 @@
 import numpy as np
 import pandas as pd
 
+from courtside.calibration.court import court as courts
 from courtside.figures import badminton_fig09, stick, style
-from courtside.geometry import courts
 from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from courtside.calibration.court import court as courts
 from courtside.figures import badminton_fig10, stick, style
-from courtside.geometry import courts
 from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton

@@ -1,7 +1,7 @@
 """Draw the named points of a court and the edges that they name: court -> figure, CSV."""
 
+from courtside.calibration.court import court as courts
 from courtside.figures import court_points, style
-from courtside.geometry import courts
 from courtside.study import log
 
 

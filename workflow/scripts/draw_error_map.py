@@ -1,8 +1,9 @@
 """Draw the error to expect over the court: cameras, covariance, court -> figure, CSV."""
 
+from courtside.calibration.court import court as courts
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.figures import error_map, style
-from courtside.geometry import camera, courts
-from courtside.records import camera_covariance
+from courtside.geometry import camera
 from courtside.study import log
 
 

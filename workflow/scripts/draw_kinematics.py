@@ -2,8 +2,8 @@
 
 import pandas as pd
 
+from courtside.calibration.court import court as courts
 from courtside.figures import speeds, style
-from courtside.geometry import courts
 from courtside.study import log
 
 

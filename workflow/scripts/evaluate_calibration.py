@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from courtside.geometry import court_trials, courts, walk_path
-from courtside.records import image_names, tables, ties, truth
+from courtside.calibration.court import court as courts
+from courtside.calibration.planning import cameras
+from courtside.calibration.records import tie_points
+from courtside.geometry import court_trials
+from courtside.records import image_names, tables, truth
 from courtside.study import log
 from courtside.virtual import clicking
 
@@ -17,7 +20,7 @@ CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there
 def main(
     ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, clicks, sets, **options
 ):
-    court, real, record = courts.read(court_yaml), truth.read(truth_npz), ties.read(ties_npz)
+    court, real, record = courts.read(court_yaml), truth.read(truth_npz), tie_points.read(ties_npz)
     summary = json.loads(Path(summary_json).read_text())
     rows = []
     for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
@@ -29,7 +32,7 @@ def main(
     angles = [np.nan]
     if record.ties:
         fixed, point = image_names.are_static(record.images), [*court.size_m / 2, CENTRE_HEIGHT_M]
-        angles = walk_path.path_angles_deg(fixed, record.centres, point)
+        angles = cameras.path_angles_deg(fixed, record.centres, point)
     about = {
         **labels,
         "n_registered": summary["n_registered"],

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.geometry import uncertainty
+from courtside.calibration import point_covariance
 from courtside.records import sync, tables, take_truth
 from courtside.study import log
 
@@ -29,7 +29,7 @@ def main(sync_json, truth_npz, errors_csv, *, labels):
                 "worst_error_ms": 1000 * worst_s,
                 "sigma_ms": 1000 * clock.uncertainty_s,
                 "within_90_percent": bool(
-                    abs(worst_s) <= uncertainty.WITHIN_90 * clock.uncertainty_s
+                    abs(worst_s) <= point_covariance.WITHIN_90 * clock.uncertainty_s
                 ),
                 "drift_error_ppm": clock.drift_ppm - truth.drift_ppm[camera],
             }

@@ -2,8 +2,9 @@
 
 import pandas as pd
 
+from courtside.calibration.court import court as courts
 from courtside.geometry import camera as cameras
-from courtside.geometry import court_trials, courts
+from courtside.geometry import court_trials
 from courtside.records import tables, truth
 from courtside.study import log
 from courtside.virtual import clicking

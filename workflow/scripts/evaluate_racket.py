@@ -4,8 +4,10 @@ from itertools import product
 
 import pandas as pd
 
-from courtside.geometry import courts, racket_trials
-from courtside.records import tables, ties, truth
+from courtside.calibration.court import court as courts
+from courtside.calibration.records import tie_points
+from courtside.geometry import racket_trials
+from courtside.records import tables, truth
 from courtside.study import log
 from courtside.virtual import clicking, racket_swings
 
@@ -16,7 +18,7 @@ def main(
     ties_npz, truth_npz, court_yaml, lengths_csv, *, labels, clicks, length_m, tips_px, **options
 ):
     court, real = courts.read(court_yaml), truth.read(truth_npz)
-    views, records = real.cameras[:VIEWS], [ties.read(path) for path in ties_npz]
+    views, records = real.cameras[:VIEWS], [tie_points.read(path) for path in ties_npz]
     rows = []
     for run, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
         offset = run % len(records)

@@ -1,12 +1,13 @@
 """Import a calibration made elsewhere: its file -> cameras of the session, as their videos show them."""
 
-from courtside.geometry import calibration_files, camera
+from courtside.calibration import file_formats
+from courtside.geometry import camera
 from courtside.study import log
 from courtside.study.files import write_json
 
 
 def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):
-    found = calibration_files.rename(calibration_files.read(calibration_path), names)
+    found = file_formats.rename(file_formats.read(calibration_path), names)
     found = [camera.crop(c, crops_px[c.name]) if c.name in crops_px else c for c in found]
     camera.write_toml(cameras_toml, found, source=f"imported from {calibration_path}")
     quality = {

@@ -1,8 +1,10 @@
 """Predict the errors of a planned session: plan, court -> expected error against N, and over the court."""
 
+from courtside.calibration.court import court as courts
+from courtside.calibration.planning import cameras, tie_points
+from courtside.calibration.planning import prediction as planning
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.figures import error_map, plan, style
-from courtside.geometry import courts, planned_cameras, planned_ties, planning
-from courtside.records import camera_covariance
 from courtside.sfm import model
 from courtside.study import log, plans
 from courtside.study.errors import InputError
@@ -13,7 +15,7 @@ WEIGHTS = ("images_per_part", "tie_sigma", "click_sigma_px", "click_bias_px", "c
 
 def main(plan_yaml, court_yaml, growth, over_court, *, heights_m, adjust):
     planned, court = plans.read(plan_yaml), courts.read(court_yaml)
-    fixed = [planned_cameras.camera(name, **vars(c)) for name, c in planned.cameras.items()]
+    fixed = [cameras.camera(name, **vars(c)) for name, c in planned.cameras.items()]
     found = predict_all(planned, fixed, court, adjust)
     limits = {"min_points": adjust["min_points"], "target_cm": planned.target_cm}
     chosen, reason = planning.needed(found, **limits)
@@ -33,7 +35,7 @@ def main(plan_yaml, court_yaml, growth, over_court, *, heights_m, adjust):
 
 
 def predict_all(planned, fixed, court, adjust):
-    texture = planned_ties.TEXTURES[planned.texture]
+    texture = tie_points.TEXTURES[planned.texture]
     prior = model.lens_prior([*(camera.size for camera in fixed), planned.walk.size_px])
     options = {key: adjust[key] for key in WEIGHTS} | {"thinning": {k: adjust[k] for k in THINNING}}
     options |= {"seed": adjust["seed"]}
@@ -41,9 +43,7 @@ def predict_all(planned, fixed, court, adjust):
         options["click_sigma_px"] = planned.click_sigma_px
     found = []
     for n in log.progress(planned.n_images, len(planned.n_images), "numbers of bridging images"):
-        walked = planned_cameras.walked_cameras(
-            n_images=n, seed=adjust["seed"], **vars(planned.walk)
-        )
+        walked = cameras.walked_cameras(n_images=n, seed=adjust["seed"], **vars(planned.walk))
         about = (court, planned.hall_m, texture, prior)
         found.append(planning.predict(fixed, walked, *about, **options))
     if not any(prediction.solution for prediction in found):

@@ -2,9 +2,9 @@
 
 import cv2
 
-from courtside.devices import court_proposals
+from courtside.calibration.click_proposals import proposals as court_proposals
+from courtside.calibration.court import court as courts
 from courtside.geometry import camera as cameras
-from courtside.geometry import courts
 from courtside.records import proposals
 from courtside.study import log
 from courtside.study.errors import InputError

@@ -2,8 +2,9 @@
 
 import cv2
 
+from courtside.calibration.court import court as courts
+from courtside.calibration.court import joint_adjustment, known_points, quality
 from courtside.geometry import camera as camera_models
-from courtside.geometry import court_adjustment, courts, known_points, quality
 from courtside.records import clicks
 from courtside.study import log
 from courtside.study.files import write_json
@@ -32,7 +33,7 @@ def main(
         if way.linear and result.degenerate:
             log.logger.warning("%s", result.reason)
     found = known_points.cameras(results)
-    sigma_px = court_adjustment.largest_click_sigma(click_sigma_px, found)
+    sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, found)
     report = {
         "calibration": name,
         "rms_px": {camera: round(result.rms_px, 4) for camera, result in results.items()},

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from courtside.geometry import courts
+from courtside.calibration.court import court
 from courtside.study import log
 from courtside.study.errors import InputError
 from courtside.virtual import capture, layouts
@@ -18,7 +18,7 @@ def main(court_yaml, folder, *, backdrops_npz, settings, names, threads):
         )
     capture.simulate(
         capture.Settings(**settings),
-        courts.read(court_yaml),
+        court.read(court_yaml),
         folder,
         backdrops_npz=backdrops_npz,
         threads=threads,

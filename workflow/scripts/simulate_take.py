@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from courtside.calibration.court import court
 from courtside.exports import bvh
-from courtside.geometry import courts
 from courtside.study import log
 from courtside.virtual import capture, makehuman, takes
 
@@ -17,7 +17,7 @@ def main(court_yaml, body_folder, folder, *, backdrops_npz, settings, take, thre
     worn = takes.simulate_take(
         capture.Settings(**settings),
         takes.TakeSettings(**take),
-        courts.read(court_yaml),
+        court.read(court_yaml),
         body_folder,
         folder,
         backdrops_npz=backdrops_npz,

@@ -4,9 +4,10 @@ from itertools import zip_longest
 
 import numpy as np
 
+from courtside.calibration.records import covariance
 from courtside.geometry import camera as cameras
 from courtside.motion import camera_error, fusion, halfbody, resampling, steadying
-from courtside.records import camera_covariance, keypoints, people, shake_table, skeleton, sync
+from courtside.records import keypoints, people, shake_table, skeleton, sync
 from courtside.study import log
 from courtside.study.errors import InputError
 
@@ -26,7 +27,7 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
         views[view.camera] = who.assigned(view)
     time_s = resampling.common_times(list(views.values()), [clocks[name] for name in views])
 
-    shared = camera_covariance.read(paths.covariance) if paths.covariance else None
+    shared = covariance.read(paths.covariance) if paths.covariance else None
 
     def fuse(names, rule):
         own = [known[name] for name in names], [views[name] for name in names]

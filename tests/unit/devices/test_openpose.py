@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from courtside.calibration import file_formats
 from courtside.devices import openpose
 from courtside.exports import markers, trc
-from courtside.geometry import calibration_files
 from courtside.geometry.camera import project
 from courtside.records import reasons, skeleton
 from courtside.study.errors import InputError
@@ -150,7 +150,7 @@ def test_real_keypoints_lie_where_another_program_puts_the_joints(number):
     found = read(folder, joints, size=(1088, 1920), rate_hz=60)
     assert found.xy.shape[1:] == (100, 25, 2)
     names, _, _, xyz = trc.read(real / "trc" / "Balancing_for_IK.trc")
-    camera = {c.name: c for c in calibration_files.read(real / "calibration" / "Calib.qca.txt")}
+    camera = {c.name: c for c in file_formats.read(real / "calibration" / "Calib.qca.txt")}
     places = markers.joints_of(names, joints.joints)
     assert sum(place is not None for place in places) == 21
     off = {

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from courtside.calibration.court import court
+from courtside.calibration.records.tie_points import Record
 from courtside.figures import badminton_fig06, style
-from courtside.geometry import courts
-from courtside.records.ties import Record
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 IMAGES = ["walk/000020.png", "static/side.png", "walk/000003.png", "static/back.png"]
 CENTRES = np.array([[2.0, -9.0, 1.6], [-18, 6.7, 2], [-8, -3, 1.5], [3, -14, 2]])
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from courtside.calibration.court import court
 from courtside.figures import court_plan, style
-from courtside.geometry import courts
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 
 
 def test_lines_have_their_true_width_and_place():

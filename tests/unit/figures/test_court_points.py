@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from courtside.calibration.court import court as courts
 from courtside.figures import court_points
-from courtside.geometry import courts
 
 COURTS = Path(__file__).parents[3] / "config" / "courts"
 

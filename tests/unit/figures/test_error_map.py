@@ -9,12 +9,12 @@ import pytest
 from scipy.optimize import least_squares
 
 import scene
+from courtside.calibration.court import court
+from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.figures import error_map
-from courtside.geometry import courts
 from courtside.geometry.camera import Camera
-from courtside.records.camera_covariance import PARAMETERS, CameraCovariance
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 K = np.array([[1100.0, 0, 640], [0, 1000, 360], [0, 0, 1]])
 DIST = np.array([-0.05, 0.01, 1e-3, -1e-3, 0.0])
 SHIFT_M, FOCAL_PX = 0.03, 4.0

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from courtside.calibration.planning.prediction import Prediction
 from courtside.figures import plan
-from courtside.geometry.planning import Prediction
 
 
 def prediction(n_images, error_cm, fault=""):

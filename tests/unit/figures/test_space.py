@@ -7,10 +7,10 @@ import pytest
 from matplotlib.figure import Figure
 
 import scene
+from courtside.calibration.court import court
 from courtside.figures import space
-from courtside.geometry import courts
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 
 
 def test_known_directions_of_sight():

@@ -8,9 +8,9 @@ import pytest
 
 import footwork
 import walker
+from courtside.calibration.court import court
 from courtside.exports import measures
 from courtside.figures import speeds
-from courtside.geometry import courts
 from courtside.kinematics import measures as kinematics
 from courtside.records import derived
 
@@ -34,7 +34,7 @@ def twice(rows):
 
 def test_the_lines_are_the_tables(tables):
     frames, summary = tables
-    drawing = speeds.draw(frames, summary, courts.read(CONFIG / "courts" / "badminton.yaml"))
+    drawing = speeds.draw(frames, summary, court.read(CONFIG / "courts" / "badminton.yaml"))
     drawing.draw_without_rendering()
     plan, speed, angle = drawing.subfigs[0].axes
     paths = [line for line in plan.lines if len(line.get_xdata()) == len(frames)]

@@ -8,7 +8,7 @@ import numpy as np
 import pycolmap
 import pytest
 
-from courtside.geometry import calibration_files
+from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
@@ -143,7 +143,7 @@ def test_a_model_that_rises_again_is_not_used_there():
 
 @needs_real
 def test_real_lenses_round_trip_within_their_pictures():
-    for camera in calibration_files.read(REAL / "charuco-4cams" / "camera_array.toml"):
+    for camera in file_formats.read(REAL / "charuco-4cams" / "camera_array.toml"):
         xy = pixels(camera)
         normalised = cameras.undistort(camera, xy)
         again = cameras.project(camera, on_ray(camera, normalised, 2.0))
@@ -156,9 +156,7 @@ def test_real_points_project_to_where_they_were_seen():
     xyz = np.genfromtxt(folder / "xyz_CHARUCO.csv", delimiter=",", names=True)
     xy = np.genfromtxt(folder / "xy_CHARUCO.csv", delimiter=",", names=True)
     known = {tuple(row)[:3]: list(row)[3:6] for row in xyz}
-    for index, camera in enumerate(
-        calibration_files.read(REAL / "charuco-4cams" / "camera_array.toml")
-    ):
+    for index, camera in enumerate(file_formats.read(REAL / "charuco-4cams" / "camera_array.toml")):
         seen = [row for row in xy[xy["cam_id"] == index] if (row[0], row[2], row[3]) in known]
         there = cameras.project(camera, np.array([known[row[0], row[2], row[3]] for row in seen]))
         off_px = np.linalg.norm(there - np.array([list(row)[4:6] for row in seen]), axis=-1)

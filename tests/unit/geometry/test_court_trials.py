@@ -7,18 +7,13 @@ import numpy as np
 import pytest
 
 import networks_made
-from courtside.geometry import (
-    control_points,
-    court_adjustment,
-    court_trials,
-    courts,
-    resection,
-    similarity,
-)
-from courtside.records import ties
+from courtside.calibration.bundle import selection
+from courtside.calibration.court import court, joint_adjustment, resection
+from courtside.calibration.records import tie_points
+from courtside.geometry import court_trials, similarity
 from scene import look_at, opencv_projection
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 SETTINGS = {"click_sigma_px": 0.9, "click_bias_px": 0.5, "click_loss": 4.0}
 SETS = ["all", "eight", "three"]
 
@@ -33,12 +28,12 @@ def clicks_of(cameras, xyz=COURT.xyz):
 
 def record(cameras=None, **changes):
     made = networks_made.exact_lens_prior(networks_made.make(6, 60))
-    knowledge = control_points.what_ties_say(made, [0, 1])
-    known = court_adjustment.Ties(("side", "back"), (networks_made.SIZE,) * 2, knowledge)
+    knowledge = selection.what_ties_say(made, [0, 1])
+    known = joint_adjustment.Ties(("side", "back"), (networks_made.SIZE,) * 2, knowledge)
     moved = similarity.Sim3(0.3, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
     in_sfm = [moved.camera(camera) for camera in cameras or truth()]
     nothing = np.zeros((0, 3))
-    made = ties.Record(
+    made = tie_points.Record(
         "", "", in_sfm, [60, 60], known, np.zeros(0, str), nothing, nothing, 0.1, (1, 1)
     )
     return replace(made, **changes)

@@ -8,19 +8,13 @@ import pytest
 
 import networks_made
 import scene
-from courtside.geometry import (
-    alignment,
-    control_points,
-    court_adjustment,
-    courts,
-    racket_trials,
-    similarity,
-    triangulation,
-)
-from courtside.records import ties
+from courtside.calibration.bundle import selection
+from courtside.calibration.court import court, joint_adjustment, sfm_alignment
+from courtside.calibration.records import tie_points
+from courtside.geometry import racket_trials, similarity, triangulation
 from scene import look_at, opencv_projection
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 SETTINGS = {"click_sigma_px": 0.9, "click_bias_px": 0.5, "click_loss": 4.0}
 LENGTH_M = 0.674
 BELOW = np.arange(21) < 10
@@ -35,12 +29,12 @@ def truth():
 def record(cameras, **changes):
     """Return exact ties of these cameras, seen in another frame."""
     made = networks_made.exact_lens_prior(networks_made.make(6, 60))
-    knowledge = control_points.what_ties_say(made, [0, 1])
-    known = court_adjustment.Ties(("side", "back"), (networks_made.SIZE,) * 2, knowledge)
+    knowledge = selection.what_ties_say(made, [0, 1])
+    known = joint_adjustment.Ties(("side", "back"), (networks_made.SIZE,) * 2, knowledge)
     moved = similarity.Sim3(0.3, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
     in_sfm = [moved.camera(camera) for camera in cameras]
     nothing = np.zeros((0, 3))
-    made = ties.Record(
+    made = tie_points.Record(
         "", "", in_sfm, [60, 60], known, np.zeros(0, str), nothing, nothing, 0.1, (1, 1)
     )
     return replace(made, **changes)
@@ -67,7 +61,7 @@ def ways_of(cameras, clicks=None, made=None):
 
 def perfect(cameras):
     def place(seen):
-        return alignment.reconstruct(cameras, seen)
+        return sfm_alignment.reconstruct(cameras, seen)
 
     return racket_trials.Way("perfect", 0, "", place, 0.0)
 
@@ -171,7 +165,7 @@ def test_linear_placing_with_weights_is_least_squares_of_pixels():
     seen = {n: xy + e for (n, xy), e in zip(seen_by(real, ends).items(), noise, strict=True)}
     matrices = {camera.name: camera.K @ camera.cam_from_world for camera in real}
     linear = racket_trials.place_linearly(matrices, seen)
-    least = alignment.reconstruct(real, seen)
+    least = sfm_alignment.reconstruct(real, seen)
     error = np.sqrt(np.mean((least - ends.reshape(-1, 3)) ** 2))
     assert np.sqrt(np.mean((linear - least) ** 2)) < 0.02 * error
     seen["far"][5] = np.nan

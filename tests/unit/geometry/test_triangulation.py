@@ -6,7 +6,8 @@ import pytest
 from scipy.optimize import least_squares
 
 import scene
-from courtside.geometry import calibration_files, camera, triangulation
+from courtside.calibration import file_formats
+from courtside.geometry import camera, triangulation
 from real_data import REAL, needs_real
 
 LENS = (-0.25, 0.08, 1e-3, -5e-4, -0.01)
@@ -160,7 +161,7 @@ def test_shapes_are_checked():
 @needs_real
 def test_a_board_of_known_size_keeps_its_squares():
     folder = REAL / "charuco-4cams"
-    views = calibration_files.read(folder / "camera_array.toml")
+    views = file_formats.read(folder / "camera_array.toml")
     seen = pd.read_csv(folder / "calibration" / "extrinsic" / "CHARUCO" / "xy_CHARUCO.csv")
     keys = sorted(set(zip(seen.sync_index, seen.keypoint_id, strict=True)))
     at = {key: n for n, key in enumerate(keys)}

@@ -7,9 +7,9 @@ from scipy.spatial.transform import Rotation
 
 import scene
 import walker
-from courtside.geometry import control_points
+from courtside.calibration.bundle import selection
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.motion import camera_error
-from courtside.records import camera_covariance
 
 CAMERAS = scene.ring(2, radius_m=8)
 N = len(camera_covariance.PARAMETERS)
@@ -76,4 +76,4 @@ def test_some_of_the_cameras_have_their_own_part():
     assert np.diag(part.covariance).tolist() == [*range(2 * N, 3 * N), *range(N)]
     with pytest.raises(ValueError, match="expected a camera of"):
         three.of(["d"])
-    assert control_points.of_cameras(CAMERAS).n_columns == len(part.of_columns())
+    assert selection.of_cameras(CAMERAS).n_columns == len(part.of_columns())

@@ -8,7 +8,7 @@ import pytest
 
 import scene
 import sync_takes
-from courtside.geometry import calibration_files
+from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
 from courtside.motion import camera_sync
 from courtside.records import sync
@@ -189,7 +189,7 @@ def later(view, n_frames):
 @pytest.fixture(scope="module")
 def walk():
     """Return cameras and views of the real walk: 100 frames of four synchronised cameras at 60 Hz."""
-    known = calibration_files.read(FOLDER / "calibration" / "Calib.qca.txt")
+    known = file_formats.read(FOLDER / "calibration" / "Calib.qca.txt")
     cut = (0, 0, 1080, 1920)
     known = [cameras.crop(c, cut) if c.name in ("cam01", "cam02") else c for c in known]
     return known, [openpose(camera) for camera in known]

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.pages import clicking_page
 from courtside.study.errors import InputError
 

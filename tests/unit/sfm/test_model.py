@@ -5,7 +5,7 @@ import pycolmap
 import pytest
 import sfm_made
 
-from courtside.geometry import network as networks
+from courtside.calibration.bundle import problem as networks
 from courtside.sfm import model
 
 

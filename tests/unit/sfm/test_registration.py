@@ -1,7 +1,7 @@
 """Which fixed cameras structure from motion placed: counted on networks whose views are known."""
 
 import networks_made
-from courtside.geometry import control_points
+from courtside.calibration.bundle import selection
 from courtside.sfm import registration
 
 FIXED = {"side": "static/side.png", "back": "static/back.png"}
@@ -13,7 +13,7 @@ def network(n_side=12, n_back=12):
     made = networks_made.make(2, 12)
     limit = [n_side, n_back, 12, 12]
     seen = [at < limit[v] for v, at in zip(made.image_idx, made.point_idx, strict=True)]
-    return control_points.select(made, made.xyz[:, 0] < 1e9, seen)
+    return selection.select(made, made.xyz[:, 0] < 1e9, seen)
 
 
 def outcome(made, images=IMAGES, **options):

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.geometry import courts
+from courtside.calibration.court import court
 from courtside.virtual import boards, layouts, presets
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 CRITERIA = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)
 
 

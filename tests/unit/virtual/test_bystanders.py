@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.virtual import bystanders
 
 FOLDER = Path(__file__).parents[3] / "config" / "courts"

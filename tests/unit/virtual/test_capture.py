@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.geometry.camera import Camera
 from courtside.records import clicks, truth
 from courtside.video import reader

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.geometry import courts
+from courtside.calibration.court import court
 from courtside.virtual import furniture, hall, layouts, paintwork, sampling
 from courtside.virtual.presets import PLAIN, RICH
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 ROOM_M = hall.room(COURT)
 CENTRE = COURT.size_m / 2
 

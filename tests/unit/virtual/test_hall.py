@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import scene as projection
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.geometry.camera import Camera
 from courtside.virtual import hall, layouts
 from courtside.virtual.presets import PLAIN, RICH

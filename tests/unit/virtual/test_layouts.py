@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.virtual import layouts, presets
 
 FOLDER = Path(__file__).parents[3] / "config" / "courts"

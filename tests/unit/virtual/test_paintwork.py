@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.virtual import paintwork
 from courtside.virtual.presets import PLAIN
 

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from courtside.calibration.court import court
 from courtside.geometry import camera as cameras
-from courtside.geometry import courts
 from courtside.virtual import layouts, presets, racket_swings
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 LENGTH_M = 0.674
 RUNS = range(200)
 

@@ -8,13 +8,14 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import mannequin
+from courtside.calibration.court import court
 from courtside.devices.realsense import recording
-from courtside.geometry import camera, courts
+from courtside.geometry import camera
 from courtside.records import take_truth
 from courtside.records.hierarchy import forward
 from courtside.virtual import body, capture, depth_camera, inertial, take_devices, takes
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 SESSION = capture.Settings(preset="rich", layout="a", seed=3, size_px=[320, 180], walk_frames=0)
 RGBD = {"kind": "rgbd", "size_px": [212, 120], "rate_hz": 20, "subpixel_px": 0.005}
 TAKE = takes.TakeSettings(

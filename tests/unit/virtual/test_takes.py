@@ -10,7 +10,7 @@ import pytest
 import balls
 import mannequin
 import scene
-from courtside.geometry import courts
+from courtside.calibration.court import court as courts
 from courtside.records import take_truth
 from courtside.video import reader
 from courtside.virtual import body, capture, takes

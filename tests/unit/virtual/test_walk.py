@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.geometry import courts
+from courtside.calibration.court import court
 from courtside.virtual import layouts, presets, walk
 
-COURT = courts.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
+COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 CENTRE = np.array([3.05, 6.7, 0.0])
 PLAIN = presets.PRESETS["plain"]
 SIZE = (1280, 720)

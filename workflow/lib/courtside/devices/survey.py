@@ -5,7 +5,7 @@ import math
 import os
 from pathlib import Path
 
-from courtside.geometry import calibration_files
+from courtside.calibration import file_formats
 from courtside.records import clicks
 from courtside.study.errors import InputError
 from courtside.study.session_guess import Recording
@@ -147,7 +147,7 @@ def _table(path):
 
 def _calibration(path):
     try:
-        cameras = calibration_files.read(path)
+        cameras = file_formats.read(path)
     except InputError:  # any other text file
         return None
     return {

@@ -25,7 +25,7 @@ def table(records):
 
     Parameters
     ----------
-    records : dict of int to courtside.records.ties.Record
+    records : dict of int to courtside.calibration.records.tie_points.Record
         By number of bridging images. Without ties there is no frame, and no rows but one with the
         outcome as name.
     """
@@ -56,7 +56,7 @@ def draw(rows, court, n_images=None):
     Parameters
     ----------
     rows : pandas.DataFrame
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     n_images : dict of int to int, optional
         How many images there were, fixed ones included, by number of bridging images.
     """

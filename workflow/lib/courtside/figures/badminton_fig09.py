@@ -84,7 +84,7 @@ def draw(rows, images, points, cameras, stick, measured, court=None):
     stick : courtside.figures.stick.Stick
     measured : pandas.DataFrame
         Of `courtside.exports.measures.frames`.
-    court : courtside.geometry.courts.Court, optional
+    court : courtside.calibration.court.court.Court, optional
 
     Returns
     -------

@@ -83,7 +83,7 @@ def draw(points, stick, frames, shown, pictures, court=None):
         Frames of `points`.
     pictures : list of dict of str to ((H, W, 3) uint8, (P, K, 2) float)
         For each instant and camera the picture (BGR) and the detected joints of the stick figure, px.
-    court : courtside.geometry.courts.Court, optional
+    court : courtside.calibration.court.court.Court, optional
 
     Returns
     -------

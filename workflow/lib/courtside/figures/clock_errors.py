@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from courtside.calibration import point_covariance
 from courtside.figures import bars, style
-from courtside.geometry import uncertainty
 
 SPEED_M_S = 12.0  # of a wrist in a smash: millimetres per millisecond
 LIMIT_MS = 8.0  # what the study asks for at 30 frames per second
@@ -33,7 +33,7 @@ def table(rows):
         status is not `found`.
     """
     rows = rows.sort_values(LABELS, kind="stable").reset_index(drop=True)
-    reach = uncertainty.WITHIN_90 * rows["sigma_ms"]
+    reach = point_covariance.WITHIN_90 * rows["sigma_ms"]
     inside = np.where(rows["worst_error_ms"].abs() <= reach, "yes", "no")
     return rows.assign(
         lower_ms=rows["worst_error_ms"] - reach,

@@ -12,7 +12,7 @@ def draw(axis, court, colour=PAINT, least_pt=0.0):
     ----------
     axis : matplotlib.axes.Axes
         In metres; its aspect becomes equal.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     colour : str
     least_pt : float
         Drawn around each line, for plans on which the true width would vanish.

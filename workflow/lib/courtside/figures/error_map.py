@@ -5,9 +5,11 @@ import pandas as pd
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.court import quality
 from courtside.figures import court_plan, style
 from courtside.geometry import camera as camera_models
-from courtside.geometry import control_points, court_errors, uncertainty
 
 COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
 LEVELS = 14  # of colour, about
@@ -20,9 +22,9 @@ def table(cameras, covariance, court, heights_m):
     Parameters
     ----------
     cameras : list of Camera
-    covariance : courtside.records.camera_covariance.CameraCovariance
+    covariance : courtside.calibration.records.covariance.CameraCovariance
         Of the same cameras, in the same order.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     heights_m : sequence of float
 
     Returns
@@ -38,12 +40,12 @@ def table(cameras, covariance, court, heights_m):
     """
     if list(covariance.cameras) != [camera.name for camera in cameras]:
         raise ValueError(f"covariance of {covariance.cameras}, cameras {[c.name for c in cameras]}")
-    xyz = court_errors.volume(court, heights_m, COLUMNS, ROWS)
-    network = control_points.of_cameras(cameras)
+    xyz = quality.volume(court, heights_m, COLUMNS, ROWS)
+    network = selection.of_cameras(cameras)
     sigma = np.full(len(xyz), np.nan)
     seen = np.all([_sees(camera, xyz) for camera in cameras], axis=0)
     if seen.any():
-        spread = uncertainty.point_covariance(network, covariance.of_columns(), xyz[seen])
+        spread = point_covariance.point_covariance(network, covariance.of_columns(), xyz[seen])
         sigma[seen] = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
     return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
 
@@ -61,7 +63,7 @@ def draw(rows, cameras, court, title):
     ----------
     rows : pandas.DataFrame
     cameras : list of Camera
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     title : str
     """
     heights = rows["z_m"].unique()

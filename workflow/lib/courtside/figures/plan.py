@@ -23,8 +23,8 @@ def table(predictions, chosen):
 
     Parameters
     ----------
-    predictions : list of courtside.geometry.planning.Prediction
-    chosen : courtside.geometry.planning.Prediction or None
+    predictions : list of courtside.calibration.planning.prediction.Prediction
+    chosen : courtside.calibration.planning.prediction.Prediction or None
         The one with the fewest images that will do.
 
     Returns

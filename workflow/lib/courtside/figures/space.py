@@ -87,7 +87,7 @@ def floor(axis, sight, low, high, court=None):
     sight : Sight
     low, high : (2,) or (3,) float
         Corners of the rectangle, metres.
-    court : courtside.geometry.courts.Court, optional
+    court : courtside.calibration.court.court.Court, optional
     """
     low, high = np.asarray(low)[:2], np.asarray(high)[:2]
     corners = [low, (high[0], low[1]), high, (low[0], high[1]), low]
@@ -123,7 +123,7 @@ def net(axis, sight, court):
     ----------
     axis : matplotlib.axes.Axes
     sight : Sight
-    court : courtside.geometry.courts.Court or None
+    court : courtside.calibration.court.court.Court or None
     """
     if court is None or court.net is None:
         return

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from courtside.calibration import point_covariance
 from courtside.figures import court_plan, style
-from courtside.geometry import uncertainty
 
 ROW_MM = 105
 ROOM_M = 0.5  # around the path, where it leaves the court
@@ -31,7 +31,7 @@ def draw(frames, summary, court):
     ----------
     frames, summary : pandas.DataFrame
         Of `courtside.exports.measures`.
-    court : courtside.geometry.courts.Court or None
+    court : courtside.calibration.court.court.Court or None
 
     Returns
     -------
@@ -62,7 +62,7 @@ def _draw_path(axis, own, measured, court, person):
     ):
         axis.plot(x[at], y[at], mark, color=SPEEDS["neck"], markersize=4, zorder=4, label=word)
     found = measured.loc["neck_ground_distance"]
-    reach = uncertainty.WITHIN_90 * found.sigma
+    reach = point_covariance.WITHIN_90 * found.sigma
     axis.set_title(
         f"{person}: neck from above\n{found.value:.2f} ± {reach:.2f} m on the ground (90 %)"
     )
@@ -77,7 +77,7 @@ def _draw_path(axis, own, measured, court, person):
 
 def _band(axis, own, name, ends, colour, label):
     value, sigma = (own[f"{name}_{end}"].to_numpy() for end in ends)
-    reach = uncertainty.WITHIN_90 * sigma
+    reach = point_covariance.WITHIN_90 * sigma
     band = own.time_s, value - reach, value + reach
     axis.fill_between(*band, color=colour, alpha=0.2, linewidth=0)
     axis.plot(own.time_s, value, color=colour, linewidth=0.9, label=label)

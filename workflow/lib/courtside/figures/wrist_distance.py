@@ -8,8 +8,8 @@ import pandas as pd
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from courtside.calibration import point_covariance
 from courtside.figures import bars, source_looks, style
-from courtside.geometry import uncertainty
 
 ROW_MM, TICKS_MM, ZOOM_MM, LINE_MM = 19, 4, 48, 3.4
 N_COLUMNS, MOST_PANELS, MOST_NOTES = 3, 9, 18
@@ -205,7 +205,7 @@ def _draw_close(axis, own, centre_s, look):
 def _draw_contact(axis, row, centre_s, colour):
     at = MS * (row.time_s - centre_s)
     if row.event == "clap":
-        reach = MS * uncertainty.WITHIN_90 * row.uncertainty_s
+        reach = MS * point_covariance.WITHIN_90 * row.uncertainty_s
         axis.axvspan(at - reach, at + reach, color=colour, alpha=0.15, linewidth=0, zorder=0)
         axis.axvline(at, color=colour, linewidth=0.9)
         held = at + MS * np.array(HELD_S)

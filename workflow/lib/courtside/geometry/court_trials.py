@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.geometry import alignment, court_adjustment, court_errors, known_points
+from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
 from courtside.geometry.camera import project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
@@ -30,7 +30,7 @@ def choices(court, sets):
 
     Parameters
     ----------
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     sets : sequence of str
         Of its sets. Each comes whole, and without the two scored points where enough others are left.
     """
@@ -49,16 +49,16 @@ def of_ties(record, truth, court, clicks, *, sets, **settings):
 
     Parameters
     ----------
-    record : courtside.records.ties.Record
+    record : courtside.calibration.records.tie_points.Record
         Without an outcome.
     truth : list of Camera
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     clicks : dict of str to (P, 2) float
         Of this trial, by camera.
     sets : sequence of str
         Sets of court points.
     **settings
-        `click_sigma_px` and `click_loss` of `court_adjustment.solve`.
+        `click_sigma_px` and `click_loss` of `joint_adjustment.solve`.
 
     Returns
     -------
@@ -66,23 +66,23 @@ def of_ties(record, truth, court, clicks, *, sets, **settings):
         With the keys `COLUMNS`; `paper` with its three points only, which cannot be left out.
     """
     rows, sfm = [], record.sfm_cameras
-    xyz_in_sfm = alignment.reconstruct(sfm, clicks)
+    xyz_in_sfm = sfm_alignment.reconstruct(sfm, clicks)
     for n_clicks, in_sample, use in choices(court, sets):
         row = {"n_clicks": n_clicks, "in_sample": in_sample}
         if record.fault:
             rows.append({"method": "sfm", **row, "outcome": record.fault})
         else:
-            solved = court_adjustment.solve(record.ties, clicks, court, points=use, **settings)
+            solved = joint_adjustment.solve(record.ties, clicks, court, points=use, **settings)
             errors = score(solved.cameras, truth, court, clicks, solved.point_covariance)
             rows.append({"method": "sfm", **row, **errors})
         try:
-            frame, _ = alignment.align(court, np.where(use[:, None], xyz_in_sfm, np.nan))
+            frame, _ = sfm_alignment.align(court, np.where(use[:, None], xyz_in_sfm, np.nan))
             errors = score([frame.camera(camera) for camera in sfm], truth, court, clicks)
         except InputError as error:
             errors = {"outcome": str(error)}
         rows.append({"method": "sim3", **row, **errors})
     try:
-        frame = alignment.paper_frame(court, xyz_in_sfm).nearest
+        frame = sfm_alignment.paper_frame(court, xyz_in_sfm).nearest
         errors = score([frame.camera(camera) for camera in sfm], truth, court, clicks)
     except InputError as error:
         errors = {"outcome": str(error)}
@@ -95,7 +95,7 @@ def of_known(truth, court, clicks, lenses, *, sets, click_sigma_px):
     Parameters
     ----------
     truth : list of Camera
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     clicks : dict of str to (P, 2) float
     lenses : dict of str to Camera
         From boards; may be empty.
@@ -135,19 +135,19 @@ def score(cameras, truth, court, clicks, point_covariance=None):
     ----------
     cameras, truth : list of Camera
         In the same order.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     clicks : dict of str to (P, 2) float
     point_covariance : callable, optional
         Covariance (N, 3, 3) m2 of points (N, 3), of cameras that know theirs.
     """
-    grid = court_errors.volume(court)
+    grid = quality.volume(court)
     seen = {true.name: np.vstack([project(true, grid), clicks[true.name]]) for true in truth}
-    xyz = alignment.reconstruct(cameras, seen)
+    xyz = sfm_alignment.reconstruct(cameras, seen)
     error_m = xyz[: len(grid)] - grid
-    found = court_errors.court_points(court, xyz[len(grid) :])
-    found |= court_errors.over_volume(error_m) | court_errors.poses(cameras, truth)
+    found = quality.court_points(court, xyz[len(grid) :])
+    found |= quality.over_volume(error_m) | quality.poses(cameras, truth)
     if point_covariance is not None:
-        found |= court_errors.coverage(error_m, point_covariance(grid))
+        found |= quality.coverage(error_m, point_covariance(grid))
     return {"outcome": ""} | found
 
 
@@ -158,7 +158,7 @@ def score_linear(found, truth, court, clicks):
     ----------
     found : dict of str to resection.Linear
     truth : list of Camera
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     clicks : dict of str to (P, 2) float
     """
     matrices = np.stack([found[camera.name].matrix for camera in truth])
@@ -168,10 +168,10 @@ def score_linear(found, truth, court, clicks):
         weight = np.isfinite(xy).all(axis=-1).astype(float)
         return triangulate(np.nan_to_num(xy), weight, matrices)
 
-    grid = court_errors.volume(court)
+    grid = quality.volume(court)
     seen = {camera.name: project(camera, grid) for camera in truth}
-    errors = court_errors.court_points(court, place(clicks))
-    errors |= court_errors.over_volume(place(seen) - grid)
+    errors = quality.court_points(court, place(clicks))
+    errors |= quality.over_volume(place(seen) - grid)
     if all(result.camera for result in found.values()):
-        errors |= court_errors.poses([found[camera.name].camera for camera in truth], truth)
+        errors |= quality.poses([found[camera.name].camera for camera in truth], truth)
     return {"outcome": ""} | errors

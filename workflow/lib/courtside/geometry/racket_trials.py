@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from courtside.geometry import alignment, court_adjustment, court_errors, known_points
+from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
 from courtside.geometry.camera import project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
@@ -48,16 +48,16 @@ def calibrate(record, truth, court, clicks, *, click_sigma_px, click_bias_px, cl
 
     Parameters
     ----------
-    record : courtside.records.ties.Record
+    record : courtside.calibration.records.tie_points.Record
         Its fixed cameras include those of `truth`.
     truth : list of Camera
         The cameras that see the racket, as they are.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
         With the sets "three" and "eight".
     clicks : dict of str to (P, 2) float
         By camera, px; NaN where not clicked.
     click_sigma_px, click_bias_px, click_loss : float
-        As for `court_adjustment.solve`.
+        As for `joint_adjustment.solve`.
 
     Returns
     -------
@@ -73,9 +73,9 @@ def calibrate(record, truth, court, clicks, *, click_sigma_px, click_bias_px, cl
         ("paper", court.indices(THREE), partial(_by_paper, record, court, clicks, truth)),
         ("sfm", eight, partial(_by_ties, record, points=eight, **tied)),
         ("sfm", points, partial(_by_ties, record, points=points, **tied)),
-        ("perfect", (), partial(partial, alignment.reconstruct, truth)),
+        ("perfect", (), partial(partial, sfm_alignment.reconstruct, truth)),
     ]
-    grid = court_errors.volume(court)
+    grid = quality.volume(court)
     seen = {camera.name: project(camera, grid) for camera in truth}
     return [_way(name, len(used), find, grid, seen) for name, used, find in made]
 
@@ -85,7 +85,7 @@ def _way(method, n_clicks, find, grid, seen):
         place = find()
     except InputError as error:
         return Way(method, n_clicks, str(error), None, np.nan)
-    error = court_errors.over_volume(place(seen) - grid)
+    error = quality.over_volume(place(seen) - grid)
     return Way(method, n_clicks, "", place, error["volume_rms_cm"])
 
 
@@ -95,14 +95,14 @@ def _by_points(court, clicks, sigma_px, truth, *, points, linear):
     found = known_points.calibrate(way, court, clicks, sizes, {}, click_sigma_px=sigma_px)
     if linear:
         return partial(place_linearly, {name: each.matrix for name, each in found.items()})
-    return partial(alignment.reconstruct, known_points.cameras(found))
+    return partial(sfm_alignment.reconstruct, known_points.cameras(found))
 
 
 def _by_paper(record, court, clicks, truth):
     if record.outcome:
         raise InputError(record.outcome)
     sfm = record.sfm_cameras
-    frame = alignment.paper_frame(court, alignment.reconstruct(sfm, clicks)).nearest
+    frame = sfm_alignment.paper_frame(court, sfm_alignment.reconstruct(sfm, clicks)).nearest
     return _cameras([frame.camera(camera) for camera in sfm], truth)
 
 
@@ -110,14 +110,14 @@ def _by_ties(record, clicks, court, truth, *, points, **settings):
     if record.ties is None:
         raise InputError(record.outcome or record.fault)
     use = np.isin(np.arange(len(court.points)), points)
-    solved = court_adjustment.solve(record.ties, clicks, court, points=use, **settings)
+    solved = joint_adjustment.solve(record.ties, clicks, court, points=use, **settings)
     return _cameras(solved.cameras, truth)
 
 
 def _cameras(found, truth):
     """Return how to place points by those of the cameras that see the racket."""
     by_name = {camera.name: camera for camera in found}
-    return partial(alignment.reconstruct, [by_name[camera.name] for camera in truth])
+    return partial(sfm_alignment.reconstruct, [by_name[camera.name] for camera in truth])
 
 
 def place_linearly(matrices, seen):

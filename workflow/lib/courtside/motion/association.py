@@ -63,7 +63,7 @@ def associate(cameras, xy, time_s, n_persons, *, trunk, mirror=None, court=None)
         Indices of shoulders and hips.
     mirror : list of int, length J, optional
         Index of the same joint of the other side; with it, views that took left for right still agree.
-    court : courtside.geometry.courts.Court, optional
+    court : courtside.calibration.court.court.Court, optional
         People far from it are left out; where it has a net, changing halves is held to be rare.
 
     Returns

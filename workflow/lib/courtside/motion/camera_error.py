@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from courtside.geometry import control_points, uncertainty
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
 
 
 def with_cameras(points, cameras, covariance):
@@ -17,7 +18,7 @@ def with_cameras(points, cameras, covariance):
         Those of `points.cameras`.
     covariance : (K, K) float
         Of the columns of the network of these cameras, as
-        `courtside.records.camera_covariance.CameraCovariance.of_columns` returns it.
+        `courtside.calibration.records.covariance.CameraCovariance.of_columns` returns it.
 
     Returns
     -------
@@ -36,8 +37,8 @@ def with_cameras(points, cameras, covariance):
     flat = middle.reshape(-1, 3)
     known = np.isfinite(flat).all(axis=1)
     found = np.full((len(flat), 3, 3), np.nan)
-    network = control_points.of_cameras(cameras)
-    found[known] = uncertainty.point_covariance(network, covariance, flat[known])
+    network = selection.of_cameras(cameras)
+    found[known] = point_covariance.point_covariance(network, covariance, flat[known])
     found = found.reshape(*middle.shape, 3)[:, :, None]
     there = placed.all(axis=-1)[..., None, None]
     return replace(points, covariance_camera=np.where(there, found, np.nan))

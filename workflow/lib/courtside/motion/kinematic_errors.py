@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
 
-from courtside.geometry import uncertainty
+from courtside.calibration import point_covariance
 from courtside.kinematics import measures
 from courtside.records import derived as derived_joints
 
@@ -110,7 +110,7 @@ def _errors(part, point, path):
     ground = ground - np.linalg.norm(velocity[:, :2], axis=1)
     sigma = part[f"{point}_speed_sd_m_s"].to_numpy()
     stated = np.isfinite(sigma) & np.isfinite(speed)
-    inside = np.abs(speed[stated]) <= uncertainty.WITHIN_90 * sigma[stated]
+    inside = np.abs(speed[stated]) <= point_covariance.WITHIN_90 * sigma[stated]
     return {
         **row,
         "position_median_mm": np.nanmedian(apart_mm),

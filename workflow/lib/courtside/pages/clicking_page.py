@@ -9,7 +9,7 @@ from string import Template
 import cv2
 import numpy as np
 
-from courtside.geometry import court_edges
+from courtside.calibration.court import line_edges
 from courtside.pages import page
 from courtside.video import images
 
@@ -127,7 +127,7 @@ def build(session, court, frames, *, targets):
     ----------
     session : str
         Shown as the title.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     frames : list of Frame
         One picture of each fixed camera, then those of takes, in the order of their tabs.
     targets : dict of str to str
@@ -178,14 +178,14 @@ def _frame(frame):
 
 
 def _court(court):
-    edges = court_edges.named(court)
+    edges = line_edges.named(court)
     points = [
         {
             "name": name,
             "xyz": court.xyz[at],
             "edges": court.edges[at],
             "marks": [{"axis": e.axis, "at_m": e.at_m, "side": e.side} for e in edges[at]],
-            "on_post": court_edges.post(court, at) is not None,
+            "on_post": line_edges.post(court, at) is not None,
         }
         for at, name in enumerate(court.points)
     ]

@@ -19,7 +19,7 @@ def write(path, proposals, points):
     Parameters
     ----------
     path : str or Path
-    proposals : dict of str to courtside.devices.court_proposals.Proposals
+    proposals : dict of str to courtside.calibration.click_proposals.proposals.Proposals
         By camera.
     points : sequence of str, length P
     """

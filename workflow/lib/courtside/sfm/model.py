@@ -3,7 +3,7 @@
 import numpy as np
 import pycolmap
 
-from courtside.geometry.network import LENS, Network
+from courtside.calibration.bundle.problem import LENS, Network
 from courtside.sfm import model_files
 from courtside.study.errors import reading
 
@@ -23,7 +23,7 @@ def read(folder):
 
     Returns
     -------
-    network : courtside.geometry.network.Network
+    network : courtside.calibration.bundle.problem.Network
         In the model's own frame and unit, of registered images only, in the order of their ids; all
         observations with a sigma of 1 px and no loss. Lenses are in the order of the model's camera ids.
     names : list of str

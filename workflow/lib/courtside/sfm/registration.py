@@ -8,7 +8,7 @@ def outcome(network, images, fixed, *, min_points, n_models=1):
 
     Parameters
     ----------
-    network : courtside.geometry.network.Network
+    network : courtside.calibration.bundle.problem.Network
         As `model.read` gives it.
     images : list of str
         Names of the registered images.
@@ -53,7 +53,7 @@ def n_seen(network, images, image):
 
     Parameters
     ----------
-    network : courtside.geometry.network.Network
+    network : courtside.calibration.bundle.problem.Network
     images : list of str
         Names of its images.
     image : str

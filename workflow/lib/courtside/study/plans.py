@@ -62,7 +62,7 @@ class Plan:
     hall_m : tuple of tuple of float
         Two opposite corners.
     texture : str
-        A key of `courtside.geometry.planned_ties.TEXTURES`.
+        A key of `courtside.calibration.planning.tie_points.TEXTURES`.
     cameras : dict of str to PlannedCamera
     walk : PlannedWalk
     n_images : tuple of int

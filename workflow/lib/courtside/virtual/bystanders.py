@@ -112,7 +112,7 @@ def plan(n_people, court, rng):
     Parameters
     ----------
     n_people : int
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
         Each person keeps to one of its halves, so that nobody crosses the net, or to the strip on one side.
     rng : numpy.random.Generator
 

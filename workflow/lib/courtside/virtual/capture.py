@@ -96,7 +96,7 @@ class Studio:
     Parameters
     ----------
     settings : Settings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
 
     Attributes
     ----------
@@ -141,7 +141,7 @@ def plan(settings, court):
     Parameters
     ----------
     settings : Settings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     """
     preset = presets.PRESETS[settings.preset]
     fixed = layouts.fixed_cameras(
@@ -171,7 +171,7 @@ def simulate(settings, court, folder, *, backdrops_npz=None, threads=1):
     Parameters
     ----------
     settings : Settings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     folder : str or Path
         Gets `{camera}.mp4` for each camera of the layout, `court_points.csv`, `truth.npz`, and `walk.mp4`
         and `boards/{camera}/*.png` where asked for; each file appears under its name only when whole.
@@ -216,7 +216,7 @@ def backdrops(settings, court, margins, *, kept_npz=None, threads=1):
     Parameters
     ----------
     settings : Settings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     margins : dict of int to int
         For each camera, by its place in the layout, how much more is needed on each side, px.
     kept_npz : str, Path or None

@@ -67,7 +67,7 @@ def gear(court, room_m, preset, rng):
 
     Parameters
     ----------
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     room_m : (2, 3) float
         Lowest and highest corner of the hall.
     preset : courtside.virtual.presets.Preset

@@ -50,7 +50,7 @@ def build(preset, court, seed, *, floor_texel_m=FLOOR_TEXEL_M):
     Parameters
     ----------
     preset : courtside.virtual.presets.Preset
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     seed : int or numpy.random.SeedSequence
         The same seed gives the same hall, bit by bit.
     floor_texel_m : float

@@ -30,7 +30,7 @@ def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoo
         A key of `LAYOUTS`. In "a" two cameras look along the world's x (`side`) and y (`back`). In "b"
         one stands straight behind the court (`back`), one beside it on a line parallel to x
         (`oblique`); then the mirror image of that one (`mirror`); then one that faces the players.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     size_px : (int, int)
         Width and height of the pictures.
     preset : courtside.virtual.presets.Preset

@@ -17,7 +17,7 @@ def six_corners(proportions, court, rng, *, hand="right", half="near", seconds=2
     ----------
     proportions : courtside.virtual.stance.Proportions
         Of the body for which the feet are planted.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
     seconds : float
@@ -38,7 +38,7 @@ def rally(proportions, court, rng, *, hand="right", half="near", seconds=21.0):
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
     seconds : float
@@ -58,7 +58,7 @@ def shot(proportions, court, rng, *, hand="right", half="near", corner="rear_rig
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
     corner : str
@@ -81,7 +81,7 @@ def lunge(proportions, court, rng, *, hand="right", half="near"):
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
 
@@ -102,7 +102,7 @@ def tpose_clap(
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
     between_s : float
@@ -141,7 +141,7 @@ def tpose_clap_bouncing(proportions, court, rng, **options):
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     **options
         Of `tpose_clap`.
@@ -169,7 +169,7 @@ def single_view(
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
     free_s : float
@@ -195,7 +195,7 @@ def walk(proportions, court, rng, *, hand="right", half="near"):
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
 
@@ -214,7 +214,7 @@ def crossing(proportions, court, rng, *, hand="right", half="near", lane=0, n_tu
     Parameters
     ----------
     proportions : courtside.virtual.stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand, half : str
     lane : int

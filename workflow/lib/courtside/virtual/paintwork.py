@@ -61,7 +61,7 @@ def put_up(court, preset, rng):
 
     Parameters
     ----------
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     preset : courtside.virtual.presets.Preset
     rng : numpy.random.Generator
 

@@ -190,7 +190,7 @@ class Player:
     Attributes
     ----------
     proportions : stance.Proportions
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     rng : numpy.random.Generator
     hand : str
         "right" or "left".

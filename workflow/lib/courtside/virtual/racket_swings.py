@@ -69,7 +69,7 @@ def swing(court, length_m, rng):
 
     Parameters
     ----------
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
         With a net: its `mid_height_m` is passed between frames `BELOW` and `BELOW` + 1.
     length_m : float
         From top to butt.

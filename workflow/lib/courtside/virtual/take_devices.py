@@ -70,7 +70,7 @@ class Stage:
     ----------
     take : takes.TakeSettings
     settings : capture.Settings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     athletes : dict of str to athlete.Athlete
     """
 
@@ -105,7 +105,7 @@ def record(take, settings, court, athletes, folder, *, threads=1):
     ----------
     take : takes.TakeSettings
     settings : capture.Settings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     athletes : dict of str to athlete.Athlete
     folder : Path
         Gets `{device}.bag` of each depth camera.

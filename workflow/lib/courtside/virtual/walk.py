@@ -133,7 +133,7 @@ def plan(fixed, court, size_px, preset, rng, *, speed_kmh=USUAL_KMH, stabiliser=
     ----------
     fixed : list of Camera
         In the order of the walk, at least two.
-    court : courtside.geometry.courts.Court
+    court : courtside.calibration.court.court.Court
     size_px : (int, int)
         Width and height of the walked camera's pictures.
     preset : courtside.virtual.presets.Preset

@@ -1,0 +1,120 @@
+"""Wrong clicks: found, named, and told from line centres, on pictures of a court with exact truth."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.calibration.court import click_checks, court, sfm_alignment
+from courtside.geometry import camera as camera_models
+from courtside.geometry import similarity
+from scene import look_at, opencv_projection
+
+COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+SIGMA_PX = 0.23
+SFM_FROM_WORLD = similarity.Sim3(0.4, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
+
+
+def fixed_cameras():
+    matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+    places = {"side": (-18, 6.7, 1.9), "back": (3.05, -14.3, 2.1), "corner": (-9, -7, 5.0)}
+    return [
+        camera_models.Camera(name, (1280, 720), matrix, np.zeros(5), look_at(at, (3.05, 6.7, 1)))
+        for name, at in places.items()
+    ]
+
+
+FIXED = fixed_cameras()
+IN_SFM = [SFM_FROM_WORLD.camera(camera) for camera in FIXED]
+
+
+def clicks(seed=0, xyz=COURT.xyz, sigma_px=SIGMA_PX):
+    rng = np.random.default_rng(seed)
+    return {
+        camera.name: opencv_projection(camera, xyz) + sigma_px * rng.normal(size=(len(xyz), 2))
+        for camera in FIXED
+    }
+
+
+def test_exact_clicks_leave_nothing_out():
+    table = click_checks.leave_one_out(IN_SFM, clicks(sigma_px=0.0), COURT)
+    assert table.cameras == ("side", "back", "corner") and table.points == COURT.points
+    np.testing.assert_allclose(table.error_cm, 0, atol=1e-4)
+    np.testing.assert_allclose(table.error_px, 0, atol=1e-4)
+
+
+def test_a_click_is_judged_by_the_others_alone():
+    given = clicks(sigma_px=0.0)
+    given["corner"][:] = np.nan
+    moved = COURT.xyz.copy()
+    moved[6] += (
+        0.1,
+        0.05,
+        0.0,
+    )  # clicked beside the point in both cameras: nothing but the court tells
+    for camera in FIXED[:2]:
+        given[camera.name] = opencv_projection(camera, moved)
+    table = click_checks.leave_one_out(IN_SFM, given, COURT)
+    np.testing.assert_allclose(table.residual_m[6], [0.1, 0.05, 0], atol=1e-5)
+    assert table.error_cm[6] == pytest.approx(100 * np.hypot(0.1, 0.05), abs=1e-3)
+    assert np.isnan(table.error_px[2]).all()
+    true = opencv_projection(FIXED[0], COURT.xyz)
+    np.testing.assert_allclose(table.projected_px[0], true, atol=1e-3)
+
+
+def test_good_clicks_are_not_accused():
+    for seed in range(10):
+        assert click_checks.find(COURT, IN_SFM, clicks(seed), sigma_px=SIGMA_PX) == []
+
+
+@pytest.mark.parametrize("camera", ["side", "back", "corner"])
+def test_a_wrong_click_is_named_with_its_camera(camera):
+    given = clicks(1)
+    given[camera][5] += (25, 18)
+    table = click_checks.leave_one_out(IN_SFM, given, COURT)
+    worst = click_checks.find_wrong_clicks(table, sigma_px=SIGMA_PX)[0]
+    assert (worst.camera, worst.point) == (camera, "p06")
+    assert worst.error_px == pytest.approx(np.hypot(25, 18), rel=0.15)
+    assert worst.looks_like is None and np.isfinite(worst.error_cm)
+
+
+def test_a_wrong_click_in_one_of_two_cameras_is_named():
+    given = clicks(2)
+    given["corner"][:] = np.nan
+    given["back"][1] += (30, 0)
+    lines = click_checks.find(COURT, IN_SFM, given, sigma_px=SIGMA_PX)
+    assert lines[0].startswith("camera back: point p02: expected")
+    assert (
+        "px away" in lines[0] and "click it again or delete it" in lines[0] and "\n" not in lines[0]
+    )
+
+
+def test_exchanged_names_are_recognised():
+    given = clicks(3)
+    given["corner"][[3, 5]] = given["corner"][[5, 3]]
+    table = click_checks.leave_one_out(IN_SFM, given, COURT)
+    named = {
+        (w.camera, w.point): w.looks_like
+        for w in click_checks.find_wrong_clicks(table, sigma_px=SIGMA_PX)
+    }
+    assert named["corner", "p04"] == "p06" and named["corner", "p06"] == "p04"
+
+
+def test_line_centres_are_recognised_and_edges_are_not():
+    centres = COURT.xyz + court.to_line_centres(COURT)
+    shifts = []
+    for seed in range(8):
+        lines = click_checks.find(COURT, IN_SFM, clicks(seed, centres), sigma_px=SIGMA_PX)
+        assert len(lines) == 1 and "line centres seem to be clicked" in lines[0]
+        xyz = sfm_alignment.reconstruct(IN_SFM, clicks(seed, centres))
+        shifts.append(click_checks.line_centre_pattern(COURT, xyz))
+    shift, sigma = np.array(shifts).T
+    assert abs(shift.mean() - 1) < 3 * sigma.mean() and sigma.max() < 0.25
+
+
+def test_the_pattern_is_silent_without_the_points_to_tell():
+    few = np.full_like(COURT.xyz, np.nan)
+    few[:4] = COURT.xyz[:4]
+    assert click_checks.line_centre_pattern(COURT, few) == (0.0, np.inf)
+    exact = click_checks.line_centre_pattern(COURT, COURT.xyz + court.to_line_centres(COURT))
+    assert exact[0] == pytest.approx(1, abs=0.02)

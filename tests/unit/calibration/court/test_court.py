@@ -1,0 +1,133 @@
+"""Courts against the rule books' other lengths, and every fault of a court file in one line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from courtside.calibration.court import court as courts
+from courtside.study.errors import InputError
+
+FOLDER = Path(__file__).parents[4] / "config" / "courts"
+NAMES = ["badminton", "tennis", "rectangle-10x5"]
+
+
+def court(name="badminton"):
+    return courts.read(FOLDER / f"{name}.yaml")
+
+
+def distance(where, first, second):
+    at = where.indices([first, second])
+    return np.linalg.norm(np.subtract(*where.xyz[at]))
+
+
+@pytest.mark.parametrize(
+    ("name", "pair", "length_m"),
+    [  # lengths that the rule books print and that are not in the file
+        ("badminton", ("p03", "p02"), 14.723),  # diagonal of the doubles court
+        ("badminton", ("p08", "p09"), 3.96),  # between the short service lines
+        ("badminton", ("p12", "p08"), 4.72),  # service court
+        ("badminton", ("p14", "p08"), 3.96),  # service court for doubles
+        ("tennis", ("p12", "p13"), 8.23),  # singles court
+        ("tennis", ("p08", "p09"), 12.80),  # two service courts of 6.40 m
+        ("tennis", ("p10", "p11"), 12.798),  # posts, 0.914 m outside each side line
+        ("rectangle-10x5", ("p02", "p03"), np.hypot(10, 5)),
+    ],
+)
+def test_lengths_agree_with_the_rule_books(name, pair, length_m):
+    assert distance(court(name), *pair) == pytest.approx(length_m, abs=6e-4)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_courts_are_symmetric_about_both_middles(name):
+    found = court(name)
+    places = {tuple(np.round(p, 6)) for p in found.xyz}
+    for axis in (0, 1):
+        mirrored = found.xyz.copy()
+        mirrored[:, axis] = found.size_m[axis] - mirrored[:, axis]
+        assert {tuple(np.round(p, 6)) for p in mirrored} == places
+        lines = found.lines_m.copy()
+        lines[:, [axis, axis + 2]] = found.size_m[axis] - lines[:, [axis + 2, axis]]
+        assert {tuple(np.round(row, 6)) for row in lines} == {
+            tuple(np.round(row, 6)) for row in found.lines_m
+        }
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_lines_have_the_width_and_points_lie_on_paint(name):
+    found = court(name)
+    width = np.abs(found.lines_m[:, 2:] - found.lines_m[:, :2]).min(axis=1)
+    np.testing.assert_allclose(width, found.line_width_m, atol=1e-9)
+    assert len(found.edges) == len(found.points) == len(set(found.points))
+    for point, edge, shift in zip(
+        found.xyz, found.edges, courts.to_line_centres(found), strict=True
+    ):
+        if point[2] > 0 or "post: its middle" in edge:
+            assert not shift.any()
+        elif "edge" in edge:
+            assert np.abs(shift).max() == pytest.approx(found.line_width_m / 2)
+        else:
+            np.testing.assert_allclose(shift, 0, atol=1e-9)
+
+
+def test_the_badminton_court_is_the_papers():
+    found = court()
+    assert found.size_m.tolist() == [6.1, 13.4]
+    assert found.sets["eight"] == ("p01", "p02", "p03", "p10", "p11", "p16", "p17", "p18")
+    assert found.sets["all"] == found.points and len(found.points) == 18
+    np.testing.assert_array_equal(
+        found.xyz[found.indices("three")], [[0, 0, 0], [6.1, 0, 0], [0, 13.4, 0]]
+    )
+    assert found.sigma_m[found.indices(["p01", "p17", "p18"])].tolist() == [0.005, 0.015, 0.015]
+    # Line centres of a court that is 40 mm smaller in both directions.
+    moved = (found.xyz + courts.to_line_centres(found))[found.indices(["p01", "p16"])]
+    np.testing.assert_allclose(moved, [[0.02, 0.02, 0], [6.08, 13.38, 0]], atol=1e-12)
+
+
+def change(content, keys, value):
+    for key in keys[:-1]:
+        content = content[key]
+    if value is KeyError:
+        del content[keys[-1]]
+    else:
+        content[keys[-1]] = value
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "named"),
+    [
+        (("net",), KeyError, ["net", "keys"]),
+        (("colour",), "blue", ["colour"]),
+        (("size_m",), [13.4, 6.1], ["short side", "exchange"]),
+        (("size_m",), [6.1], ["size_m", "2"]),
+        (("line_width_m",), "wide", ["line_width_m", "wide"]),
+        (("line_width_m",), 0, ["line_width_m", "above 0"]),
+        (("sigma_m",), 0.005, ["sigma_m floor"]),
+        (("sigma_m", "raised"), -1, ["sigma_m", "above 0"]),
+        (("points",), {}, ["points"]),
+        (("points", "p01", "xyz_m"), [0, 0], ["p01", "xyz_m", "3"]),
+        (("points", "p01", "edges"), KeyError, ["p01", "edges"]),
+        (("points", "P 1"), {"xyz_m": [1, 1, 0], "edges": "x"}, ["P 1"]),
+        (("points", "p19"), {"xyz_m": [0, 0, 0], "edges": "x"}, ["p01", "p19", "0 m apart"]),
+        (("sets",), [], ["sets"]),
+        (("sets", "eight"), ["p01", "p99"], ["eight", "p99"]),
+        (("sets", "eight"), ["p01", "p01"], ["eight", "different"]),
+        (("sets", "eight"), "p01", ["eight", "list"]),
+        (("lines_m",), [], ["lines_m"]),
+        (("lines_m",), [[0, 0, 1]], ["lines_m", "x4"]),
+        (("lines_m",), [[0, 0, 7, 0.04]], ["lines_m", "6.1x13.4"]),
+        (("net", "y_m"), KeyError, ["net", "y_m"]),
+        (("net", "x_m"), 3, ["net", "x_m"]),
+    ],
+)
+def test_a_fault_is_one_line_that_names_it(tmp_path, keys, value, named):
+    content = yaml.safe_load((FOLDER / "badminton.yaml").read_text())
+    change(content, keys, value)
+    path = tmp_path / "wrong.yaml"
+    path.write_text(yaml.safe_dump(content))
+    with pytest.raises(InputError) as caught:
+        courts.read(path)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert [word for word in [str(path), *named] if word not in message] == []

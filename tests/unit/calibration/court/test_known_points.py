@@ -1,0 +1,135 @@
+"""Calibration from known points by name: which points, which method, and the camera that was there."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.calibration.court import court, known_points, resection
+from courtside.geometry import camera as camera_models
+from courtside.study.errors import InputError
+from scene import look_at, opencv_projection
+
+COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+SIZE = (1280, 720)
+MATRIX = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+K1 = -0.04
+
+
+def fixed(dist=(K1, 0, 0, 0, 0)):
+    # Not in the net's plane, where a linear calibration is degenerate.
+    places = {"corner": (-11, -8, 5.0), "back": (3.05, -14.3, 2.1)}
+    return [
+        camera_models.Camera(name, SIZE, MATRIX, dist, look_at(at, (3.05, 6.7, 1)))
+        for name, at in places.items()
+    ]
+
+
+def clicks_of(made):
+    return {camera.name: opencv_projection(camera, COURT.xyz) for camera in made}
+
+
+def calibrate(name, made, clicks=None, lenses=None):
+    way = known_points.method(name, COURT)
+    sizes = {camera.name: camera.size for camera in made}
+    clicks = clicks or clicks_of(made)
+    return known_points.calibrate(way, COURT, clicks, sizes, lenses or {}, click_sigma_px=0.9)
+
+
+@pytest.mark.parametrize(
+    ("name", "linear", "board", "points"),
+    [
+        ("known18", False, False, COURT.points),
+        ("known8", False, False, ("p01", "p02", "p03", "p10", "p11", "p16", "p17", "p18")),
+        ("known8-board", False, True, ("p01", "p02", "p03", "p10", "p11", "p16", "p17", "p18")),
+        ("dlt18", True, False, COURT.points),
+    ],
+)
+def test_a_name_says_method_and_points(name, linear, board, points):
+    found = known_points.method(name, COURT)
+    assert (found.linear, found.board) == (linear, board)
+    assert {COURT.points[at] for at in found.points} == set(points)
+
+
+def test_a_number_that_no_set_has_is_a_fault_in_one_line():
+    with pytest.raises(
+        InputError, match="calibration known7: expected a set of 7 points"
+    ) as caught:
+        known_points.method("known7", COURT)
+    assert "'eight': 8" in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["known18", "known8"])
+def test_exact_clicks_give_the_camera_and_its_lens(name):
+    made = fixed()
+    found = known_points.cameras(calibrate(name, made))
+    assert [camera.name for camera in found] == ["corner", "back"]
+    for camera, known in zip(found, made, strict=True):
+        np.testing.assert_allclose(camera.centre_in_world, known.centre_in_world, atol=1e-3)
+        assert camera.K[1, 1] == pytest.approx(1120, abs=0.1)
+        assert camera.dist[0] == pytest.approx(K1, abs=1e-4)
+
+
+def test_a_lens_from_a_board_is_kept_as_it_is():
+    made = fixed((K1, 0.01, 1e-3, -1e-3, 0))
+    lenses = {c.name: c for c in made}
+    found = known_points.cameras(calibrate("known8-board", made, lenses=lenses))
+    for camera, known in zip(found, made, strict=True):
+        np.testing.assert_array_equal(camera.K, known.K)
+        np.testing.assert_array_equal(camera.dist, known.dist)
+        np.testing.assert_allclose(camera.centre_in_world, known.centre_in_world, atol=1e-5)
+
+
+def test_a_linear_calibration_of_a_pinhole_gives_its_projection():
+    made = fixed(np.zeros(5))
+    found = calibrate("dlt18", made)
+    xyz = np.column_stack([np.random.default_rng(0).uniform(0, 6, (20, 2)), np.linspace(0, 3, 20)])
+    for camera in made:
+        seen = np.column_stack([xyz, np.ones(20)]) @ found[camera.name].matrix.T
+        np.testing.assert_allclose(
+            seen[:, :2] / seen[:, 2:], opencv_projection(camera, xyz), atol=1e-4
+        )
+    assert [c.name for c in known_points.cameras(found)] == ["corner", "back"]
+
+
+def test_points_that_are_not_in_the_set_do_not_count():
+    made = fixed()
+    clicks = clicks_of(made)
+    outside = np.setdiff1d(np.arange(18), COURT.indices("eight"))
+    for xy in clicks.values():
+        xy[outside] += 300
+    found = known_points.cameras(calibrate("known8", made, clicks))
+    np.testing.assert_allclose(found[1].centre_in_world, made[1].centre_in_world, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("reason", "said"),
+    [
+        (
+            "camera back: the points lie in one plane; click more",
+            "camera back: the points lie in one plane",
+        ),
+        (
+            "",
+            "camera back: expected a linear calibration that is a camera, found one that is none; click",
+        ),
+    ],
+)
+def test_a_matrix_that_is_no_camera_is_said_in_one_line(reason, said):
+    none = resection.Linear(np.eye(3, 4), None, 1.0, 10.0, bool(reason), reason)
+    with pytest.raises(InputError) as caught:
+        known_points.cameras({"back": none})
+    message = str(caught.value)
+    assert message.startswith(said) and "\n" not in message and ". ;" not in message
+    assert message.count("camera back") == 1
+
+
+def test_clicks_of_another_court_are_said_with_how_far_they_are_off():
+    tennis = court.read(Path(__file__).parents[4] / "config" / "courts" / "tennis.yaml")
+    made = fixed()
+    way = known_points.method("known18", tennis)
+    with pytest.raises(InputError) as caught:
+        known_points.calibrate(way, tennis, clicks_of(made), {"back": SIZE}, {}, click_sigma_px=0.9)
+    message = str(caught.value)
+    assert message.startswith("camera back: expected 8 clicks or more that fit one camera, found")
+    assert "check the names of the clicked points, and the court" in message and "\n" not in message

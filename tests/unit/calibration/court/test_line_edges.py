@@ -1,0 +1,91 @@
+"""Edges named by points, against the words in the court files and against projection."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import court_pictures
+from courtside.calibration.court import court as courts
+from courtside.calibration.court import line_edges
+from courtside.geometry import camera as cameras
+
+FOLDER = Path(__file__).parents[4] / "config" / "courts"
+COURTS = sorted(FOLDER.glob("*.yaml"))
+
+
+@pytest.mark.parametrize("path", COURTS, ids=lambda path: path.stem)
+def test_sides_are_as_the_words_say(path):
+    """ "outer", "nearest the net", "nearest the back" and "middle" each name one side."""
+    court = courts.read(path)
+    named = line_edges.named(court)
+    middle = court.size_m / 2
+    for at, edges in enumerate(named):
+        words = court.edges[at]
+        if court.xyz[at, 2] > 0:
+            assert edges == ()
+            continue
+        assert len(edges) == (2 if "foot" not in words else min(len(edges), 1)), court.points[at]
+        assert words.count("middle") >= sum(edge.side == 0 for edge in edges)
+        for edge in edges:
+            outwards = np.sign(edge.at_m - middle[edge.axis])
+            if edge.side == 0:
+                assert "middle" in words
+            elif "nearest the net" in words and edge.axis == 1:
+                assert edge.side == -outwards
+            else:
+                assert edge.side == outwards
+
+
+def test_the_badminton_court_by_hand():
+    court = court_pictures.badminton()
+    named = dict(zip(court.points, line_edges.named(court), strict=True))
+    assert [(e.axis, e.at_m, e.side) for e in named["p05"]] == [(0, 6.1, 1), (1, 4.72, 1)]
+    assert [(e.axis, e.at_m, e.side) for e in named["p14"]] == [(0, 3.05, 0), (1, 0.76, -1)]
+    assert [(e.axis, e.side) for e in named["p10"]] == [(0, -1)]
+    for edges in named.values():
+        for edge in edges:
+            low, high = np.sort(court.lines_m[edge.line].reshape(2, 2), axis=0)
+            assert (high - low)[edge.axis] == pytest.approx(0.04)
+
+
+def test_points_on_posts():
+    court = court_pictures.badminton()
+    found = {name: line_edges.post(court, at) for at, name in enumerate(court.points)}
+    assert {name: post for name, post in found.items() if post is not None} == {
+        "p10": 0, "p17": 0, "p11": 1, "p18": 1,
+    }  # fmt: skip
+    rectangle = courts.read(FOLDER / "rectangle-10x5.yaml")
+    assert line_edges.post(rectangle, 0) is None
+
+
+def test_stretches_cover_each_line_once():
+    court = court_pictures.badminton()
+    line, ends = line_edges.stretches(court, 1.6)
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    assert length.max() < 2.4 and length.min() > 1.0
+    for number in range(len(court.lines_m)):
+        middle, half = line_edges.middle_line(court, number)
+        mine = ends[line == number]
+        np.testing.assert_allclose(mine[0, 0], middle[0])
+        np.testing.assert_allclose(mine[-1, 1], middle[1])
+        np.testing.assert_allclose(mine[1:, 0], mine[:-1, 1])
+        assert np.linalg.norm(half) == pytest.approx(0.02)
+
+
+def test_paint_is_where_the_picture_shows_it():
+    court = court_pictures.badminton()
+    camera = court_pictures.pair()[0]
+    paint = line_edges.paint(camera, court)
+    rng = np.random.default_rng(0)
+    floor = np.column_stack([rng.uniform([-1, -1], [7, 14], (4000, 2)), np.zeros(4000)])
+    xy = cameras.project(camera, floor)
+    places = paint.place(xy)
+    np.testing.assert_allclose(places, floor[:, :2], atol=1e-6)
+    inside = [
+        (floor[:, :2] >= line[:2]).all(axis=1) & (floor[:, :2] <= line[2:]).all(axis=1)
+        for line in court.lines_m
+    ]
+    np.testing.assert_array_equal(paint.shows(floor[:, :2]), np.any(inside, axis=0))
+    assert np.isnan(paint.place(np.array([480.0, 10.0]))).all()  # above the horizon
+    assert not paint.shows(paint.place(np.array([480.0, 10.0])))

@@ -1,0 +1,98 @@
+"""What is said of calibrated cameras without the truth, where the truth is known."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.calibration.court import court, quality
+from courtside.geometry import camera as camera_models
+from courtside.study.errors import InputError
+from scene import look_at, opencv_projection
+
+COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+
+
+def fixed():
+    matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+    places = {"side": (-18, 6.7, 1.9), "back": (3.05, -14.3, 2.1)}
+    return [
+        camera_models.Camera(name, (1280, 720), matrix, np.zeros(5), look_at(at, (3.05, 6.7, 1)))
+        for name, at in places.items()
+    ]
+
+
+def clicks_of(xyz=COURT.xyz):
+    return {camera.name: opencv_projection(camera, xyz) for camera in fixed()}
+
+
+def of_court(clicks, **options):
+    found = quality.of_court(COURT, fixed(), clicks, click_sigma_px=0.3, **options)
+    json.dumps(found, allow_nan=False)  # as it is written
+    return found
+
+
+def test_exact_cameras_leave_nothing_to_say():
+    found = of_court(clicks_of())
+    assert found["warnings"] == []
+    assert set(found["left_out"]) == set(COURT.points)
+    assert "expected_volume_rms_cm" not in found
+    for row in found["left_out"].values():
+        assert row["error_cm"] == pytest.approx(0, abs=1e-3)
+        assert set(row["error_px"]) == {"side", "back"}
+
+
+def test_a_point_that_is_off_is_measured_by_the_others():
+    moved = COURT.xyz.copy()
+    moved[6] += (0.1, 0.05, 0)
+    row = of_court(clicks_of(moved))["left_out"]["p07"]
+    assert row["error_cm"] == pytest.approx(100 * np.hypot(0.1, 0.05), abs=0.01)
+    for camera in fixed():
+        off = opencv_projection(camera, np.stack([moved[6], COURT.xyz[6]]))
+        expected = np.linalg.norm(off[0] - off[1])
+        assert row["error_px"][camera.name] == pytest.approx(expected, abs=0.01)
+
+
+def test_a_click_that_is_missing_is_null():
+    clicks = clicks_of()
+    clicks["back"][3] = np.nan
+    row = of_court(clicks)["left_out"]["p04"]
+    assert row["error_cm"] is None and row["error_px"]["back"] is None
+    assert row["error_px"]["side"] == pytest.approx(0, abs=1e-3)
+
+
+def test_an_impossible_court_is_an_error_or_a_warning():
+    stretched = clicks_of(COURT.xyz * [5.18 / 6.1, 1, 1])
+    with pytest.raises(InputError, match="right court file"):
+        of_court(stretched)
+    (warning,) = of_court(stretched, strict=False)["warnings"]
+    assert "found 5.18 m by 13.4 m" in warning
+
+
+def test_too_few_points_to_leave_one_out_are_said():
+    clicks = {
+        name: np.where(np.arange(18)[:, None] < 3, xy, np.nan) for name, xy in clicks_of().items()
+    }
+    found = of_court(clicks)
+    assert found["left_out"].startswith("court points: expected three or more")
+    assert any("3 are seen by two cameras" in line for line in found["warnings"])
+
+
+def test_the_expected_error_is_that_of_the_covariance():
+    """Independent errors of 1, 2 and 2 cm along the axes: a root mean square length of 3 cm."""
+
+    def covariance(xyz):
+        return np.tile(np.diag([1e-4, 4e-4, 4e-4]), (len(xyz), 1, 1))
+
+    found = of_court(clicks_of(), point_covariance=covariance)
+    assert found["expected_volume_rms_cm"] == pytest.approx(3)
+
+
+@pytest.mark.parametrize(
+    ("inwards", "n_warnings"), [((1.1, 0.15), 1), ((0.2, 0.15), 0), ((1, 0.4), 0)]
+)
+def test_line_centres_are_said_where_the_shift_is_certain(inwards, n_warnings):
+    found = of_court(clicks_of(), inwards=inwards)["warnings"]
+    assert len(found) == n_warnings
+    assert all("inwards of the edges by 22 mm (+-3), half a line width" in line for line in found)

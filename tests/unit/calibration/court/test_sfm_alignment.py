@@ -1,0 +1,224 @@
+"""Alignment of a reconstruction with the court: exact truth, the paper's frame, and courts that cannot be."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from courtside.calibration.court import court, sfm_alignment
+from courtside.geometry import camera as cameras
+from courtside.geometry import similarity
+from courtside.study.errors import InputError
+from scene import look_at, opencv_projection
+
+FOLDER = Path(__file__).parents[4] / "config" / "courts"
+COURT = court.read(FOLDER / "badminton.yaml")
+SFM_FROM_WORLD = similarity.Sim3(
+    0.31, Rotation.from_rotvec([1.0, 0.4, -0.7]).as_matrix(), np.array([0.2, -3, 5])
+)
+IN_SFM = SFM_FROM_WORLD.points(COURT.xyz)
+
+
+def fixed_cameras():
+    matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+    places = {"side": (-18, 6.7, 1.9), "back": (3.05, -14.3, 2.1)}
+    return [
+        cameras.Camera(
+            name, (1280, 720), matrix, [-0.05, 0.01, 0, 0, 0], look_at(at, (3.05, 6.7, 1))
+        )
+        for name, at in places.items()
+    ]
+
+
+def clicks_of(fixed):
+    return {camera.name: opencv_projection(camera, COURT.xyz) for camera in fixed}
+
+
+def noisy(xyz, sigma, seed=0):
+    return xyz + sigma * np.random.default_rng(seed).normal(size=xyz.shape)
+
+
+def assert_inverse(world_from_sfm, tolerance=1e-9):
+    np.testing.assert_allclose(world_from_sfm.points(IN_SFM), COURT.xyz, atol=tolerance)
+
+
+def test_clicks_are_reconstructed_in_the_cameras_frame():
+    fixed = fixed_cameras()
+    clicks = clicks_of(fixed)
+    clicks["side"][4] = np.nan
+    in_sfm = [SFM_FROM_WORLD.camera(camera) for camera in fixed]
+    xyz = sfm_alignment.reconstruct(in_sfm, clicks)
+    assert np.flatnonzero(np.isnan(xyz).any(axis=1)).tolist() == [4]
+    known = np.isfinite(xyz).all(axis=1)
+    np.testing.assert_allclose(xyz[known], IN_SFM[known], atol=1e-7)
+    world_from_sfm, accepted = sfm_alignment.align(COURT, xyz)
+    assert_inverse(world_from_sfm, 1e-6)
+    assert accepted.sum() == 17
+    for camera, known in zip(in_sfm, fixed, strict=True):
+        centre = world_from_sfm.camera(camera).centre_in_world
+        np.testing.assert_allclose(centre, known.centre_in_world, atol=1e-6)
+
+
+def test_points_above_the_floor_lie_in_the_cameras_frame_too():
+    xyz = COURT.xyz + np.linspace(0, 3, len(COURT.xyz))[:, None] * [0, 0, 1]
+    seen = {camera.name: opencv_projection(camera, xyz) for camera in fixed_cameras()}
+    in_sfm = [SFM_FROM_WORLD.camera(camera) for camera in fixed_cameras()]
+    found = sfm_alignment.reconstruct(in_sfm, seen)
+    np.testing.assert_allclose(found, SFM_FROM_WORLD.points(xyz), atol=1e-7)
+
+
+def test_clicks_in_a_camera_that_is_not_there_take_no_part():
+    fixed = fixed_cameras()
+    clicks = clicks_of(fixed)
+    found = sfm_alignment.reconstruct(fixed, clicks | {"third": clicks["back"] + 50})
+    np.testing.assert_allclose(found, COURT.xyz, atol=1e-7)
+
+
+def test_the_papers_frame_of_exact_points_is_the_world():
+    frame = sfm_alignment.paper_frame(COURT, IN_SFM)
+    assert_inverse(frame)
+    assert_inverse(frame.nearest)
+    assert frame.skew_deg == pytest.approx(0, abs=1e-9)
+    assert frame.world_from_sfm[3].tolist() == [0, 0, 0, 1]
+
+
+def test_the_papers_frame_follows_its_equations_when_the_sides_are_not_square():
+    x_in_sfm = IN_SFM.copy()
+    at = COURT.indices("three")
+    angle = np.radians(2.0)  # the end of x, turned about the origin within the floor
+    x_in_sfm[at[1]] = SFM_FROM_WORLD.points(6.1 * np.array([np.cos(angle), np.sin(angle), 0]))
+    frame = sfm_alignment.paper_frame(COURT, x_in_sfm)
+    assert frame.skew_deg == pytest.approx(2.0)
+    # e_x . e_y = sin 2 deg: D takes the end of x to (6.1, 6.1 sin, 0), that of y to (13.4 sin, 13.4, 0).
+    skew = np.sin(angle)
+    expected = [[0, 0, 0], [6.1, 6.1 * skew, 0], [13.4 * skew, 13.4, 0]]
+    np.testing.assert_allclose(frame.points(x_in_sfm[at]), expected, atol=1e-9)
+    # The nearest rotation shares the two degrees between both sides.
+    placed = frame.nearest.points(x_in_sfm[at])
+    turned = [
+        np.degrees(np.arctan2(placed[1, 1], placed[1, 0])),
+        np.degrees(np.arctan2(placed[2, 0], placed[2, 1])),
+    ]
+    np.testing.assert_allclose(turned, [1, 1], atol=1e-6)
+    np.testing.assert_allclose(
+        frame.nearest.rotation @ frame.nearest.rotation.T, np.eye(3), atol=1e-12
+    )
+
+
+def test_the_papers_scale_is_that_of_both_sides_together():
+    x_in_sfm = IN_SFM.copy()
+    at = COURT.indices("three")
+    x_in_sfm[at[1]] = SFM_FROM_WORLD.points(np.array([6.2, 0, 0]))
+    frame = sfm_alignment.paper_frame(COURT, x_in_sfm)
+    lengths = np.linalg.norm(frame.points(x_in_sfm[at[1:]]) - frame.points(x_in_sfm[at[0]]), axis=1)
+    assert lengths.sum() == pytest.approx(19.5)
+    assert lengths[0] / lengths[1] == pytest.approx(6.2 / 13.4)
+
+
+def test_the_papers_frame_needs_its_three_points():
+    x_in_sfm = IN_SFM.copy()
+    x_in_sfm[COURT.indices(["p02"])] = np.nan
+    with pytest.raises(InputError, match=r"expected p01, p02, p03 .* too few clicks of p02"):
+        sfm_alignment.paper_frame(COURT, x_in_sfm)
+    with pytest.raises(InputError, match="court badminton: expected a set `three`"):
+        sfm_alignment.paper_frame(replace(COURT, sets={"all": COURT.points}), IN_SFM)
+
+
+def test_a_good_court_passes_without_a_word():
+    for seed in range(10):
+        xyz = noisy(IN_SFM, 0.31 * 0.01, seed)
+        in_sfm = [SFM_FROM_WORLD.camera(camera) for camera in fixed_cameras()]
+        assert sfm_alignment.check(COURT, xyz, in_sfm) == []
+
+
+@pytest.mark.parametrize(
+    ("known", "words"),
+    [
+        ([at for at in range(18) if COURT.xyz[at, 2] == 0], ["all lie on the floor", "net posts"]),
+        (COURT.indices(["p01", "p02", "p17"]), ["3 are seen", "four or more"]),
+    ],
+    ids=["floor", "three"],
+)
+def test_weak_points_are_said(known, words):
+    xyz = np.full_like(IN_SFM, np.nan)
+    xyz[known] = IN_SFM[known]
+    (warning,) = sfm_alignment.check(COURT, xyz)
+    assert "\n" not in warning
+    assert [word for word in words if word not in warning] == []
+
+
+def exchanged():
+    """Left and right points exchanged: the court's mirror image, with the net posts still upright."""
+    mirrored = COURT.xyz.copy()
+    mirrored[:, 0] = 6.1 - mirrored[:, 0]
+    return SFM_FROM_WORLD.points(mirrored)
+
+
+def shuffled():
+    return IN_SFM[np.random.default_rng(0).permutation(18)]
+
+
+def on_one_line():
+    xyz = np.full_like(IN_SFM, np.nan)
+    at = COURT.indices(["p01", "p04", "p10", "p06", "p03"])
+    xyz[at] = IN_SFM[at]
+    return xyz
+
+
+def singles_court():
+    return SFM_FROM_WORLD.points(noisy(COURT.xyz * [5.18 / 6.1, 1, 1], 0.005))
+
+
+@pytest.mark.parametrize(
+    ("xyz", "words"),
+    [
+        (exchanged(), ["right-handed", "exchange the names"]),
+        (on_one_line(), ["on one line"]),
+        (singles_court(), ["6.1 m by 13.4 m", "5.18 m by 13.4 m", "right court file"]),
+    ],
+    ids=["mirrored", "line", "singles"],
+)
+def test_an_impossible_court_is_refused_in_one_line(xyz, words):
+    with pytest.raises(InputError) as caught:
+        sfm_alignment.check(COURT, xyz)
+    message = str(caught.value)
+    assert "\n" not in message and message.startswith("court points: expected")
+    assert [word for word in words if word not in message] == []
+
+
+def test_points_under_each_others_names_are_refused():
+    with pytest.raises(InputError, match="court points: expected"):
+        sfm_alignment.check(COURT, shuffled())
+
+
+def test_another_court_with_points_of_the_same_names_is_refused():
+    tennis = court.read(FOLDER / "tennis.yaml")
+    with pytest.raises(InputError, match="court points: expected"):
+        sfm_alignment.check(tennis, IN_SFM)
+    assert sfm_alignment.check(tennis, SFM_FROM_WORLD.points(tennis.xyz)) == []
+
+
+def test_a_mirrored_floor_puts_the_cameras_below_it():
+    floor = COURT.xyz[:, 2] == 0
+    xyz = exchanged()
+    xyz[~floor] = np.nan
+    in_sfm = [SFM_FROM_WORLD.camera(camera) for camera in fixed_cameras()]
+    with pytest.raises(
+        InputError, match=r"above the floor, found side, back below it: the points are mirrored"
+    ):
+        sfm_alignment.check(COURT, xyz, in_sfm)
+
+
+def test_the_stretch_is_the_ratio_of_the_sides_and_its_sigma_is_honest():
+    found = [
+        sfm_alignment.stretch(
+            COURT, SFM_FROM_WORLD.points(noisy(COURT.xyz * [1.02, 1, 1], 0.005, seed))
+        )
+        for seed in range(200)
+    ]
+    ratio, sigma = np.array(found).T
+    assert np.median(ratio) == pytest.approx(1.02, abs=3e-4)
+    assert 0.7 < np.std(np.log(ratio)) / np.median(sigma) < 1.5
+    assert sfm_alignment.stretch(COURT, np.full_like(IN_SFM, np.nan))[1] == np.inf

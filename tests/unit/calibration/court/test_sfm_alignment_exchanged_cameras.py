@@ -1,0 +1,87 @@
+"""Camera files under each other's names: told from everything else that can be wrong with clicks."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.calibration.court import click_checks, court, sfm_alignment
+from courtside.geometry import camera as cameras
+from courtside.geometry import similarity
+from courtside.study.errors import InputError
+from scene import look_at, opencv_projection
+
+COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+SFM_FROM_WORLD = similarity.Sim3(0.4, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
+PLACES = {"side": (-18, 6.7, 1.9), "back": (3.05, -14.3, 2.1), "corner": (-9, -7, 5.0)}
+
+
+def in_sfm(names):
+    matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
+    made = [
+        cameras.Camera(n, (1280, 720), matrix, np.zeros(5), look_at(PLACES[n], (3.05, 6.7, 1)))
+        for n in names
+    ]
+    return [SFM_FROM_WORLD.camera(camera) for camera in made]
+
+
+def clicks_of(fixed, noise_px=0.3, xyz=COURT.xyz):
+    rng, seen = np.random.default_rng(0), SFM_FROM_WORLD.points(xyz)
+    return {c.name: opencv_projection(c, seen) + noise_px * rng.normal(size=(18, 2)) for c in fixed}
+
+
+@pytest.mark.parametrize(
+    ("names", "pair"),
+    [
+        (("side", "back"), ("side", "back")),
+        (("side", "back", "corner"), ("side", "back")),
+        (("side", "back", "corner"), ("back", "corner")),
+    ],
+)
+def test_two_exchanged_cameras_are_named(names, pair):
+    fixed = in_sfm(names)
+    clicks = clicks_of(fixed)
+    one, other = pair
+    clicks[one], clicks[other] = clicks[other], clicks[one]
+    for refuse in (sfm_alignment.refuse, click_checks.find):
+        with pytest.raises(InputError, match="the camera files may be exchanged") as caught:
+            refuse(COURT, fixed, clicks)
+        message = str(caught.value)
+        assert message.startswith(f"cameras {one} and {other}: expected") and "\n" not in message
+
+
+def mirrored(clicks):
+    left = COURT.xyz.copy()
+    left[:, 0] = 6.1 - left[:, 0]
+    other = [int(np.linalg.norm(COURT.xyz - place, axis=1).argmin()) for place in left]
+    return {name: xy[other] for name, xy in clicks.items()}
+
+
+def wrong_click(clicks):
+    clicks["back"][5] += 80
+    return clicks
+
+
+def shuffled(clicks):
+    order = np.random.default_rng(1).permutation(18)
+    return {name: xy[order] for name, xy in clicks.items()}
+
+
+def few(clicks):
+    return {name: np.where(np.arange(18)[:, None] < 2, xy, np.nan) for name, xy in clicks.items()}
+
+
+@pytest.mark.parametrize("tamper", [dict, mirrored, wrong_click, shuffled, few])
+def test_no_other_fault_is_taken_for_an_exchange(tamper):
+    fixed = in_sfm(["side", "back", "corner"])
+    sfm_alignment.refuse(COURT, fixed, tamper(clicks_of(fixed)))
+
+
+def test_another_court_is_not_taken_for_an_exchange():
+    tennis = court.read(Path(__file__).parents[4] / "config" / "courts" / "tennis.yaml")
+    fixed = in_sfm(["side", "back"])
+    sfm_alignment.refuse(tennis, fixed, clicks_of(fixed))
+    with pytest.raises(
+        InputError, match=r"tennis \(10.97 m by 23.77 m\).* give the right court file"
+    ):
+        sfm_alignment.check(tennis, sfm_alignment.reconstruct(fixed, clicks_of(fixed)))

@@ -1,0 +1,136 @@
+"""Predicted errors: those of simulated sessions, and near those that the virtual study measured."""
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import hall_plan
+from courtside.calibration.bundle import selection, solver
+from courtside.calibration.court import joint_adjustment, quality, sfm_alignment
+from courtside.calibration.planning import prediction, tie_points
+from courtside.calibration.planning.prediction import Prediction
+from courtside.geometry.camera import project
+
+PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
+# Median of volume_rms_cm over draws and offsets in results/plain-a/evaluation/global-n*.csv: all 18 points,
+# method sfm.
+MEASURED_CM = {10: 0.614, 20: 0.674, 40: 0.688}
+
+
+@functools.cache
+def predict(count, **options):
+    weights = hall_plan.WEIGHTS | options
+    return prediction.predict(
+        hall_plan.fixed(),
+        hall_plan.walked(count),
+        hall_plan.COURT,
+        hall_plan.HALL_M,
+        hall_plan.PLAIN,
+        PRIOR,
+        seed=0,
+        thinning=hall_plan.THINNING,
+        **weights,
+    )
+
+
+@pytest.mark.parametrize("count", MEASURED_CM)
+def test_near_what_the_virtual_study_measured(count):
+    found = predict(count)
+    assert 1 / 1.5 < found.error_cm[1] / MEASURED_CM[count] < 1.5
+    assert found.error_cm[0] < found.error_cm[1] < found.error_cm[2]
+
+
+def test_predicted_errors_are_those_of_simulated_sessions():
+    """Clicks, the court and the ties of 100 sessions are drawn, and the cameras are solved from them."""
+    found = predict(10, click_loss=1e6)
+    fixed, court = hall_plan.fixed(), hall_plan.COURT
+    rng = np.random.default_rng([0, 10])
+    ties = tie_points.network(
+        fixed, hall_plan.walked(10), hall_plan.HALL_M, hall_plan.PLAIN, PRIOR, rng
+    )
+    ties = selection.thin(ties, **hall_plan.THINNING)
+    ties = selection.weigh(ties, sigma_px=0.6, loss_scale=np.inf)
+    known = selection.what_ties_say(ties, [0, 1])
+    extent, axes = np.linalg.eigh(known.information)
+    root = axes * np.sqrt(np.maximum(extent, 0))
+    rng, grid, rms_cm = np.random.default_rng(1), quality.volume(court), []
+    names, sizes = ("side", "back"), (hall_plan.SIZE,) * 2
+    for _ in range(100):
+        gradient = root @ rng.standard_normal(len(root))  # what noise in the ties does
+        drawn = solver.Quadratic(known.reference, known.information, gradient)
+        real = court.xyz + court.sigma_m[:, None] * rng.standard_normal((18, 3))
+        seen = prediction.clicks(fixed, replace(court, xyz=real))
+        seen = {
+            name: xy + (0.5 * rng.standard_normal(2) + 0.7 * rng.standard_normal((18, 2))) / 3
+            for name, xy in seen.items()
+        }
+        weights = {key: hall_plan.WEIGHTS[key] for key in ("click_sigma_px", "click_bias_px")}
+        solved = joint_adjustment.solve(
+            joint_adjustment.Ties(names, sizes, drawn), seen, court, click_loss=1e6, **weights
+        )
+        truly = {camera.name: project(camera, grid) for camera in fixed}
+        error_m = sfm_alignment.reconstruct(solved.cameras, truly) - grid
+        rms_cm.append(quality.over_volume(error_m)["volume_rms_cm"])
+    assert np.quantile(rms_cm, [0.05, 0.5, 0.95]) == pytest.approx(found.error_cm, rel=0.25)
+
+
+def test_sharper_clicks_and_more_images_help():
+    least = predict(20)
+    assert predict(20, click_sigma_px=2.0, click_bias_px=1.5).error_cm[1] > 1.3 * least.error_cm[1]
+    assert predict(5).error_cm[1] > 1.05 * least.error_cm[1]
+    assert least.neighbour_deg < predict(5).neighbour_deg
+    assert 1000 < least.n_ties <= 2000
+
+
+def test_without_a_walk_the_court_points_hold_the_cameras():
+    alone = predict(0)
+    assert alone.n_ties < 20
+    assert np.isnan(alone.neighbour_deg)
+    assert predict(20).error_cm[1] < alone.error_cm[1] < 3
+
+
+def test_a_camera_that_sees_no_point_is_named():
+    away = [
+        hall_plan.fixed()[0],
+        replace(hall_plan.fixed()[1], name="lost", cam_from_world=np.eye(3, 4)),
+    ]
+    found = prediction.predict(
+        away,
+        [],
+        hall_plan.COURT,
+        hall_plan.HALL_M,
+        hall_plan.PLAIN,
+        PRIOR,
+        seed=0,
+        thinning=hall_plan.THINNING,
+        **hall_plan.WEIGHTS,
+    )
+    assert "lost" in found.fault
+    assert np.isnan(found.error_cm).all()
+    assert found.solution is None
+
+
+def guess(n_images, error_cm, neighbour_deg=3.0, least_ties=100, fault=""):
+    errors = (error_cm / 2, error_cm, 2 * error_cm)
+    return Prediction(n_images, neighbour_deg, 500, least_ties, errors, fault=fault)
+
+
+@pytest.mark.parametrize(
+    ("predictions", "target_cm", "expected", "why"),
+    [
+        ([guess(20, 0.8), guess(40, 0.75), guess(75, 0.74)], None, 20, "0.81 cm"),
+        ([guess(20, 0.9), guess(40, 0.75), guess(75, 0.74)], None, 40, "within 6 degrees"),
+        ([guess(20, 0.9), guess(40, 0.75)], 1.0, 20, "1.00 cm"),
+        ([guess(0, 0.5, np.nan), guess(40, 0.75)], 0.6, None, "the least is 0.75 cm"),
+        ([guess(20, 0.7, 9.0), guess(40, 0.7)], None, 40, "ties"),
+        ([guess(20, 0.7, 9.0)], None, None, "more images"),
+        ([guess(20, 0.7, least_ties=19)], None, None, "walk closer"),
+        ([guess(20, 0.7, fault="x")], None, None, "walk closer"),
+    ],
+)
+def test_how_many_images_are_needed(predictions, target_cm, expected, why):
+    found, reason = prediction.needed(predictions, min_points=20, target_cm=target_cm)
+    assert (found and found.n_images) == expected
+    assert why in reason

@@ -1,0 +1,93 @@
+"""Made-up ties: on the hall's surfaces, in the pictures, as many and as long-lived as a session's."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import hall_plan
+import scene
+from courtside.calibration.bundle import problem, selection
+from courtside.calibration.planning import tie_points
+from courtside.calibration.planning.tie_points import Texture
+
+PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
+
+
+def made(count, texture=hall_plan.PLAIN, seed=0):
+    fixed, walked = hall_plan.fixed(), hall_plan.walked(count)
+    rng = np.random.default_rng(seed)
+    return [*fixed, *walked], tie_points.network(
+        fixed, walked, hall_plan.HALL_M, texture, PRIOR, rng
+    )
+
+
+@pytest.fixture(scope="module")
+def twenty():
+    return made(20)
+
+
+def test_points_are_on_walls_and_floor():
+    xyz = tie_points.on_surfaces([[0, 0, 0], [30, 10, 5]], 20000, 0.25, np.random.default_rng(0))
+    x, y, z = xyz.T
+    on_floor = z == 0
+    on_wall = (x == 0) | (x == 30) | (y == 0) | (y == 10)
+    assert (on_floor | on_wall).all()
+    assert on_floor.mean() == pytest.approx(0.25, abs=0.01)
+    # By area: the long walls are three times the short ones.
+    assert ((y == 0) | (y == 10)).sum() / on_wall.sum() == pytest.approx(0.75, abs=0.02)
+    assert xyz.min(axis=0) == pytest.approx([0, 0, 0], abs=0.01)
+    assert xyz.max(axis=0) == pytest.approx([30, 10, 5], abs=0.01)
+
+
+def test_observations_are_where_opencv_sees_the_points(twenty):
+    images, found = twenty
+    for at in (0, 1, 7):
+        mine = found.image_idx == at
+        xy = scene.opencv_projection(images[at], found.xyz[found.point_idx[mine]])
+        assert found.xy[mine] == pytest.approx(xy, abs=1e-6)
+        assert ((xy >= -0.5) & (xy <= np.array(images[at].size) - 0.5)).all()
+    assert np.bincount(found.point_idx).min() >= 2
+    assert np.abs(problem.residuals(found)).max() < 1e-9
+
+
+def test_fixed_cameras_have_their_own_lenses_and_the_walk_one(twenty):
+    _, found = twenty
+    assert found.lens_of_image.tolist() == [0, 1] + [2] * 20
+    assert found.lens.shape == (3, 8)
+
+
+def test_as_many_ties_as_the_study_counted():
+    """Of plain-a, as `results/plain-a/sfm/global-n*-o0` has them after thinning: images per point too."""
+    for count, per_image, length in ((20, 311, 4.7), (40, 383, 6.8)):
+        _, found = made(count)
+        found = selection.thin(found, **hall_plan.THINNING | {"max_points": 10**6})
+        assert np.median(np.bincount(found.image_idx)) == pytest.approx(per_image, rel=0.15)
+        assert len(found.xy) / len(found.xyz) == pytest.approx(length, rel=0.25)
+
+
+def test_lives_limit_the_angle_under_which_a_point_is_tied():
+    short = Texture(300, (0.5, 3.0), (0.5, 0.5), 0.3, 0.0)
+    long = Texture(300, (0.5, 30.0), (0.5, 0.5), 0.3, 0.0)
+    views = [np.bincount(made(20, texture)[1].point_idx).mean() for texture in (short, long)]
+    assert views[1] > 1.8 * views[0]
+
+
+def test_the_walk_decides_the_order(twenty):
+    images, _ = twenty
+    order = tie_points.path_order(images[:2], images[2:])
+    assert order.tolist() == [0, *range(2, 22), 1]
+    assert tie_points.path_order(images[:2], []).tolist() == [0, 1]
+
+
+def test_a_smaller_picture_has_fewer_features():
+    fixed, walked = hall_plan.fixed(), hall_plan.walked(10)
+    K = walked[0].K / 2
+    K[2, 2] = 1
+    small = [replace(camera, size=(640, 360), K=K) for camera in walked]
+    counts = []
+    for images in (walked, small):
+        rng = np.random.default_rng(0)
+        found = tie_points.network(fixed, images, hall_plan.HALL_M, hall_plan.PLAIN, PRIOR, rng)
+        counts.append(np.bincount(found.image_idx, minlength=12)[2:].mean())
+    assert 0.25 < counts[1] / counts[0] < 0.6  # half the features, and fewer of them meet another

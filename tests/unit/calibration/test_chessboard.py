@@ -1,0 +1,146 @@
+"""Chessboards: a drawn board with exact truth, real boards against another vendor's lenses, every refusal."""
+
+from functools import cache
+
+import cv2
+import numpy as np
+import pytest
+
+from courtside.calibration import chessboard, file_formats
+from courtside.geometry import rotations
+from courtside.study.errors import InputError
+from real_data import REAL, needs_real
+
+SIZE = (640, 480)
+K = np.array([[600.0, 0, 330], [0, 600, 233], [0, 0, 1]])
+DIST = np.array([-0.15, 0.04, 0, 0, 0])
+INNER = (7, 5)
+TURNS_DEG = [(25, 0, 5), (-25, 10, 0), (0, 30, -10), (10, -30, 0), (20, 20, 15), (-15, -25, 80)]
+SHIFTS = [(-0.3, -0.2), (0.4, 0.3), (0.0, 0.0), (0.5, -0.4), (-0.4, 0.3), (0.1, -0.1)]
+WALK = REAL / "walk-4cams" / "calibration"
+
+
+SUBSAMPLES = 3  # per pixel and axis
+
+
+@cache
+def rays():
+    """Return where each sample's ray meets the z = 1 plane, homogeneous."""
+    grid = np.meshgrid(np.arange(SIZE[0] * SUBSAMPLES), np.arange(SIZE[1] * SUBSAMPLES))
+    xy = (np.stack(grid, axis=-1).reshape(-1, 1, 2) + 0.5) / SUBSAMPLES - 0.5
+    plane = cv2.undistortPoints(xy, K, DIST, None, None, None, (3, 40, 1e-9))[:, 0]
+    return np.column_stack([plane, np.ones(len(plane))])
+
+
+def draw(turn_deg, shift, blur_px=0.7):
+    """Draw a board of unit squares seen through the lens: each sample's ray is cut with its plane."""
+    rotation = rotations.rotation_from_rodrigues(np.radians(turn_deg))
+    place = np.array([*shift, 0]) * 4 + [0, 0, 15] - rotation @ [3, 2, 0]
+    board_from_ray = np.linalg.inv(np.column_stack([rotation[:, :2], place]))
+    on_board = rays() @ board_from_ray.T
+    u, v = (on_board[:, :2] / on_board[:, 2:]).T
+    dark = (np.floor(u) + np.floor(v)) % 2 == 0
+    inside = (u > -1) & (u < INNER[0]) & (v > -1) & (v < INNER[1])
+    paper = (u > -2) & (u < INNER[0] + 1) & (v > -2) & (v < INNER[1] + 1)
+    shade = np.where(inside & dark, 30.0, np.where(paper, 220.0, 120.0))
+    shade = shade.reshape(SIZE[1], SUBSAMPLES, SIZE[0], SUBSAMPLES).mean(axis=(1, 3))
+    shade = cv2.GaussianBlur(shade, (0, 0), blur_px)
+    shade += 2.0 * np.random.default_rng(0).normal(size=shade.shape)
+    return np.clip(shade, 0, 255).astype(np.uint8)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("boards")
+    for at, (turn_deg, shift) in enumerate(zip(TURNS_DEG, SHIFTS, strict=True)):
+        cv2.imwrite(str(made / f"{at}.png"), draw(turn_deg, shift))
+    return made
+
+
+def some(folder, tmp_path, numbers):
+    for at in numbers:
+        (tmp_path / f"{at}.png").write_bytes((folder / f"{at}.png").read_bytes())
+    return tmp_path
+
+
+@pytest.mark.parametrize("inner_corners", [INNER, INNER[::-1]])
+def test_a_drawn_board_gives_its_lens(folder, inner_corners):
+    boards = chessboard.find(folder, inner_corners)
+    assert boards.size == SIZE and boards.dropped == {} and boards.xy.shape == (6, 35, 2)
+    lens = chessboard.calibrate(boards)
+    assert lens.n_used == 6 and lens.size == SIZE and lens.rms_px < 0.1
+    np.testing.assert_allclose(np.diag(lens.K), [600, 600, 1], rtol=0.003)
+    np.testing.assert_allclose(lens.K[:2, 2], K[:2, 2], atol=1.5)
+    assert lens.K[0, 0] == pytest.approx(600, abs=5 * lens.f_sigma_px)
+    # The curve that the two coefficients make, rather than each: within 0.2 px where the corners are.
+    radius = np.linspace(0, 0.55, 20)
+    off = [600 * radius**3 * (d[0] + d[1] * radius**2) for d in (lens.dist, DIST)]
+    np.testing.assert_allclose(*off, atol=0.3)
+    assert lens.dist[2:].tolist() == [0, 0, 0]
+
+
+def test_unseen_and_blurred_boards_are_dropped_and_counted(folder, tmp_path):
+    some(folder, tmp_path, range(6))
+    cv2.imwrite(str(tmp_path / "6.png"), np.zeros(SIZE[::-1], np.uint8))
+    cv2.imwrite(str(tmp_path / "7.png"), draw(TURNS_DEG[0], SHIFTS[0], blur_px=7))
+    lens = chessboard.calibrate(chessboard.find(tmp_path, INNER))
+    dropped = {path.name: why for path, why in lens.dropped.items()}
+    assert dropped["6.png"] == "unseen" and dropped["7.png"] in ("unseen", "blurred")
+    assert lens.n_used == 6
+
+
+def test_a_board_that_the_others_contradict_is_left_out(folder):
+    boards = chessboard.find(folder, INNER)
+    boards.xy[2] = boards.xy[2] * [1.0, 1.06] + 3 * np.random.default_rng(0).normal(size=(35, 2))
+    lens = chessboard.calibrate(boards)
+    assert {path.name: why for path, why in lens.dropped.items()} == {"2.png": "off"}
+    assert lens.K[0, 0] == pytest.approx(600, rel=0.005)
+
+
+def test_three_boards_are_too_few(folder, tmp_path):
+    some(folder, tmp_path, range(3))
+    cv2.imwrite(str(tmp_path / "9.png"), np.zeros(SIZE[::-1], np.uint8))
+    with pytest.raises(InputError) as caught:
+        chessboard.calibrate(chessboard.find(tmp_path, INNER), name="left")
+    message = str(caught.value)
+    assert message.startswith("camera left: expected 4 pictures or more") and "\n" not in message
+    assert "found 3 of 4 (1 unseen)" in message and "inner_corners" in message
+
+
+def test_boards_held_square_on_do_not_show_the_focal_length(tmp_path):
+    for at, shift in enumerate([(0, 0), (0.4, 0.2), (-0.4, 0.2), (0.3, -0.3), (-0.3, -0.3)]):
+        cv2.imwrite(str(tmp_path / f"{at}.png"), draw((0.2 * at, 0, 0), shift))
+    with pytest.raises(
+        InputError, match=r"camera left: expected chessboards that show the focal length .* tilted"
+    ):
+        chessboard.calibrate(chessboard.find(tmp_path, INNER), name="left")
+
+
+def test_faults_of_files_are_one_line(folder, tmp_path):
+    with pytest.raises(InputError, match=r"none: expected a folder"):
+        chessboard.find(tmp_path / "none", INNER)
+    with pytest.raises(
+        InputError, match=r"expected pictures of a chessboard .*found none; add them"
+    ):
+        chessboard.find(tmp_path, INNER)
+    with pytest.raises(
+        InputError, match=r"inner_corners: expected two different counts .* found \[5, 5\]"
+    ):
+        chessboard.find(folder, (5, 5))
+    some(folder, tmp_path, [0])
+    cv2.imwrite(str(tmp_path / "1.png"), np.zeros((100, 200), np.uint8))
+    with pytest.raises(InputError, match=r"1\.png: expected 640x480 px .* found 200x100; give"):
+        chessboard.find(tmp_path, INNER)
+    (tmp_path / "1.png").write_bytes(b"no picture")
+    with pytest.raises(InputError, match=r"1\.png: expected a picture, found one that is damaged"):
+        chessboard.find([tmp_path / "0.png", tmp_path / "1.png"], INNER)
+
+
+@needs_real
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_real_boards_give_the_focal_length_that_qualisys_measured(number):
+    theirs = file_formats.read(WALK / "Calib.qca.txt")[number - 1]
+    boards = chessboard.find(WALK / "boards" / f"int_cam{number}_img", (4, 7))
+    lens = chessboard.calibrate(boards)
+    assert lens.size == theirs.size and lens.n_used >= 6 and lens.rms_px < 0.15
+    assert lens.K[0, 0] == pytest.approx(theirs.K[0, 0], rel=0.01)

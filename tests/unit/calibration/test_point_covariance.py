@@ -1,0 +1,186 @@
+"""Covariance of triangulated points: against displaced cameras and against draws."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import optimize
+
+import networks_made
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection, solver
+from courtside.calibration.court import sfm_alignment
+from scene import opencv_projection
+
+XYZ = np.array([[3.0, 6.7, 1.0], [0.5, 2.0, 0.0], [5.0, 12.0, 2.5]])
+SMALL = np.array([1e-4] * 3 + [1e-3] * 3 + [0.0] * 5)  # of an image's columns
+SMALL_LENS = np.array([0.5, 2e-4, 0.5, 0.5, 1e-3, 1e-3, 1e-4, 1e-4])
+
+
+def pair():
+    return selection.alone(networks_made.make(3, 10), [0, 1])
+
+
+def moved_cameras(network, step):
+    return networks_made.fixed_cameras(network.moved(step, np.zeros((0, 3))))
+
+
+def triangulated(cameras, clicks):
+    """Return the points of least squared pixel errors, by SciPy and OpenCV."""
+
+    def error(xyz):
+        seen = [opencv_projection(c, xyz.reshape(-1, 3)) - clicks[c.name] for c in cameras]
+        return np.concatenate(seen, axis=None)
+
+    found = optimize.least_squares(error, XYZ.ravel(), method="lm", xtol=1e-12, ftol=1e-12)
+    return found.x.reshape(-1, 3)
+
+
+def seen_by(network):
+    return {c.name: opencv_projection(c, XYZ) for c in networks_made.fixed_cameras(network)}
+
+
+def test_sensitivity_is_that_of_displaced_cameras():
+    network = pair()
+    clicks = seen_by(network)
+    by_column = point_covariance.sensitivity(network, XYZ)
+    sizes = np.concatenate([SMALL, SMALL, SMALL_LENS, SMALL_LENS])
+    for column in np.flatnonzero(sizes):
+        step = np.zeros(len(sizes))
+        step[column] = sizes[column]
+        ahead, behind = (triangulated(moved_cameras(network, s * step), clicks) for s in (1, -1))
+        change = (ahead - behind) / 2
+        expected = by_column[:, :, column] * sizes[column]
+        np.testing.assert_allclose(change, expected, atol=2e-3 * np.abs(expected).max() + 1e-9)
+
+
+def test_covariance_is_that_of_drawn_cameras():
+    network, rng = pair(), np.random.default_rng(0)
+    clicks = seen_by(network)
+    sizes = np.concatenate([SMALL, SMALL, SMALL_LENS, SMALL_LENS])
+    root = rng.normal(size=(38, 38)) / np.sqrt(38) * sizes[:, None]  # correlated
+    drawn = np.array(
+        [
+            sfm_alignment.reconstruct(moved_cameras(network, root @ rng.normal(size=38)), clicks)
+            for _ in range(600)
+        ]
+    )
+    predicted = point_covariance.point_covariance(network, root @ root.T, XYZ)
+    for n in range(len(XYZ)):
+        found = np.cov(drawn[:, n].T)
+        whitening = np.linalg.inv(np.linalg.cholesky(predicted[n]))
+        # of 600 draws: an entry scatters by 1 / sqrt(600), on the diagonal by sqrt(2 / 600)
+        np.testing.assert_allclose(whitening @ found @ whitening.T, np.eye(3), atol=0.24)
+
+
+def test_certain_cameras_give_certain_points():
+    network = pair()
+    assert not point_covariance.point_covariance(network, np.zeros((38, 38)), XYZ).any()
+
+
+def test_a_frame_that_moves_moves_the_points():
+    """All cameras shifted along x together: the points follow, and nothing else."""
+    network = pair()
+    step = np.zeros(38)
+    for v in (0, 1):
+        step[11 * v + 3 : 11 * v + 6] = -network.cam_from_world[v, :, 0]
+    shift = point_covariance.sensitivity(network, XYZ) @ step
+    np.testing.assert_allclose(shift, np.tile([1.0, 0, 0], (3, 1)), atol=1e-9)
+
+
+def test_covariance_of_columns_is_the_inverse_of_the_information():
+    made = networks_made.make(3, 10)
+    known = replace(made, xyz_mean=made.xyz.copy(), xyz_sigma=np.full(10, 0.01))
+    normal = solver.normal_equations(known)
+    covariance = point_covariance.of_columns(normal)
+    assert not covariance[~normal.active].any() and not covariance[:, ~normal.active].any()
+    part = covariance[np.ix_(normal.active, normal.active)]
+    scale = np.outer(*[np.sqrt(np.diag(part))] * 2)  # the numbers' units differ by many orders
+    product = (normal.information * scale) @ (part / scale)
+    np.testing.assert_allclose(product, np.eye(len(part)), atol=1e-6)
+
+
+def test_mahalanobis_counts_sigmas():
+    covariance = np.stack([np.diag([1.0, 4, 9]), np.array([[2.0, 1, 0], [1, 2, 0], [0, 0, 1]])])
+    found = point_covariance.mahalanobis(np.array([[1.0, 2, 3], [1, 1, 0]]), covariance)
+    assert found == pytest.approx([3.0, 2 / 3])
+
+
+def free_network(noise_px=0.0):
+    """Return three images that see 30 points, lenses known: nothing but their frame and scale is open."""
+    made = networks_made.make(1, 30, noise_px=noise_px)
+    return replace(made, lens_mean=made.lens.copy(), lens_sigma=np.zeros_like(made.lens))
+
+
+def gauge(network):
+    """Return the steps (K, 7) of all images that move, turn or scale the world: pixels stay as they are."""
+    free = np.zeros((network.n_columns, 7))
+    for v, pose in enumerate(network.cam_from_world):
+        rotation, shift = pose[:, :3], pose[:, 3]
+        turn, move = 11 * v + np.arange(3), 11 * v + np.arange(3, 6)
+        for axis in range(3):
+            # The world moved by e: R (x - e) + t. Turned by w: R exp(-w) x + t = exp(-R w) R x + t,
+            # while a turn of a camera turns its t too.
+            free[move, axis] = -rotation[:, axis]
+            free[turn, 3 + axis] = -rotation[:, axis]
+            free[move, 3 + axis] = np.cross(rotation[:, axis], shift)
+        free[move, 6] = shift
+    return free
+
+
+def without(span, matrix):
+    """Return a covariance with some directions projected out."""
+    basis = np.linalg.qr(span)[0]
+    rest = np.eye(len(matrix)) - basis @ basis.T
+    return rest @ matrix @ rest
+
+
+def test_the_pseudo_inverse_is_that_of_numpy_in_units_of_the_information():
+    information = np.array(selection.what_ties_say(free_network(), [0, 1, 2]).information)
+    active = np.diag(information) > 0
+    scale = np.diag(information)[active] ** -0.5
+    part = information[np.ix_(active, active)] * np.outer(scale, scale)
+    expected = np.linalg.pinv(part, rcond=1e-9, hermitian=True) * np.outer(scale, scale)
+    found = point_covariance.pseudo_inverse(information)
+    assert not found[~active].any() and not found[:, ~active].any()
+    np.testing.assert_allclose(
+        found[np.ix_(active, active)] / np.outer(scale, scale),
+        expected / np.outer(scale, scale),
+        atol=1e-6 * np.abs(expected / np.outer(scale, scale)).max(),
+    )
+
+
+def test_the_pseudo_inverse_is_the_spread_of_repeated_networks_up_to_their_frame():
+    """Against images adjusted to drawn pixels: frame and scale projected out of both covariances."""
+    true = free_network()
+    information = selection.what_ties_say(true, [0, 1, 2]).information
+    active = np.diag(information) > 0
+    span = gauge(true)[active]
+    assert np.abs(information[np.ix_(active, active)] @ span).max() < 1e-5 * information.max()
+    rng, n_draws, steps = np.random.default_rng(0), 250, []
+    for _ in range(n_draws):
+        drawn = replace(true, xy=true.xy + 0.1 * rng.normal(size=true.xy.shape))
+        found, _ = solver.adjust(drawn, tolerance=1e-10)
+        steps.append(found.difference(true)[active] / 0.1)
+    scale = np.sqrt(np.diag(information))[active]  # of the steps, so that all count alike
+    span = span * scale[:, None]
+    predicted = point_covariance.pseudo_inverse(information)[np.ix_(active, active)]
+    predicted = without(span, predicted * np.outer(scale, scale))
+    drawn = without(span, np.cov((np.array(steps) * scale).T))
+    extent, axes = np.linalg.eigh(predicted)
+    known = extent > 1e-8 * extent[-1]
+    assert known.sum() == 18 - 7
+    white = axes[:, known] / np.sqrt(extent[known])
+    # An entry scatters by 1 / sqrt(n_draws), on the diagonal by sqrt(2 / n_draws).
+    np.testing.assert_allclose(white.T @ drawn @ white, np.eye(11), atol=4 * np.sqrt(2 / n_draws))
+
+
+def test_the_pseudo_inverse_says_nothing_of_frame_and_scale():
+    information = selection.what_ties_say(free_network(), [0, 1, 2]).information
+    active = np.diag(information) > 0
+    scale = np.sqrt(np.diag(information))[active]
+    span = gauge(free_network())[active] * scale[:, None]
+    found = point_covariance.pseudo_inverse(information)[np.ix_(active, active)] * np.outer(
+        scale, scale
+    )
+    assert np.abs(found @ span).max() < 1e-4 * np.abs(found).max() * np.abs(span).max()

@@ -1,0 +1,280 @@
+"""A network tied to the court: ties thinned and weighted, clicked points as control points, cameras."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from courtside.calibration.bundle import problem as networks
+from courtside.calibration.bundle import solver
+from courtside.geometry.camera import Camera
+from courtside.geometry.similarity import Sim3
+
+LEAST_PX = 0.05  # no feature is placed better
+
+
+def transform(network, b_from_a):
+    """Return a network whose frame is moved and scaled by a `similarity.Sim3`."""
+    rotation = network.cam_from_world[:, :, :3] @ b_from_a.rotation.T
+    shift = b_from_a.scale * network.cam_from_world[:, :, 3] - rotation @ b_from_a.translation
+    pose = np.concatenate([rotation, shift[:, :, None]], axis=2)
+    return replace(network, cam_from_world=pose, xyz=b_from_a.points(network.xyz))
+
+
+def free_frame(network, fixed):
+    """Return the similarity into a frame for sessions without a court.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+    fixed : sequence of int
+        Images of the fixed cameras; the extent of all images stands in for fewer than two.
+
+    Returns
+    -------
+    frame_from_sfm : courtside.geometry.similarity.Sim3
+        Origin: mean of the projection centres. z: against the mean of the pictures' y axes, upwards if
+        cameras
+        are held upright. x: from the first fixed camera to the second. Unit: their distance.
+    """
+    places = centres(network)
+    ends = places[fixed[:2]] if len(fixed) > 1 else places[[0, -1]]
+    along = ends[1] - ends[0]
+    up = -network.cam_from_world[:, 1, :3].mean(axis=0)
+    x = along - (along @ up) / (up @ up) * up
+    x, z = x / np.linalg.norm(x), up / np.linalg.norm(up)
+    rotation, scale = np.stack([x, np.cross(z, x), z]), 1 / np.linalg.norm(along)
+    return Sim3(float(scale), rotation, -scale * rotation @ places.mean(axis=0))
+
+
+def select(network, points, seen=None):
+    """Return a network with some of its points and observations, all images and lenses.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+    points : (N,) bool
+    seen : (M,) bool, optional
+        Observations; those of dropped points go in any case.
+    """
+    seen = points[network.point_idx] & (True if seen is None else seen)
+    number = np.cumsum(points) - 1
+    per_point = {name: getattr(network, name)[points] for name in ("xyz", "xyz_mean", "xyz_sigma")}
+    kept = ("image_idx", "xy", "sigma_px", "loss_scale")
+    per_view = {name: getattr(network, name)[seen] for name in kept}
+    return replace(network, point_idx=number[network.point_idx[seen]], **per_point, **per_view)
+
+
+def thin(network, *, min_angle_deg, max_error_px, max_points, seed):
+    """Keep those points that tie images well, and of these a random choice.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+    min_angle_deg : float
+        Smallest angle between a point's two most different rays.
+    max_error_px : float
+        Observations farther from their point's projection are dropped, and points then seen once.
+    max_points : int
+    seed : int
+
+    Returns
+    -------
+    network : courtside.calibration.bundle.problem.Network
+
+    Notes
+    -----
+    A random choice does better than the points seen under the widest angles: those are often wrong. More
+    points than some thousand do not help: their errors come from the features and are not independent.
+    """
+    error = np.linalg.norm(networks.residuals(network), axis=1)
+    seen = error <= max_error_px  # of a point behind its image the error is NaN
+    network = select(network, np.ones(len(network.xyz), dtype=bool), seen)
+    points = _widest_angle(network) >= np.radians(min_angle_deg)
+    n_seen = np.bincount(network.point_idx, minlength=len(network.xyz))
+    good = np.flatnonzero(points & (n_seen >= 2))
+    chosen = np.random.default_rng(seed).permutation(good)[:max_points]
+    points = np.zeros(len(network.xyz), dtype=bool)
+    points[chosen] = True
+    return select(network, points)
+
+
+def _widest_angle(network):
+    """Return twice the widest angle between a point's rays and their mean, (N,) rad."""
+    rays = network.xyz[network.point_idx] - centres(network)[network.image_idx]
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    mean = np.zeros((len(network.xyz), 3))
+    np.add.at(mean, network.point_idx, rays)
+    mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-12)
+    cosine = np.einsum("mi,mi->m", rays, mean[network.point_idx])
+    widest = np.zeros(len(network.xyz))
+    np.maximum.at(widest, network.point_idx, np.arccos(np.clip(cosine, -1, 1)))
+    return 2 * widest
+
+
+def centres(network):
+    """Return the projection centres of all images, (V, 3)."""
+    pose = network.cam_from_world
+    return -np.einsum("vji,vj->vi", pose[:, :, :3], pose[:, :, 3])
+
+
+def residual_spread(network):
+    """Return the robust standard deviation of all residuals per axis, px; at least `LEAST_PX`."""
+    residual = networks.residuals(network)
+    return max(1.4826 * float(np.nanmedian(np.abs(residual))), LEAST_PX)
+
+
+def weigh(network, *, sigma_px, loss_scale):
+    """Return a network in which all observations have one sigma and one loss.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+    sigma_px : float
+        Standard deviation along each axis.
+    loss_scale : float
+        Where Cauchy's loss sets in, in sigmas; inf: nowhere.
+    """
+    return replace(
+        network,
+        sigma_px=np.full(len(network.xy), float(sigma_px)),
+        loss_scale=np.full(len(network.xy), float(loss_scale)),
+    )
+
+
+def add(network, xyz, xyz_sigma, clicks, *, sigma_px, loss_scale):
+    """Return a network with control points behind its own points.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+        In the frame of `xyz`.
+    xyz : (P, 3) float
+        Known places, m; those with fewer than one click are left out.
+    xyz_sigma : (P,) float
+        How well they are known, m.
+    clicks : dict of int to (P, 2) float
+        Px by index of the image; NaN where not clicked.
+    sigma_px : dict of int to float
+        Of the clicks, by index of the image.
+    loss_scale : float
+        In sigmas.
+    """
+    clicked = [
+        (v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))
+    ]
+    image_idx, point = np.array(clicked, dtype=int).reshape(-1, 2).T
+    used, point_idx = np.unique(point, return_inverse=True)
+    xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]
+    sigma = np.array([sigma_px[v] for v in image_idx])
+    places = np.array([clicks[v][p] for v, p in clicked]).reshape(-1, 2)
+    return replace(
+        network,
+        xyz=np.concatenate([network.xyz, xyz]),
+        xyz_mean=np.concatenate([network.xyz_mean, xyz]),
+        xyz_sigma=np.concatenate([network.xyz_sigma, xyz_sigma]),
+        image_idx=np.concatenate([network.image_idx, image_idx]),
+        point_idx=np.concatenate([network.point_idx, point_idx + len(network.xyz)]),
+        xy=np.concatenate([network.xy, places]),
+        sigma_px=np.concatenate([network.sigma_px, sigma]),
+        loss_scale=np.concatenate([network.loss_scale, np.full(len(places), float(loss_scale))]),
+    )
+
+
+def alone(network, images):
+    """Return a network of some images and their lenses, without any point or prior.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+    images : sequence of int
+        Each with a lens of its own.
+    """
+    images = np.asarray(images, dtype=int)
+    lens = network.lens[network.lens_of_image[images]]
+    return networks.bare(network.cam_from_world[images], lens, network.height_px[images])
+
+
+def what_ties_say(network, images):
+    """Return what a network says of some images and their lenses, all else eliminated.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+        Without control points.
+    images : sequence of int
+        Each with a lens of its own.
+
+    Returns
+    -------
+    knowledge : courtside.calibration.bundle.solver.Quadratic
+        About the network `alone(network, images)`, its frame and scale left open.
+    """
+    normal = solver.normal_equations(network)
+    n_images, n_lens = len(network.cam_from_world), len(networks.LENS)
+    lenses = network.lens_of_image[np.asarray(images)]
+    blocks = [networks.IMAGE * v + np.arange(networks.IMAGE) for v in images]
+    blocks += [networks.IMAGE * n_images + n_lens * k + np.arange(n_lens) for k in lenses]
+    columns = np.concatenate(blocks)
+    place = np.full(network.n_columns, -1)
+    place[columns] = np.arange(len(columns))
+    place = place[normal.active]
+    mine, rest = place >= 0, place < 0
+    mixed = normal.information[np.ix_(rest, mine)]
+    whole = normal.information[np.ix_(rest, rest)]
+    scale = 1 / np.sqrt(np.maximum(np.diag(whole), 1e-300))
+    right = np.column_stack([mixed, normal.gradient[rest]]) * scale[:, None]
+    solved = scale[:, None] * np.linalg.lstsq(whole * np.outer(scale, scale), right)[0]
+    information = np.zeros((len(columns), len(columns)))
+    gradient = np.zeros(len(columns))
+    at = place[mine]
+    information[np.ix_(at, at)] = normal.information[np.ix_(mine, mine)] - mixed.T @ solved[:, :-1]
+    gradient[at] = normal.gradient[mine] - mixed.T @ solved[:, -1]
+    information = (information + information.T) / 2
+    return solver.Quadratic(alone(network, images), information, gradient)
+
+
+def cameras(network, names, sizes):
+    """Return the images of a network as cameras; `names` and `sizes` are those of its first images.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+    names : sequence of str
+    sizes : sequence of (int, int)
+        Width and height, px.
+    """
+    found = []
+    for v, (name, size) in enumerate(zip(names, sizes, strict=True)):
+        f_px, aspect, cx_px, cy_px, *dist = network.lens[network.lens_of_image[v]]
+        K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
+        found.append(Camera(name, size, K, [*dist, 0.0], network.cam_from_world[v]))
+    return found
+
+
+def of_cameras(known):
+    """Return the network of cameras (list of Camera) without points: `cameras` the other way round."""
+    lenses = []
+    for camera in known:
+        (fx, _, cx), (_, fy, cy), _ = camera.K
+        lenses.append([fy, fx / fy, cx, cy, *camera.dist[:4]])
+    return networks.bare(
+        np.array([camera.cam_from_world for camera in known]).reshape(-1, 3, 4),
+        np.array(lenses).reshape(-1, len(networks.LENS)),
+        [camera.size[1] for camera in known],
+    )
+
+
+def fixed_cameras(network, fixed, sizes):
+    """Return the fixed cameras of a network, in its frame.
+
+    Parameters
+    ----------
+    network : courtside.calibration.bundle.problem.Network
+    fixed : dict of str to int
+        Index of each fixed camera's image.
+    sizes : dict of str to (int, int)
+        Of their pictures, px.
+    """
+    return cameras(
+        alone(network, list(fixed.values())), list(fixed), [sizes[name] for name in fixed]
+    )

@@ -1,0 +1,228 @@
+"""How far a painted line is from where it was expected, and how surely it was seen."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.special import erf
+
+from courtside.calibration.click_proposals.line_profiles import LEAST_SAMPLES, STEP_PX
+
+SLOPE_PX = 3.0  # by which a stretch may be turned, at its ends
+ROUNDS = 4
+SEEN = (0.35, 2.6)  # contrast of a sample in which the line is seen, in medians of all
+HUBER = 1.5
+
+
+@dataclass(frozen=True)
+class Shift:
+    """How far a line is from where it was expected.
+
+    Attributes
+    ----------
+    low_px, high_px : float
+        Of its two edges, along the normal, at the origin; the same where the line is too thin to tell.
+    slope : float
+        Turn of the line: px across per px along.
+    sigma_px : float
+        Standard deviation of the shift at the origin.
+    contrast : float
+        Paint against floor, levels.
+    share : float
+        Of the samples in which the line is seen, 0..1.
+    near_share : float
+        The same of those near the origin.
+    score : float
+        Mean correlation of what is seen with what is expected there.
+    rival : float
+        The best score farther than two widths away, relative to it: near 1 where the place is ambiguous.
+    """
+
+    low_px: float
+    high_px: float
+    slope: float
+    sigma_px: float
+    contrast: float
+    share: float
+    near_share: float
+    score: float
+    rival: float
+
+
+def shift(stretch, *, polarity=1, near_px=8.0, blur_px=0.8):
+    """Find how far a line is off.
+
+    Parameters
+    ----------
+    stretch : Stretch
+    polarity : int
+        1 where paint is brighter than floor, -1 where darker, 0 where that may change along the line.
+    near_px : float
+        What counts as near the origin: the nearest sample, and so far from it.
+    blur_px : float
+
+    Returns
+    -------
+    shift : Shift or None
+        None where nothing like the line is seen.
+
+    Notes
+    -----
+    First the best place and turn by correlation summed along the line, then linearised least squares: in each
+    sample the floor's brightness and its slope, the contrast of the expected paint, and that paint's
+    derivative, which tells the shift. The two edges are shifted separately where the line is 3 px wide.
+    """
+    match = _correlations(stretch, polarity)
+    offset, slope, score, rival = _best_line(match, stretch.along_px, stretch.width_px)
+    if score <= 0:
+        return None
+    low = high = offset
+    sides = 2 if stretch.width_px >= 3 else 1
+    for _ in range(ROUNDS):
+        found = _refine(stretch, (low + high) / 2, slope, polarity, sides, blur_px)
+        if found is None:
+            return None
+        moves, turn, rest = found
+        middle, slope = (low + high) / 2, slope + turn
+        low, high = middle + moves[0], middle + moves[-1]
+    sigma, contrast, kept = rest
+    nearest = np.abs(stretch.along_px) <= np.abs(stretch.along_px).min() + near_px
+    return Shift(
+        low, high, slope, sigma, contrast, kept.mean(), kept[nearest].mean(), score, rival
+    )  # fmt: skip
+
+
+def _correlations(stretch, polarity):
+    """Return the correlation of each sample with its expectation at every shift, (N, shifts)."""
+    width = stretch.paint.shape[1]
+    windows = np.lib.stride_tricks.sliding_window_view(stretch.seen, width, axis=1)
+    t = np.linspace(-1, 1, width)
+    basis = np.stack([np.ones(width) / np.sqrt(width), t / np.linalg.norm(t)])
+    paint = stretch.paint - stretch.paint @ basis.T @ basis
+    size = np.linalg.norm(paint, axis=1)
+    inner = np.einsum("nsw,nw->ns", windows, paint)
+    level = np.einsum("nsw,bw->nsb", windows, basis)
+    energy = np.einsum("nsw,nsw->ns", windows, windows) - np.sum(level**2, axis=2)
+    # The sensor's and the codec's noise must not look like a perfect match.
+    match = inner / np.maximum(size[:, None], 1e-9) / np.sqrt(np.maximum(energy, 0) + width)
+    if polarity:
+        return match * polarity
+    # Noise, too, correlates with one sign or the other: by so much on average over that many pixels.
+    return np.abs(match) - np.sqrt(2 / np.pi / max(width * STEP_PX - 2, 1))
+
+
+def _best_line(match, along_px, width_px):
+    """Return the shift at the origin, the slope, the mean correlation there and the best rival's share."""
+    n, shifts = match.shape
+    middle = (shifts - 1) / 2
+    centre, extent = along_px.mean(), max(np.ptp(along_px) / 2, 1.0)
+    turns = np.arange(-SLOPE_PX, SLOPE_PX + 1e-9, 0.5)
+    turns = turns[np.abs(turns) <= max(0.15 * extent, 0.5)]
+    scores = np.empty((len(turns), shifts))
+    rows = np.arange(n)
+    for at, turn in enumerate(turns):
+        moved = np.round(turn * (along_px - centre) / extent / STEP_PX).astype(int)
+        columns = np.arange(shifts)[:, np.newaxis] + moved
+        valid = (columns >= 0) & (columns < shifts)
+        scores[at] = np.where(valid, match[rows, np.clip(columns, 0, shifts - 1)], 0).mean(axis=1)
+    turn, best = np.unravel_index(np.argmax(scores), scores.shape)
+    score = scores[turn, best]
+    away = np.abs(np.arange(shifts) - best) * STEP_PX > max(2 * width_px, 2.0)
+    rival = scores[:, away].max(initial=0.0) / max(score, 1e-9)
+    slope = turns[turn] / extent
+    return (
+        float((best - middle) * STEP_PX - slope * centre),
+        float(slope),
+        float(score),
+        float(rival),
+    )
+
+
+def _refine(stretch, offset, slope, polarity, sides, blur_px):
+    """Return moves of the edges at the origin, turn, and (sigma, contrast, kept); None where lost."""
+    n, width = stretch.paint.shape
+    columns = (stretch.seen.shape[1] - 1) / 2 + (offset + slope * stretch.along_px)[
+        :, None
+    ] / STEP_PX
+    columns = columns + np.arange(width) - (width - 1) / 2
+    seen = _at(stretch.seen, columns)
+    t = (np.arange(width) - (width - 1) / 2) * STEP_PX
+    rate = np.gradient(stretch.paint, STEP_PX, axis=1)
+    floor = [np.ones(width), t / t[-1]]
+    if stretch.width_px > 2:
+        floor.append(erf(t / blur_px / np.sqrt(2)))  # floors of two colours
+    contrast, noise = _contrast(seen, np.array(floor), stretch.paint)
+    typical = (
+        np.median(np.abs(contrast)) if polarity == 0 else max(polarity * np.median(contrast), 0)
+    )
+    if typical <= 0:
+        return None
+    if polarity:
+        relative = polarity * contrast / typical
+        kept = (relative > SEEN[0]) & (relative < SEEN[1])
+        used = np.full(n, polarity * typical)
+    else:
+        kept, used = np.abs(contrast) > 0.5 * typical, contrast
+    if kept.sum() < LEAST_SAMPLES - 2:
+        return None
+    parts = [rate] if sides == 1 else [np.where(t < 0, rate, 0), np.where(t >= 0, rate, 0)]
+    moved, spread = _moves(seen, np.array(floor), stretch.paint, parts, used, noise)
+    moves, turn, sigma = _line(moved, spread, stretch.along_px, kept)
+    return moves, turn, (sigma, float(polarity or 1) * float(typical), kept)
+
+
+def _at(values, columns):
+    """Return values between columns by cubic interpolation, (N, W)."""
+    rows = np.repeat(np.arange(len(values), dtype=np.float32)[:, None], columns.shape[1], axis=1)
+    return cv2.remap(
+        values.astype(np.float32), columns.astype(np.float32), rows, cv2.INTER_LINEAR,
+        borderMode=cv2.BORDER_REPLICATE,
+    ).astype(float)  # fmt: skip
+
+
+def _contrast(seen, floor, paint):
+    """Return each sample's contrast, and its noise per step, (N,)."""
+    columns = np.concatenate(
+        [np.broadcast_to(floor, (len(paint), *floor.shape)), paint[:, None]], axis=1
+    )
+    fitted = np.linalg.pinv(np.swapaxes(columns, 1, 2)) @ seen[..., None]
+    rest = seen - np.einsum("nkw,nk->nw", columns, fitted[..., 0])
+    noise = np.sqrt(np.mean(rest**2, axis=1) / STEP_PX)  # neighbouring steps share their pixels
+    return fitted[:, -1, 0], noise
+
+
+def _moves(seen, floor, paint, parts, contrast, noise):
+    """Return each sample's shift of each edge (N, E) and its standard deviation, by linear least squares."""
+    n = len(seen)
+    columns = [np.broadcast_to(row, paint.shape) for row in floor]
+    columns += [paint] + [-contrast[:, None] * part for part in parts]
+    design = np.stack(columns, axis=2)
+    solver = np.linalg.pinv(design)
+    fitted = (solver @ seen[..., None])[:, -len(parts) :, 0]
+    spread = np.linalg.norm(solver[:, -len(parts) :], axis=2) * noise[:, None]
+    return fitted.reshape(n, -1), np.maximum(spread, 1e-3)
+
+
+def _line(moved, spread, along_px, kept):
+    """Fit shifts (N, E) by one for each edge and a turn; return them, the turn and the first's sigma."""
+    n, sides = moved.shape
+    extent = max(np.abs(along_px).max(), 1.0)
+    design = np.zeros((n, sides, sides + 1))
+    design[:, np.arange(sides), np.arange(sides)] = 1
+    design[:, :, -1] = (along_px / extent)[:, None]
+    flat, target = design.reshape(n * sides, -1), moved.ravel()
+    scale = np.maximum(spread.ravel(), 0.05)
+    weight = np.repeat(kept, sides) / scale**2
+    for _ in range(6):
+        # A stretch is known to run as expected within 1 px.
+        normal = flat.T @ (weight[:, None] * flat) + np.diag([1e-6] * sides + [1.0])
+        found = np.linalg.solve(normal, flat.T @ (weight * target))
+        off = np.abs(target - flat @ found) / scale
+        scatter = max(np.median(off[np.repeat(kept, sides)]) * 1.48, 0.3)
+        weight = (
+            np.repeat(kept, sides)
+            / scale**2
+            * np.minimum(1, HUBER * scatter / np.maximum(off, 1e-9))
+        )
+    sigma = max(scatter, 1.0) * np.sqrt(np.linalg.inv(normal)[0, 0])
+    return found[:-1], float(found[-1] / extent), float(sigma)

@@ -1,0 +1,249 @@
+"""Where the named points of a court are in a picture: proposed for confirmation, by its painted lines."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from courtside.calibration.click_proposals import line_profiles, post_tips, refine_pose
+from courtside.calibration.click_proposals.view import Ray, View
+from courtside.calibration.court import line_edges
+from courtside.geometry import camera as projection
+
+STRETCH_M = 1.6
+SHARES = (1.0, 0.5, 0.25, 0.25)  # of the search, in successive rounds
+LEAST_PX = 2.0  # of search
+LEAST_SCORE, MOST_RIVAL, LEAST_SHARE = 0.25, 0.85, 0.5  # from which a stretch is believed
+FEWEST = 5  # stretches by which a camera is moved
+SIDE_PX, SIDE_M = 45.0, (0.5, 2.5)  # of line on each side of a point
+NEAR_PX = 2.5  # search around a point, once the camera is moved
+CAMERA_PX = 0.6  # of a point on the floor by the moved camera: paint is some mm off the model
+HEIGHT_M = 0.03  # of one above the floor: lines on the floor tell heights badly
+OFF_SIGMA = 4.0  # what is farther from where the camera has it is another thing
+PAINT_PX = 0.1  # what profiles do not tell of their own error: codec, neighbours
+BLUR = 0.75, 1920  # px of blur, per px of width beyond this
+
+
+@dataclass(frozen=True, eq=False)
+class Proposals:
+    """Proposed points of one camera.
+
+    Attributes
+    ----------
+    xy : (P, 2) float
+        Px; NaN where nothing is proposed.
+    sigma_px : (P,) float
+        Expected standard deviation, the larger of both axes; NaN where nothing is proposed.
+    confidence : (P,) float
+        0..1: share of what is expected near the point that is seen, less where the place is uncertain.
+    reason : tuple of str, length P
+        Why nothing is proposed; empty where something is.
+    camera : courtside.geometry.camera.Camera
+        The given one, moved so that the lines fit.
+    """
+
+    xy: np.ndarray
+    sigma_px: np.ndarray
+    confidence: np.ndarray
+    reason: tuple
+    camera: projection.Camera
+
+
+def propose(camera, image, court, *, search_px, max_sigma_px=1.0, lines="light"):
+    """Propose the points of a court in one camera's picture.
+
+    Parameters
+    ----------
+    camera : courtside.geometry.camera.Camera
+        As known from two or three clicks: the court it expects may be `search_px` off.
+    image : (H, W, 3) uint8
+        Its static picture.
+    court : courtside.calibration.court.court.Court
+    search_px : float
+    max_sigma_px : float
+        A point whose expected error is larger is not proposed.
+    lines : str
+        "light" or "dark", against the floor.
+
+    Returns
+    -------
+    proposals : Proposals
+
+    Raises
+    ------
+    ValueError
+        If the picture has not the camera's size.
+
+    Notes
+    -----
+    First the camera is moved so that all painted lines lie where they are seen, stretch by stretch. Then
+    each point is measured by the lines it names, near it: the edges named are fitted and intersected; along
+    lines that meet at an acute angle the moved camera helps. A post's tip is where its axis, fitted likewise,
+    ends. Nothing is proposed where the camera alone tells.
+    """
+    if image.shape[1::-1] != tuple(camera.size):
+        raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")
+    blur_px = BLUR[0] * max(1.0, camera.size[0] / BLUR[1])
+    polarity = {"light": 1, "dark": -1}[lines]
+    view = View(image.mean(axis=2).astype(np.float32), camera, court, blur_px, polarity)
+    view, reason = register(view, search_px)
+    n = len(court.points)
+    if reason:
+        nothing = np.full(n, np.nan)
+        return Proposals(np.full((n, 2), np.nan), nothing, np.zeros(n), (reason,) * n, view.camera)
+    found = [_point(view, at) for at in range(n)]
+    return _checked(view, found, max_sigma_px)
+
+
+def register(view, search_px):
+    """Move a view's camera so that the lines fit.
+
+    Parameters
+    ----------
+    view : View
+    search_px : float
+
+    Returns
+    -------
+    view : View
+    reason : str
+        Why it could not be moved; empty where it could.
+    """
+    line, ends = line_edges.stretches(view.court, STRETCH_M)
+    middle = ends.mean(axis=1)
+    for share in SHARES:
+        reach = max(share * search_px, LEAST_PX)
+        shifts = [
+            view.shift(number, piece, at, reach)
+            for number, piece, at in zip(line, ends, middle, strict=True)
+        ]
+        good = np.array([_believed(shift) for shift in shifts])
+        if good.sum() < FEWEST or len({line[at] for at in np.flatnonzero(good)}) < 3:
+            return view, "too few painted lines are seen where they are expected"
+        halves = np.array([line_edges.middle_line(view.court, at)[1] for at in line[good]])
+        along = ends[good, 1] - ends[good, 0]
+        normal = line_profiles.axes(view.camera, middle[good], along, halves)[1]
+        used = [shift for shift in shifts if _believed(shift)]
+        offset = np.array([(shift.low_px + shift.high_px) / 2 for shift in used])
+        sigma = np.array([shift.sigma_px for shift in used])
+        moved, _ = refine_pose.refine(view.camera, middle[good], normal, offset, sigma)
+        view = replace(view, camera=moved)
+    return view, ""
+
+
+def _believed(shift):
+    return (
+        shift is not None
+        and shift.score > LEAST_SCORE
+        and shift.share > LEAST_SHARE
+        and shift.rival < MOST_RIVAL
+    )
+
+
+def _point(view, at):
+    """Return (xy, covariance, share, reason) of one point."""
+    court, place = view.court, view.court.xyz[at]
+    expected = projection.project(view.camera, place)
+    nothing = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0
+    inside = np.isfinite(expected).all() and (
+        (expected > 1) & (expected < np.array(view.camera.size) - 2)
+    )
+    if not np.all(inside):
+        return *nothing, "outside the picture"
+    post = line_edges.post(court, at)
+    edges = line_edges.named(court)[at]
+    if place[2] > 0:
+        if post is None:
+            return *nothing, "neither on a line nor on a post"
+        return post_tips.tip(view, post)
+    rays = [_edge(view, edge, place) for edge in edges]
+    if len(edges) < 2 and post is not None and edges:
+        rays.append(post_tips.axis(view, post))
+    if len(rays) < 2:
+        return *nothing, "fewer than two edges meet here"
+    if any(ray is None for ray in rays):
+        return *nothing, "a line it names is not seen near it"
+    return _meet(*rays)
+
+
+def _edge(view, edge, place):
+    """Return the seen edge near a point as a Ray, None where it is not seen."""
+    ends, half = line_edges.middle_line(view.court, edge.line)
+    origin = place.copy()
+    origin[edge.axis] = ends[0, edge.axis]
+    along = 1 - edge.axis
+    step = np.zeros(3)
+    step[along] = 0.05
+    scale = np.linalg.norm(
+        projection.project(view.camera, origin + step)
+        - projection.project(view.camera, origin - step)
+    )
+    reach_m = np.clip(SIDE_PX / max(scale / 0.1, 1e-6), *SIDE_M)
+    stretch = np.array([origin, origin])
+    stretch[0, along] = max(origin[along] - reach_m, ends[0, along])
+    stretch[1, along] = min(origin[along] + reach_m, ends[1, along])
+    shift = view.shift(edge.line, stretch, origin, NEAR_PX)
+    if not shift or shift.score < LEAST_SCORE or shift.near_share < LEAST_SHARE:
+        return None
+    tangent, normal = line_profiles.axes(view.camera, origin[None], ends[1] - ends[0], half)
+    moved = {-1: shift.low_px, 0: (shift.low_px + shift.high_px) / 2, 1: shift.high_px}[edge.side]
+    start = projection.project(view.camera, place) + moved * normal[0]
+    direction = tangent[0] + shift.slope * normal[0]
+    sigma = np.hypot(shift.sigma_px, PAINT_PX)
+    share = min(shift.near_share, shift.share)
+    return Ray(start, direction / np.linalg.norm(direction), sigma, share)
+
+
+def _meet(one, other):
+    """Return (xy, covariance, share, reason) where two rays meet."""
+    across = np.array([[-ray.direction[1], ray.direction[0]] for ray in (one, other)])
+    if abs(np.linalg.det(across)) < 0.03:
+        return np.full(2, np.nan), np.full((2, 2), np.nan), 0.0, "its lines run into one another"
+    back = np.linalg.inv(across)
+    xy = back @ np.array(
+        [normal @ ray.start for normal, ray in zip(across, (one, other), strict=True)]
+    )
+    covariance = back @ np.diag([one.sigma_px**2, other.sigma_px**2]) @ back.T
+    return xy, covariance, min(one.share, other.share), ""
+
+
+def _checked(view, found, max_sigma_px):
+    """Return proposals without those that are uncertain or far from where the camera has them."""
+    expected = projection.project(view.camera, view.court.xyz)
+    n = len(found)
+    xy, sigma_px, confidence = np.full((n, 2), np.nan), np.full(n, np.nan), np.zeros(n)
+    reasons = []
+    for at, (place, covariance, share, reason) in enumerate(found):
+        if not reason:
+            off, alone = place - expected[at], covariance
+            if view.court.xyz[at, 2] == 0:
+                place, covariance = _with_camera(place, covariance, expected[at])
+            sigma = float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
+            allowed = alone + _model_error(view, at) ** 2 * np.eye(2)
+            reason = _why_not(off, allowed, sigma, max_sigma_px)
+            if not reason:
+                xy[at], sigma_px[at], confidence[at] = place, sigma, share / (1 + sigma**2)
+        reasons.append(reason)
+    return Proposals(xy, sigma_px, confidence, tuple(reasons), view.camera)
+
+
+def _with_camera(place, covariance, expected):
+    """Return the place to which the edges near it and the camera, moved to fit all lines, agree best."""
+    gain = covariance @ np.linalg.inv(covariance + CAMERA_PX**2 * np.eye(2))
+    return place + gain @ (expected - place), covariance - gain @ covariance
+
+
+def _model_error(view, at):
+    """Return how far a point may be from where the moved camera has it, standard deviation in px."""
+    place, court = view.court.xyz[at], view.court
+    away = np.linalg.norm(place - view.camera.centre_in_world)
+    off_m = np.hypot(court.sigma_m[at], HEIGHT_M * (place[2] > 0))
+    return np.hypot(CAMERA_PX, off_m * view.camera.K[0, 0] / away)
+
+
+def _why_not(off, allowed, sigma, max_sigma_px):
+    """Return why a place is not proposed, empty where it is."""
+    if sigma > max_sigma_px:
+        return f"uncertain by {sigma:.1f} px"
+    if off @ np.linalg.solve(allowed, off) > OFF_SIGMA**2:
+        return f"{np.linalg.norm(off):.1f} px from where the other lines put it"
+    return ""

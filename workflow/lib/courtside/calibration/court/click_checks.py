@@ -1,0 +1,291 @@
+"""Wrong clicks of court points: found, named, and told from line centres taken for edges."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from courtside.calibration.bundle import solver
+from courtside.calibration.court import court as courts
+from courtside.calibration.court import joint_adjustment, sfm_alignment
+from courtside.geometry import camera as camera_models
+from courtside.study.errors import InputError
+
+MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
+WRONG = 6.0  # a click this many sigmas off is wrong
+CERTAIN = 4.0  # the inward shift must be this many standard deviations from none
+CENTRES = (0.5, 1.6)  # of half a line width: shifts that mean line centres
+
+
+@dataclass(frozen=True, eq=False)
+class LeaveOneOut:
+    """Every clicked point against an alignment that it had no part in.
+
+    Attributes
+    ----------
+    points : tuple of str, length P
+    cameras : tuple of str, length C
+    residual_m : (P, 3) float
+        Reconstructed minus true place, in the world; NaN where fewer than two cameras have a click.
+    projected_px : (C, P, 2) float
+        Where the court's point should be in the picture.
+    clicked_px : (C, P, 2) float
+        NaN where not clicked.
+    """
+
+    points: tuple
+    cameras: tuple
+    residual_m: np.ndarray
+    projected_px: np.ndarray
+    clicked_px: np.ndarray
+
+    @property
+    def error_cm(self):
+        """Distance in the world, (P,) cm."""
+        return 100 * np.linalg.norm(self.residual_m, axis=1)
+
+    @property
+    def error_px(self):
+        """Distance in each picture, (C, P) px."""
+        return np.linalg.norm(self.clicked_px - self.projected_px, axis=-1)
+
+
+@dataclass(frozen=True)
+class WrongClick:
+    """One click that the others contradict.
+
+    Attributes
+    ----------
+    camera, point : str
+    error_px : float
+    error_cm : float
+        Of the point in the world; NaN where one camera alone has it.
+    looks_like : str or None
+        Another point of the court that lies where this one was clicked.
+    """
+
+    camera: str
+    point: str
+    error_px: float
+    error_cm: float
+    looks_like: str | None
+
+    def __str__(self):
+        other = f", where {self.looks_like} should be" if self.looks_like else ""
+        size = "" if np.isnan(self.error_cm) else f" ({self.error_cm:.0f} cm on the court)"
+        return (
+            f"camera {self.camera}: point {self.point}: expected the click near the place that the other "
+            f"clicks give, found it {self.error_px:.1f} px away{size}{other}; click it again or delete it"
+        )
+
+
+def leave_one_out(cameras, clicks, court):
+    """Compare each court point with where all the other points put it.
+
+    Parameters
+    ----------
+    cameras : list of Camera
+        Fixed cameras in one frame, of structure from motion or the world.
+    clicks : dict of str to (P, 2) float
+        By camera name, px; NaN where not clicked.
+    court : courtside.calibration.court.court.Court
+
+    Returns
+    -------
+    table : LeaveOneOut
+
+    Raises
+    ------
+    InputError
+        If, without one point, the others cannot be aligned: too few, collinear, mirrored.
+
+    Notes
+    -----
+    The cameras stay; the similarity to the world is found again without the point (robustly, so that another
+    wrong click does not spread).
+    """
+    xyz = sfm_alignment.reconstruct(cameras, clicks)
+    residual = np.full_like(xyz, np.nan)
+    projected = np.full((len(cameras), len(xyz), 2), np.nan)
+    clicked = np.stack([np.asarray(clicks[camera.name], float) for camera in cameras])
+    world_from_sfm, _ = sfm_alignment.align(court, xyz)
+    for at in range(len(xyz)):
+        others = xyz.copy()
+        others[at] = np.nan
+        known = np.isfinite(xyz[at]).all()
+        fitted = sfm_alignment.align(court, others)[0] if known else world_from_sfm
+        residual[at] = fitted.points(xyz[at]) - court.xyz[at]
+        for row, camera in enumerate(cameras):
+            projected[row, at] = camera_models.project(fitted.camera(camera), court.xyz[at])
+    names = tuple(camera.name for camera in cameras)
+    return LeaveOneOut(court.points, names, residual, projected, clicked)
+
+
+def find_wrong_clicks(table, *, sigma_px=1.0):
+    """Name the clicks that the others contradict.
+
+    Parameters
+    ----------
+    table : LeaveOneOut
+        Of six points or more: with fewer, one wrong click spoils what the others say.
+    sigma_px : float
+        Of a good click per axis, at least; where a camera's clicks scatter more, that counts.
+
+    Returns
+    -------
+    wrong : list of WrongClick, the worst first
+    """
+    error = table.error_px
+    wrong = []
+    for row, camera in enumerate(table.cameras):
+        seen = np.isfinite(error[row])
+        if seen.sum() < 4:
+            continue
+        sigma = max(sigma_px, np.median(error[row, seen]) / MEDIAN_2D)
+        for at in np.flatnonzero(seen & (np.nan_to_num(error[row]) > WRONG * sigma)):
+            away = np.linalg.norm(table.projected_px[row] - table.clicked_px[row, at], axis=-1)
+            near = int(np.argmin(np.where(np.isfinite(away), away, np.inf)))
+            other = table.points[near] if near != at and away[near] < WRONG * sigma else None
+            wrong.append(
+                WrongClick(
+                    camera,
+                    table.points[at],
+                    float(error[row, at]),
+                    float(table.error_cm[at]),
+                    other,
+                )
+            )
+    return sorted(wrong, key=lambda click: -click.error_px)
+
+
+def line_centre_pattern(court, xyz_in_sfm):
+    """Find how far, in half line widths, all points lie inwards of the edges that the court names.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    xyz_in_sfm : (P, 3) float
+        Reconstructed court points, in any frame; NaN where missing.
+
+    Returns
+    -------
+    shift : float
+        0 where edges were clicked, 1 where line centres were.
+    sigma : float
+        Its standard deviation, from how far the points fit; inf where too few do.
+
+    Notes
+    -----
+    Least squares of the residuals, over one shift along `court.to_line_centres` and a small
+    similarity together: most of the shrinking is swallowed by the scale, the rest is what the lines within
+    the court tell.
+    """
+    world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
+    inwards = courts.to_line_centres(court)
+    if accepted.sum() < 5 or not inwards[accepted].any():
+        return 0.0, np.inf
+    residual = (world_from_sfm.points(xyz_in_sfm) - court.xyz)[accepted]
+    design = np.concatenate([inwards[..., None], _small_similarity(court.xyz)], axis=2)[accepted]
+    weight = 1 / court.sigma_m[accepted, None]
+    rows = (design * weight[..., None]).reshape(-1, 8)
+    right = (residual * weight).ravel()
+    solution, _, rank, _ = np.linalg.lstsq(rows, right)
+    if rank < 8:
+        return 0.0, np.inf
+    variance = ((right - rows @ solution) ** 2).sum() / (len(right) - 8)
+    sigma = np.sqrt(np.linalg.inv(rows.T @ rows)[0, 0] * variance)
+    return float(solution[0]), float(sigma)
+
+
+def _small_similarity(xyz):
+    """Return derivatives (P, 3, 7) of points by translation, rotation and scale."""
+    turned = np.zeros((len(xyz), 3, 3))
+    for axis in range(3):
+        turned[:, :, axis] = np.cross(np.eye(3)[axis], xyz)
+    shifted = np.broadcast_to(np.eye(3), turned.shape)
+    return np.concatenate([shifted, turned, xyz[..., None]], axis=2)
+
+
+def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None, table=None):
+    """Check clicked court points as far as the fixed cameras allow.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    cameras : list of Camera
+        Fixed cameras in one frame.
+    clicks : dict of str to (P, 2) float
+        By camera name, px; NaN where not clicked.
+    sigma_px : float
+        Of a good click per axis.
+    inwards : (float, float), optional
+        Shift of all clicks towards line centres and its sigma, from `click_checks.shift`; without it,
+        `line_centre_pattern`.
+    table : LeaveOneOut, optional
+        Of these cameras and clicks, where it is known already.
+
+    Returns
+    -------
+    warnings : list of str
+        One line each: weak geometry, wrong clicks by camera and point, line centres.
+
+    Raises
+    ------
+    InputError
+        If the points cannot be this court: see `sfm_alignment.check`.
+    """
+    sfm_alignment.refuse(court, cameras, clicks)
+    xyz = sfm_alignment.reconstruct(cameras, clicks)
+    warnings = sfm_alignment.check(court, xyz, cameras)
+    try:
+        table = table or leave_one_out(cameras, clicks, court)
+    except InputError:
+        return warnings  # too few points to leave one out, which `check` has said
+    warnings += [str(click) for click in find_wrong_clicks(table, sigma_px=sigma_px)]
+    shift, sigma = inwards or line_centre_pattern(court, xyz)
+    if CENTRES[0] < shift < CENTRES[1] and shift > CERTAIN * sigma:
+        warnings.append(
+            f"court points: all lie inwards of the edges by {500 * court.line_width_m * shift:.0f} mm (+-"
+            f"{500 * court.line_width_m * sigma:.0f}), half a line width: line centres seem to be "
+            "clicked; click the edges that the court's file names"
+        )
+    return warnings
+
+
+SHIFTS = (0.0, 0.5, 1.0)  # in half line widths
+
+
+def shift(ties, clicks, court, **weights):
+    """Find how far, in half line widths, the clicks lie inwards of the edges that the court names.
+
+    Parameters
+    ----------
+    ties : courtside.calibration.court.joint_adjustment.Ties
+        Of a session with a court.
+    clicks : dict of str to (P, 2) float
+        By camera; NaN where not clicked.
+    court : courtside.calibration.court.court.Court
+    **weights
+        Of the clicks, as for `joint_adjustment.solve`.
+
+    Returns
+    -------
+    shift : float
+        0 where edges were clicked, 1 where line centres were.
+    sigma : float
+        Its standard deviation; inf where the clicks do not tell.
+
+    Notes
+    -----
+    The cameras are solved for the court as it is, half way, and with all points at line centres; the cost is
+    a parabola of the shift, whose minimum and curvature are wanted. `click_checks.line_centre_pattern`, which
+    looks at where adjusted cameras put the points, finds a third of it: the cameras have swallowed the rest.
+    """
+    inwards, costs = courts.to_line_centres(court), []
+    for share in SHIFTS:
+        moved = replace(court, xyz=court.xyz + share * inwards)
+        solved = joint_adjustment.solve(ties, clicks, moved, max_iterations=30, **weights)
+        costs.append(solver.cost(solved.network, ties.knowledge))
+    bend, slope, _ = np.polyfit(SHIFTS, costs, 2)
+    if bend < 1e-9 * max(costs[0], 1.0):
+        return 0.0, np.inf
+    return float(-slope / (2 * bend)), float(1 / np.sqrt(2 * bend))

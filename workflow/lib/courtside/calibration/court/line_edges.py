@@ -1,0 +1,182 @@
+"""Which edges of which painted lines meet at each named point of a court."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.geometry import camera as cameras
+
+ON_EDGE_M = 1e-6
+
+
+@dataclass(frozen=True)
+class Edge:
+    """An edge, or the middle, of one painted line, on which a named point lies.
+
+    Attributes
+    ----------
+    line : int
+        Row of `Court.lines_m`.
+    axis : int
+        0 where the edge runs along y at a fixed x, 1 where it runs along x at a fixed y.
+    at_m : float
+        That fixed coordinate.
+    side : int
+        -1 for the edge of the lower coordinate, 0 for the line's middle, 1 for the other edge.
+    """
+
+    line: int
+    axis: int
+    at_m: float
+    side: int
+
+
+def named(court):
+    """Find the edges that meet at each point on the floor.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+
+    Returns
+    -------
+    edges : tuple of tuple of Edge, length P
+        Two for a crossing or corner, of different axes; one for the foot of a net post on a side line; none
+        for raised points. Where lines of one axis overlap at the point, the longer one counts.
+    """
+    low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    return tuple(_at(low, high, xyz) for xyz in court.xyz)
+
+
+def _at(low, high, xyz):
+    if xyz[2] > 0:
+        return ()
+    across = np.argmin(high - low, axis=1)
+    inside = (xyz[:2] >= low - ON_EDGE_M) & (xyz[:2] <= high + ON_EDGE_M)
+    best = {}
+    for line in np.flatnonzero(inside.all(axis=1)):
+        axis = int(across[line])
+        side = _side(low[line, axis], high[line, axis], xyz[axis])
+        length = high[line, 1 - axis] - low[line, 1 - axis]
+        if side is not None and length > best.get(axis, (0, None))[0]:
+            best[axis] = length, Edge(int(line), axis, float(xyz[axis]), side)
+    return tuple(best[axis][1] for axis in sorted(best))
+
+
+def _side(low, high, at):
+    """Return which part of a line's width a coordinate is, None where it is none with a name."""
+    places = {-1: low, 0: (low + high) / 2, 1: high}
+    return next((side for side, place in places.items() if abs(place - at) <= ON_EDGE_M), None)
+
+
+def post(court, point):
+    """Return which post of the net a point belongs to, 0 or 1, or None.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    point : int
+        Its position in `court.points`.
+    """
+    if court.net is None:
+        return None
+    place = court.xyz[point]
+    for number, x in enumerate(court.net["x_m"]):
+        if np.hypot(place[0] - x, place[1] - court.net["y_m"]) <= ON_EDGE_M:
+            return number
+    return None
+
+
+def middle_line(court, line):
+    """Return the two ends of a painted line's middle, and half its width, (2, 3) and (3,) m.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    line : int
+        Row of `lines_m`.
+    """
+    low = np.minimum(court.lines_m[line, :2], court.lines_m[line, 2:])
+    high = np.maximum(court.lines_m[line, :2], court.lines_m[line, 2:])
+    axis = int(np.argmin(high - low))
+    ends = np.array([[*low, 0.0], [*high, 0.0]])
+    ends[:, axis] = (low[axis] + high[axis]) / 2
+    half = np.zeros(3)
+    half[axis] = (high[axis] - low[axis]) / 2
+    return ends, half
+
+
+def stretches(court, length_m):
+    """Cut all lines into stretches of about one length.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    length_m : float
+
+    Returns
+    -------
+    line : (M,) int
+        Row of `lines_m`.
+    ends : (M, 2, 3) float
+        On the line's middle, metres.
+    """
+    found = []
+    for line in range(len(court.lines_m)):
+        ends, _ = middle_line(court, line)
+        n = max(1, round(float(np.linalg.norm(ends[1] - ends[0])) / length_m))
+        cuts = ends[0] + np.linspace(0, 1, n + 1)[:, np.newaxis] * (ends[1] - ends[0])
+        found += [(line, cuts[at : at + 2]) for at in range(n)]
+    return np.array([line for line, _ in found], dtype=int), np.array([ends for _, ends in found])
+
+
+@dataclass(frozen=True)
+class Paint:
+    """What a camera expects to be painted where.
+
+    Attributes
+    ----------
+    place : callable
+        From px (..., 2) to places (..., 2), smooth.
+    shows : callable
+        From places (..., 2) to (...) bool.
+    """
+
+    place: Callable
+    shows: Callable
+
+
+def paint(camera, court):
+    """Return where a camera expects the painted lines of a court.
+
+    Parameters
+    ----------
+    camera : courtside.geometry.camera.Camera
+    court : courtside.calibration.court.court.Court
+
+    Returns
+    -------
+    paint : Paint
+        Its places are metres on the floor, NaN above the horizon.
+    """
+    low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    rotation, centre = camera.cam_from_world[:, :3], camera.centre_in_world
+
+    def place(xy):
+        rays = cameras.undistort(camera, xy)
+        rays = np.concatenate([rays, np.ones((*rays.shape[:-1], 1))], axis=-1) @ rotation
+        with np.errstate(divide="ignore", invalid="ignore"):
+            on_floor = centre[:2] - rays[..., :2] * (centre[2] / rays[..., 2:])
+        return np.where(rays[..., 2:] * centre[2] < 0, on_floor, np.nan)
+
+    def shows(places):
+        found = np.zeros(places.shape[:-1], dtype=bool)
+        x, y = places[..., 0], places[..., 1]
+        for (x0, y0), (x1, y1) in zip(low, high, strict=True):
+            found |= (x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)
+        return found
+
+    return Paint(place, shows)

@@ -1,0 +1,330 @@
+"""From the frame of structure from motion to the court's: the published frame, a robust similarity, and exchanged cameras."""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from courtside.geometry import similarity, triangulation
+from courtside.study.errors import InputError
+
+HOPELESS = 0.03  # a court that most points miss by this part of its length is no fit
+STRETCHED = 0.01  # of the ratio of the sides: less can be the clicks' own bias
+FLAT = 0.01  # relative to the longest extent: points lower than this all lie on the floor
+
+
+@dataclass(frozen=True, eq=False)
+class PaperFrame:
+    """The published way into the world frame, from three court points.
+
+    Attributes
+    ----------
+    world_from_sfm : (4, 4) float
+        The matrix D with the scale in it, for points; its axes are as far from perpendicular as the points
+        are.
+    nearest : courtside.geometry.similarity.Sim3
+        The same with the nearest rotation, for cameras.
+    skew_deg : float
+        How far the angle between the court's sides, as reconstructed, is from 90 degrees.
+    """
+
+    world_from_sfm: np.ndarray
+    nearest: similarity.Sim3
+    skew_deg: float
+
+    def points(self, x_in_sfm):
+        """Return points (..., 3) of the SfM frame in the world, by D."""
+        return np.asarray(x_in_sfm) @ self.world_from_sfm[:3, :3].T + self.world_from_sfm[:3, 3]
+
+
+def reconstruct(cameras, clicks):
+    """Triangulate clicked court points from the fixed cameras, by least squares of the pixel errors.
+
+    Parameters
+    ----------
+    cameras : list of Camera
+        Fixed cameras in one frame, of structure from motion or the world.
+    clicks : dict of str to (P, 2) float
+        By camera name, px; NaN where not clicked.
+
+    Returns
+    -------
+    xyz : (P, 3) float
+        In the cameras' frame; NaN where fewer than two cameras have a click or the views do not meet before
+        the cameras that saw them.
+    """
+    xy = np.stack([np.asarray(clicks[camera.name], float) for camera in cameras])
+    return triangulation.triangulate_all(cameras, xy)
+
+
+def paper_frame(court, xyz_in_sfm):
+    """Find the world frame as the paper does, from the origin and the ends of x and y.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+        Its set "three" names the origin, a point on the x axis and one on the y axis.
+    xyz_in_sfm : (P, 3) float
+        Reconstructed court points; all three must be there.
+
+    Returns
+    -------
+    frame : PaperFrame
+
+    Raises
+    ------
+    InputError
+        If the court has no such set, or one of the points is missing.
+
+    Notes
+    -----
+    [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o, D = [R t; 0 1].
+    They are called orthonormal there and never made so; D is used as it is for points. A camera needs a
+    rotation: the nearest one (polar factor of R).
+
+    # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin, and the
+    # paper does not say how it is found.
+    # ASSUME: the scale, "known length over SfM length", is that of both sides together, (6.1 + 13.4 m) over
+    # the sum of their SfM lengths: the paper names both lengths and one scale. It multiplies R and t.
+    """
+    if "three" not in court.sets or len(court.sets["three"]) != 3:
+        raise InputError(
+            f"court {court.name}: expected a set `three` of the origin, the end of x and the end of y, found "
+            "none; add it to the court's file"
+        )
+    names = court.sets["three"]
+    places = np.asarray(xyz_in_sfm, float)[court.indices("three")]
+    missing = [name for name, place in zip(names, places, strict=True) if np.isnan(place).any()]
+    if missing:
+        raise InputError(
+            f"court points: expected {', '.join(names)} in two cameras each, found too few clicks of "
+            f"{', '.join(missing)}; click them, or use another alignment"
+        )
+    origin, along_x, along_y = places
+    sides = np.stack([along_x - origin, along_y - origin])
+    lengths = np.linalg.norm(sides, axis=1)
+    known = court.xyz[court.indices("three")]
+    scale = np.linalg.norm(known[1:] - known[0], axis=1).sum() / lengths.sum()
+    e_x, e_y = sides / lengths[:, None]
+    e_z = np.cross(e_x, e_y)
+    rows = np.stack([e_x, e_y, e_z / np.linalg.norm(e_z)])
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = scale * rows, -scale * rows @ origin
+    left, _, right = np.linalg.svd(rows)
+    nearest = similarity.Sim3(float(scale), left @ right, -scale * (left @ right) @ origin)
+    skew_deg = abs(90 - np.degrees(np.arccos(np.clip(e_x @ e_y, -1, 1))))
+    return PaperFrame(matrix, nearest, float(skew_deg))
+
+
+def align(court, xyz_in_sfm):
+    """Find the robust similarity from all reconstructed court points to the court.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    xyz_in_sfm : (P, 3) float
+        NaN where missing.
+
+    Returns
+    -------
+    world_from_sfm : courtside.geometry.similarity.Sim3
+    accepted : (P,) bool
+
+    Raises
+    ------
+    InputError
+        If the points are too few, collinear or mirrored.
+    """
+    return similarity.robust(xyz_in_sfm, court.xyz, court.sigma_m)
+
+
+def check(court, xyz_in_sfm, cameras=()):
+    """Check that reconstructed points can be this court, seen the right way round.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    xyz_in_sfm : (P, 3) float
+        Reconstructed court points; NaN where missing.
+    cameras : sequence of Camera
+        Those that saw them, in the same frame: they must be above the floor.
+
+    Returns
+    -------
+    warnings : list of str
+        One line each; what `click_checks.find` says of single clicks is not in it.
+
+    Raises
+    ------
+    InputError
+        If no alignment is possible: too few points, collinear, mirrored, or another shape than the court's.
+    """
+    world_from_sfm, _ = align(court, xyz_in_sfm)
+    _check_size(court, xyz_in_sfm)
+    off_m = misfit_m(court, world_from_sfm, xyz_in_sfm)
+    if off_m > HOPELESS * np.max(court.size_m):
+        short_m, long_m = court.size_m
+        raise InputError(
+            f"court points: expected them near those of {court.name} ({short_m:g} m by {long_m:g} m), found "
+            f"most {100 * off_m:.0f} cm off after the best alignment; give the right court file, or correct "
+            "the names of points and cameras in the clicks"
+        )
+    below = [c.name for c in cameras if world_from_sfm.camera(c).centre_in_world[2] < 0]
+    if below:
+        raise InputError(
+            f"court points: expected the cameras above the floor, found {', '.join(below)} below it: the "
+            "points are mirrored; exchange the names of the left and right points in all cameras, or undo "
+            "the flip of the videos"
+        )
+    return _weak(court, np.isfinite(np.asarray(xyz_in_sfm)).all(axis=1))
+
+
+def misfit_m(court, world_from_sfm, xyz_in_sfm):
+    """Return how far most reconstructed points are from the court after an alignment, m.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    world_from_sfm : courtside.geometry.similarity.Sim3
+    xyz_in_sfm : (P, 3) float
+        NaN where missing.
+    """
+    residual = world_from_sfm.points(xyz_in_sfm) - court.xyz
+    return float(np.nanmedian(np.linalg.norm(residual, axis=1)))
+
+
+def _weak(court, known):
+    warnings = []
+    if known.sum() < 4:
+        warnings.append(
+            f"court points: {known.sum()} are seen by two cameras: a wrong click cannot be noticed; click "
+            "four or more"
+        )
+    if np.ptp(court.xyz[known, 2]) < FLAT * np.ptp(court.xyz[known], axis=0).max():
+        warnings.append(
+            "court points: all lie on the floor: heights are several times less certain than on the floor; "
+            "click points above it too, such as the tips of the net posts"
+        )
+    return warnings
+
+
+def _check_size(court, xyz_in_sfm):
+    """Raise where the court's two sides have different scales: it is not the court of the file."""
+    ratio, sigma = stretch(court, xyz_in_sfm)
+    if abs(np.log(ratio)) > max(STRETCHED, 5 * sigma):
+        short_m, long_m = court.size_m
+        raise InputError(
+            f"court points: expected the sides of {court.name}, {short_m:g} m by {long_m:g} m, found "
+            f"{short_m * ratio:.2f} m by {long_m:g} m (or as much in proportion); give the right court "
+            "file, or click the lines that it names"
+        )
+
+
+def stretch(court, xyz_in_sfm):
+    """Find whether the reconstructed floor has the court's proportions.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    xyz_in_sfm : (P, 3) float
+        NaN where missing.
+
+    Returns
+    -------
+    ratio : float
+        Scale along x over that along y: 1 where the proportions are right.
+    sigma : float
+        Standard deviation of its logarithm; inf where the floor points are too few to tell.
+
+    Notes
+    -----
+    An affine map from the floor to the points' frame, by least median of squares over subsets of three and
+    least squares over those that agree: free of the similarity that the court's shape would force.
+    """
+    xyz_in_sfm = np.asarray(xyz_in_sfm, float)
+    floor = np.isfinite(xyz_in_sfm).all(axis=1) & (court.xyz[:, 2] == 0)
+    if floor.sum() < 5:
+        return 1.0, np.inf
+    design = np.column_stack([np.ones(floor.sum()), court.xyz[floor, :2]])
+    agree = _affine_agree(design, xyz_in_sfm[floor])
+    design, places = design[agree], xyz_in_sfm[floor][agree]
+    if np.linalg.matrix_rank(design) < 3 or len(design) < 4:
+        return 1.0, np.inf
+    columns = np.linalg.lstsq(design, places)[0]
+    residual = places - design @ columns
+    variance = (residual**2).sum() / (residual.size - columns.size)
+    lengths = np.linalg.norm(columns[1:], axis=1)
+    spread = np.diag(np.linalg.inv(design.T @ design))[1:] * variance
+    return float(lengths[0] / lengths[1]), float(np.sqrt((spread / lengths**2).sum()))
+
+
+def _affine_agree(design, places):
+    """Return which points (n,) bool one affine map fits, for most of them."""
+    subsets = np.array(list(combinations(range(len(design)), 3)))
+    spanned = np.abs(np.linalg.det(design[subsets]))
+    subsets = subsets[spanned > 0.1 * spanned.max()]
+    columns = np.linalg.solve(design[subsets], places[subsets])
+    distance = np.linalg.norm(design @ columns - places, axis=-1)
+    quorum = (len(design) + 4) // 2 - 1
+    middle = np.sort(distance, axis=1)[:, quorum]
+    best = np.argmin(middle)
+    return distance[best] <= max(4 * middle[best], 1e-9 * np.abs(places).max())
+
+
+OFF = 0.01  # of the court's length: points nearer than that fit
+BENT = 0.1  # of the court's length: structure from motion of 12 small pictures was bent by up to half of that
+NEARER = 5.0  # so many times nearer must they be with the clicks of two cameras exchanged
+
+
+def refuse(court, cameras, clicks, adjust=None):
+    """Raise where the clicks fit the court only after those of two cameras are exchanged.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    cameras : list of Camera
+        Fixed cameras in one frame, of structure from motion: clicks must not have shaped it.
+    clicks : dict of str to (P, 2) float
+        By camera name, px; NaN where not clicked.
+    adjust : callable, optional
+        From clicks to the fixed cameras after a joint adjustment with them. Structure from motion of few
+        pictures is bent by more than clicks scatter: points that such a bend can explain are judged after it.
+
+    Raises
+    ------
+    InputError
+        If so: the files of these cameras may be exchanged. Any other fault of the clicks is not looked for.
+    """
+    near_m = OFF * np.max(court.size_m)
+    if _off_m(court, cameras, clicks) < near_m:
+        return
+    off_m = _off_m(court, cameras, clicks, adjust)
+    if off_m < near_m:
+        return
+    for one, other in combinations([camera.name for camera in cameras], 2):
+        exchanged = {**clicks, one: clicks[other], other: clicks[one]}
+        better_m = _off_m(court, cameras, exchanged, adjust)
+        if better_m < min(near_m, off_m / NEARER):
+            found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
+            raise InputError(
+                f"cameras {one} and {other}: expected clicked court points to fit the walk, found them "
+                f"{found}, but {100 * better_m:.0f} cm off with the clicks of the two exchanged: the camera "
+                "files may be exchanged; correct their names in the session, or in the court points"
+            )
+
+
+def _off_m(court, cameras, clicks, adjust=None):
+    """Return how far most reconstructed points are from the court, inf where they cannot be aligned."""
+    try:
+        off_m = _misfit_m(court, cameras, clicks)
+        if adjust and off_m <= BENT * np.max(court.size_m):
+            off_m = _misfit_m(court, adjust(clicks), clicks)
+    except InputError:
+        return np.inf
+    return off_m
+
+
+def _misfit_m(court, cameras, clicks):
+    xyz = reconstruct(cameras, clicks)
+    world_from_sfm, _ = align(court, xyz)
+    return misfit_m(court, world_from_sfm, xyz)

@@ -1,0 +1,195 @@
+"""A made-up network of ties between images of a planned session: what features of a hall's walls would give.
+
+A feature is found as long as it is seen from nearly the same side. Each point of the walls and the floor
+therefore has a *life*: a range of directions, along the path of the camera, in which it is found.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from courtside.calibration.bundle import problem as networks
+from courtside.calibration.bundle import selection
+from courtside.calibration.planning import cameras
+from courtside.geometry.camera import project
+
+CHUNK = 4000  # points tried at once
+WIDTH_PX = 1280  # of the pictures in which textures were measured
+BEFORE = (
+    6.0  # lives before the path's start, in the longest mean life: all that begin earlier are over
+)
+NEAREST_M = 1.0  # of a point to an image: nearer ones are out of focus and soon out of the picture
+
+
+@dataclass(frozen=True)
+class Texture:
+    """How much there is to see in a hall.
+
+    Attributes
+    ----------
+    n_alive : float
+        Features in a picture 1280 px wide that are found again from exactly the same place; in
+        proportion to the width.
+    lives_deg : tuple of float
+        Mean length of the lives of two kinds of features, exponentially distributed.
+    shares : tuple of float
+        Of the kinds among the features of one picture.
+    noise_px : float
+        Standard deviation of a tie per axis, whatever the picture's size.
+    floor : float
+        Share of the features that are on the floor.
+    """
+
+    n_alive: float
+    lives_deg: tuple
+    shares: tuple
+    noise_px: float
+    floor: float
+
+
+# ASSUME: chosen by trial so that the ties per image, and the images per tie, come near those of the virtual
+# sessions: plain-a with 10, 20, 40 bridging images 157, 311, 383 ties per image, seen in 4.0, 4.7, 6.8
+# images; rich-a 527, 808, 1064 in 5.0, 6.3, 9.5. Noise is the robust spread of their residuals with 20 to 40
+# images; it changes by a quarter from pictures of 640 px to 1920 px.
+TEXTURES = {
+    "plain": Texture(480, (1.2, 12.0), (0.6, 0.4), 0.30, 0.05),
+    "rich": Texture(1150, (2.0, 16.0), (0.55, 0.45), 0.17, 0.15),
+}
+
+
+def network(fixed, walked, hall_m, texture, lens_prior, rng):
+    """Make the network that structure from motion would find, free of errors, in the court's frame.
+
+    Parameters
+    ----------
+    fixed : list of Camera
+        Each with a lens of its own.
+    walked : list of Camera
+        The bridging images in order, all by one camera.
+    hall_m : (2, 3) float
+        Two opposite corners of the hall, m.
+    texture : Texture
+    lens_prior : (mean, sigma)
+        Of `Network`, (C + 1, 8) each: the fixed cameras' lenses, then the walked one's.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    network : courtside.calibration.bundle.problem.Network
+        Fixed cameras first; points seen once or never are not in it.
+    """
+    images = [*fixed, *walked]
+    order = path_order(fixed, walked)
+    found, tried, wanted = [], 0, CHUNK
+    while tried < wanted:
+        xyz = on_surfaces(hall_m, CHUNK, texture.floor, rng)
+        seen, n_alive = _seen(images, order, xyz, texture, rng)
+        if not tried and n_alive:
+            full = max(camera.size[0] for camera in images) / WIDTH_PX
+            wanted = CHUNK * texture.n_alive * full / n_alive
+        # Of the last points only so many as are wanted.
+        tried += CHUNK
+        use = seen.sum(axis=1) >= 2
+        use &= np.arange(CHUNK) < CHUNK - max(0, tried - wanted)
+        found.append((xyz[use], seen[use]))
+    xyz, seen = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return _of(images, len(fixed), xyz, seen, lens_prior)
+
+
+def path_order(fixed, walked):
+    """Return the indices of all images, fixed ones first, in the order in which the walk passes them."""
+    places = np.array([camera.centre_in_world for camera in [*fixed, *walked]])
+    if not walked:
+        return np.arange(len(fixed))
+    return cameras.path_order(places, np.arange(len(places)) < len(fixed))
+
+
+def on_surfaces(hall_m, n_points, floor, rng):
+    """Return points spread evenly over a hall's walls and its floor, (N, 3) m.
+
+    Parameters
+    ----------
+    hall_m : (2, 3) float
+        Two opposite corners.
+    n_points : int
+    floor : float
+        Share of points on the floor.
+    rng : numpy.random.Generator
+    """
+    low, high = np.min(hall_m, axis=0), np.max(hall_m, axis=0)
+    xyz = rng.uniform(low, high, (n_points, 3))
+    wide, deep = (high - low)[:2]
+    on_floor = rng.random(n_points) < floor
+    across = rng.random(n_points) < deep / (wide + deep)  # a wall of constant x
+    far = rng.random(n_points) < 0.5
+    at = np.where(across, 0, 1)
+    wall = np.where(far, high[at], low[at])
+    xyz[np.arange(n_points), at] = np.where(on_floor, xyz[np.arange(n_points), at], wall)
+    xyz[on_floor, 2] = low[2]
+    return xyz
+
+
+def _seen(images, order, xyz, texture, rng):
+    """Return which image sees which point, (N, V) bool, and how many the widest pictures see at once."""
+    angle_deg = _along(np.array([images[at].centre_in_world for at in order]), xyz)
+    alive = np.zeros(angle_deg.shape, dtype=bool)
+    alive[:, order] = _alive(angle_deg, texture, rng)
+    for at, camera in enumerate(images):
+        alive[alive[:, at], at] = _in_view(camera, xyz[alive[:, at]])
+    width_px = np.array([camera.size[0] for camera in images])
+    n_alive = alive[:, width_px == width_px.max()].sum(axis=0).mean()
+    fine = rng.random(alive.shape) < width_px / width_px.max()
+    return alive & fine, n_alive
+
+
+def _along(centres, xyz):
+    """Return how far the direction to each image has turned along the path, as seen from points, degrees."""
+    ray = centres - xyz[:, None]
+    ray = ray / np.linalg.norm(ray, axis=2, keepdims=True)
+    between = np.linalg.norm(np.diff(ray, axis=1), axis=2) / 2
+    turn_deg = np.degrees(2 * np.arcsin(np.clip(between, 0, 1)))
+    return np.concatenate([np.zeros((len(xyz), 1)), np.cumsum(turn_deg, axis=1)], axis=1)
+
+
+def _alive(angle_deg, texture, rng):
+    """Return in which images each point is in its life, (N, V) bool."""
+    lives_deg, shares = np.array(texture.lives_deg), np.array(texture.shares)
+    births = shares / lives_deg  # long lives fill more pictures than their number
+    kind = rng.choice(len(births), size=len(angle_deg), p=births / births.sum())
+    life_deg = rng.exponential(lives_deg[kind])
+    before_deg = BEFORE * lives_deg.max()
+    start_deg = rng.uniform(-before_deg, angle_deg[:, -1])
+    since = angle_deg - start_deg[:, None]
+    return (since >= 0) & (since <= life_deg[:, None])
+
+
+def _in_view(camera, xyz):
+    away_m = np.linalg.norm(xyz - camera.centre_in_world, axis=1)
+    with np.errstate(invalid="ignore"):
+        xy = project(camera, xyz)
+        inside = ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=1)
+    return inside & (away_m > NEAREST_M)
+
+
+def _of(images, n_fixed, xyz, seen, lens_prior):
+    point_idx, image_idx = np.nonzero(seen)
+    alone = selection.of_cameras(images)
+    lens_of_image = np.minimum(np.arange(len(images)), n_fixed)
+    lens = alone.lens[: n_fixed + 1]
+    mean, sigma = lens_prior
+    blank = replace(
+        alone,
+        lens=lens,
+        lens_of_image=lens_of_image,
+        lens_mean=mean[: len(lens)],
+        lens_sigma=sigma[: len(lens)],
+        xyz=xyz,
+        xyz_mean=np.zeros_like(xyz),
+        xyz_sigma=np.full(len(xyz), np.inf),
+        image_idx=image_idx,
+        point_idx=point_idx,
+        xy=np.zeros((len(image_idx), 2)),
+        sigma_px=np.ones(len(image_idx)),
+        loss_scale=np.full(len(image_idx), np.inf),
+    )
+    return replace(blank, xy=networks.residuals(blank))

@@ -1,0 +1,134 @@
+"""What one structure from motion says of the fixed cameras, or why it says nothing: npz."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from courtside.calibration.bundle import problem as networks
+from courtside.calibration.bundle import selection, solver
+from courtside.calibration.bundle.problem import LENS
+from courtside.calibration.court import joint_adjustment
+from courtside.records import npz
+from courtside.study.errors import reading
+
+FORM = "courtside ties 2"
+SPEC = {
+    "outcome": ("str", ()),
+    "fault": ("str", ()),
+    "camera": ("str", ("C",)),
+    "size": ("int", ("C", "2")),
+    "n_points_seen": ("int", ("C",)),
+    "cam_from_sfm": ("float", ("C", "3", "4")),
+    "lens_sfm": ("float", ("C", "8")),
+    "cam_from_world": ("float", ("A", "3", "4")),
+    "lens": ("float", ("A", "8")),
+    "information": ("float", ("K", "K")),
+    "gradient": ("float", ("K",)),
+    "image": ("str", ("V",)),
+    "centre": ("float", ("V", "3")),
+    "xyz": ("float", ("N", "3")),
+    "residual_px": ("float", ()),
+    "n_maps": ("int", ("2",)),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """The fixed cameras of one structure from motion.
+
+    Attributes
+    ----------
+    outcome : str
+        Empty, or in one line which fixed camera was not placed, and what to film again.
+    fault : str
+        Empty, or in one line why the placed cameras could not be adjusted with the court points.
+    sfm_cameras : list of Camera
+        The fixed cameras that were registered, in the model's own frame and unit.
+    n_points_seen : (C,) int
+        Points of the model that each of them sees.
+    ties : courtside.calibration.court.joint_adjustment.Ties or None
+        None where there is an outcome or a fault.
+    images : (V,) str
+        Names of the registered images.
+    centres : (V, 3) float
+        Where they were taken from: in the court's frame where there are ties, else in the model's.
+    xyz : (N, 3) float
+        Points that tie the images, in the same frame.
+    residual_px : float
+        Of the ties, robust standard deviation per axis; NaN without ties.
+    n_maps : (int, int)
+        Maps of the same matches that place the images as this one does, itself included; all that were made.
+    """
+
+    outcome: str
+    fault: str
+    sfm_cameras: list
+    n_points_seen: np.ndarray
+    ties: object
+    images: np.ndarray
+    centres: np.ndarray
+    xyz: np.ndarray
+    residual_px: float
+    n_maps: tuple
+
+
+def write(path, record):
+    """Write a `Record` to an npz file."""
+    sfm = selection.of_cameras(record.sfm_cameras)
+    reference = record.ties.knowledge.reference if record.ties else None
+    knowledge = record.ties.knowledge if record.ties else None
+    arrays = {
+        "outcome": np.array(record.outcome),
+        "fault": np.array(record.fault),
+        "camera": np.array([camera.name for camera in record.sfm_cameras], dtype=str),
+        "size": np.array([camera.size for camera in record.sfm_cameras], dtype=int).reshape(-1, 2),
+        "n_points_seen": np.asarray(record.n_points_seen, dtype=int),
+        "cam_from_sfm": sfm.cam_from_world,
+        "lens_sfm": sfm.lens,
+        "cam_from_world": _stack(reference.cam_from_world if reference else [], (3, 4)),
+        "lens": _stack(reference.lens if reference else [], (len(LENS),)),
+        "information": knowledge.information if knowledge else np.zeros((0, 0)),
+        "gradient": knowledge.gradient if knowledge else np.zeros(0),
+        "image": np.asarray(record.images, dtype=str),
+        "centre": _stack(record.centres, (3,)),
+        "xyz": _stack(record.xyz, (3,)),
+        "residual_px": np.array(float(record.residual_px)),
+        "n_maps": np.array(record.n_maps, dtype=int),
+    }
+    npz.write(path, FORM, SPEC, arrays)
+
+
+def read(path):
+    """Read a `Record`; an `InputError` says what is wrong with a file that is none."""
+    found = npz.read(path, FORM, SPEC)
+    with reading(path, "cameras and ties that fit one another"):
+        return _record(found)
+
+
+def _record(found):
+    sizes = [tuple(map(int, size)) for size in found["size"]]
+    names, heights_px = tuple(map(str, found["camera"])), found["size"][:, 1]
+    sfm = selection.cameras(
+        networks.bare(found["cam_from_sfm"], found["lens_sfm"], heights_px), names, sizes
+    )
+    ties = None
+    if len(found["information"]):
+        reference = networks.bare(found["cam_from_world"], found["lens"], heights_px)
+        knowledge = solver.Quadratic(reference, found["information"], found["gradient"])
+        ties = joint_adjustment.Ties(names, tuple(sizes), knowledge)
+    return Record(
+        str(found["outcome"]),
+        str(found["fault"]),
+        sfm,
+        found["n_points_seen"],
+        ties,
+        found["image"],
+        found["centre"],
+        found["xyz"],
+        float(found["residual_px"]),
+        tuple(map(int, found["n_maps"])),
+    )
+
+
+def _stack(values, shape):
+    return np.asarray(values, dtype=float).reshape(-1, *shape)
