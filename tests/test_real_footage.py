@@ -16,8 +16,8 @@ from courtside.calibration import file_formats
 from courtside.exports import trc
 from courtside.geometry import camera as cameras
 from courtside.geometry import triangulation
-from courtside.motion import fusion
 from courtside.pose import decoders, foreground, tracking
+from courtside.reconstruction import fusion
 from courtside.records import keypoints, skeleton
 from courtside.study import yaml_files
 from courtside.video import reader, static_picture

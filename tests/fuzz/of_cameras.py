@@ -11,7 +11,7 @@ from courtside.calibration import file_formats
 from courtside.calibration.court import court
 from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
-from courtside.motion import joint_offsets
+from courtside.reconstruction import joint_correction
 from courtside.records import clicks, proposals, skeleton
 from fuzz.format import Format, require
 from fuzz.of_study import CONFIG, copies
@@ -153,7 +153,7 @@ def read_proposals(path):
 
 def read_offsets(path):
     """Read joint offsets and subtract them."""
-    return joint_offsets.correct(walker.points(6), joint_offsets.read(path))
+    return joint_correction.correct(walker.points(6), joint_correction.read(path))
 
 
 def read_skeleton(path):

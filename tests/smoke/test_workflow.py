@@ -58,7 +58,7 @@ def test_a_copied_study_has_nothing_to_do(copy):
 
 
 def test_editing_a_module_reruns_exactly_what_imports_it(copy):
-    module = copy / "workflow/lib/courtside/geometry/sides.py"
+    module = copy / "workflow/lib/courtside/reconstruction/left_right.py"
     edit(module, "APART = 2.0", "APART = 2.1")
     assert planned(root=copy) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
 

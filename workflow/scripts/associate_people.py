@@ -6,7 +6,8 @@ import numpy as np
 
 from courtside.calibration.court import court
 from courtside.geometry import camera as cameras
-from courtside.motion import association, resampling
+from courtside.reconstruction import resampling
+from courtside.reconstruction.association import associate
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
 from courtside.study.errors import InputError
@@ -25,7 +26,7 @@ def main(paths, people_npz, *, persons):
     chosen = [joints.index(name) for name in names]
     limbs = [replace(v, xy=v.xy[:, :, chosen], score=v.score[:, :, chosen]) for v in views]
     time_s = resampling.common_times(views, clocks)
-    found = association.associate(
+    found = associate.associate(
         [known[view.camera] for view in views],
         [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)],
         time_s,
@@ -36,7 +37,7 @@ def main(paths, people_npz, *, persons):
     )
     frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {
-        view.camera: association.on_frames(rows, time_s, frame_s)
+        view.camera: associate.on_frames(rows, time_s, frame_s)
         for view, rows, frame_s in zip(views, found.index, frames_s, strict=True)
     }
     log.logger.info("%s", found.line(persons))

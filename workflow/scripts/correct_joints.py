@@ -1,14 +1,14 @@
 """Take joint offsets off, keep limbs at their length: filtered 3D keypoints, offsets -> corrected ones."""
 
-from courtside.motion import joint_offsets, limb_lengths
+from courtside.reconstruction import joint_correction
 from courtside.records import keypoints
 from courtside.study import log
 
 
 def main(filtered_npz, offsets_csv, corrected_npz, *, sex_of):
-    table = joint_offsets.read(offsets_csv)
-    corrected = joint_offsets.correct(keypoints.read_3d(filtered_npz), table, sex_of)
-    keypoints.write_3d(corrected_npz, limb_lengths.keep(corrected))
+    table = joint_correction.read(offsets_csv)
+    corrected = joint_correction.correct(keypoints.read_3d(filtered_npz), table, sex_of)
+    keypoints.write_3d(corrected_npz, joint_correction.keep(corrected))
 
 
 if __name__ == "__main__":

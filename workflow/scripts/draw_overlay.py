@@ -4,8 +4,8 @@ import numpy as np
 
 from courtside.figures import overlay, style
 from courtside.geometry import camera as cameras
-from courtside.motion import resampling
 from courtside.pose import privacy
+from courtside.reconstruction import resampling
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
 from courtside.video import reader

@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.figures import camera_shake, style
 from courtside.geometry import camera as cameras
-from courtside.motion import knocks
+from courtside.reconstruction import camera_shake as knocks
 from courtside.records import keypoints, shake_table
 from courtside.study import log
 from courtside.study.files import atomic

@@ -1,7 +1,7 @@
 """Draw scores and views over time: 2D, people, clocks, 3D -> figure, CSV."""
 
 from courtside.figures import style, visibility
-from courtside.motion import resampling
+from courtside.reconstruction import resampling
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
 

@@ -2,7 +2,7 @@
 
 from courtside.exports import pose2sim
 from courtside.geometry import camera as cameras
-from courtside.motion import resampling
+from courtside.reconstruction import resampling
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log
 

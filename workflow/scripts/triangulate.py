@@ -6,7 +6,8 @@ import numpy as np
 
 from courtside.calibration.records import covariance
 from courtside.geometry import camera as cameras
-from courtside.motion import camera_error, fusion, halfbody, resampling, steadying
+from courtside.reconstruction import camera_shake, resampling
+from courtside.reconstruction import fusion as camera_error
 from courtside.records import keypoints, people, shake_table, skeleton, sync
 from courtside.study import log
 from courtside.study.errors import InputError
@@ -23,7 +24,7 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
         view = keypoints.read_2d(path)
         cameras.check_size(known[view.camera], tuple(map(int, view.size)), path)
         if shake:
-            view = steadying.steady(view, known[view.camera], shake_table.read(shake))
+            view = camera_shake.steady(view, known[view.camera], shake_table.read(shake))
         views[view.camera] = who.assigned(view)
     time_s = resampling.common_times(list(views.values()), [clocks[name] for name in views])
 
@@ -32,7 +33,7 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
     def fuse(names, rule):
         own = [known[name] for name in names], [views[name] for name in names]
         clock = [clocks[name] for name in names]
-        found, swapped = fusion.triangulate_take(
+        found, swapped = camera_error.triangulate_take(
             *own, joints, persons, clocks=clock, time_s=time_s, rule=rule, **options
         )
         report(found, swapped)
@@ -41,7 +42,9 @@ def main(paths, pose3d_npz, *, persons, used, rule, **options):
         return found
 
     halves = [fuse((used[0], side), "dlt") for side in used[1:]] if rule == "halfbody" else []
-    keypoints.write_3d(pose3d_npz, halfbody.merge(*halves, used) if halves else fuse(used, rule))
+    keypoints.write_3d(
+        pose3d_npz, camera_error.merge(*halves, used) if halves else fuse(used, rule)
+    )
 
 
 def report(points, swapped):

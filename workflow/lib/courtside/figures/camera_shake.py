@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.figures import style
-from courtside.motion import knocks
+from courtside.reconstruction import camera_shake
 
 PANEL_MM, MARGIN_MM = 38, 8
 LEAST_RANGE_PX = 0.5  # of an axis: a camera that stands still is drawn so
@@ -32,9 +32,9 @@ def table(cameras, shakes, xyz):
     """
     parts = []
     for name, shake in shakes.items():
-        part = shake.assign(camera=name, shift_mm=knocks.mm_at(cameras[name], xyz, shake))
+        part = shake.assign(camera=name, shift_mm=camera_shake.mm_at(cameras[name], xyz, shake))
         part[["knock_px", "knock_deg"]] = np.nan
-        for knock in knocks.find(cameras[name], shake):
+        for knock in camera_shake.find(cameras[name], shake):
             values = np.hypot(*knock.shift_px), knock.turn_deg
             part.loc[part.time_s == knock.time_s, ["knock_px", "knock_deg"]] = values
         parts.append(part)

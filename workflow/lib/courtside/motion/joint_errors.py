@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from courtside.geometry import camera as camera_models
-from courtside.motion import pose_errors, resampling
+from courtside.motion import pose_errors
+from courtside.reconstruction import resampling
 from courtside.records import derived
 from courtside.study.errors import InputError
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry.camera import Camera
-from courtside.motion import steadying
+from courtside.reconstruction import camera_shake
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints2D
 from courtside.study.errors import InputError
@@ -83,7 +83,7 @@ def without(table, frames):
 
 def test_the_turn_is_found_from_what_the_centre_does():
     vectors = turns(200)
-    found = steadying.turns(CAMERA, without(shake(vectors), [7]))
+    found = camera_shake.camera_turns(CAMERA, without(shake(vectors), [7]))
     assert np.isnan(found[7]).all()
     known = np.arange(200) != 7
     assert np.abs(found - vectors)[known].max() * K[0, 0] < 0.01
@@ -94,7 +94,7 @@ def test_keypoints_return_to_the_still_picture():
     made, still, xyz = view(vectors)
     assert np.abs(made.xy - still).max() > 10
     made.xy[0, 3, 4], made.score[0, 3, 4], made.reason[0, 3, 4] = np.nan, np.nan, reasons.UNSEEN
-    found = steadying.steady(made, CAMERA, shake(vectors))
+    found = camera_shake.steady(made, CAMERA, shake(vectors))
     assert np.isnan(found.xy[0, 3, 4]).all()
     assert np.nanmax(np.abs(found.xy - still)) < 0.02
     np.testing.assert_allclose(found.xyz_in_body, xyz, atol=1e-4)
@@ -104,7 +104,7 @@ def test_keypoints_return_to_the_still_picture():
 
 def test_a_camera_that_stands_still_changes_nothing():
     made, still, _ = view(np.zeros((5, 3)))
-    found = steadying.steady(made, CAMERA, shake(np.zeros((5, 3))))
+    found = camera_shake.steady(made, CAMERA, shake(np.zeros((5, 3))))
     np.testing.assert_allclose(found.xy, still, atol=1e-6)
 
 
@@ -113,7 +113,7 @@ def test_short_gaps_are_bridged_and_long_ones_left_and_said(caplog):
     made, still, _ = view(vectors)
     table = without(shake(vectors), [0, *range(10, 14), *range(20, 32)])
     with caplog.at_level(logging.WARNING, logger="courtside"):
-        found = steadying.steady(made, CAMERA, table)
+        found = camera_shake.steady(made, CAMERA, table)
     left = np.isin(np.arange(40), [0, *range(20, 32)])
     np.testing.assert_array_equal(found.xy[:, left], made.xy[:, left])
     assert np.abs(found.xy - still)[:, ~left].max() < 0.02
@@ -122,7 +122,7 @@ def test_short_gaps_are_bridged_and_long_ones_left_and_said(caplog):
 
 def test_a_take_of_which_nothing_is_known_is_left():
     made, _, _ = view(turns(6))
-    found = steadying.steady(made, CAMERA, without(shake(turns(6)), range(6)))
+    found = camera_shake.steady(made, CAMERA, without(shake(turns(6)), range(6)))
     np.testing.assert_array_equal(found.xy, made.xy)
 
 
@@ -131,7 +131,7 @@ def test_a_part_of_the_take_finds_its_rows_by_time():
     made, still, _ = view(vectors)
     part = {name: getattr(made, name) for name in vars(made)}
     part |= {name: part[name][:, 10:20] for name in ("xy", "score", "reason", "xyz_in_body")}
-    found = steadying.steady(
+    found = camera_shake.steady(
         Keypoints2D(**part | {"time_s": made.time_s[10:20] + 1e-5}), CAMERA, shake(vectors)
     )
     assert np.abs(found.xy - still[:, 10:20]).max() < 0.02
@@ -142,7 +142,7 @@ def test_frames_that_were_not_measured_are_a_fault():
     with pytest.raises(
         InputError, match=r"camera mirror: expected the shake of every frame"
     ) as error:
-        steadying.steady(made, CAMERA, shake(turns(20)))
+        camera_shake.steady(made, CAMERA, shake(turns(20)))
     assert "\n" not in str(error.value)
 
 
@@ -150,4 +150,4 @@ def test_another_size_is_a_fault():
     made, _, _ = view(turns(3))
     small = Camera("mirror", SIZE // 2, K, DIST, POSE)
     with pytest.raises(InputError, match="camera mirror"):
-        steadying.steady(made, small, shake(turns(3)))
+        camera_shake.steady(made, small, shake(turns(3)))

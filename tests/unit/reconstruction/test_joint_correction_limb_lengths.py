@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.motion import limb_lengths
+from courtside.reconstruction import joint_correction
 from courtside.records import keypoints
 
 ARM = ("left_shoulder", "left_elbow", "left_wrist")
@@ -47,16 +47,16 @@ def record(xyz, sigma_m=(0.01, 0.05, 0.01)):
 def test_lengths_are_those_of_the_body_in_spite_of_noise_and_gaps():
     _, noisy = arms(2000, seed=1, sigma_m=(0.01, 0.01, 0.01))
     noisy[::3, 1] = np.nan
-    found = limb_lengths.lengths(noisy, ARM)
+    found = joint_correction.lengths(noisy, ARM)
     assert found["shoulder", "elbow"] == pytest.approx(UPPER_M, rel=0.01)
     assert found["elbow", "wrist"] == pytest.approx(FOREARM_M, rel=0.01)
     assert set(found) == {("shoulder", "elbow"), ("elbow", "wrist")}
-    assert limb_lengths.lengths(noisy[:4], ARM) == {}
+    assert joint_correction.lengths(noisy[:4], ARM) == {}
 
 
 def test_an_uncertain_elbow_comes_nearer_to_the_truth_and_certain_joints_stay():
     true, noisy = arms(800, seed=2)
-    kept = limb_lengths.keep(record(noisy)).xyz[0]
+    kept = joint_correction.keep(record(noisy)).xyz[0]
     before, after = (np.linalg.norm(xyz - true, axis=2) for xyz in (noisy, kept))
     assert np.median(after[:, 1]) < 0.85 * np.median(before[:, 1])
     assert np.percentile(after[:, 1], 95) < 0.85 * np.percentile(before[:, 1], 95)
@@ -69,14 +69,14 @@ def test_only_the_joint_that_is_uncertain_moves_and_only_along_the_limb():
     stretch = np.where(np.arange(200) % 10 == 0, 1.3, 1.0)  # every tenth forearm is too long
     moved[:, 2] = true[:, 1] + stretch[:, None] * (true[:, 2] - true[:, 1])
     sigma_m = (1e-4, 1e-4, 0.5)
-    kept = limb_lengths.keep(record(moved, sigma_m)).xyz[0]
+    kept = joint_correction.keep(record(moved, sigma_m)).xyz[0]
     np.testing.assert_allclose(kept[:, :2], true[:, :2], atol=1e-5)
     np.testing.assert_allclose(kept[:, 2], true[:, 2], atol=1e-4)
 
 
 def test_a_skeleton_that_is_right_stays_as_it_is():
     true, _ = arms(50, seed=4)
-    np.testing.assert_allclose(limb_lengths.keep(record(true)).xyz[0], true, atol=1e-9)
+    np.testing.assert_allclose(joint_correction.keep(record(true)).xyz[0], true, atol=1e-9)
 
 
 def test_what_is_missing_stays_missing_and_holds_nothing_else_up():
@@ -84,7 +84,7 @@ def test_what_is_missing_stays_missing_and_holds_nothing_else_up():
     noisy[::2, 2] = np.nan
     points = record(noisy)
     points.covariance_2d[:, 100:] = np.nan
-    kept = limb_lengths.keep(points)
+    kept = joint_correction.keep(points)
     np.testing.assert_array_equal(np.isnan(kept.xyz), np.isnan(points.xyz))
     np.testing.assert_array_equal(kept.covariance_2d, points.covariance_2d)
     length = np.linalg.norm(kept.xyz[0, ::2, 1] - kept.xyz[0, ::2, 0], axis=1)
@@ -93,14 +93,16 @@ def test_what_is_missing_stays_missing_and_holds_nothing_else_up():
 
 def test_limbs_that_nobody_knows_and_other_joints_stay():
     _, noisy = arms(5, seed=6)  # too few frames for a length
-    np.testing.assert_array_equal(limb_lengths.keep(record(noisy)).xyz[0], noisy)
+    np.testing.assert_array_equal(joint_correction.keep(record(noisy)).xyz[0], noisy)
     few = replace(record(arms(50, seed=7)[1]), joints=np.array(["nose", *ARM[1:]]))
-    kept = limb_lengths.keep(few)
+    kept = joint_correction.keep(few)
     np.testing.assert_array_equal(kept.xyz, few.xyz)
 
 
 def test_the_turn_of_the_world_does_not_matter():
     _, noisy = arms(60, seed=8)
     turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    straight = limb_lengths.keep(record(noisy)).xyz @ turn.T
-    np.testing.assert_allclose(limb_lengths.keep(record(noisy @ turn.T)).xyz, straight, atol=1e-9)
+    straight = joint_correction.keep(record(noisy)).xyz @ turn.T
+    np.testing.assert_allclose(
+        joint_correction.keep(record(noisy @ turn.T)).xyz, straight, atol=1e-9
+    )

@@ -8,7 +8,7 @@ import pytest
 
 import scene
 import stick_figures
-from courtside.motion import association
+from courtside.reconstruction.association import associate as association
 from courtside.study.errors import InputError
 
 MIRROR = [1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import sync_takes
-from courtside.motion import resampling
+from courtside.reconstruction import resampling
 from courtside.records.sync import Clock
 
 CAMERA = sync_takes.rig(1)[0]

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import walker
-from courtside.motion import joint_offsets
+from courtside.reconstruction import joint_correction
 from courtside.records import limbs
 from courtside.study.errors import InputError
 
@@ -62,8 +62,8 @@ def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
     standing = bodies(1, seed=0)
     standing[0, :, :] = 0
     standing[0, [0, 6, 3, 9]] = [[0, 0.2, 1.4], [0, -0.2, 1.4], [0, 0.12, 0.9], [0, -0.12, 0.9]]
-    left = joint_offsets.vectors(standing, JOINTS, "left", "hip")
-    right = joint_offsets.vectors(standing, JOINTS, "right", "hip")
+    left = joint_correction.vectors(standing, JOINTS, "left", "hip")
+    right = joint_correction.vectors(standing, JOINTS, "right", "hip")
     np.testing.assert_allclose(left["up"][0], [0, 0, 0.5], atol=1e-12)
     np.testing.assert_allclose(left["forward"][0], [0.5, 0, 0], atol=1e-12)
     np.testing.assert_allclose(left["out"][0], [0, 0.5, 0], atol=1e-12)
@@ -73,11 +73,11 @@ def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
 def test_shares_are_found_and_hold_for_bodies_of_another_size():
     """The trunk is measured on the displaced body, so what is found is not SHARES but removes them."""
     true = bodies(400, seed=1)
-    table = joint_offsets.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
+    table = joint_correction.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
     hips = table[table["joint"] == "hip"]
     assert (hips["n"] == 800).all()
     elsewhere = bodies(50, seed=2, size=0.8)
-    corrected = joint_offsets.correct(record(displaced(elsewhere)), table)
+    corrected = joint_correction.correct(record(displaced(elsewhere)), table)
     at = [list(corrected.joints).index(name) for name in JOINTS]
     before = np.linalg.norm(displaced(elsewhere) - elsewhere, axis=-1)
     after = np.linalg.norm(corrected.xyz[0][:, at] - elsewhere, axis=-1)
@@ -93,11 +93,11 @@ def test_what_remains_is_its_standard_deviation_and_joins_the_covariance():
     true = bodies(2000, seed=4)
     noisy = true.copy()
     noisy[:, [2, 8]] += rng.normal(0, 0.01, (2000, 2, 3))
-    table = joint_offsets.estimate([(noisy, true, None)], JOINTS, JOINTS)
+    table = joint_correction.estimate([(noisy, true, None)], JOINTS, JOINTS)
     sigma_m = table.groupby("joint")["sigma_m"].first()
     assert sigma_m["wrist"] == pytest.approx(0.01, rel=0.05)
     assert sigma_m["hip"] < 1e-3
-    corrected = joint_offsets.correct(record(true[:8]), table)
+    corrected = joint_correction.correct(record(true[:8]), table)
     at = list(corrected.joints).index("left_wrist")
     np.testing.assert_allclose(
         corrected.covariance_2d[0, 0, at], sigma_m["wrist"] ** 2 * np.eye(3), atol=1e-12
@@ -111,8 +111,8 @@ def test_the_direction_of_an_arm_counts_whatever_its_length():
     for elbow in (1, 7):
         way = true[:, elbow + 1] - true[:, elbow]
         found[:, elbow] += 0.02 * way / np.linalg.norm(way, axis=-1, keepdims=True)
-    table = joint_offsets.estimate([(found, true, None)], JOINTS, JOINTS)
-    corrected = joint_offsets.correct(record(found), table)
+    table = joint_correction.estimate([(found, true, None)], JOINTS, JOINTS)
+    corrected = joint_correction.correct(record(found), table)
     at = [list(corrected.joints).index(name) for name in ("left_elbow", "right_elbow")]
     assert np.linalg.norm(corrected.xyz[0][:, at] - true[:, [1, 7]], axis=-1).mean() < 1e-3
 
@@ -128,21 +128,21 @@ def test_hips_of_men_and_women_may_be_off_in_opposite_directions():
         return found
 
     clips = [(moved(men, 1), men, "m"), (moved(women, -1), women, "f")]
-    table = joint_offsets.estimate(clips, JOINTS, JOINTS)
+    table = joint_correction.estimate(clips, JOINTS, JOINTS)
     for sex, sign in (("m", 1), ("f", -1), (None, 0)):
-        corrected = joint_offsets.correct(record(moved(others, sign)), table, {"p1": sex})
+        corrected = joint_correction.correct(record(moved(others, sign)), table, {"p1": sex})
         at = [list(corrected.joints).index(name) for name in ("left_hip", "right_hip")]
         assert np.abs(corrected.xyz[0][:, at] - others[:, [3, 9]]).max() < 3e-3
-    wrong = joint_offsets.correct(record(moved(others, 1)), table, {"p1": "f"})
+    wrong = joint_correction.correct(record(moved(others, 1)), table, {"p1": "f"})
     assert np.linalg.norm(wrong.xyz[0][:, at] - others[:, [3, 9]], axis=-1).mean() > 0.04
 
 
 def test_a_joint_whose_trunk_is_missing_keeps_its_place():
     true = bodies(20, seed=5)
-    table = joint_offsets.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
+    table = joint_correction.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
     points = record(displaced(true))
     points.xyz[0, 3, list(points.joints).index("left_shoulder")] = np.nan
-    corrected = joint_offsets.correct(points, table)
+    corrected = joint_correction.correct(points, table)
     at = list(points.joints).index("right_hip")
     np.testing.assert_array_equal(corrected.xyz[0, 3, at], points.xyz[0, 3, at])
     assert not np.array_equal(corrected.xyz[0, 4, at], points.xyz[0, 4, at])
@@ -153,18 +153,18 @@ def test_a_joint_seen_in_no_clip_is_a_fault():
     blind = true.copy()
     blind[:, [5, 11]] = np.nan
     with pytest.raises(ValueError, match="expected hip in a clip"):
-        joint_offsets.estimate([(blind, true, None)], JOINTS, JOINTS)
+        joint_correction.estimate([(blind, true, None)], JOINTS, JOINTS)
 
 
 def test_a_table_is_read_back_and_other_files_are_refused(tmp_path):
-    table = joint_offsets.estimate(
+    table = joint_correction.estimate(
         [(displaced(bodies(50, 7)), bodies(50, 7), None)], JOINTS, JOINTS
     )
     path = tmp_path / "offsets.csv"
     path.write_text("# made by a rule\n" + table.to_csv(index=False))
-    assert joint_offsets.read(path)["share"].to_numpy() == pytest.approx(table["share"])
+    assert joint_correction.read(path)["share"].to_numpy() == pytest.approx(table["share"])
     path.write_text("joint,vector\nnose,up\n")
     with pytest.raises(InputError, match=r"expected columns .* found columns"):
-        joint_offsets.read(path)
+        joint_correction.read(path)
     with pytest.raises(InputError, match="expected a table of joint offsets"):
-        joint_offsets.read(tmp_path / "none.csv")
+        joint_correction.read(tmp_path / "none.csv")

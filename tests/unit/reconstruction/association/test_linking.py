@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from courtside.motion import candidates, linking
-from courtside.motion.candidates import Candidates
+from courtside.reconstruction.association import candidates, linking
+from courtside.reconstruction.association.candidates import Candidates
 
 STEP_S = 0.1
 

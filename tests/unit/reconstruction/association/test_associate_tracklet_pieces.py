@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.motion import tracklet_pieces
+from courtside.reconstruction.association import associate
 
 JOINTS = np.array([[-10, 0], [10, 0], [-10, 100], [10, 100], [0, 50]], float)
 TRUNK = [0, 1, 2, 3]
@@ -16,7 +16,7 @@ def row(x, y=300.0):
 
 def test_a_steady_walk_is_one_piece_with_exact_centres():
     x = 100 + 4.0 * np.arange(20)
-    rows = tracklet_pieces.describe(row(x)[None], TRUNK)
+    rows = associate.describe(row(x)[None], TRUNK)
     assert len(set(rows.piece[0])) == 1
     np.testing.assert_allclose(rows.centre[0], np.stack([x, np.full(20, 350.0)], axis=1))
     np.testing.assert_allclose(rows.height_px, 100)
@@ -24,7 +24,7 @@ def test_a_steady_walk_is_one_piece_with_exact_centres():
 
 def test_steadying_averages_five_frames():
     noise = np.random.default_rng(1).normal(0, 1, 4000)
-    rows = tracklet_pieces.describe(row(500 + noise)[None], TRUNK)
+    rows = associate.describe(row(500 + noise)[None], TRUNK)
     assert len(set(rows.piece[0])) == 1
     assert rows.centre[0, 5:-5, 0].std() == pytest.approx(1 / np.sqrt(5), rel=0.08)
 
@@ -34,7 +34,7 @@ def test_a_gap_and_a_jump_cut():
     x[12:] += 60
     xy = row(x)[None]
     xy[0, 5] = np.nan
-    rows = tracklet_pieces.describe(xy, TRUNK)
+    rows = associate.describe(xy, TRUNK)
     assert rows.piece[0, 5] == -1
     assert not rows.present[0, 5]
     assert {0, 6, 12} <= set(np.flatnonzero(rows.cut[0])) <= {0, 6, 12, 13}
@@ -43,10 +43,10 @@ def test_a_gap_and_a_jump_cut():
 
 def test_rows_that_come_close_are_cut_there_and_numbers_differ():
     one, other = 100 + 4.0 * np.arange(60), 340 - 4.0 * np.arange(60)
-    rows = tracklet_pieces.describe(np.stack([row(one), row(other)]), TRUNK)
-    near = np.abs(one - other) < tracklet_pieces.CLOSE * 100
+    rows = associate.describe(np.stack([row(one), row(other)]), TRUNK)
+    near = np.abs(one - other) < associate.CLOSE * 100
     assert rows.cut[:, near].all()
-    clear = np.abs(one - other) > 2 * tracklet_pieces.CLOSE * 100
+    clear = np.abs(one - other) > 2 * associate.CLOSE * 100
     assert not rows.cut[:, clear][:, 1:].any()
     assert not set(rows.piece[0]) & set(rows.piece[1])
     assert rows.piece[0, 0] != rows.piece[0, -1]
@@ -55,7 +55,7 @@ def test_rows_that_come_close_are_cut_there_and_numbers_differ():
 def test_a_body_seen_in_part_still_has_its_trunk_as_centre():
     xy = row(np.full(9, 200.0))[None]
     xy[0, :, [0, 4]] = np.nan
-    rows = tracklet_pieces.describe(xy, TRUNK)
+    rows = associate.describe(xy, TRUNK)
     assert rows.present.all()
     np.testing.assert_allclose(
         rows.centre[0, 4], np.add(np.mean(JOINTS[[1, 2, 3]], axis=0), (200, 300))
@@ -63,6 +63,6 @@ def test_a_body_seen_in_part_still_has_its_trunk_as_centre():
 
 
 def test_an_empty_row_has_nothing():
-    rows = tracklet_pieces.describe(np.full((1, 3, 5, 2), np.nan), TRUNK)
+    rows = associate.describe(np.full((1, 3, 5, 2), np.nan), TRUNK)
     assert not rows.present.any()
     assert (rows.piece == -1).all()

@@ -9,7 +9,7 @@ import scene
 import walker
 from courtside.calibration.bundle import selection
 from courtside.calibration.records import covariance as camera_covariance
-from courtside.motion import camera_error
+from courtside.reconstruction import fusion
 
 CAMERAS = scene.ring(2, radius_m=8)
 N = len(camera_covariance.PARAMETERS)
@@ -33,7 +33,7 @@ def test_spread_is_that_of_points_triangulated_with_cameras_moved_at_random():
     pose_only = covariance()
     keep = np.tile(np.arange(N) < 6, 2)
     pose_only.covariance[~np.ix_(keep, keep)[0][:, 0]] = 0
-    found = camera_error.with_cameras(points, CAMERAS, pose_only.of_columns())
+    found = fusion.with_cameras(points, CAMERAS, pose_only.of_columns())
     rng = np.random.default_rng(0)
     xy = scene.views(CAMERAS, places[0, 0, :1])
     moved = []
@@ -58,7 +58,7 @@ def walker_at(points, xyz):
 def test_a_person_who_is_missing_has_none_and_joints_share_the_persons():
     points = walker.points(6, n_cameras=2)
     points.xyz[0, 2] = np.nan
-    found = camera_error.with_cameras(points, CAMERAS, covariance().of_columns())
+    found = fusion.with_cameras(points, CAMERAS, covariance().of_columns())
     assert np.isnan(found.covariance_camera[0, 2]).all()
     assert np.isnan(found.covariance_camera[0, 3, 4]).all()
     np.testing.assert_array_equal(

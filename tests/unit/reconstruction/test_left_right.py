@@ -8,8 +8,7 @@ import pytest
 import scene
 import stick_figures
 import sync_takes
-from courtside.geometry import sides
-from courtside.motion import side_paths
+from courtside.reconstruction import left_right
 
 MIRROR = np.arange(12) ^ 1
 UPPER, LEGS = list(range(6)), list(range(6, 12))
@@ -49,9 +48,9 @@ def seen(cameras, place, noise_px=3.0, seed=0):
 def find(cameras, xy, truth=None, score=0.9):
     """Return what is found in keypoints with given exchanges, (C, T, 12)."""
     truth = np.zeros(xy.shape[:-1], bool) if truth is None else truth
-    mixed = sides.apply_swaps(xy, truth, MIRROR)
+    mixed = left_right.apply_swaps(xy, truth, MIRROR)
     score = np.where(np.isfinite(mixed[..., 0]), score, np.nan)
-    return side_paths.swapped_views(cameras, mixed, score, MIRROR, GROUPS, max_error_px=LIMIT_PX)
+    return left_right.swapped_views(cameras, mixed, score, MIRROR, GROUPS, max_error_px=LIMIT_PX)
 
 
 def stretch(xy, camera, group, at=STRETCH):
@@ -179,7 +178,7 @@ def test_the_cheapest_path_is_the_cheapest_of_all_paths():
             + sum(change[at, path[at] ^ path[at - 1]] for at in range(1, 5))
             for path in itertools.product(range(4), repeat=5)
         }
-        assert tuple(side_paths.cheapest_path(cost, change)) == min(price, key=price.get)
+        assert tuple(left_right.cheapest_path(cost, change)) == min(price, key=price.get)
 
 
 def test_jumps_tell_an_exchange_from_a_crossing():
@@ -189,7 +188,7 @@ def test_jumps_tell_an_exchange_from_a_crossing():
     def further(apart_px):
         apart = np.stack([np.array(apart_px, float), np.zeros(6)], axis=-1) / 2
         xy = np.stack([apart, -apart], axis=-2)[None, :, None]
-        return side_paths.jumps(xy, weight, size_px)[0]
+        return left_right.jumps(xy, weight, size_px)[0]
 
     # A resting pair 80 px apart: a change is a jump by 1.6 sizes, more than counts.
     np.testing.assert_allclose(further([80] * 6), [0, 1, 1, 1, 1, 1])
@@ -204,7 +203,7 @@ def test_movements_over_gaps_count_less_and_then_not_at_all():
     xy = np.stack([apart / 2, -apart / 2], axis=-2)
     weight = np.ones((1, 60, 1))
     weight[:, 10:13], weight[:, 30:50] = 0, 0
-    found = side_paths.jumps(xy, weight, np.full((1, 60), 100.0))[0]
+    found = left_right.jumps(xy, weight, np.full((1, 60), 100.0))[0]
     assert found[9] == pytest.approx(0.64)  # (40 px / 50 px)^2
     assert found[13] == pytest.approx(0.64 / 4)
     assert not found[10:13].any()
@@ -214,8 +213,8 @@ def test_movements_over_gaps_count_less_and_then_not_at_all():
 def test_the_size_is_the_spread_of_the_joints_seen():
     square = np.array([[-30.0, -40], [30, -40], [-30, 40], [30, 40]]) + 500
     xy = np.stack([square, 2 * square, 3 * square])[None].copy()
-    np.testing.assert_allclose(side_paths.sizes(xy), [[50, 100, 150]])
+    np.testing.assert_allclose(left_right.sizes(xy), [[50, 100, 150]])
     xy[0, 1, 1:] = np.nan  # one joint of four: its neighbours tell
-    np.testing.assert_allclose(side_paths.sizes(xy), [[50, 100, 150]])
+    np.testing.assert_allclose(left_right.sizes(xy), [[50, 100, 150]])
     xy[0, 2, 0] = np.nan  # three corners: variances of 800 and 12800 / 9 about their middle
-    assert side_paths.sizes(xy)[0, 2] == pytest.approx(3 * np.sqrt(800 + 12800 / 9))
+    assert left_right.sizes(xy)[0, 2] == pytest.approx(3 * np.sqrt(800 + 12800 / 9))

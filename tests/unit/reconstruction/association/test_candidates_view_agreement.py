@@ -7,7 +7,7 @@ import pytest
 import scene
 import stick_figures
 from courtside.geometry import camera as camera_models
-from courtside.motion import view_agreement
+from courtside.reconstruction.association import candidates
 
 MIRROR = [1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10]
 
@@ -25,7 +25,7 @@ def test_epipolar_distance_is_opencvs():
         lines = cv2.computeCorrespondEpilines(here.reshape(-1, 1, 2), which, fundamental)[:, 0]
         distances.append(np.abs((lines[:, :2] * there[0, 0]).sum(axis=1) + lines[:, 2]))
     plane = [(xy - [959.5, 539.5]) / scene.FOCAL_PX for xy in (first, second)]
-    found = view_agreement.epipolar_distance(one, other, *plane)
+    found = candidates.epipolar_distance(one, other, *plane)
     assert found.shape == (1, 1, 1)
     assert found[0, 0, 0] == pytest.approx(np.median(np.mean(distances, axis=0)), rel=1e-6)
 
@@ -34,7 +34,7 @@ def test_two_joints_in_common_say_nothing():
     one, other = scene.ring(2)
     xy = np.full((1, 1, 5, 2), np.nan)
     xy[..., :2, :] = 0.1
-    assert np.isinf(view_agreement.epipolar_distance(one, other, xy, xy)).all()
+    assert np.isinf(candidates.epipolar_distance(one, other, xy, xy)).all()
 
 
 def planes(cameras):
@@ -55,14 +55,14 @@ def planes(cameras):
 
 def test_rows_of_one_body_agree_and_others_do_not():
     cameras = scene.ring(3)
-    pairs = view_agreement.of_pairs(cameras, planes(cameras), [np.full(2, 4.0)] * 3)
+    pairs = candidates.of_pairs(cameras, planes(cameras), [np.full(2, 4.0)] * 3)
     assert sorted(pairs) == [(0, 1), (0, 2), (1, 2)]
     for distance in pairs.values():
         assert distance.shape == (2, 2, 5)
         assert distance[[0, 1], [0, 1]].max() < 1e-6
         assert distance[[0, 1], [1, 0]].min() > 1
     row = np.array([[0, 0, 0], [0, 0, 1], [1, -1, 1]])
-    off = view_agreement.of_views(pairs, np.zeros(3, int), row, 8.0)
+    off = candidates.of_views(pairs, np.zeros(3, int), row, 8.0)
     assert off[0].max() < 1e-6
     assert off[1, 2] > off[1, 0] > 0.5
     assert off[2].tolist() == pytest.approx([0, 0, 0], abs=1e-6)
@@ -74,7 +74,7 @@ def test_a_view_that_takes_left_for_right_still_agrees():
     one, other = planes(cameras)
     sigma = [np.full(2, 4.0)] * 2
     turned = [one, other[:, :, MIRROR]]
-    plain = view_agreement.of_pairs(cameras, turned, sigma)[0, 1]
-    either = view_agreement.of_pairs(cameras, turned, sigma, MIRROR)[0, 1]
+    plain = candidates.of_pairs(cameras, turned, sigma)[0, 1]
+    either = candidates.of_pairs(cameras, turned, sigma, MIRROR)[0, 1]
     assert plain[[0, 1], [0, 1]].min() > 0.5
     assert either[[0, 1], [0, 1]].max() < 1e-6

@@ -1,12 +1,13 @@
-"""Keypoints of all cameras of a take -> one metric skeleton per person."""
+"""Fusion of views into one 3D skeleton: all views, half bodies, and the cameras' part of the error."""
 
 from dataclasses import replace
 
 import numpy as np
 
-from courtside.geometry import sides
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
 from courtside.geometry import triangulation as plain_dlt
-from courtside.motion import resampling, side_paths
+from courtside.reconstruction import left_right, resampling
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
 from courtside.records.sync import Clock
@@ -92,11 +93,11 @@ def _fix_sides(cameras, xy, score, skeleton, max_error_px):
     groups = [[skeleton.index(j) for j in g] for g in skeleton.side_groups()]
     swapped = np.zeros(score.shape, dtype=bool)
     for person in range(score.shape[1]):
-        swapped[:, person] = side_paths.swapped_views(
+        swapped[:, person] = left_right.swapped_views(
             cameras, xy[:, person], score[:, person], mirror, groups, max_error_px=max_error_px
         )
-        xy[:, person] = sides.apply_swaps(xy[:, person], swapped[:, person], mirror)
-        score[:, person] = sides.apply_swaps(score[:, person], swapped[:, person], mirror)
+        xy[:, person] = left_right.apply_swaps(xy[:, person], swapped[:, person], mirror)
+        score[:, person] = left_right.apply_swaps(score[:, person], swapped[:, person], mirror)
     return xy, score, swapped
 
 
@@ -163,3 +164,106 @@ def keypoint_variance(points, score):
     squares = (weight * np.nan_to_num(points.reproj_error_px) ** 2).sum(axis=(0, 1, 3))
     freedom = np.maximum(2 * points.n_views - 3, 0).sum(axis=(0, 1))
     return np.where(freedom > 0, squares / np.maximum(freedom, 1), np.nan)
+
+
+SHARED = ("time_s", "joints", "person_id")
+
+
+def merge(left, right, cameras):
+    """Join the left half of one record with the right half of another.
+
+    Parameters
+    ----------
+    left : Keypoints3D
+        From the centre and the left camera.
+    right : Keypoints3D
+        From the centre and the right camera; same times, joints and persons.
+    cameras : sequence of str
+        Of the result.
+
+    Returns
+    -------
+    merged : Keypoints3D
+        Joints of the left side are those of `left`, of the right side those of `right`; joints of neither
+        side are the mean of both, or the one that is there.
+
+    Raises
+    ------
+    ValueError
+        If the records differ in times, joints or persons.
+
+    Notes
+    -----
+    [Shishido2020, section 4]. The paper does not say what becomes of head and neck; the mean is ours.
+    """
+    for key in SHARED:
+        if not np.array_equal(getattr(left, key), getattr(right, key)):
+            raise ValueError(f"expected halves of the same {key}, found others")
+    cameras = np.array(cameras)
+    parts = [_spread(part, cameras) for part in (left, right)]
+    names = left.joints.astype(str)
+    of_right, of_left = (np.char.startswith(names, side) for side in ("right_", "left_"))
+    chosen = {
+        key: _choose(getattr(parts[0], key), getattr(parts[1], key), of_left, of_right)
+        for key in ("xyz", "covariance_2d", "covariance_camera", "reproj_error_px")
+    }
+    # The mean of two dependent points (they share a camera): its covariance is at most their mean.
+    either = ~(of_left | of_right)
+    views = np.where(of_right[:, None], parts[1].accepted, parts[0].accepted)
+    views[:, :, either] = (parts[0].accepted | parts[1].accepted)[:, :, either]
+    reason = np.where(of_right, right.reason, left.reason)
+    reason[:, :, either] = np.minimum(left.reason, right.reason)[:, :, either]
+    n_views = views.sum(axis=-1) * np.isfinite(chosen["xyz"][..., 0])
+    return replace(left, cameras=cameras, accepted=views, n_views=n_views, reason=reason, **chosen)
+
+
+def _spread(points, cameras):
+    """Return a record with a column for each of more cameras."""
+    at = [cameras.tolist().index(name) for name in points.cameras.tolist()]
+    shape = (*points.reproj_error_px.shape[:-1], len(cameras))
+    error, accepted = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
+    error[..., at], accepted[..., at] = points.reproj_error_px, points.accepted
+    return replace(points, cameras=cameras, reproj_error_px=error, accepted=accepted)
+
+
+def _choose(left, right, of_left, of_right):
+    """Choose along the joints, the third axis; where a joint is of neither side, take the mean."""
+    shape = (1, 1, -1) + (1,) * (left.ndim - 3)
+    mean = np.where(np.isnan(left), right, np.where(np.isnan(right), left, (left + right) / 2))
+    return np.where(of_left.reshape(shape), left, np.where(of_right.reshape(shape), right, mean))
+
+
+def with_cameras(points, cameras, covariance):
+    """Add the covariance that the cameras' own causes to a record.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    cameras : list of Camera
+        Those of `points.cameras`.
+    covariance : (K, K) float
+        Of the columns of the network of these cameras, as
+        `courtside.calibration.records.covariance.CameraCovariance.of_columns` returns it.
+
+    Returns
+    -------
+    points : Keypoints3D
+        With `covariance_camera`: that of a person's middle in each frame, the same for all joints; NaN
+        where the person is missing.
+
+    Notes
+    -----
+    # ASSUME: the error of a calibration changes little within the reach of a body, and little when single
+    joints rest on fewer views than the person does.
+    """
+    placed = np.isfinite(points.xyz)
+    count = placed.sum(axis=2)
+    middle = np.where(placed, points.xyz, 0).sum(axis=2) / np.where(count, count, np.nan)
+    flat = middle.reshape(-1, 3)
+    known = np.isfinite(flat).all(axis=1)
+    found = np.full((len(flat), 3, 3), np.nan)
+    network = selection.of_cameras(cameras)
+    found[known] = point_covariance.point_covariance(network, covariance, flat[known])
+    found = found.reshape(*middle.shape, 3)[:, :, None]
+    there = placed.all(axis=-1)[..., None, None]
+    return replace(points, covariance_camera=np.where(there, found, np.nan))

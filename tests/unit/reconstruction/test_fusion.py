@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.motion import fusion, resampling
+from courtside.reconstruction import fusion, resampling
 from courtside.records import reasons, skeleton
 from courtside.records.keypoints import Keypoints2D
 from courtside.records.sync import Clock

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from courtside.geometry.camera import Camera
-from courtside.motion import knocks
+from courtside.reconstruction import camera_shake
 
 FOCAL = 1680.0
 CAMERA = Camera(
@@ -51,7 +51,7 @@ def knocked(table, frame, x_px=0.0, y_px=0.0, turn_deg=0.0):
 @pytest.mark.parametrize(("tremor_px", "size_px"), [(0.05, 1.5), (0.5, 6.0), (2.0, 16.0)])
 def test_a_knock_is_found_within_a_frame(tremor_px, size_px, seed):
     shake = knocked(table(tremor_px=tremor_px, seed=seed), 121, 0.6 * size_px, -0.8 * size_px)
-    (found,) = knocks.find(CAMERA, shake)
+    (found,) = camera_shake.find(CAMERA, shake)
     assert abs(found.time_s - 121 / 30) < 1.5 / 30
     np.testing.assert_allclose(
         found.shift_px, [0.6 * size_px, -0.8 * size_px], atol=0.1 + 1.5 * tremor_px
@@ -64,7 +64,7 @@ def test_a_knock_is_found_within_a_frame(tremor_px, size_px, seed):
 @pytest.mark.parametrize("n", [60, 120, 600])
 def test_tremor_is_no_knock(n):
     found = [
-        knocks.find(CAMERA, table(n, tremor_px=px, seed=seed))
+        camera_shake.find(CAMERA, table(n, tremor_px=px, seed=seed))
         for px in (0.0, 0.3, 2.0)
         for seed in range(10)
     ]
@@ -76,12 +76,12 @@ def test_a_slow_drift_and_a_short_jerk_are_no_knocks():
     drifting["shift_y_px"] += 1.5 * drifting.time_s
     jerked = table()
     jerked.loc[100:108, "shift_x_px"] += 20.0
-    assert knocks.find(CAMERA, drifting) == knocks.find(CAMERA, jerked) == []
+    assert camera_shake.find(CAMERA, drifting) == camera_shake.find(CAMERA, jerked) == []
 
 
 def test_each_of_several_knocks_is_found_also_one_about_the_axis():
     shake = knocked(knocked(knocked(table(600), 150, 9.0), 300, -4.0, 3.0), 450, turn_deg=0.3)
-    found = knocks.find(CAMERA, shake)
+    found = camera_shake.find(CAMERA, shake)
     assert [round(knock.time_s * 30) for knock in found] == [150, 300, 450]
     assert found[2].turn_deg == pytest.approx(0.3, abs=0.01)
     assert np.hypot(*found[1].shift_px) == pytest.approx(5.0, abs=0.1)
@@ -91,43 +91,45 @@ def test_unknown_frames_hide_no_knock_and_make_none():
     shake = knocked(table(), 120, 8.0)
     names = ["shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_px"]
     shake.loc[[*range(30, 50), *range(115, 120)], names] = np.nan
-    (found,) = knocks.find(CAMERA, shake)
+    (found,) = camera_shake.find(CAMERA, shake)
     assert round(found.time_s * 30) == 120
     shake[names] = np.nan
-    assert knocks.find(CAMERA, shake) == []
-    assert np.isnan(knocks.tremor_px(shake))
-    (line,) = knocks.say(CAMERA, shake, PLAYER)
+    assert camera_shake.find(CAMERA, shake) == []
+    assert np.isnan(camera_shake.tremor_px(shake))
+    (line,) = camera_shake.say(CAMERA, shake, PLAYER)
     assert "no frame shows enough background" in line
 
 
 def test_very_short_takes_have_no_knocks():
     for n in (1, 2, 5):
-        assert knocks.find(CAMERA, table(n)) == []
+        assert camera_shake.find(CAMERA, table(n)) == []
 
 
 def test_tremor_does_not_count_knocks():
     shake = knocked(table(600, tremor_px=0.5), 300, 10.0)
-    assert knocks.tremor_px(shake, knocks.find(CAMERA, shake)) == pytest.approx(0.5, rel=0.1)
-    assert knocks.tremor_px(shake) > 2
+    assert camera_shake.tremor_px(shake, camera_shake.find(CAMERA, shake)) == pytest.approx(
+        0.5, rel=0.1
+    )
+    assert camera_shake.tremor_px(shake) > 2
 
 
 def test_millimetres_at_the_player_are_pixels_times_depth_over_focal_length():
     shake = table(3).assign(shift_x_px=[3.0, 0.0, np.nan], shift_y_px=[4.0, 0.0, np.nan])
     np.testing.assert_allclose(
-        knocks.mm_at(CAMERA, PLAYER, shake), [1000 * 5 * 10 / FOCAL, 0, np.nan]
+        camera_shake.mm_at(CAMERA, PLAYER, shake), [1000 * 5 * 10 / FOCAL, 0, np.nan]
     )
 
 
 def test_a_knocked_camera_is_named_in_plain_lines():
     shake = knocked(table(tremor_px=0.2), 120, 12.0, 5.0)
-    tremor, knock = knocks.say(CAMERA, shake, PLAYER)
+    tremor, knock = camera_shake.say(CAMERA, shake, PLAYER)
     assert tremor.startswith("camera mirror: trembles by 0.")
     assert knock.startswith(
         "camera mirror: knocked at 4.0 s by 13 px (0.44 deg, 77 mm at the player)"
     )
     assert "leave it out" in knock and "\n" not in knock
     off = table().assign(shift_x_px=3.0, shift_y_px=4.0)
-    _, moved = knocks.say(CAMERA, off, PLAYER)
+    _, moved = camera_shake.say(CAMERA, off, PLAYER)
     assert "stood 5.0 px off its static picture when the take began" in moved
-    assert "mm" not in "".join(knocks.say(CAMERA, off, np.full(3, np.nan)))
-    assert len(knocks.say(CAMERA, table(), PLAYER)) == 1
+    assert "mm" not in "".join(camera_shake.say(CAMERA, off, np.full(3, np.nan)))
+    assert len(camera_shake.say(CAMERA, table(), PLAYER)) == 1

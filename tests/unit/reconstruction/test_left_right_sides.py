@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.geometry import epipolar, sides
+from courtside.geometry import epipolar
+from courtside.reconstruction import left_right
 
 LIMIT_PX = 15.0
 PAIRS = np.array([[0, 1], [2, 3]])
@@ -30,7 +31,7 @@ def seen(n_cameras, dist=(0, 0, 0, 0, 0)):
 def disagreement(cameras, straight, swapped, weight=None):
     weight = np.ones(straight.shape[:3]) if weight is None else weight
     limit_px = np.full(len(cameras), LIMIT_PX)
-    return sides.disagreement(cameras, straight, weight, swapped, limit_px)
+    return left_right.disagreement(cameras, straight, weight, swapped, limit_px)
 
 
 def every_reading(n_cameras, n_frames):
@@ -97,7 +98,7 @@ def test_long_takes_are_counted_in_pieces(monkeypatch):
     cameras, straight = seen(3)
     _, readings = every_reading(3, 40)
     whole = disagreement(cameras, straight, readings)
-    monkeypatch.setattr(sides, "BATCH", 14)
+    monkeypatch.setattr(left_right, "BATCH", 14)
     np.testing.assert_allclose(disagreement(cameras, straight, readings), whole, atol=1e-12)
 
 
@@ -106,7 +107,7 @@ def test_exchanging_twice_changes_nothing():
     swapped = np.zeros((2, 5, 4), bool)
     swapped[1, 2:4] = True
     mirror = [1, 0, 3, 2]
-    once = sides.apply_swaps(values, swapped, mirror)
+    once = left_right.apply_swaps(values, swapped, mirror)
     np.testing.assert_array_equal(once[1, 2], values[1, 2, [1, 0, 3, 2]])
     np.testing.assert_array_equal(once[0], values[0])
-    np.testing.assert_array_equal(sides.apply_swaps(once, swapped, mirror), values)
+    np.testing.assert_array_equal(left_right.apply_swaps(once, swapped, mirror), values)

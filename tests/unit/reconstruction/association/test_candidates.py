@@ -5,7 +5,7 @@ import pytest
 
 import scene
 import stick_figures
-from courtside.motion import candidates, tracklet_pieces
+from courtside.reconstruction.association import associate, candidates
 
 TIMES = np.arange(6) / 30
 
@@ -26,7 +26,7 @@ def seen(cameras, people):
 
 
 def find(cameras, xy):
-    rows = [tracklet_pieces.describe(view, stick_figures.TRUNK) for view in xy]
+    rows = [associate.describe(view, stick_figures.TRUNK) for view in xy]
     return candidates.find(
         cameras, xy, [(r.centre, r.sigma_px) for r in rows], [r.height_px for r in rows]
     )
@@ -77,7 +77,7 @@ def test_a_person_hidden_in_one_view_is_found_without_it():
 def test_rays_lead_from_the_camera_through_what_it_sees():
     cameras, people = scene.ring(2, radius_m=12), bodies([0.5, 0.5])
     xy = seen(cameras, people)
-    rows = [tracklet_pieces.describe(view, stick_figures.TRUNK) for view in xy]
+    rows = [associate.describe(view, stick_figures.TRUNK) for view in xy]
     centres = [(r.centre, r.sigma_px) for r in rows]
     found = find(cameras, xy)
     rays = candidates.rays(cameras, centres, found)
@@ -97,6 +97,6 @@ def test_rays_lead_from_the_camera_through_what_it_sees():
 def test_what_three_views_agree_on_needs_no_ray():
     cameras, people = scene.ring(3, radius_m=12), bodies([0.5, 0.5])
     xy = seen(cameras, people)
-    rows = [tracklet_pieces.describe(view, stick_figures.TRUNK) for view in xy]
+    rows = [associate.describe(view, stick_figures.TRUNK) for view in xy]
     rays = candidates.rays(cameras, [(r.centre, r.sigma_px) for r in rows], find(cameras, xy))
     assert len(rays.instant) == 0

@@ -1,4 +1,4 @@
-"""Places where a person may be at one instant: rows of several views that meet, and rays of single rows."""
+"""Candidates for one person in two cameras: how well two tracklets agree."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,6 @@ import numpy as np
 
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation as small_matrices
-from courtside.motion import view_agreement
 
 GATE = 4.0  # standard deviations: a view further off does not see this person
 VIEW_GAIN = 3.0  # log-likelihood that one more view that agrees is worth
@@ -72,7 +71,7 @@ def find(cameras, xy, rows, height_px, mirror=None):
     xy : list of (P, N, J, 2) float, length C
         Keypoints at N instants, px, distorted; NaN where missing.
     rows : list of ((P, N, 2) float, (P,) float), length C
-        Centres and standard deviations of `tracklet_pieces.Rows` at these instants.
+        Centres and standard deviations of `associate.Rows` at these instants.
     height_px : list of (P, N) float, length C
     mirror : list of int, length J, optional
         The same joint of the other side: a network that takes left for right sees the same person.
@@ -90,7 +89,7 @@ def find(cameras, xy, rows, height_px, mirror=None):
     plane = [
         camera_models.undistort(camera, points) for camera, points in zip(cameras, xy, strict=True)
     ]
-    pairs = view_agreement.of_pairs(cameras, plane, [sigma for _, sigma in rows], mirror)
+    pairs = of_pairs(cameras, plane, [sigma for _, sigma in rows], mirror)
     instant, row = _seeds(pairs, len(cameras))
     centres = [centre for centre, _ in rows]
     views = _Views(cameras, centres, [sigma for _, sigma in rows], height_px)
@@ -122,7 +121,7 @@ def _judge(views, pairs, instant, row):
     middle = np.nansum(np.log(size), axis=1) / count
     kept &= (middle >= np.log(BODY_M[0])) & (middle <= np.log(BODY_M[1]))
     bend = np.nan_to_num((np.log(size) - middle[:, None]) / SIZE_SPREAD)
-    agree = error**2 + bend**2 + view_agreement.of_views(pairs, instant, row, 2 * GATE) ** 2
+    agree = error**2 + bend**2 + of_views(pairs, instant, row, 2 * GATE) ** 2
     cost = np.where(row >= 0, np.minimum(0.5 * agree, WORST) - VIEW_GAIN, 0.0)
     return Candidates(instant, xyz, np.zeros_like(xyz), row, sigma_m, cost).of(kept)
 
@@ -160,7 +159,7 @@ def rays(cameras, rows, places):
                 xyz=np.tile(camera.centre_in_world, (len(seen), 1)),
                 direction=toward / np.linalg.norm(toward, axis=1, keepdims=True),
                 row=row,
-                sigma_m=sigma_px[seen] / view_agreement.focal_px(camera),
+                sigma_m=sigma_px[seen] / focal_px(camera),
                 view_cost=np.where(row >= 0, -RAY_GAIN, 0.0),
             )
         )
@@ -219,9 +218,7 @@ class _Views:
             off = np.linalg.norm(off, axis=-1) / self.sigma_px[c][row[:, c]]
             error[:, c] = np.where(row[:, c] >= 0, np.nan_to_num(off, nan=np.inf), np.inf)
             depth_m = xyz @ camera.cam_from_world[2, :3] + camera.cam_from_world[2, 3]
-            size_m[:, c] = (
-                self.height_px[c][row[:, c], instant] * depth_m / view_agreement.focal_px(camera)
-            )
+            size_m[:, c] = self.height_px[c][row[:, c], instant] * depth_m / focal_px(camera)
         return error, size_m
 
     def spread(self, row, xyz):
@@ -230,13 +227,118 @@ class _Views:
         for c, camera in enumerate(self.cameras):
             ray = xyz - camera.centre_in_world
             far_m = np.linalg.norm(ray, axis=1)
-            sigma_m = (
-                np.maximum(self.sigma_px[c][row[:, c]], 1e-9)
-                * far_m
-                / view_agreement.focal_px(camera)
-            )
+            sigma_m = np.maximum(self.sigma_px[c][row[:, c]], 1e-9) * far_m / focal_px(camera)
             ray = ray / far_m[:, None]
             across = np.eye(3) - ray[:, :, None] * ray[:, None]
             square += across * np.where(row[:, c] >= 0, sigma_m**-2, 0.0)[:, None, None]
         variance = np.trace(small_matrices.inverse_3x3(square), axis1=1, axis2=2)
         return np.sqrt(np.nan_to_num(variance, nan=np.inf))
+
+
+def of_pairs(cameras, plane, sigma_px, mirror=None):
+    """Return the robust distances between all rows of all pairs of views.
+
+    Parameters
+    ----------
+    cameras : list of Camera, length C
+    plane : list of (P, N, J, 2) float, length C
+        Keypoints on the undistorted, normalised plane; NaN where missing.
+    sigma_px : list of (P,) float, length C
+        Standard deviation of a joint of each row.
+    mirror : list of int, length J, optional
+        The same joint of the other side: then the closer of both readings counts.
+
+    Returns
+    -------
+    distance : dict of (int, int) to (P, Q, N) float
+        By pair of views, in standard deviations.
+    """
+    found = {}
+    for c in range(len(cameras)):
+        for d in range(c + 1, len(cameras)):
+            spread_px = (sigma_px[c][:, None] + sigma_px[d]) / 2
+            distance = epipolar_distance(cameras[c], cameras[d], plane[c], plane[d])
+            if mirror is not None:
+                turned = plane[d][:, :, mirror]
+                other = epipolar_distance(cameras[c], cameras[d], plane[c], turned)
+                distance = np.minimum(distance, other)
+            found[c, d] = distance / np.maximum(spread_px, 1e-9)[..., None]
+    return found
+
+
+def epipolar_distance(first, second, one, other):
+    """Return the robust distance between bodies of two views.
+
+    Parameters
+    ----------
+    first, second : Camera
+    one, other : (P, N, J, 2), (Q, N, J, 2) float
+        Keypoints on the undistorted, normalised plane; NaN where missing.
+
+    Returns
+    -------
+    distance_px : (P, Q, N) float
+        Median over joints of the mean distance to the other view's epipolar lines; inf where fewer than
+        three joints are seen in both.
+
+    Notes
+    -----
+    Hartley & Zisserman 2004, sec. 9.1 and 11.1.
+    """
+    rotation = second.cam_from_world[:, :3] @ first.cam_from_world[:, :3].T
+    x, y, z = second.cam_from_world[:, 3] - rotation @ first.cam_from_world[:, 3]
+    essential = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ rotation
+    in_second = (
+        one @ essential[:, :2].T + essential[:, 2]
+    )  # lines of one's joints in the second view
+    in_first = other @ essential[:2] + essential[2]
+    scale_second = focal_px(second) / np.hypot(in_second[..., 0], in_second[..., 1])
+    scale_first = focal_px(first) / np.hypot(in_first[..., 0], in_first[..., 1])
+    product = np.abs(
+        in_second[:, None, ..., 0] * other[None, ..., 0]
+        + in_second[:, None, ..., 1] * other[None, ..., 1]
+        + in_second[:, None, ..., 2]
+    )
+    distance = product * (scale_second[:, None] + scale_first[None]) / 2
+    return _median(distance)
+
+
+def focal_px(camera):
+    """Return the mean of both focal lengths, px."""
+    return (camera.K[0, 0] + camera.K[1, 1]) / 2
+
+
+def _median(distance):
+    """Return the median over the last axis without NaN, inf where fewer than three are known."""
+    ordered = np.sort(distance, axis=-1)
+    count = np.isfinite(ordered).sum(axis=-1)
+    middle = np.take_along_axis(ordered, np.maximum(count - 1, 0)[..., None] // 2, axis=-1)[..., 0]
+    return np.where(count >= 3, middle, np.inf)
+
+
+def of_views(pairs, instant, row, most):
+    """Return how far each view of a candidate is from its other views on the average.
+
+    Parameters
+    ----------
+    pairs : dict of (int, int) to (P, Q, N) float
+        From `of_pairs`.
+    instant : (M,) int
+    row : (M, C) int
+        Row of each camera, -1 for none.
+    most : float
+        Distances are cut off here.
+
+    Returns
+    -------
+    distance : (M, C) float
+        Zero for a view without a row.
+    """
+    total, count = np.zeros(row.shape), np.zeros(row.shape)
+    for (c, d), distance in pairs.items():
+        both = (row[:, c] >= 0) & (row[:, d] >= 0)
+        value = np.minimum(distance[row[both, c], row[both, d], instant[both]], most)
+        for view in (c, d):
+            total[both, view] += value
+            count[both, view] += 1
+    return total / np.maximum(count, 1)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import walker
-from courtside.motion import halfbody
+from courtside.reconstruction import fusion
 from courtside.records import reasons
 
 CAMERAS = ["centre", "left", "right"]
@@ -27,7 +27,7 @@ def halves():
 
 def test_each_side_is_that_of_its_record_and_the_middle_the_mean():
     left, right = halves()
-    merged = halfbody.merge(left, right, CAMERAS)
+    merged = fusion.merge(left, right, CAMERAS)
     at = {name: list(merged.joints).index(name) for name in ("left_hip", "right_hip", "nose")}
     assert merged.cameras.tolist() == CAMERAS
     np.testing.assert_array_equal(merged.xyz[:, :, at["left_hip"]], left.xyz[:, :, at["left_hip"]])
@@ -40,7 +40,7 @@ def test_each_side_is_that_of_its_record_and_the_middle_the_mean():
 
 def test_views_are_those_of_the_half():
     left, right = halves()
-    merged = halfbody.merge(left, right, CAMERAS)
+    merged = fusion.merge(left, right, CAMERAS)
     at = {name: list(merged.joints).index(name) for name in ("left_knee", "right_knee", "nose")}
     assert merged.accepted[0, 0, at["left_knee"]].tolist() == [True, True, False]
     assert merged.accepted[0, 0, at["right_knee"]].tolist() == [True, False, True]
@@ -56,7 +56,7 @@ def test_a_joint_of_the_middle_that_one_half_lacks_is_that_of_the_other():
     nose = list(left.joints).index("nose")
     left.xyz[0, 2, nose], left.reason[0, 2, nose] = np.nan, reasons.REJECTED
     left.accepted[0, 2, nose] = False
-    merged = halfbody.merge(left, right, CAMERAS)
+    merged = fusion.merge(left, right, CAMERAS)
     np.testing.assert_array_equal(merged.xyz[0, 2, nose], right.xyz[0, 2, nose])
     assert merged.reason[0, 2, nose] == reasons.OK
     assert (merged.reason[:, 3, 4], merged.n_views[0, 3, 4]) == (reasons.REJECTED, 0)
@@ -66,4 +66,4 @@ def test_a_joint_of_the_middle_that_one_half_lacks_is_that_of_the_other():
 def test_halves_of_different_takes_are_a_fault():
     left, right = halves()
     with pytest.raises(ValueError, match="expected halves of the same time_s"):
-        halfbody.merge(left, replace(right, time_s=right.time_s + 1), CAMERAS)
+        fusion.merge(left, replace(right, time_s=right.time_s + 1), CAMERAS)
