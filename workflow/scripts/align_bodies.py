@@ -3,8 +3,8 @@
 import json
 from pathlib import Path
 
+from courtside.events.tpose import TPose
 from courtside.motion import bodyframe, common_frame
-from courtside.motion.tpose import TPose
 from courtside.records import body_motion, derived, device_motion, sync
 from courtside.study import log
 from courtside.study.files import write_json

@@ -1,6 +1,7 @@
 """Choose the T-pose that all sources of a take show best: motions, clocks -> their spells of it, claps."""
 
-from courtside.motion import common_frame, device_events
+from courtside.events import detect
+from courtside.motion import common_frame
 from courtside.records import device_motion, sync
 from courtside.study import log
 from courtside.study.files import write_json
@@ -12,7 +13,7 @@ def main(device_npz, sync_json, chosen_json, *, devices, stated):
     of_device = {devices[name]: clock for name, clock in found.items()}
     clocks = {name: of_device[devices[name]] for name in motions}
     order = sorted(motions, key=lambda name: name != reference)
-    shown = device_events.shown(list(motions.values()), devices, stated)
+    shown = detect.shown(list(motions.values()), devices, stated)
     happened = {name: shown[name] for name in order}
     chosen = common_frame.common(happened, clocks, motions)
     content = {

@@ -1,14 +1,14 @@
 """List what each device shows, by its own clock: device motions -> wrist distance, T-poses, claps."""
 
-from courtside.motion import event_tables
+from courtside.events import detect
 from courtside.records import device_motion, tables
 from courtside.study import log
 
 
 def main(device_npz, wrists_csv, events_csv):
     motions = [device_motion.read(path) for path in device_npz]
-    tables.write(wrists_csv, event_tables.wrists(motions))
-    tables.write(events_csv, event_tables.events(motions))
+    tables.write(wrists_csv, detect.wrists(motions))
+    tables.write(events_csv, detect.events(motions))
 
 
 if __name__ == "__main__":

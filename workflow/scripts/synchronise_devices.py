@@ -1,13 +1,14 @@
 """Find the devices' clocks of one take: device motions -> clocks, wrist distance, T-poses and claps."""
 
-from courtside.motion import device_events, device_sync, event_tables
+from courtside.events import detect
+from courtside.motion import device_sync
 from courtside.records import device_motion, sync, tables
 from courtside.study import log
 
 
 def main(device_npz, paths, *, devices, stated, latency):
     motions = [device_motion.read(path) for path in device_npz]
-    happened = device_events.shown(motions, devices, stated)
+    happened = detect.shown(motions, devices, stated)
     # The reference must clap: the first source of the first device that does.
     first = devices[motions[0].source]
     motions.sort(key=lambda m: (devices[m.source] != first, not happened[m.source].claps))
@@ -18,9 +19,9 @@ def main(device_npz, paths, *, devices, stated, latency):
     clocks = {source: one.clock for source, one in found.items()}
     report(clocks)
     sync.write(paths.sync, motions[0].source, clocks)
-    tables.write(paths.wrists, event_tables.wrists(motions, clocks))
-    tables.write(paths.events, event_tables.events(motions, clocks))
-    tables.write(paths.checks, event_tables.checks(found))
+    tables.write(paths.wrists, detect.wrists(motions, clocks))
+    tables.write(paths.events, detect.events(motions, clocks))
+    tables.write(paths.checks, detect.checks(found))
 
 
 def report(clocks):

@@ -7,7 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import device_takes
-from courtside.motion import bodyframe, tpose
+from courtside.events import tpose
+from courtside.motion import bodyframe
 from courtside.records import derived
 from courtside.study.errors import InputError
 

@@ -2,8 +2,8 @@
 
 import pytest
 
+from courtside.events.claps import Clap
 from courtside.motion import clap_pairs
-from courtside.motion.claps import Clap
 from courtside.study.errors import InputError
 
 

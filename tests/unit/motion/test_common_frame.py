@@ -7,7 +7,8 @@ import pytest
 
 import device_takes
 from courtside.devices import mocopi
-from courtside.motion import bodyframe, common_frame, device_events
+from courtside.events import detect
+from courtside.motion import bodyframe, common_frame
 from courtside.records import derived, skeleton
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
@@ -26,7 +27,7 @@ def take(seed=0):
         device_takes.device(rng, truth),
         device_takes.mocopi(rng, truth, clock=CLOCKS["mocopi"], scale=0.9, cutoff_hz=None),
     ]
-    return truth, made, device_events.shown(made, device_takes.each_its_own(made))
+    return truth, made, detect.shown(made, device_takes.each_its_own(made))
 
 
 def test_exact_devices_agree_in_space_and_time():
@@ -62,7 +63,7 @@ def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
         costs["d415-rgb"][best] = 0.0
         costs["mocopi"][1 - best] = 0.05
         happened = {
-            source: device_events.Events(
+            source: detect.Events(
                 [
                     type(s)(**{**vars(s), "cost": c})
                     for s, c in zip(spells, costs[source], strict=True)
@@ -110,7 +111,7 @@ def test_frames_that_nobody_performed_are_left_out():
 def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
     truth, _, happened = take()
     rgb = happened["d415-rgb"]
-    happened["d415-rgb"] = device_events.Events(rgb.tposes, rgb.claps[1:])
+    happened["d415-rgb"] = detect.Events(rgb.tposes, rgb.claps[1:])
     found = common_frame.claps_of("d415-rgb", happened, CLOCKS)
     np.testing.assert_allclose(found, [truth[2]["clap_1"], truth[2]["clap_2"]], atol=0.006)
 
@@ -120,7 +121,7 @@ def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
 def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(name):
     joints = skeleton.read(CONFIG / "skeletons" / "mocopi27.yaml")
     motion, _ = mocopi.read(REAL / "mocopi" / f"{name}.bvh", joints)
-    happened = device_events.shown([motion], {"mocopi": "mocopi"})
+    happened = detect.shown([motion], {"mocopi": "mocopi"})
     assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
     clocks = {"mocopi": Clock(status="reference")}
     with pytest.raises(InputError, match="T-pose"):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import device_takes
-from courtside.motion import device_signals, tpose
+from courtside.events import tpose
+from courtside.motion import device_signals
 from courtside.motion.device_signals import Signals
 from courtside.records.sync import Clock
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import device_takes
-from courtside.motion import device_events, device_sync
+from courtside.events import detect
+from courtside.motion import device_sync
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
 
@@ -13,7 +14,7 @@ CAMERAS = {"source": "cameras", "kind": "cameras", "noise_m": (0.004,) * 3, "axe
 
 
 def solve(*motions, **options):
-    happened = device_events.shown(motions, device_takes.each_its_own(motions))
+    happened = detect.shown(motions, device_takes.each_its_own(motions))
     return device_sync.synchronise(list(motions), happened, **options)
 
 
@@ -104,7 +105,7 @@ def test_a_device_without_a_clap_is_refused_by_name():
         np.tile(mocopi.xyz[:1], (300, 1, 1)), np.arange(300) / 60, "mocopi", "inertial"
     )
     with pytest.raises(InputError, match="mocopi: expected a T-pose"):
-        device_events.shown([mocopi, still], {"mocopi": "suit", "mocopi-2": "suit-2"})
+        detect.shown([mocopi, still], {"mocopi": "suit", "mocopi-2": "suit-2"})
 
 
 def test_other_peoples_claps_do_not_pair_silently():

@@ -23,7 +23,7 @@ MS = 1000
 
 
 def read(wrists_csv, events_csv):
-    """Read wrists and events as `courtside.motion.event_tables` has them."""
+    """Read wrists and events as `courtside.events.detect` has them."""
     events = pd.read_csv(events_csv)
     why = events["why"].astype(object).where(events["why"].notna(), "").astype(str)
     return pd.read_csv(wrists_csv), events.assign(why=why)
@@ -35,7 +35,7 @@ def table(wrists, events, *, aligned=True):
     Parameters
     ----------
     wrists, events : pandas.DataFrame
-        Of `courtside.motion.event_tables`.
+        Of `courtside.events.detect`.
     aligned : bool
         Whether time_s is on one clock for all sources; each source is shown by itself otherwise.
 
@@ -70,7 +70,7 @@ def draw(wrists, events, *, kinds=None, aligned=True):
     Parameters
     ----------
     wrists : pandas.DataFrame
-        Of `courtside.motion.event_tables`.
+        Of `courtside.events.detect`.
     events : pandas.DataFrame
         Of `table`.
     kinds : dict of str to str, optional

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from courtside.events import tpose as tposes
 from courtside.geometry import rotations as transforms
 from courtside.geometry.similarity import Sim3
-from courtside.motion import tpose as tposes
 from courtside.study.errors import InputError
 
 ORIGIN = "pelvis_thorax"
@@ -58,7 +58,7 @@ class BodyFrame:
     ----------
     body_from_device : Sim3
         Metres of the device to units of the body.
-    tpose : courtside.motion.tpose.TPose
+    tpose : courtside.events.tpose.TPose
     residuals : dict of str to float or None
         unit_m: metres in a unit, the scale factor's inverse. elbow_left_deg, elbow_right_deg: bend of the
         arms. level_deg: angle of the line of the wrists from square to y, positive with the left one higher.
@@ -135,7 +135,7 @@ def at_tpose(motion, carried_by, tpose):
     ----------
     motion : courtside.records.device_motion.DeviceMotion
     carried_by : Anchors
-    tpose : courtside.motion.tpose.TPose
+    tpose : courtside.events.tpose.TPose
         Of this motion.
 
     Returns

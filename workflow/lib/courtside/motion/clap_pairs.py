@@ -16,7 +16,7 @@ def pair(first, second, likeness, where):
 
     Parameters
     ----------
-    first, second : list of courtside.motion.claps.Clap
+    first, second : list of courtside.events.claps.Clap
     likeness : callable
         Of an offset in seconds: how alike the motions of both are with it, a correlation.
     where : str

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from courtside.events import tpose as tposes
 from courtside.motion import bodyframe
-from courtside.motion import tpose as tposes
 from courtside.records.body_motion import BodyMotion
 from courtside.study.errors import InputError
 
@@ -15,7 +15,7 @@ def common(happened, clocks, motions=None):
 
     Parameters
     ----------
-    happened : dict of str to courtside.motion.device_events.Events
+    happened : dict of str to courtside.events.detect.Events
         Of each source; the first is the reference.
     clocks : dict of str to courtside.records.sync.Clock
         Against the reference.
@@ -24,7 +24,7 @@ def common(happened, clocks, motions=None):
 
     Returns
     -------
-    chosen : dict of str to courtside.motion.tpose.TPose
+    chosen : dict of str to courtside.events.tpose.TPose
         For each source its own spell of that T-pose.
 
     Raises
@@ -68,7 +68,7 @@ def claps_of(source, happened, clocks):
     Parameters
     ----------
     source : str
-    happened : dict of str to courtside.motion.device_events.Events
+    happened : dict of str to courtside.events.detect.Events
     clocks : dict of str to courtside.records.sync.Clock
         Against the reference.
 

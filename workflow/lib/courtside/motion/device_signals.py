@@ -6,8 +6,8 @@ the trunk: they keep apart what a camera sees well and what it guesses, height a
 
 import numpy as np
 
+from courtside.events import tpose as tposes
 from courtside.motion import bodyframe, smooth_tracks
-from courtside.motion import tpose as tposes
 
 SMOOTH_S = 0.03  # standard deviation of the Gaussian, at least
 SMOOTH_STEPS = 0.85  # of the longest frame interval: less would draw offsets to half frames
@@ -99,7 +99,7 @@ def common_axes(motions, spells):
     Parameters
     ----------
     motions : sequence of two DeviceMotion
-    spells : sequence of two courtside.motion.tpose.TPose
+    spells : sequence of two courtside.events.tpose.TPose
         Of the same T-pose: the body's axes join the devices' frames.
 
     Returns

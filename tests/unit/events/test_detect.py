@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import device_takes
-from courtside.motion import device_events
+from courtside.events import detect
 from courtside.study.errors import InputError
 
 DEVICES = {"d415-rgb": "d415", "mocopi": "mocopi", "d415-depth": "d415"}
@@ -23,7 +23,7 @@ def take():
 
 def test_a_source_without_a_clap_is_borne_with_where_its_device_claps_in_another():
     truth, rgb, mocopi, depth = take()
-    found = device_events.shown([rgb, mocopi, depth], DEVICES)
+    found = detect.shown([rgb, mocopi, depth], DEVICES)
     assert found["d415-depth"].claps == []
     assert len(found["d415-rgb"].claps) == len(found["mocopi"].claps) == 2
     assert found["d415-rgb"].claps[0].time_s == pytest.approx(truth[2]["clap_1"], abs=0.02)
@@ -37,9 +37,9 @@ def test_a_source_with_its_own_t_poses_has_the_claps_of_its_device():
     elbows = [rgb.joints.tolist().index(f"{side}_elbow") for side in ("left", "right")]
     xyz[np.ix_(later, elbows, [1])] += 0.35
     depth = replace(rgb, source="d415-depth", xyz=xyz)
-    alone = device_events.shown([depth], {"d415-depth": "d415"})["d415-depth"]
+    alone = detect.shown([depth], {"d415-depth": "d415"})["d415-depth"]
     assert (len(alone.tposes), alone.claps) == (1, [])
-    found = device_events.shown([depth, mocopi, rgb], DEVICES)
+    found = detect.shown([depth, mocopi, rgb], DEVICES)
     (clap,) = found["d415-depth"].claps
     assert clap == found["d415-rgb"].claps[0]
     assert clap.tpose == 0
@@ -53,7 +53,7 @@ def test_a_t_pose_in_two_spells_has_each_clap_once():
     elbows = [rgb.joints.tolist().index(f"{side}_elbow") for side in ("left", "right")]
     bent = (np.abs(rgb.time_s - middle_s) < 0.2) | (rgb.time_s > events["tpose_1_stop"] + 0.05)
     xyz[np.ix_(bent, elbows, [1])] += 0.35
-    found = device_events.shown([replace(rgb, source="d415-depth", xyz=xyz), mocopi, rgb], DEVICES)[
+    found = detect.shown([replace(rgb, source="d415-depth", xyz=xyz), mocopi, rgb], DEVICES)[
         "d415-depth"
     ]
     assert len(found.tposes) == 2
@@ -63,12 +63,12 @@ def test_a_t_pose_in_two_spells_has_each_clap_once():
 def test_a_device_among_others_must_clap():
     _, _, mocopi, depth = take()
     with pytest.raises(InputError, match="d415-depth: expected a T-pose"):
-        device_events.shown([mocopi, depth], DEVICES)
-    found = device_events.shown([mocopi, depth], DEVICES, stated=["d415"])
+        detect.shown([mocopi, depth], DEVICES)
+    found = detect.shown([mocopi, depth], DEVICES, stated=["d415"])
     assert (len(found["mocopi"].claps), found["d415-depth"].claps) == (2, [])
 
 
 def test_a_device_that_is_alone_need_not():
     *_, depth = take()
-    found = device_events.shown([depth], {"d415-depth": "d415"})["d415-depth"]
+    found = detect.shown([depth], {"d415-depth": "d415"})["d415-depth"]
     assert (found.tposes, found.claps) == ([], [])

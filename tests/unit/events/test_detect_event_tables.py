@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import device_takes
-from courtside.motion import device_events, device_sync, event_tables
+from courtside.events import detect
+from courtside.motion import device_sync
 from courtside.records.sync import Clock
 
 CLOCK = Clock(2.0, 50.0)
@@ -18,7 +19,7 @@ def devices():
 
 def test_events_are_on_the_reference_clock():
     take, motions = devices()
-    rows = event_tables.events(motions, {"mocopi": CLOCK})
+    rows = detect.events(motions, {"mocopi": CLOCK})
     for source in ("d415-rgb", "mocopi"):
         own = rows[(rows.source == source) & (rows.event == "clap")]
         assert own.number.tolist() == [1, 2]
@@ -29,12 +30,12 @@ def test_events_are_on_the_reference_clock():
         assert len(spells) == 4
     mocopi = rows[rows.source == "mocopi"]
     np.testing.assert_allclose(CLOCK.to_reference(mocopi.own_time_s), mocopi.time_s)
-    assert list(rows.columns) == event_tables.EVENT_COLUMNS
+    assert list(rows.columns) == detect.EVENT_COLUMNS
 
 
 def test_a_device_that_shows_nothing_has_a_row_that_says_so():
     still = device_takes.of(np.tile(devices()[1][0].xyz[:1], (90, 1, 1)), np.arange(90) / 30)
-    (row,) = event_tables.events([still]).to_dict("records")
+    (row,) = detect.events([still]).to_dict("records")
     assert row["event"] == "none" and not row["used"]
     assert "expected a T-pose" in row["why"]
 
@@ -42,7 +43,7 @@ def test_a_device_that_shows_nothing_has_a_row_that_says_so():
 def test_wrists_are_as_far_apart_as_they_are():
     take, motions = devices()
     motions[0].performed[:5] = False
-    rows = event_tables.wrists(motions, {"mocopi": CLOCK})
+    rows = detect.wrists(motions, {"mocopi": CLOCK})
     rgb = rows[rows.source == "d415-rgb"]
     assert rgb.distance_m.isna().sum() == 5
     times, xyz, _ = take
@@ -54,9 +55,9 @@ def test_wrists_are_as_far_apart_as_they_are():
 
 def test_checks_have_a_row_per_source():
     _, motions = devices()
-    happened = device_events.shown(motions, device_takes.each_its_own(motions))
+    happened = detect.shown(motions, device_takes.each_its_own(motions))
     found = device_sync.synchronise(motions, happened, latency={"mocopi": (0.02, 0.005)})
-    rows = event_tables.checks(found).set_index("source")
+    rows = detect.checks(found).set_index("source")
     assert rows.status.to_dict() == {"d415-rgb": "reference", "mocopi": "found"}
     assert rows.n_claps["mocopi"] == 2
     assert rows.latency_s["mocopi"] == 0.02

@@ -8,9 +8,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from courtside.events import contact_time
+from courtside.events import tpose as tposes
 from courtside.kinematics import filtering
-from courtside.motion import clap_fit
-from courtside.motion import tpose as tposes
 from courtside.study.errors import InputError
 
 MOST_S = 3.0  # from the T-pose to its clap
@@ -94,7 +94,7 @@ def find(motion, spells):
     Parameters
     ----------
     motion : courtside.records.device_motion.DeviceMotion
-    spells : list of courtside.motion.tpose.TPose
+    spells : list of courtside.events.tpose.TPose
         Of this motion, in order of time.
 
     Returns
@@ -128,7 +128,7 @@ def candidates(motion, spells):
     Parameters
     ----------
     motion : courtside.records.device_motion.DeviceMotion
-    spells : list of courtside.motion.tpose.TPose
+    spells : list of courtside.events.tpose.TPose
     """
     after, taken = [], []
     bend_deg = tposes.measure(motion)["bend_deg"] if spells else None
@@ -232,8 +232,8 @@ def _bent(motion, near, bend_deg):
 
 
 def _fitted(motion, spell, number, apart, near_s):
-    usual_s = SMOOTHINGS_S.get(motion.kind, clap_fit.USUAL_S)
-    noise = clap_fit.Noise.of(apart[spell.frames])
+    usual_s = SMOOTHINGS_S.get(motion.kind, contact_time.USUAL_S)
+    noise = contact_time.Noise.of(apart[spell.frames])
     parted = _parted(motion.time_s, apart, near_s) > max(
         REBOUND * np.nanmedian(apart[spell.frames]), REBOUND_NOISE * noise.sd
     )
@@ -242,7 +242,7 @@ def _fitted(motion, spell, number, apart, near_s):
     used = _within(motion.time_s, near_s, (-BEFORE_S, behind_s)) & motion.performed
     how = {"usual_s": usual_s, "noise": noise, "rebounds": parted}
     try:
-        corner = clap_fit.fit(motion.time_s[used], apart[used], near_s, REACH_S, **how)
+        corner = contact_time.fit(motion.time_s[used], apart[used], near_s, REACH_S, **how)
     except ValueError as error:
         return Candidate(near_s, None, f"{error}")
     if corner.uncertainty_s > MOST_UNCERTAIN_S:

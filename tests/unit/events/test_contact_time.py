@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import sync_takes
-from courtside.motion import clap_fit
+from courtside.events import contact_time
 
 
 def hinge(time_s, corner_s, *, floor=0.1, slope=2.6, bend=3.0, rise=0.0, sigma_s=0.0):
@@ -29,7 +29,7 @@ def test_the_corner_of_a_clean_hinge_is_found_between_frames(rate_hz, sigma_s):
         time_s = 3.0 + np.arange(-0.15 * rate_hz, 0.22 * rate_hz) / rate_hz
         corner_s = 3.0 + phase / rate_hz
         values = hinge(time_s, corner_s, sigma_s=sigma_s)
-        found = clap_fit.fit(time_s, values, corner_s + 0.02, 0.08, usual_s=0.03)
+        found = contact_time.fit(time_s, values, corner_s + 0.02, 0.08, usual_s=0.03)
         assert found.time_s == pytest.approx(corner_s, abs=0.0015)
         assert found.floor == pytest.approx(0.1, abs=0.002)
         assert found.slope == pytest.approx(2.6, rel=0.1)
@@ -39,10 +39,10 @@ def test_the_corner_of_a_clean_hinge_is_found_between_frames(rate_hz, sigma_s):
 
 def test_a_rebound_is_seen_and_its_corner_found():
     time_s = np.arange(-9, 8) / 60
-    found = clap_fit.fit(time_s, hinge(time_s, 0.004, rise=1.6), 0.02, 0.08)
+    found = contact_time.fit(time_s, hinge(time_s, 0.004, rise=1.6), 0.02, 0.08)
     assert found.rises
     assert found.time_s == pytest.approx(0.004, abs=0.0015)
-    flat = clap_fit.fit(time_s, hinge(time_s, 0.004, rise=1.6), 0.02, 0.08, rebounds=False)
+    flat = contact_time.fit(time_s, hinge(time_s, 0.004, rise=1.6), 0.02, 0.08, rebounds=False)
     assert not flat.rises
 
 
@@ -56,8 +56,8 @@ def test_the_uncertainty_covers_noisy_corners(memory, noise_m):
         values = hinge(time_s, corner_s) + noise_m * sync_takes.memory_noise(
             rng, len(time_s), memory
         )
-        noise = clap_fit.Noise(noise_m, memory)
-        found = clap_fit.fit(time_s, values, corner_s, 0.08, noise=noise, rebounds=False)
+        noise = contact_time.Noise(noise_m, memory)
+        found = contact_time.fit(time_s, values, corner_s, 0.08, noise=noise, rebounds=False)
         errors.append(found.time_s - corner_s)
         stated.append(found.uncertainty_s)
     errors, stated = np.array(errors), np.array(stated)
@@ -71,15 +71,15 @@ def test_the_noise_of_a_body_that_holds_still():
     rng = np.random.default_rng(0)
     drift = 1.4 + 0.01 * np.linspace(0, 1, 400)
     for memory in (0.0, 0.6):
-        noise = clap_fit.Noise.of(drift + 0.02 * sync_takes.memory_noise(rng, 400, memory))
+        noise = contact_time.Noise.of(drift + 0.02 * sync_takes.memory_noise(rng, 400, memory))
         assert noise.sd == pytest.approx(0.02, rel=0.15)
         assert noise.memory == pytest.approx(memory, abs=0.12)
-    assert clap_fit.Noise.of(np.ones(3)) == clap_fit.Noise()
+    assert contact_time.Noise.of(np.ones(3)) == contact_time.Noise()
 
 
 def test_too_few_or_nothing_that_falls():
     with pytest.raises(ValueError, match=r"seven|7"):
-        clap_fit.fit(np.arange(6) / 30, np.ones(6), 0.1, 0.05)
+        contact_time.fit(np.arange(6) / 30, np.ones(6), 0.1, 0.05)
     time_s = np.arange(12) / 30
     with pytest.raises(ValueError, match="falls"):
-        clap_fit.fit(time_s, 0.1 + 2 * time_s, 0.2, 0.05, rebounds=False)
+        contact_time.fit(time_s, 0.1 + 2 * time_s, 0.2, 0.05, rebounds=False)

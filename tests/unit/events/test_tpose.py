@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import device_takes
-from courtside.motion import tpose
+from courtside.events import tpose
 from courtside.study.errors import InputError
 
 DEVICES = {
