@@ -3,8 +3,9 @@
 import json
 from pathlib import Path
 
+from courtside.body_frame import common
+from courtside.body_frame import frame as bodyframe
 from courtside.events.tpose import TPose
-from courtside.motion import bodyframe, common_frame
 from courtside.records import body_motion, derived, device_motion, sync
 from courtside.study import log
 from courtside.study.files import write_json
@@ -15,7 +16,7 @@ def main(device_npz, sync_json, chosen_json, derived_yaml, body_npz, frame_json,
     chosen = json.loads(Path(chosen_json).read_text(encoding="utf-8"))[motion.source]
     anchors = bodyframe.anchors(derived.read(derived_yaml), skeleton, motion.joints)
     frame = bodyframe.at_tpose(motion, anchors, TPose(**chosen["tpose"]))
-    body = common_frame.aligned(motion, frame, clock, chosen["clap_s"])
+    body = common.aligned(motion, frame, clock, chosen["clap_s"])
     log.logger.info("%s: unit %.4f m, %s", motion.source, body.unit_m, frame.residuals)
     body_motion.write(body_npz, body)
     write_json(frame_json, frame.as_dict())

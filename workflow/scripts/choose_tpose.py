@@ -1,7 +1,7 @@
 """Choose the T-pose that all sources of a take show best: motions, clocks -> their spells of it, claps."""
 
+from courtside.body_frame import common
 from courtside.events import detect
-from courtside.motion import common_frame
 from courtside.records import device_motion, sync
 from courtside.study import log
 from courtside.study.files import write_json
@@ -15,11 +15,11 @@ def main(device_npz, sync_json, chosen_json, *, devices, stated):
     order = sorted(motions, key=lambda name: name != reference)
     shown = detect.shown(list(motions.values()), devices, stated)
     happened = {name: shown[name] for name in order}
-    chosen = common_frame.common(happened, clocks, motions)
+    chosen = common.common(happened, clocks, motions)
     content = {
         source: {
             "tpose": spell.as_dict(),
-            "clap_s": common_frame.claps_of(source, happened, clocks).tolist(),
+            "clap_s": common.claps_of(source, happened, clocks).tolist(),
         }
         for source, spell in chosen.items()
     }

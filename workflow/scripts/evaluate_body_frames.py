@@ -3,7 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from courtside.motion import bodyframe, common_frame, frame_errors
+from courtside.body_frame import common, frame
+from courtside.motion import frame_errors
 from courtside.records import body_motion, derived, device_motion, tables, take_truth
 from courtside.study import log
 
@@ -11,10 +12,10 @@ from courtside.study import log
 def main(body_npz, frame_json, truth_npz, derived_yaml, errors_csv, *, labels, person, owners):
     truth = take_truth.read(truth_npz)
     true = device_motion.of_truth(truth, person)
-    carried_by = bodyframe.anchors(derived.read(derived_yaml), derived.RIG, true.joints)
+    carried_by = frame.anchors(derived.read(derived_yaml), derived.RIG, true.joints)
     rows = []
     for body, own in zip(map(body_motion.read, body_npz), frame_json, strict=True):
-        expected = common_frame.counterpart(true, carried_by, body.tpose_s).body_from_device
+        expected = common.counterpart(true, carried_by, body.tpose_s).body_from_device
         device = truth.devices.get(owners[body.source])
         pose = np.eye(3, 4) if device is None else device.from_world  # fixed cameras: the world
         rows.append(

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from courtside.body_frame import common
+from courtside.body_frame import frame as bodyframe
 from courtside.kinematics import smoothness, wrist_arcs
-from courtside.motion import bodyframe, common_frame, source_errors
+from courtside.motion import source_errors
 from courtside.records import body_motion, derived, device_motion, tables, take_truth
 from courtside.records.sync import Clock
 from courtside.study import log
@@ -18,8 +20,8 @@ def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_h
     carried_by = bodyframe.anchors(table, derived.RIG, true.joints)
     errors, parts, paths, distortion = [], [], [], []
     for body in map(body_motion.read, body_npz):
-        frame = common_frame.counterpart(true, carried_by, body.tpose_s)
-        reference = common_frame.aligned(true, frame, Clock())
+        frame = common.counterpart(true, carried_by, body.tpose_s)
+        reference = common.aligned(true, frame, Clock())
         names, found = source_errors.errors(body, reference)
         _, expected = source_errors.matched(body, reference)
         known = np.isfinite(expected).all(axis=-1)

@@ -6,8 +6,9 @@ the trunk: they keep apart what a camera sees well and what it guesses, height a
 
 import numpy as np
 
+from courtside.body_frame import frame
 from courtside.events import tpose as tposes
-from courtside.motion import bodyframe, smooth_tracks
+from courtside.motion import smooth_tracks
 
 SMOOTH_S = 0.03  # standard deviation of the Gaussian, at least
 SMOOTH_STEPS = 0.85  # of the longest frame interval: less would draw offsets to half frames
@@ -113,7 +114,7 @@ def common_axes(motions, spells):
         at = {name: motion.joint(name)[spell.frames] for name in tposes.JOINTS}
         still = {name: np.nanmedian(path, axis=0) for name, path in at.items()}
         hips, shoulders = (still[f"left_{p}"] + still[f"right_{p}"] for p in ("hip", "shoulder"))
-        axes, unit_m = bodyframe.axes(
+        axes, unit_m = frame.axes(
             hips / 2, shoulders / 2, still["left_wrist"], still["right_wrist"]
         )
         for name, path in at.items():

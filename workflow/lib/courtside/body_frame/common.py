@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from courtside.body_frame import frame as bodyframe
 from courtside.events import tpose as tposes
-from courtside.motion import bodyframe
 from courtside.records.body_motion import BodyMotion
 from courtside.study.errors import InputError
 
@@ -92,7 +92,7 @@ def aligned(motion, frame, clock, clap_s=()):
     Parameters
     ----------
     motion : courtside.records.device_motion.DeviceMotion
-    frame : courtside.motion.bodyframe.BodyFrame
+    frame : courtside.body_frame.frame.BodyFrame
     clock : courtside.records.sync.Clock
         Of the source against the reference.
     clap_s : (C,) float
@@ -125,14 +125,14 @@ def counterpart(motion, carried_by, tpose_s):
     ----------
     motion : courtside.records.device_motion.DeviceMotion
         On the reference clock.
-    carried_by : courtside.motion.bodyframe.Anchors
+    carried_by : courtside.body_frame.frame.Anchors
         Of this motion's joints.
     tpose_s : (2,) float
         When the T-pose began and ended, on the reference clock.
 
     Returns
     -------
-    frame : courtside.motion.bodyframe.BodyFrame
+    frame : courtside.body_frame.frame.BodyFrame
 
     Raises
     ------

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import device_takes
+from courtside.body_frame import common
+from courtside.body_frame import frame as bodyframe
 from courtside.devices import mocopi
 from courtside.events import detect
-from courtside.motion import bodyframe, common_frame
 from courtside.records import derived, skeleton
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
@@ -32,12 +33,12 @@ def take(seed=0):
 
 def test_exact_devices_agree_in_space_and_time():
     truth, made, happened = take()
-    chosen = common_frame.common(happened, CLOCKS)
+    chosen = common.common(happened, CLOCKS)
     aligned = []
     for motion in made:
         frame = bodyframe.at_tpose(motion, CARRIED_BY, chosen[motion.source])
-        claps = common_frame.claps_of(motion.source, happened, CLOCKS)
-        aligned.append(common_frame.aligned(motion, frame, CLOCKS[motion.source], claps))
+        claps = common.claps_of(motion.source, happened, CLOCKS)
+        aligned.append(common.aligned(motion, frame, CLOCKS[motion.source], claps))
     rgb, mocopi = aligned
     assert mocopi.unit_m == pytest.approx(0.9 * rgb.unit_m, rel=0.005)
     for body in aligned:
@@ -72,7 +73,7 @@ def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
             )
             for source, spells in at_s.items()
         }
-        chosen = common_frame.common(happened, CLOCKS)
+        chosen = common.common(happened, CLOCKS)
         assert chosen["d415-rgb"].start_s == first[best].start_s
         assert chosen["mocopi"].start_s == second[best].start_s
 
@@ -81,7 +82,7 @@ def test_no_common_t_pose_is_an_error_with_the_times():
     _, _, happened = take()
     wrong = CLOCKS | {"mocopi": Clock(20.0, 0.0)}
     with pytest.raises(InputError, match=r"T-pose that all sources show.*mocopi -") as caught:
-        common_frame.common(happened, wrong)
+        common.common(happened, wrong)
     assert "\n" not in str(caught.value)
 
 
@@ -89,14 +90,14 @@ def test_the_counterpart_has_the_frame_of_the_same_t_pose():
     truth, made, _ = take()
     for number in (1, 2):
         span = [truth[2][f"tpose_{number}_{end}"] for end in ("start", "stop")]
-        frame = common_frame.counterpart(made[0], CARRIED_BY, span)
-        body = common_frame.aligned(made[0], frame, CLOCKS["d415-rgb"])
+        frame = common.counterpart(made[0], CARRIED_BY, span)
+        body = common.aligned(made[0], frame, CLOCKS["d415-rgb"])
         assert body.tpose_s[0] == pytest.approx(span[0], abs=0.15)
         held = (body.time_s > span[0] + 0.1) & (body.time_s < span[1] - 0.1)
         wrist = np.median(body.joint("left_wrist")[held], axis=0)
         assert wrist[0] == pytest.approx(1.0, abs=0.03)
     with pytest.raises(InputError, match="check the clocks"):
-        common_frame.counterpart(made[0], CARRIED_BY, [100.0, 101.0])
+        common.counterpart(made[0], CARRIED_BY, [100.0, 101.0])
 
 
 def test_frames_that_nobody_performed_are_left_out():
@@ -104,7 +105,7 @@ def test_frames_that_nobody_performed_are_left_out():
     motion = made[0]
     motion.performed[:7] = False
     frame = bodyframe.at_tpose(motion, CARRIED_BY, happened["d415-rgb"].tposes[0])
-    body = common_frame.aligned(motion, frame, Clock())
+    body = common.aligned(motion, frame, Clock())
     assert len(body.time_s) == len(motion.time_s) - 7 == len(body.fixed) == len(body.reason)
 
 
@@ -112,7 +113,7 @@ def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
     truth, _, happened = take()
     rgb = happened["d415-rgb"]
     happened["d415-rgb"] = detect.Events(rgb.tposes, rgb.claps[1:])
-    found = common_frame.claps_of("d415-rgb", happened, CLOCKS)
+    found = common.claps_of("d415-rgb", happened, CLOCKS)
     np.testing.assert_allclose(found, [truth[2]["clap_1"], truth[2]["clap_2"]], atol=0.006)
 
 
@@ -125,12 +126,10 @@ def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(nam
     assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
     clocks = {"mocopi": Clock(status="reference")}
     with pytest.raises(InputError, match="T-pose"):
-        common_frame.common(happened, clocks)
-    chosen = common_frame.common(happened, clocks, {"mocopi": motion})["mocopi"]
+        common.common(happened, clocks)
+    chosen = common.common(happened, clocks, {"mocopi": motion})["mocopi"]
     carried_by = bodyframe.anchors(TABLE, "mocopi27", motion.joints)
-    body = common_frame.aligned(
-        motion, bodyframe.at_tpose(motion, carried_by, chosen), clocks["mocopi"]
-    )
+    body = common.aligned(motion, bodyframe.at_tpose(motion, carried_by, chosen), clocks["mocopi"])
     assert len(body.time_s) == motion.performed.sum()
     assert np.isfinite(body.following).all()
     wide = body.following[

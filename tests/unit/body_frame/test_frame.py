@@ -7,8 +7,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import device_takes
+from courtside.body_frame import frame as bodyframe
 from courtside.events import tpose
-from courtside.motion import bodyframe
 from courtside.records import derived
 from courtside.study.errors import InputError
 
