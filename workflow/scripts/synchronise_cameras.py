@@ -1,9 +1,9 @@
 """Find the cameras' clocks of one take: 2D keypoints of every camera -> offset and drift of each."""
 
 from courtside.geometry import camera as cameras
-from courtside.motion import camera_sync
 from courtside.records import keypoints, sync
 from courtside.study import log
+from courtside.synchronisation import cameras as camera_sync
 
 WRIST_M_S = 12.0  # of a smash: what the uncertainty is worth in space
 

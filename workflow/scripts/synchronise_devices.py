@@ -1,9 +1,9 @@
 """Find the devices' clocks of one take: device motions -> clocks, wrist distance, T-poses and claps."""
 
 from courtside.events import detect
-from courtside.motion import device_sync
 from courtside.records import device_motion, sync, tables
 from courtside.study import log
+from courtside.synchronisation import devices as device_sync
 
 
 def main(device_npz, paths, *, devices, stated, latency):

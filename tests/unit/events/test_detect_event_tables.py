@@ -5,8 +5,8 @@ import pytest
 
 import device_takes
 from courtside.events import detect
-from courtside.motion import device_sync
 from courtside.records.sync import Clock
+from courtside.synchronisation import devices as device_sync
 
 CLOCK = Clock(2.0, 50.0)
 

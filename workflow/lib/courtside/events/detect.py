@@ -169,11 +169,11 @@ def _events(motion):
 
 
 def checks(found):
-    """Return what each clock rests on: one row per source, the numbers of `device_sync.Found`.
+    """Return what each clock rests on: one row per source, the numbers of `devices.Found`.
 
     Parameters
     ----------
-    found : dict of str to courtside.motion.device_sync.Found
+    found : dict of str to courtside.synchronisation.devices.Found
     """
     rows = []
     for source, one in found.items():

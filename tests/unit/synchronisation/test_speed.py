@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import sync_takes
-from courtside.motion import smooth_tracks
-from courtside.motion.speed_correlation import Speeds
 from courtside.records.sync import Clock
+from courtside.synchronisation import smooth_tracks
+from courtside.synchronisation.speed import Speeds
 
 CAMERAS = sync_takes.rig(2)
 OWN_S = np.arange(600) / 30

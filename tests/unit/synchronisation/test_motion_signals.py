@@ -5,9 +5,9 @@ import pytest
 
 import device_takes
 from courtside.events import tpose
-from courtside.motion import device_signals
-from courtside.motion.device_signals import Signals
 from courtside.records.sync import Clock
+from courtside.synchronisation import motion_signals
+from courtside.synchronisation.motion_signals import Signals
 
 
 def pair():
@@ -26,7 +26,7 @@ def test_axes_scale_and_place_do_not_matter():
         np.random.default_rng(1), device_takes.truth(0), rate_hz=60.0, **changed
     )
     correlation = Signals(first, second).correlation(own)
-    assert len(correlation) == len(device_signals.PAIRS)
+    assert len(correlation) == len(motion_signals.PAIRS)
     assert correlation.min() > 0.98
 
 
@@ -73,7 +73,7 @@ def test_the_common_axes_part_depth_from_the_rest_wherever_the_camera_stood(yaw)
     inertial = device_takes.mocopi(rng, take)
     camera = device_takes.device(rng, take, noise_m=(0.004, 0.004, 0.05), turn=(0, yaw, 0))
     motions = (camera, inertial)
-    axes = device_signals.common_axes(motions, [tpose.find(motion)[0] for motion in motions])
+    axes = motion_signals.common_axes(motions, [tpose.find(motion)[0] for motion in motions])
     assert abs(axes[0][2] @ [0, 0, 1]) > np.cos(np.radians(5))  # the last is the camera's depth
     # The same directions in both: from camera to body to mocopi.
     world = axes[0] @ device_takes.turned(device_takes.Y_DOWN, (0, yaw, 0))

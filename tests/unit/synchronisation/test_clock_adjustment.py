@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from courtside.motion import clock_adjustment
+from courtside.synchronisation import clock_adjustment
 
 TIME_S = np.arange(900) / 30
 OMEGA = 2 * np.pi * np.array([0.31, 0.47, 0.83])

@@ -10,11 +10,11 @@ import scene
 import sync_takes
 from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
-from courtside.motion import camera_sync
 from courtside.records import sync
 from courtside.records.keypoints import Keypoints2D
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
+from courtside.synchronisation import cameras as camera_sync
 from real_data import REAL, needs_real
 
 CAMERAS = sync_takes.rig(3)

@@ -5,9 +5,9 @@ import pytest
 
 import sync_takes
 from courtside.geometry import epipolar
-from courtside.motion import smooth_tracks
-from courtside.motion.epipolar_sync import Epipolar
 from courtside.records.sync import Clock
+from courtside.synchronisation import smooth_tracks
+from courtside.synchronisation.epipolar import Epipolar
 
 CAMERAS = sync_takes.rig(3)
 OWN_S = np.arange(300) / 30

@@ -8,7 +8,7 @@ import numpy as np
 
 from courtside.body_frame import frame
 from courtside.events import tpose as tposes
-from courtside.motion import smooth_tracks
+from courtside.synchronisation import smooth_tracks
 
 SMOOTH_S = 0.03  # standard deviation of the Gaussian, at least
 SMOOTH_STEPS = 0.85  # of the longest frame interval: less would draw offsets to half frames

@@ -4,7 +4,7 @@ from itertools import combinations
 
 import numpy as np
 
-from courtside.motion import smooth_tracks
+from courtside.synchronisation import smooth_tracks
 
 SCAN_TIMES = 450  # moments of a camera that are compared at every offset
 SCAN_STEP_S = 1 / 30

@@ -5,9 +5,9 @@ import pytest
 
 import device_takes
 from courtside.events import detect
-from courtside.motion import device_sync
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
+from courtside.synchronisation import devices as device_sync
 
 LONG = {"between_s": 46.0, "fine_hz": 120.0}
 CAMERAS = {"source": "cameras", "kind": "cameras", "noise_m": (0.004,) * 3, "axes": np.eye(3)}

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 
 from courtside.geometry import epipolar
-from courtside.motion import smooth_tracks
+from courtside.synchronisation import smooth_tracks
 
 SCAN_TIMES = 120  # moments of a camera that are compared at every offset
 SCAN_STEP_S = 1 / 15

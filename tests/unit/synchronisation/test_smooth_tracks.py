@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.motion import smooth_tracks
+from courtside.synchronisation import smooth_tracks
 
 TIME_S = np.arange(300) / 30
 
