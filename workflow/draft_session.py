@@ -12,24 +12,27 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.devices import survey  # noqa: E402
-from courtside.study import file_names, session_advice, session_draft, session_guess  # noqa: E402
+from courtside.drafting import (
+    draft,
+    survey,
+)
+from courtside.drafting import guess as file_names
 from courtside.study.errors import InputError  # noqa: E402
 
 
 def main(folder, name, court, sessions):
     """Draft one session and return the lines to print."""
     recordings = survey.survey(folder, root=Path.cwd())
-    guess = session_guess.guess(recordings)
+    guess = file_names.guess(recordings)
     name = name or file_names.name(folder.resolve().name, "session1")
     written = survey.written(folder, Path.cwd())
     path = sessions / f"{name}.yaml"
     title = folder.resolve().name
-    session_draft.write(path, session_draft.text(guess, title=title, folder=written, court=court))
+    draft.write(path, draft.text(guess, title=title, folder=written, court=court))
     study = shown(sessions.parent / f"{name}.yaml")
-    said = [f"Wrote {shown(path)}.", session_advice.write_study(study, name, guess.takes)]
-    points = session_draft.court_points(guess, written)
-    return [*said, *session_advice.to_check(guess, shown(path), points, study)]
+    said = [f"Wrote {shown(path)}.", draft.write_study(study, name, guess.takes)]
+    points = draft.court_points(guess, written)
+    return [*said, *draft.to_check(guess, shown(path), points, study)]
 
 
 def shown(path):

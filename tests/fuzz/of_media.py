@@ -9,11 +9,13 @@ import sfm_made
 import video_files
 
 from courtside.calibration import chessboard
-from courtside.devices import survey
+from courtside.drafting import draft as session_advice
+from courtside.drafting import guess as session_guess
+from courtside.drafting import survey
 from courtside.pages import clicking_page
 from courtside.pose import tflite_onnx
 from courtside.sfm import database, model
-from courtside.study import session_advice, session_draft, session_guess, yaml_files
+from courtside.study import yaml_files
 from courtside.video import reader, walk_frames
 from fuzz.format import Format, require
 from fuzz.of_cameras import clicked, own_toml, real
@@ -171,10 +173,10 @@ def draft(path):
     """Survey a folder and draft its session, as `workflow/draft_session.py` does."""
     found = survey.survey(path, root=path.parent)
     guess = session_guess.guess(found)
-    text = session_draft.text(guess, title=path.name, folder=path.name, court="badminton")
+    text = session_advice.text(guess, title=path.name, folder=path.name, court="badminton")
     out = path.with_name("gym.yaml")
-    session_draft.write(out, text)
-    points = session_draft.court_points(guess, path.name)
+    session_advice.write(out, text)
+    points = session_advice.court_points(guess, path.name)
     session_advice.to_check(guess, out, points, "gym.yaml")
     return yaml_files.read(out)
 

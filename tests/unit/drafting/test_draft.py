@@ -3,9 +3,11 @@
 import pytest
 import yaml
 
-from courtside.study import configuration, session_draft, session_faults, session_guess
+from courtside.drafting import draft as session_draft
+from courtside.drafting import guess as session_guess
+from courtside.drafting.guess import Recording
+from courtside.study import configuration, session_faults
 from courtside.study.errors import InputError
-from courtside.study.session_guess import Recording
 
 
 def recording(path, kind="video", **more):

@@ -2,8 +2,10 @@
 
 import yaml
 
-from courtside.study import configuration, session_advice, session_guess
-from courtside.study.session_guess import Recording
+from courtside.drafting import draft
+from courtside.drafting import guess as session_guess
+from courtside.drafting.guess import Recording
+from courtside.study import configuration
 
 
 def recording(path, **more):
@@ -25,7 +27,7 @@ def test_what_to_check_names_what_is_odd(tmp_path):
     walk = recording("data/north/walk.mp4", note="frames come at irregular times")
     guess = guessed(TAKE[0], slow, *static, walk)
     points = "data/north/court_points.csv"
-    lines = session_advice.to_check(guess, tmp_path / "north.yaml", points, "config/north.yaml")
+    lines = draft.to_check(guess, tmp_path / "north.yaml", points, "config/north.yaml")
     said = "\n".join(lines)
     for part in ("camera right has pictures of 32x48 and 64x48", "25 and 30 Hz", "twofold"):
         assert part in said
@@ -33,20 +35,20 @@ def test_what_to_check_names_what_is_odd(tmp_path):
     assert "data/north/court_points.csv" in said
     assert "--configfile config/north.yaml" in said
     assert "No walk" not in said
-    lines = session_advice.to_check(guessed(*TAKE), tmp_path / "north.yaml", "c.csv", "n.yaml")
+    lines = draft.to_check(guessed(*TAKE), tmp_path / "north.yaml", "c.csv", "n.yaml")
     assert any(line.startswith("No walk") for line in lines)
     assert [line for line in lines if line.startswith("Odd")] == [
         "Odd: take a is 5.0 s long: in less than 15 s the clocks of cameras are seldom found; "
         "say `synchronised: true` if they share one"
     ]
     long = [recording(r.path, duration_s=15.0) for r in TAKE]
-    lines = session_advice.to_check(guessed(*long), tmp_path / "north.yaml", "c.csv", "n.yaml")
+    lines = draft.to_check(guessed(*long), tmp_path / "north.yaml", "c.csv", "n.yaml")
     assert not any(line.startswith("Odd") for line in lines)
 
 
 def test_a_study_of_the_session_alone_is_written_once(tmp_path):
     path = tmp_path / "north.yaml"
-    assert session_advice.write_study(path, "north", ["a", "b"]) == f"Wrote {path}."
+    assert draft.write_study(path, "north", ["a", "b"]) == f"Wrote {path}."
     said = yaml.safe_load(path.read_text())
     assert said == {
         "sessions": ["north"],
@@ -60,5 +62,5 @@ def test_a_study_of_the_session_alone_is_written_once(tmp_path):
     config |= said | {"export_overlay_video": videos}
     assert configuration.schema_faults(config, "config", "north.yaml") == []
     path.write_text("mine")
-    assert "name north among its `sessions`" in session_advice.write_study(path, "north", ["a"])
+    assert "name north among its `sessions`" in draft.write_study(path, "north", ["a"])
     assert path.read_text() == "mine"

@@ -10,7 +10,7 @@ import pytest
 import video_files
 import yaml
 
-from courtside.devices import survey
+from courtside.drafting import survey
 from courtside.study import configuration
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real

@@ -2,7 +2,8 @@
 
 import pytest
 
-from courtside.study import configuration, file_names
+from courtside.drafting import guess
+from courtside.study import configuration
 
 
 @pytest.mark.parametrize(
@@ -18,7 +19,7 @@ from courtside.study import configuration, file_names
     ],
 )
 def test_words(parts, expected):
-    assert file_names.words(parts) == expected
+    assert guess.words_of(parts) == expected
 
 
 @pytest.mark.parametrize(
@@ -32,14 +33,14 @@ def test_words(parts, expected):
     ],
 )
 def test_names_are_such_as_a_configuration_accepts(text, expected):
-    found = file_names.name(text, "session1")
+    found = guess.name(text, "session1")
     assert found == expected
     assert configuration.NAME.fullmatch(found)
 
 
 def test_distinct_counts_on():
-    assert file_names.distinct("walk", {}) == "walk"
-    assert file_names.distinct("walk", {"walk": 0, "walk_2": 0}) == "walk_3"
+    assert guess.distinct("walk", {}) == "walk"
+    assert guess.distinct("walk", {"walk": 0, "walk_2": 0}) == "walk_3"
 
 
 @pytest.mark.parametrize(
@@ -54,4 +55,4 @@ def test_distinct_counts_on():
     ],
 )
 def test_zeros_before_a_number_do_not_count(one, other, same):
-    assert file_names.alike(one, other) is same
+    assert guess.alike(one, other) is same

@@ -6,9 +6,9 @@ import os
 from pathlib import Path
 
 from courtside.calibration import file_formats
+from courtside.drafting.guess import Recording
 from courtside.records import clicks
 from courtside.study.errors import InputError
-from courtside.study.session_guess import Recording
 from courtside.video import reader as video
 from courtside.video import walk_frames
 

@@ -1,10 +1,9 @@
-"""Guess from the names of recordings which camera, walk and take each belongs to."""
+"""Guess cameras, walks and takes of a session from the names of its files."""
 
 import re
+import unicodedata
 from dataclasses import dataclass, field
 from itertools import combinations
-
-from courtside.study import file_names
 
 STATIC = {
     "empty",
@@ -85,7 +84,7 @@ class Recording:
     @property
     def words(self):
         """Words of its name and folders."""
-        return file_names.words(self.parts)
+        return words_of(self.parts)
 
 
 @dataclass
@@ -187,7 +186,7 @@ def _differing(videos, own):
 def _camera_of(words, cameras):
     """Return the camera that words name, and the words left."""
     for name, own in sorted(cameras.items(), key=lambda item: -len(item[1])):
-        said = [next((w for w in words if file_names.alike(w, mine)), None) for mine in own]
+        said = [next((w for w in words if alike(w, mine)), None) for mine in own]
         if all(said):
             return name, tuple(word for word in words if word not in said)
     return None, words
@@ -207,9 +206,9 @@ def _sort_pictures(found, recordings, own, cameras):
         elif recording.kind == "photo" or _has(recording, STATIC):
             _keep(found, found.static, recording, camera, "a picture of no camera found")
         elif recording.kind == "photos" or _is_walk(recording, camera, cameras) or alone:
-            wanted = file_names.name("_".join(words), "walk")
+            wanted = name("_".join(words), "walk")
             wanted = wanted if wanted not in cameras else f"walk_{wanted}"
-            found.walks[file_names.distinct(wanted, found.walks)] = recording
+            found.walks[distinct(wanted, found.walks)] = recording
         else:
             rest.append((recording, camera, words))
     return rest
@@ -243,7 +242,7 @@ def _group(found, rest):
     for words, take in takes.items():
         if len(take) > 1:
             name = words or _shared_name(take) or "take1"
-            found.takes[file_names.distinct(name, found.takes)] = take
+            found.takes[distinct(name, found.takes)] = take
             continue
         for camera, recording in take.items():
             left.setdefault(camera, []).append(recording)
@@ -252,7 +251,7 @@ def _group(found, rest):
 
 def _shared_name(take):
     """Return what the names of a take's files have in common, folders apart."""
-    names = [file_names.words(recording.parts[-1:]) for recording in take.values()]
+    names = [words_of(recording.parts[-1:]) for recording in take.values()]
     shared = set.intersection(*map(set, names)) - FOLDERS
     return "_".join(word for word in names[0] if word in shared)
 
@@ -261,7 +260,7 @@ def _pair_by_order(found, left):
     """Take the k-th recording of every camera for one take, where all have equally many."""
     if len(left) > 1 and len({len(own) for own in left.values()}) == 1:
         for at, together in enumerate(zip(*left.values(), strict=True), start=1):
-            name = file_names.distinct(f"take{at}", found.takes)
+            name = distinct(f"take{at}", found.takes)
             found.takes[name] = dict(zip(left, together, strict=True))
         return
     for camera, own in left.items():
@@ -287,9 +286,83 @@ def _sort_others(found, recordings, own):
                 found.unused.append((recording, f"there is another {recording.kind} file"))
         elif recording.kind in ("bvh", "bag"):
             words = set(own[recording.path])
-            near = [t for t in found.takes if set(file_names.words([t])) & words]
+            near = [t for t in found.takes if set(words_of([t])) & words]
             only = list(found.takes) if len(found.takes) == 1 else [""]
             device = {"bvh": "mocopi", "bag": "realsense"}[recording.kind]
             found.devices.append(((near or only)[0], device, recording))
         elif recording.kind in ("racket", "unusable"):
             found.unused.append((recording, recording.note or "clicked racket ends"))
+
+
+WORD = re.compile(r"[A-Za-z]+[0-9]*|[0-9]+")
+LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "đ": "d", "ł": "l", "þ": "th"}
+
+
+def words_of(parts):
+    """Split the names of a file and its folders into words.
+
+    Parameters
+    ----------
+    parts : sequence of str
+        Folders and the file without its suffix.
+
+    Returns
+    -------
+    found : tuple of str
+        Lower case, without accents; a number belongs to the word before it: `Cam 01-takeTwo` gives
+        `cam01`, `take`, `two`.
+    """
+    found = []
+    for part in parts:
+        own = []
+        for word in WORD.findall(_plain(part)):
+            if word.isdigit() and own and not own[-1][-1].isdigit():
+                own[-1] += word
+            else:
+                own.append(word)
+        found += own
+    return tuple(word.lower() for word in found)
+
+
+def name(text, otherwise):
+    """Make a name that a configuration accepts.
+
+    Parameters
+    ----------
+    text : str
+        Anything.
+    otherwise : str
+        The name of a text that holds no letter or digit of the Latin alphabet.
+
+    Returns
+    -------
+    name : str
+        Lower-case letters, digits and `_`, begun with a letter or digit.
+    """
+    return "_".join(re.findall("[a-z0-9]+", _plain(text).lower())) or otherwise
+
+
+def distinct(wanted, taken):
+    """Return a name, with the first number behind it that makes it differ from those taken."""
+    found, number = wanted, 1
+    while found in taken:
+        number += 1
+        found = f"{wanted}_{number}"
+    return found
+
+
+def alike(one, other):
+    """Tell whether two words are the same but for zeros before their numbers: `cam1` and `cam01`."""
+    return _unpadded(one) == _unpadded(other)
+
+
+def _unpadded(word):
+    return re.sub(r"(?<![0-9])0+(?=[0-9])", "", word)
+
+
+def _plain(text):
+    """Return a text without accents, its words in camel case apart."""
+    text = "".join(LETTERS.get(letter.lower(), letter) for letter in text)
+    text = unicodedata.normalize("NFKD", text)
+    text = "".join(letter for letter in text if not unicodedata.combining(letter))
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)

@@ -2,8 +2,8 @@
 
 from pathlib import PurePosixPath
 
-from courtside.study import session_guess
-from courtside.study.session_guess import Recording
+from courtside.drafting import guess as session_guess
+from courtside.drafting.guess import Recording
 
 
 def recordings(*paths, **kinds):
