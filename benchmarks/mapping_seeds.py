@@ -23,7 +23,7 @@ import map_images
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
-from courtside.geometry import court_trials
+from courtside.evaluation import calibration
 from courtside.records import truth
 from courtside.study import yaml_files
 from courtside.virtual import clicking
@@ -73,7 +73,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
     weights = {key: config["adjust_network"][key] for key in CLICKS}
     found = {}
     for marked in clicking.draws(real.cameras, real.court_xyz, **drawn):
-        for row in court_trials.of_ties(
+        for row in calibration.of_ties(
             record, real.cameras, court, marked, sets=["all"], **weights
         ):
             if row["in_sample"] and not row["outcome"]:

@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.calibration.court import court as courts  # noqa: E402
+from courtside.evaluation import joints as pose_errors  # noqa: E402
 from courtside.figures import close_ups, space, stick, style  # noqa: E402
-from courtside.motion import pose_errors  # noqa: E402
 from courtside.records import derived, footage, keypoints, skeleton, take_truth  # noqa: E402
 from courtside.video import reader  # noqa: E402
 

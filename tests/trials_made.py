@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.geometry import court_trials
+from courtside.evaluation import calibration
 
 ABOUT = {
     "n_images": 12,
@@ -55,5 +55,5 @@ def trials(errors_cm):
 
 def table(rows):
     made = pd.DataFrame(rows)
-    first = [name for name in made if name not in court_trials.COLUMNS]
-    return made.reindex(columns=[*first, *court_trials.COLUMNS])
+    first = [name for name in made if name not in calibration.COLUMNS]
+    return made.reindex(columns=[*first, *calibration.COLUMNS])

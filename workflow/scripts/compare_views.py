@@ -1,6 +1,6 @@
 """Compare skeletons from fewer cameras with those from all: 3D keypoints of a take -> distances per joint."""
 
-from courtside.motion import view_sets
+from courtside.evaluation import camera_sets
 from courtside.records import keypoints, tables
 from courtside.study import log
 
@@ -9,7 +9,7 @@ def main(pose3d_npz, distances_csv, *, fusions, labels):
     records = {
         name: keypoints.read_3d(path) for name, path in zip(fusions, pose3d_npz, strict=True)
     }
-    rows = view_sets.compare(records, fusions[-1])
+    rows = camera_sets.compare(records, fusions[-1])
     tables.write(distances_csv, rows, labels)
 
 

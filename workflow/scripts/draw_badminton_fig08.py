@@ -1,11 +1,12 @@
 """Draw errors by number of bridging images: evaluations of one session -> figure, CSV."""
 
-from courtside.figures import badminton_fig08, style, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import badminton_fig08, style
 from courtside.study import log
 
 
 def main(errors_csv, pdf, png, csv):
-    rows = trials.read(errors_csv)
+    rows = calibration.read(errors_csv)
     numbers = badminton_fig08.table(rows)
     layout = rows["layout"].iloc[0]
     title = f"{rows['session'].iloc[0]}: {rows['preset'].iloc[0]} hall, layout {layout}"

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 
 from courtside.calibration.court import court as courts
+from courtside.evaluation import round_trip
 from courtside.figures import badminton_fig09, stick, style
-from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log

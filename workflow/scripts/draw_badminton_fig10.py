@@ -3,8 +3,8 @@
 import numpy as np
 
 from courtside.calibration.court import court as courts
+from courtside.evaluation import round_trip
 from courtside.figures import badminton_fig10, stick, style
-from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from courtside.evaluation import round_trip
 from courtside.figures import badminton_fig11, stick, style
-from courtside.motion import round_trip
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log

@@ -1,11 +1,12 @@
 """Draw the length of a racket by several calibrations: evaluations of sessions -> figure, CSV."""
 
-from courtside.figures import badminton_fig12, racket_numbers, style
+from courtside.evaluation.tables import racket
+from courtside.figures import badminton_fig12, style
 from courtside.study import log
 
 
 def main(lengths_csv, pdf, png, csv):
-    numbers = racket_numbers.table(racket_numbers.read(lengths_csv))
+    numbers = racket.table(racket.read(lengths_csv))
     style.save(badminton_fig12.draw(numbers), numbers, pdf, png, csv)
 
 

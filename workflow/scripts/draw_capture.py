@@ -1,11 +1,12 @@
 """Draw how a condition of filming changes the error: evaluations of its sessions -> figure, CSV."""
 
-from courtside.figures import conditions, style, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import conditions, style
 from courtside.study import log
 
 
 def main(errors_csv, pdf, png, csv, *, x, group, n_bridging):
-    rows = trials.read(errors_csv)
+    rows = calibration.read(errors_csv)
     numbers = conditions.table(rows, x, group, n_bridging)
     about = [f"{rows['preset'].iloc[0]} hall, layout {rows['layout'].iloc[0]}"]
     about += [] if n_bridging is None else [f"N = {n_bridging}"]

@@ -1,11 +1,12 @@
 """Draw the errors of the cameras' clocks: evaluations of takes -> figure, CSV."""
 
-from courtside.figures import clock_errors, players_table, style
+from courtside.evaluation.tables import players
+from courtside.figures import clock_errors, style
 from courtside.study import log
 
 
 def main(errors_csv, pdf, png, csv):
-    numbers = clock_errors.table(players_table.read(errors_csv))
+    numbers = clock_errors.table(players.read(errors_csv))
     style.save(clock_errors.draw(numbers), numbers, pdf, png, csv)
 
 

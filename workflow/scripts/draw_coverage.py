@@ -1,11 +1,12 @@
 """Draw stated against true uncertainty: evaluations of several sessions -> figure, CSV."""
 
-from courtside.figures import coverage, style, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import coverage, style
 from courtside.study import log
 
 
 def main(errors_csv, pdf, png, csv):
-    numbers = coverage.table(trials.read(errors_csv))
+    numbers = coverage.table(calibration.read(errors_csv))
     style.save(coverage.draw(numbers), numbers, pdf, png, csv)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.body_frame import common, frame
-from courtside.motion import frame_errors
+from courtside.evaluation import sources
 from courtside.records import body_motion, derived, device_motion, tables, take_truth
 from courtside.study import log
 
@@ -18,9 +18,7 @@ def main(body_npz, frame_json, truth_npz, derived_yaml, errors_csv, *, labels, p
         expected = common.counterpart(true, carried_by, body.tpose_s).body_from_device
         device = truth.devices.get(owners[body.source])
         pose = np.eye(3, 4) if device is None else device.from_world  # fixed cameras: the world
-        rows.append(
-            {"source": body.source, **frame_errors.against(frame_errors.read(own), pose, expected)}
-        )
+        rows.append({"source": body.source, **sources.against(sources.read(own), pose, expected)})
     tables.write(errors_csv, pd.DataFrame(rows), labels)
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 from courtside.calibration.court import court as courts
 from courtside.calibration.planning import cameras
 from courtside.calibration.records import tie_points
-from courtside.geometry import court_trials
+from courtside.evaluation import calibration
 from courtside.records import image_names, tables, truth
 from courtside.study import log
 from courtside.virtual import clicking
@@ -27,7 +27,7 @@ def main(
         if record.outcome:
             rows.append({"draw": draw, "outcome": record.outcome})
             continue
-        found = court_trials.of_ties(record, real.cameras, court, marked, sets=sets, **options)
+        found = calibration.of_ties(record, real.cameras, court, marked, sets=sets, **options)
         rows += [{"draw": draw, **row} for row in found]
     angles = [np.nan]
     if record.ties:
@@ -44,7 +44,7 @@ def main(
         "neighbour_deg_median": np.median(angles),
         "neighbour_deg_max": np.max(angles),
     }
-    table = pd.DataFrame(rows).reindex(columns=["draw", *court_trials.COLUMNS])
+    table = pd.DataFrame(rows).reindex(columns=["draw", *calibration.COLUMNS])
     tables.write(errors_csv, table, about)
 
 

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.motion import detection_errors
+from courtside.evaluation import detection
 from courtside.records import keypoints, skeleton, sync, tables, take_truth, truth
 from courtside.study import log
 
@@ -15,7 +15,7 @@ def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, la
     for path in pose2d_npz:
         view = keypoints.read_2d(path)
         clock = sync.Clock(real.offset_s[view.camera], real.drift_ppm[view.camera])
-        rows = detection_errors.evaluate(known[view.camera], view, clock, real, joints)
+        rows = detection.evaluate(known[view.camera], view, clock, real, joints)
         whole = 100 * rows.groupby(["person", "frame_idx"]).placed.all().mean()
         log.logger.info("%s: all %d joints in %.0f %% of frames", view.camera, len(joints), whole)
         parts.append(rows)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from courtside.motion import pose_errors, view_sets
+from courtside.evaluation import camera_sets
+from courtside.evaluation import joints as pose_errors
 from courtside.records import keypoints, limbs, tables, take_truth
 from courtside.study import log
 
@@ -15,7 +16,7 @@ def main(pose3d_npz, truth_npz, gains_csv, *, fusions, pairs, labels):
         joints, error, _ = pose_errors.errors(points, truth.joints, true)
         of = [joints.index(limb) for limb in limbs.JOINTS]
         distance_mm[name] = 1000 * np.linalg.norm(error[:, :, of], axis=-1)
-    rows = view_sets.gains(distance_mm, pairs, points.rate_hz)
+    rows = camera_sets.gains(distance_mm, pairs, points.rate_hz)
     tables.write(gains_csv, rows, labels)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.motion import pose_errors
+from courtside.evaluation import joints
 from courtside.reconstruction import joint_correction
 from courtside.records import keypoints, tables, take_truth
 from courtside.study import log
@@ -13,7 +13,7 @@ def main(pose3d_npz, truth_npz, offsets_csv, *, sex_of, about):
     for found_npz, true_npz in zip(pose3d_npz, truth_npz, strict=True):
         points, truth = keypoints.read_3d(found_npz), take_truth.read(true_npz)
         sexes = [sex_of[str(person)] for person in points.person_id]
-        clips += zip(points.xyz, pose_errors.true_places(points, truth), sexes, strict=True)
+        clips += zip(points.xyz, joints.true_places(points, truth), sexes, strict=True)
     table = joint_correction.estimate(clips, points.joints, truth.joints)
     log.logger.info("frames: %d", np.sum([len(found) for found, _, _ in clips]))
     tables.write(offsets_csv, table, about=about)

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.motion import kinematic_errors
+from courtside.evaluation import kinematics
 from courtside.records import derived, tables, take_truth
 from courtside.study import log
 
@@ -10,8 +10,8 @@ from courtside.study import log
 def main(paths, errors_csv, *, labels, sex_of):
     frames, summary = pd.read_csv(paths.frames), pd.read_csv(paths.summary)
     known = take_truth.read(paths.truth), derived.read(paths.derived), sex_of
-    rows = kinematic_errors.table(frames, *known)
-    rows = kinematic_errors.distances(rows, frames, summary, *known)
+    rows = kinematics.table(frames, *known)
+    rows = kinematics.distances(rows, frames, summary, *known)
     tables.write(errors_csv, rows, labels)
 
 

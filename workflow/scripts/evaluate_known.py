@@ -3,8 +3,8 @@
 import pandas as pd
 
 from courtside.calibration.court import court as courts
+from courtside.evaluation import calibration
 from courtside.geometry import camera as cameras
-from courtside.geometry import court_trials
 from courtside.records import tables, truth
 from courtside.study import log
 from courtside.virtual import clicking
@@ -15,11 +15,11 @@ def main(truth_npz, court_yaml, lens_toml, errors_csv, *, labels, clicks, sets, 
     lenses = {camera: cameras.read_toml(path)[0] for camera, path in lens_toml.items()}
     rows = []
     for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
-        found = court_trials.of_known(
+        found = calibration.of_known(
             real.cameras, court, marked, lenses, sets=sets, click_sigma_px=click_sigma_px
         )
         rows += [{"draw": draw, **row} for row in found]
-    table = pd.DataFrame(rows).reindex(columns=["draw", *court_trials.COLUMNS])
+    table = pd.DataFrame(rows).reindex(columns=["draw", *calibration.COLUMNS])
     tables.write(errors_csv, table, labels)
 
 

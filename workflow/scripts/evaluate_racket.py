@@ -6,7 +6,7 @@ import pandas as pd
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
-from courtside.geometry import racket_trials
+from courtside.evaluation import racket
 from courtside.records import tables, truth
 from courtside.study import log
 from courtside.virtual import clicking, racket_swings
@@ -22,7 +22,7 @@ def main(
     rows = []
     for run, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
         offset = run % len(records)
-        ways = racket_trials.calibrate(records[offset], views, court, marked, **options)
+        ways = racket.calibrate(records[offset], views, court, marked, **options)
         of_run = {"seed": clicks["seed"], "run": run}
         ends = racket_swings.draw(court, length_m, **of_run)
         below = ends[..., 2].mean(axis=1) < court.net["mid_height_m"]
@@ -30,10 +30,10 @@ def main(
             tip = {"sigma_px_at_3840": sigma_px, "again": again}
             seen = racket_swings.click(views, ends, **tip, **of_run)
             about = {"offset": offset, "draw": run, "tip_sigma_px": sigma_px, "again": again}
-            found = racket_trials.rows(ways, seen, length_m, below)
+            found = racket.rows(ways, seen, length_m, below)
             rows += [{**about, **row} for row in found]
-    lengths = racket_trials.length_columns(racket_swings.FRAMES)
-    table = pd.DataFrame(rows).reindex(columns=[*about, *racket_trials.COLUMNS, *lengths])
+    lengths = racket.length_columns(racket_swings.FRAMES)
+    table = pd.DataFrame(rows).reindex(columns=[*about, *racket.COLUMNS, *lengths])
     tables.write(lengths_csv, table, labels)
 
 

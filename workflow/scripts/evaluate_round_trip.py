@@ -2,8 +2,9 @@
 
 import pandas as pd
 
+from courtside.evaluation import joints as joint_errors
+from courtside.evaluation import round_trip
 from courtside.geometry import camera as cameras
-from courtside.motion import joint_errors, round_trip
 from courtside.records import derived, keypoints, skeleton, sync, tables, take_truth
 from courtside.study import log
 

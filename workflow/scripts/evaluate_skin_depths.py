@@ -1,6 +1,6 @@
 """Measure how deep joints lie behind the skin of development bodies: lifted joints, truth -> depths."""
 
-from courtside.motion import skin_depths
+from courtside.evaluation import skin_depths
 from courtside.records import device_motion, tables, take_truth
 from courtside.study import log
 

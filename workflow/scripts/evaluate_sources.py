@@ -7,8 +7,8 @@ import pandas as pd
 
 from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
+from courtside.evaluation import sources
 from courtside.kinematics import smoothness, wrist_arcs
-from courtside.motion import source_errors
 from courtside.records import body_motion, derived, device_motion, tables, take_truth
 from courtside.records.sync import Clock
 from courtside.study import log
@@ -22,12 +22,12 @@ def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_h
     for body in map(body_motion.read, body_npz):
         frame = common.counterpart(true, carried_by, body.tpose_s)
         reference = common.aligned(true, frame, Clock())
-        names, found = source_errors.errors(body, reference)
-        _, expected = source_errors.matched(body, reference)
+        names, found = sources.errors(body, reference)
+        _, expected = sources.matched(body, reference)
         known = np.isfinite(expected).all(axis=-1)
-        errors.append(source_errors.table(names, found, known).assign(source=body.source))
+        errors.append(sources.table(names, found, known).assign(source=body.source))
         for form in ("fixed", "following"):
-            part = source_errors.split(body, reference, form=form)
+            part = sources.split(body, reference, form=form)
             parts.append(part.assign(source=body.source, frame=form))
         swept = wrist_arcs.arcs(replace(reference, clap_s=body.clap_s))
         paths.append(wrist_arcs.paths(swept).assign(source=body.source))

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.motion import pose_errors
+from courtside.evaluation import joints
 from courtside.records import keypoints, tables, take_truth
 from courtside.study import log
 
@@ -19,9 +19,9 @@ def main(pose3d_npz, truth_npz, errors_csv, *, labels):
 
 def table(points, truth):
     points = points.between(truth.time_s[0], truth.time_s[-1])
-    true = pose_errors.true_places(points, truth)
-    rows = pose_errors.table(points.person_id, *pose_errors.errors(points, truth.joints, true))
-    right = pose_errors.identity_percent(points, truth.joints, true)
+    true = joints.true_places(points, truth)
+    rows = joints.table(points.person_id, *joints.errors(points, truth.joints, true))
+    right = joints.identity_percent(points, truth.joints, true)
     who = dict(zip(points.person_id.tolist(), right, strict=True))
     return rows.assign(identity_percent=rows["person"].map(who))
 

@@ -1,12 +1,12 @@
 """Tabulate all ways to calibrate: evaluations of several sessions -> one CSV."""
 
-from courtside.figures import calibration_table, trials
+from courtside.evaluation.tables import calibration
 from courtside.records import tables
 from courtside.study import log
 
 
 def main(errors_csv, table_csv, *, n_reference):
-    found = calibration_table.table(trials.read(errors_csv), n_reference=n_reference)
+    found = calibration.table(calibration.read(errors_csv), n_reference=n_reference)
     tables.write(table_csv, found, float_format="%.4f")
 
 

@@ -1,16 +1,15 @@
 """Tabulate how well virtual players are measured: evaluations of takes -> one CSV."""
 
-from courtside.figures import players_table
+from courtside.evaluation.tables import players
 from courtside.records import tables
 from courtside.study import log
 
 
 def main(paths, table_csv):
     parts = [
-        players_table.read(part)
-        for part in (paths.errors, paths.kinematics, paths.clocks, paths.gains)
+        players.read(part) for part in (paths.errors, paths.kinematics, paths.clocks, paths.gains)
     ]
-    tables.write(table_csv, players_table.table(*parts), float_format="%.4f")
+    tables.write(table_csv, players.table(*parts), float_format="%.4f")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@ import pandas as pd
 import pytest
 
 import trials_made
-from courtside.figures import badminton_fig08, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import badminton_fig08
 
 SFM, OUT, FEW, PAPER = ("sfm", 18, True), ("sfm", 18, False), ("sfm", 3, True), ("paper", 3, True)
 
@@ -23,11 +24,11 @@ def numbers():
     ]
     parts += [trials_made.structure(2, mapper="incremental", n_bridging=20, offset=1)]
     parts += [trials_made.structure(2, n_bridging=5), trials_made.known(known)]
-    return badminton_fig08.table(trials.tidy(pd.concat(parts)))
+    return badminton_fig08.table(calibration.tidy(pd.concat(parts)))
 
 
 def value(numbers, column="median", **wanted):
-    return trials.pick(numbers, **wanted)[column].squeeze()
+    return calibration.pick(numbers, **wanted)[column].squeeze()
 
 
 def test_the_numbers_are_medians_of_draws_and_offsets(numbers):

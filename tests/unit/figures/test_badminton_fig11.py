@@ -7,8 +7,8 @@ import pytest
 import takes_made
 
 import walker
+from courtside.evaluation import detection
 from courtside.figures import badminton_fig11, close_ups
-from courtside.motion import detection_errors
 
 LIMIT = 0.1
 FRAME = 9
@@ -43,7 +43,7 @@ def test_the_limit_is_a_share_of_the_torso_in_each_picture():
     record, _ = takes_made.take()
     _, _, limit_px = limits(record)
     for at, camera in enumerate(takes_made.CAMERAS):
-        torso = detection_errors.torso_px(camera, record.joints, record.xyz[0])
+        torso = detection.torso_px(camera, record.joints, record.xyz[0])
         assert limit_px[0, at] == pytest.approx(0.1 * np.median(torso))
 
 

@@ -4,7 +4,8 @@ import pandas as pd
 import pytest
 
 import racket_runs
-from courtside.figures import badminton_fig12, racket_numbers
+from courtside.evaluation.tables import racket
+from courtside.figures import badminton_fig12
 
 ERRORS = {way: [(10.0 + at, 12.0, 9.0 + at)] * 3 for at, way in enumerate(racket_runs.WAYS)}
 
@@ -17,7 +18,7 @@ def numbers(tmp_path, errors, sessions=("hall", "yard")):
         for sigma_px in (0.7, 1.8)
     ]
     pd.concat(parts).to_csv(tmp_path / "runs.csv", index=False)
-    return racket_numbers.table(racket_numbers.read([tmp_path / "runs.csv"]))
+    return racket.table(racket.read([tmp_path / "runs.csv"]))
 
 
 def medians(axis):

@@ -4,7 +4,8 @@ import pandas as pd
 import pytest
 
 import trials_made
-from courtside.figures import conditions, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import conditions
 
 OUT, SFM, PAPER = ("sfm", 18, False), ("sfm", 18, True), ("paper", 3, True)
 
@@ -23,7 +24,7 @@ def rows():
     other = trials_made.structure(
         {OUT: [99.0]}, session="x", speed_kmh=1, stabiliser=True, n_bridging=40
     )
-    return trials.tidy(pd.concat([*parts, other]))
+    return calibration.tidy(pd.concat([*parts, other]))
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,7 @@ def numbers():
 
 
 def at(numbers, way, speed, stabiliser):
-    return trials.pick(numbers, way=way, speed_kmh=speed, stabiliser=stabiliser).squeeze()
+    return calibration.pick(numbers, way=way, speed_kmh=speed, stabiliser=stabiliser).squeeze()
 
 
 def test_the_scored_points_are_left_out_where_they_can_be(numbers):
@@ -63,7 +64,7 @@ def test_sizes_are_ordered_by_their_width():
         trials_made.structure({OUT: [1.0], PAPER: [2.0]}, session=f"s{n}", size_px=size)
         for n, size in enumerate(("1280x720", "640x360", "960x540"))
     ]
-    numbers = conditions.table(trials.tidy(pd.concat(parts)), "size_px")
+    numbers = conditions.table(calibration.tidy(pd.concat(parts)), "size_px")
     axis = conditions.draw(numbers, "size_px").axes[0]
     ticks = [text.get_text() for text in axis.get_xticklabels()]
     assert ticks == ["640x360", "960x540", "1280x720"]

@@ -4,7 +4,8 @@ import pandas as pd
 import pytest
 
 import trials_made
-from courtside.figures import coverage, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import coverage
 
 SFM, FEW = ("sfm", 18, True), ("sfm", 8, True)
 
@@ -17,11 +18,11 @@ def numbers():
     parts = [first, second, trials_made.structure(2, offset=2)]
     parts += [trials_made.structure({SFM: [1.0]}, session="rich-a", n_bridging=40)]
     parts += [trials_made.structure({SFM: [50.0]}, mapper="incremental")]
-    return coverage.table(trials.tidy(pd.concat(parts)))
+    return coverage.table(calibration.tidy(pd.concat(parts)))
 
 
 def test_shares_are_means_over_trials(numbers):
-    found = trials.pick(numbers, session="plain-a").squeeze()
+    found = calibration.pick(numbers, session="plain-a").squeeze()
     assert (found.n, found.n_failed, found.n_clicks) == (4, 2, 18)
     assert found.coverage50 == pytest.approx(40)
     assert found.coverage90 == pytest.approx(90)
@@ -39,5 +40,5 @@ def test_each_session_has_its_column(numbers):
 
 def test_more_sessions_take_more_rows():
     parts = [trials_made.structure({SFM: [1.0]}, session=f"s{n}") for n in range(6)]
-    drawing = coverage.draw(coverage.table(trials.tidy(pd.concat(parts))))
+    drawing = coverage.draw(coverage.table(calibration.tidy(pd.concat(parts))))
     assert sum(axis.get_visible() for axis in drawing.axes) == 12

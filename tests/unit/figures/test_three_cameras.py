@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 import walker
+from courtside.evaluation import joints
 from courtside.figures import three_cameras
-from courtside.motion import pose_errors
 
 OFFSET_M = {"two-robust": 0.06, "halfbody": 0.04, "three-robust": 0.02, "all-robust": 0.01}
 CAMERAS = {way: [f"c{at}" for at in range(2)] for way in three_cameras.WAYS}
@@ -20,9 +20,9 @@ def evaluation(fusion, stage, offset_m, n_persons=1, take="footwork"):
     true = np.nan_to_num(points.xyz, nan=1.0)
     left = np.char.startswith(points.joints.astype(str), "left_")
     xyz = true + np.where(left, 2 * offset_m, offset_m)[:, None] * [0.6, 0.0, 0.8]
-    found = pose_errors.errors(replace(points, xyz=xyz), points.joints.tolist(), true)
+    found = joints.errors(replace(points, xyz=xyz), points.joints.tolist(), true)
     labels = {"session": "players-b", "take": take, "stage": stage, "calibration": "sfm-n40"}
-    rows = pose_errors.table(points.person_id, *found)
+    rows = joints.table(points.person_id, *found)
     return rows.assign(**labels, fusion=fusion, model="net", identity_percent=100.0)
 
 

@@ -29,7 +29,7 @@ def table(rows, layouts):
     Parameters
     ----------
     rows : pandas.DataFrame
-        Of `courtside.motion.detection_errors.evaluate`, with session, take and model.
+        Of `courtside.evaluation.detection.evaluate`, with session, take and model.
     layouts : dict of str to (str, sequence of str)
         For each layout its session and the cameras that reconstruct together.
 

@@ -8,7 +8,8 @@ from collections import namedtuple
 import numpy as np
 import pandas as pd
 
-from courtside.figures import bars, style, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import bars, style
 
 Series = namedtuple("Series", "label method mapper n_clicks in_sample colour marker")
 # [Shishido2020, sec 3.2]: mean of the X_o and Y_o errors, cm, and degrees between neighbours, by N.
@@ -41,7 +42,7 @@ def table(rows):
     Parameters
     ----------
     rows : pandas.DataFrame
-        Of `trials.tidy`, of one session.
+        Of `calibration.tidy`, of one session.
 
     Returns
     -------
@@ -52,10 +53,10 @@ def table(rows):
         holds the paper's values.
     """
     keys = ["method", "mapper", "n_clicks", "in_sample", "n_bridging"]
-    parts = [trials.summary(rows, keys, name).assign(quantity=name) for name in ERRORS]
-    found = trials.structures(rows)
+    parts = [calibration.summary(rows, keys, name).assign(quantity=name) for name in ERRORS]
+    found = calibration.structures_of(rows)
     for name in ("solved_share", "registered_share", "neighbour_deg_median", "neighbour_deg_max"):
-        part = trials.summary(found, ["mapper", "n_bridging"], name)
+        part = calibration.summary(found, ["mapper", "n_bridging"], name)
         if name.endswith(
             "share"
         ):  # a share of few structures has a mean, and no quantiles worth the name
@@ -80,12 +81,12 @@ def series(numbers):
     paper = Series(
         "paper's eq 2-5, incremental", "paper", "incremental", 3, True, style.CYCLE[1], "s"
     )
-    found = [paper] if len(trials.pick(numbers, method="paper", mapper="incremental")) else []
-    ours = trials.pick(numbers, method="sfm", mapper="global")
+    found = [paper] if len(calibration.pick(numbers, method="paper", mapper="incremental")) else []
+    ours = calibration.pick(numbers, method="sfm", mapper="global")
     clicks = sorted(ours["n_clicks"].dropna().astype(int).unique(), reverse=True)
     for count, look in zip(clicks, BY_CLICKS, strict=False):
         for in_sample in (False, True):
-            if len(trials.pick(ours, n_clicks=count, in_sample=in_sample)):
+            if len(calibration.pick(ours, n_clicks=count, in_sample=in_sample)):
                 name = f"control points, {count} clicks"
                 found.append(Series(name, "sfm", "global", count, in_sample, *look))
     return found
@@ -111,7 +112,7 @@ def levels(numbers, quantity):
     for level in LEVELS:
         if level.rank >= len(clicks):
             continue
-        rows = trials.pick(of, method=level.method, n_clicks=clicks[level.rank])
+        rows = calibration.pick(of, method=level.method, n_clicks=clicks[level.rank])
         rows = rows.dropna(subset=["median"]).sort_values("in_sample")
         if len(rows):
             found.append((f"{level.words}, {clicks[level.rank]} clicks", rows, level))
@@ -161,7 +162,7 @@ def draw(numbers, title, layout=""):
 
 def _sizes(numbers):
     """Return how many trials stand behind a mark, in words."""
-    of = trials.pick(numbers, method="sfm", quantity="xy_cm")
+    of = calibration.pick(numbers, method="sfm", quantity="xy_cm")
     total = (of["n"] + of["n_failed"]).astype(int)
     if of.empty:
         return "no trials"
@@ -180,7 +181,7 @@ def _draw_errors(axis, numbers, quantity):
     shown = series(numbers)
     for at, each in enumerate(shown):
         keys = ("method", "mapper", "n_clicks", "in_sample")
-        rows = trials.pick(of, **{key: getattr(each, key) for key in keys}).sort_values(
+        rows = calibration.pick(of, **{key: getattr(each, key) for key in keys}).sort_values(
             "n_bridging"
         )
         x = rows["n_bridging"] * np.exp(DODGE * (at - (len(shown) - 1) / 2))
@@ -193,9 +194,9 @@ def _draw_errors(axis, numbers, quantity):
 
 
 def _mark_published(axis, numbers):
-    of = trials.pick(numbers, method="published")
+    of = calibration.pick(numbers, method="published")
     kinds = ("xy_cm", "xy_cm_below", "xy_cm_strong")
-    exact, below, strong = (trials.pick(of, quantity=kind) for kind in kinds)
+    exact, below, strong = (calibration.pick(of, quantity=kind) for kind in kinds)
     look = {"color": "black", "linestyle": "none", "markersize": 8, "zorder": 6}
     axis.plot(exact["n_bridging"], exact["median"], "*", **look)
     axis.plot(below["n_bridging"], below["median"], marker=r"$\downarrow$", **look)
@@ -212,7 +213,7 @@ def _draw_solved(axis, numbers):
 def _draw_angles(axis, numbers, layout):
     for quantity, form in (("neighbour_deg_median", "o-"), ("neighbour_deg_max", "^:")):
         _draw_mappers(axis, numbers, quantity, form)
-    of = trials.pick(numbers, method="published", quantity="neighbour_deg_median")
+    of = calibration.pick(numbers, method="published", quantity="neighbour_deg_median")
     axis.plot(of["n_bridging"], of["median"], "*", color="black", markersize=8, zorder=6)
     if layout in WALK_DEG:
         counts = np.sort(numbers["n_bridging"].dropna().unique())
@@ -222,7 +223,7 @@ def _draw_angles(axis, numbers, layout):
 
 def _draw_mappers(axis, numbers, quantity, form, factor=1):
     for at, (mapper, colour) in enumerate(MAPPERS.items()):
-        rows = trials.pick(numbers, quantity=quantity, mapper=mapper).dropna(subset=["median"])
+        rows = calibration.pick(numbers, quantity=quantity, mapper=mapper).dropna(subset=["median"])
         rows = rows.sort_values("n_bridging")
         x = rows["n_bridging"] * np.exp(DODGE * (at - 0.5))
         axis.plot(x, factor * rows["median"], form, color=colour, markersize=4, linewidth=1)

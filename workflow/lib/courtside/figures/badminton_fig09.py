@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.patches import Rectangle
 
+from courtside.evaluation import round_trip
 from courtside.figures import close_ups, space, speeds, style
-from courtside.motion import round_trip
 
 ROW_MM = (30, 43, 58, 43)  # highest rows: pictures, detections, 3D and measures, reprojections
 LEGEND = {

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.lines import Line2D
 
+from courtside.evaluation import detection
 from courtside.figures import close_ups, style
-from courtside.motion import detection_errors
 from courtside.records import reasons
 
 WIDEST_MM = 62  # of a panel
@@ -40,7 +40,7 @@ def disagreements(points, cameras, joints, limit_torso):
     limit_px : (P, C) float
     """
     at = [list(points.joints).index(joint) for joint in joints]
-    torso = [detection_errors.torso_px(camera, points.joints, points.xyz) for camera in cameras]
+    torso = [detection.torso_px(camera, points.joints, points.xyz) for camera in cameras]
     limit_px = limit_torso * np.nanmedian(torso, axis=-1).T
     error = points.reproj_error_px[:, :, at]
     with np.errstate(invalid="ignore"):

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from courtside.figures import bars, racket_numbers, style
+from courtside.evaluation.tables import racket
+from courtside.figures import bars, style
 
 Way = namedtuple("Way", "name words colour")
 WAYS = [  # name: method and number of clicks, as evaluations have them
@@ -41,7 +42,7 @@ WIDTH = 0.11  # of a box, where groups are 1 apart
 
 
 def draw(numbers):
-    """Draw the table of `racket_numbers.table`, one column of panels for each session.
+    """Draw the table of `racket.table`, one column of panels for each session.
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ def _draw_errors(axis, numbers):
         for way, place in zip(WAYS, at + _places(len(WAYS)), strict=True):
             if way.name in of.index:
                 _box(axis, place, of.loc[way.name], way.colour)
-        floor = of["median"].get(racket_numbers.FLOOR, np.nan)
+        floor = of["median"].get(racket.FLOOR, np.nan)
         reach = [at - 0.42, at + 0.42]
         axis.plot(reach, [floor, floor], color="#777777", linestyle="--", linewidth=0.8, zorder=1)
     bars.plain_log(axis)
@@ -150,7 +151,7 @@ def _draw_differences(axis, numbers, published):
 def _draw_run(axis, numbers):
     for way in reversed(WAYS):
         of = numbers[numbers["way"] == way.name].sort_values("frame")
-        on_top = way.name == racket_numbers.OURS
+        on_top = way.name == racket.OURS
         axis.plot(of["frame"], of["median"], color=way.colour, linewidth=1.6 if on_top else 0.9)
     axis.axhline(RACKET_MM, color="black", linestyle=":", linewidth=0.8)
     axis.axvline(BELOW + 0.5, color="black", linewidth=0.6)
@@ -164,7 +165,7 @@ def _draw_run(axis, numbers):
 
 def _draw_volume(axis, numbers):
     of = numbers.set_index("way")
-    shown = [way for way in WAYS if way.name in of.index and way.name != racket_numbers.FLOOR]
+    shown = [way for way in WAYS if way.name in of.index and way.name != racket.FLOOR]
     for place, way in enumerate(shown):
         _box(axis, place * WIDTH * 3, of.loc[way.name], way.colour)
         value = of.loc[way.name, "median"]

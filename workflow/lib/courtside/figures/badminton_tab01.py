@@ -28,7 +28,7 @@ def table(rows, published, person=None):
     Parameters
     ----------
     rows : pandas.DataFrame
-        Of `courtside.motion.round_trip.table`, for one or more sets of cameras.
+        Of `courtside.evaluation.round_trip.table`, for one or more sets of cameras.
     published : pandas.DataFrame
         joint, mean_mm, sd_mm, n_frames, source.
     person : str, optional

@@ -5,7 +5,8 @@ import re
 import numpy as np
 import pandas as pd
 
-from courtside.figures import bars, style, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import bars, style
 
 METHODS = {  # [method, mapper, clicks]: as the study names them
     "control points": ("sfm", "global", 18),
@@ -29,7 +30,7 @@ def table(rows, x, group=None, n_bridging=None):
     Parameters
     ----------
     rows : pandas.DataFrame
-        Of `trials.tidy`.
+        Of `calibration.tidy`.
     x : str
         Column of the setting that is varied.
     group : str or None
@@ -48,10 +49,10 @@ def table(rows, x, group=None, n_bridging=None):
     settings = [x] if group is None else [x, group]
     parts = []
     for way, (method, mapper, clicks) in METHODS.items():
-        of = trials.pick(rows, method=method, mapper=mapper, n_clicks=clicks)
+        of = calibration.pick(rows, method=method, mapper=mapper, n_clicks=clicks)
         of = of[of[x].notna()]
         of = of[of["in_sample"] == of["in_sample"].min()] if len(of) else of
-        found = trials.summary(of, ["in_sample", *settings], "volume_rms_cm")
+        found = calibration.summary(of, ["in_sample", *settings], "volume_rms_cm")
         parts.append(found.assign(way=way))
     columns = ["way", "in_sample", *settings, "n", "p05", "median", "p95", "n_failed"]
     return pd.concat(parts, ignore_index=True)[columns]

@@ -3,7 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from courtside.figures import bars, style, trials
+from courtside.evaluation.tables import calibration
+from courtside.figures import bars, style
 
 METHOD = {"method": "sfm", "mapper": "global"}
 LEVELS = {
@@ -21,7 +22,7 @@ def table(rows):
     Parameters
     ----------
     rows : pandas.DataFrame
-        Of `trials.tidy`, of any number of sessions.
+        Of `calibration.tidy`, of any number of sessions.
 
     Returns
     -------
@@ -30,7 +31,7 @@ def table(rows):
         n_failed; the mean over trials of `coverage50`, `coverage90`, `coverage95`, %; and of
         `volume_rms_cm` and `predicted_volume_cm` the columns `..._p05`, `..._median`, `..._p95`.
     """
-    of = trials.pick(rows, in_sample=True, **METHOD)
+    of = calibration.pick(rows, in_sample=True, **METHOD)
     of = of[of["n_clicks"] == of.groupby("session")["n_clicks"].transform("max")]
     found = []
     for (session, count), group in of.groupby(["session", "n_bridging"]):
@@ -39,7 +40,7 @@ def table(rows):
         row["n_failed"] = len(group) - row["n"]
         row |= {name: 100 * group[name].mean() for name in LEVELS}
         for name in ("volume_rms_cm", "predicted_volume_cm"):
-            spread = trials.spread(group[name])
+            spread = calibration.spread(group[name])
             row |= {f"{name}_{part}": spread[part] for part in ("p05", "median", "p95")}
         found.append(row)
     return pd.DataFrame(found)

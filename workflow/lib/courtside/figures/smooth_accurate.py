@@ -24,7 +24,7 @@ def table(distortion, errors=None, truth=None):
     distortion : pandas.DataFrame
         Of `courtside.kinematics.wrist_arcs`, with session, take, source, unit_m and sparc.
     errors : pandas.DataFrame, optional
-        Of `courtside.motion.source_errors`, with session, take and source, of the takes that have a truth.
+        Of `courtside.evaluation.sources`, with session, take and source, of the takes that have a truth.
     truth : pandas.DataFrame, optional
         In the form of `distortion`, of the true wrists; source is the one they are to be compared with.
 

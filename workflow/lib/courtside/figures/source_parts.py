@@ -5,7 +5,7 @@ import pandas as pd
 
 from courtside.figures import bars, source_looks, style
 
-SHOWN = {  # alignments of `courtside.motion.source_errors`, from the hardest to the kindest
+SHOWN = {  # alignments of `courtside.evaluation.sources`, from the hardest to the kindest
     "body_frame": "unaligned\n(body frame of the T-pose)",
     "root_relative": "root-relative\n(middle of the hips laid on top)",
     "procrustes_frame": "Procrustes\n(similarity for each frame)",
@@ -34,7 +34,7 @@ def table(errors, parts):
     Parameters
     ----------
     errors, parts : pandas.DataFrame
-        Of `courtside.motion.source_errors`, with `source`; parts also with `frame`.
+        Of `courtside.evaluation.sources`, with `source`; parts also with `frame`.
     """
     errors = errors[errors["alignment"].isin(SHOWN)].assign(table="errors")
     rows = pd.concat([errors, parts.assign(table="parts")], ignore_index=True)

@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from courtside.figures import bars, players_table, style
+from courtside.evaluation.tables import players
+from courtside.figures import bars, style
 from courtside.records import limbs
 
 BLOCK = ["session", "take", "calibration", "model"]  # what has panels of its own
@@ -36,7 +37,7 @@ def table(errors, kinematics):
     Parameters
     ----------
     errors, kinematics : pandas.DataFrame
-        Of `players_table.read`; kinematics may be empty.
+        Of `players.read`; kinematics may be empty.
 
     Returns
     -------
@@ -46,7 +47,7 @@ def table(errors, kinematics):
         for neck and centre, which are measured from the raw joints by a filter of their own (stage
         `kinematics`), the one with the larger median.
     """
-    errors = players_table.together(errors)
+    errors = players.together(errors)
     points = kinematics.reindex(columns=[*BLOCK, "fusion", "person", "n", *POINT_COLUMNS]).rename(
         columns=POINT_COLUMNS
     )

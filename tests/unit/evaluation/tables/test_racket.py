@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 import racket_runs
-from courtside.figures import racket_numbers, trials
+from courtside.evaluation.tables import calibration, racket
 
 FLAT = [(10.0, 10.0, 10.0)] * 4
 # Minus FLAT: the published signs are -, +, -; its sizes 0.83, 0.06 and 3.83 mm.
@@ -16,7 +16,7 @@ def of_files(tmp_path, *parts):
     for part in parts:
         paths.append(tmp_path / f"{len(paths)}.csv")
         part.to_csv(paths[-1], index=False)
-    return racket_numbers.table(racket_numbers.read(paths))
+    return racket.table(racket.read(paths))
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def numbers(tmp_path):
 
 
 def row(numbers, **wanted):
-    found = trials.pick(numbers[numbers["session"] == "hall"], **wanted)
+    found = calibration.pick(numbers[numbers["session"] == "hall"], **wanted)
     assert len(found) == 1
     return found.iloc[0]
 

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from scipy.optimize import linear_sum_assignment
 
+from courtside.evaluation import joints as pose_errors
 from courtside.geometry import camera as camera_models
-from courtside.motion import pose_errors
 from courtside.study.errors import InputError
 
 TOLERANCE = 0.2  # of the torso's length: PCK@0.2

@@ -40,7 +40,7 @@ def together(errors):
     Parameters
     ----------
     errors : pandas.DataFrame
-        Of `courtside.motion.pose_errors.table` with labels; identity_percent may be missing.
+        Of `courtside.evaluation.joints.table` with labels; identity_percent may be missing.
 
     Returns
     -------

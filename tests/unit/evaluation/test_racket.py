@@ -11,7 +11,8 @@ import scene
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court, joint_adjustment, sfm_alignment
 from courtside.calibration.records import tie_points
-from courtside.geometry import racket_trials, similarity, triangulation
+from courtside.evaluation import racket as racket_trials
+from courtside.geometry import similarity, triangulation
 from scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")

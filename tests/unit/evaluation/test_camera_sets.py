@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import walker
-from courtside.motion import pose_errors, view_sets
+from courtside.evaluation import camera_sets, joints
 
 
 def record(n_frames=40, n_persons=1):
@@ -24,7 +24,7 @@ def moved(points, joint, offset_m, missing=()):
 def test_a_displacement_and_gaps_are_what_the_table_says():
     base = record()
     two = moved(base, "left_knee", [0.03, 0.0, 0.04], missing=range(10))
-    rows = view_sets.compare({"two-robust": two, "all-robust": base}, "all-robust")
+    rows = camera_sets.compare({"two-robust": two, "all-robust": base}, "all-robust")
     assert set(rows["fusion"]) == {"two-robust"} and set(rows["reference"]) == {"all-robust"}
     assert rows["joint"].tolist()[:3] == ["limbs", "right half", "left half"]
     rows = rows.set_index("joint")
@@ -39,7 +39,7 @@ def test_a_displacement_and_gaps_are_what_the_table_says():
 
 def test_what_the_reference_lacks_is_not_missed():
     base = moved(record(), "left_knee", 0.0, missing=range(20))
-    rows = view_sets.compare(
+    rows = camera_sets.compare(
         {"two-dlt": moved(record(), "left_knee", 0.0, missing=range(25)), "all-robust": base},
         "all-robust",
     ).set_index("joint")
@@ -51,14 +51,14 @@ def test_exchanged_sides_are_counted_in_frames():
     base = record()
     xyz, mirror = base.xyz.copy(), np.array(walker.SKELETON.mirror())
     xyz[:, :10] = xyz[:, :10][:, :, mirror]
-    rows = view_sets.compare({"two": replace(base, xyz=xyz), "all": base}, "all")
+    rows = camera_sets.compare({"two": replace(base, xyz=xyz), "all": base}, "all")
     assert rows.set_index("joint").loc["limbs", "exchanged_percent"] == 25
 
 
 def test_records_of_other_times_are_refused():
     base = record()
     with pytest.raises(ValueError, match="same time_s"):
-        view_sets.compare({"two": replace(base, time_s=base.time_s + 0.01), "all": base}, "all")
+        camera_sets.compare({"two": replace(base, time_s=base.time_s + 0.01), "all": base}, "all")
 
 
 def test_a_gain_is_the_difference_over_places_that_both_have():
@@ -67,7 +67,7 @@ def test_a_gain_is_the_difference_over_places_that_both_have():
     ours = other - 5.0
     # Ours leaves out all that is hard: over the places of both, it still gains 5 mm and no more.
     ours[other > 50] = np.nan
-    row = view_sets.gains({"r": ours, "d": other}, [("r", "d")], 30.0).iloc[0]
+    row = camera_sets.gains({"r": ours, "d": other}, [("r", "d")], 30.0).iloc[0]
     for name in ("median", "p95"):
         assert row[f"{name}_mm"] == pytest.approx(-5)
         assert row[f"{name}_from_mm"] == pytest.approx(-5) == row[f"{name}_to_mm"]
@@ -76,7 +76,7 @@ def test_a_gain_is_the_difference_over_places_that_both_have():
 
 def test_a_short_take_has_no_interval_and_an_empty_one_no_gain():
     one = np.ones((1, 100, 12))
-    rows = view_sets.gains(
+    rows = camera_sets.gains(
         {"a": one, "b": 2 * one, "c": one * np.nan}, [("a", "b"), ("a", "c")], 30
     )
     assert rows["median_mm"].iloc[0] == -1 and np.isnan(rows["median_from_mm"].iloc[0])
@@ -89,13 +89,13 @@ def held(block_s, n_takes=60):
     for _ in range(n_takes):
         pieces = np.repeat(rng.normal(0, 10, 40), 15)[None, :, None]
         errors = {"a": pieces + rng.normal(0, 0.1, (1, 600, 1)), "b": np.zeros((1, 600, 1))}
-        row = view_sets.gains(errors, [("a", "b")], 30.0, block_s=block_s).iloc[0]
+        row = camera_sets.gains(errors, [("a", "b")], 30.0, block_s=block_s).iloc[0]
         inside += row["median_from_mm"] <= 0 <= row["median_to_mm"]
     return inside / n_takes
 
 
 def test_intervals_are_as_wide_as_errors_that_last_make_them(monkeypatch):
-    monkeypatch.setattr(view_sets, "REPLICATES", 200)
+    monkeypatch.setattr(camera_sets, "REPLICATES", 200)
     # 20 pieces for a median: 90 % rather than 95 %. Frames drawn singly pretend to know 15 times as much.
     assert 0.8 <= held(1.0) <= 1
     assert held(1 / 30) < 0.6
@@ -103,5 +103,5 @@ def test_intervals_are_as_wide_as_errors_that_last_make_them(monkeypatch):
 
 def test_limbs_are_those_of_the_evaluation():
     names = ["left_wrist", "right_wrist", "nose", "left_eye"]
-    assert view_sets._groups(names)["limbs"] == [0, 1]
-    assert set(view_sets.SETS) == set(pose_errors.SETS)
+    assert camera_sets._groups(names)["limbs"] == [0, 1]
+    assert set(camera_sets.SETS) == set(joints.SETS)

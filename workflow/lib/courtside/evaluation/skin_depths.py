@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 
 from courtside.depth.lifting import SKIN_TO_JOINT_M, by_joint
+from courtside.evaluation.joints import at_times
 from courtside.geometry import rotations
-from courtside.motion.pose_errors import at_times
 from courtside.records import limbs, sync
 
 COLUMNS = ["joint", "skin_m", "sd_m", "n", "beyond_m", "beyond_sd_m"]

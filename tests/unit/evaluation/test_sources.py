@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from bodies_made import body
-from courtside.motion import source_errors
+from courtside.evaluation import sources
 
 JOINTS = ["left_hip", "right_hip", "left_wrist", "right_wrist", "right_ankle", "left_ankle"]
 UNIT_M = 0.75
@@ -38,14 +38,14 @@ def source(
 
 
 def parts(**options):
-    return source_errors.split(source(**options), REFERENCE).set_index("part")
+    return sources.split(source(**options), REFERENCE).set_index("part")
 
 
 def test_interpolation_is_a_cubic_and_bridges_no_gap():
     time_s = np.arange(0, 2, 0.05)
     cubic = np.stack([time_s**2, time_s**3 - time_s, 2 * time_s], axis=1)[:, None]
     wanted = np.array([0.33, 1.011, 1.5, 0.02, -0.1, 2.5])
-    found = source_errors.at_times(time_s, cubic, wanted)[:, 0]
+    found = sources.at_times(time_s, cubic, wanted)[:, 0]
     np.testing.assert_allclose(
         found[:3, [0, 2]], np.stack([wanted[:3] ** 2, 2 * wanted[:3]], axis=1)
     )
@@ -55,27 +55,25 @@ def test_interpolation_is_a_cubic_and_bridges_no_gap():
     )  # a line at the end
     assert np.isnan(found[4:]).all()
     cubic[20:24] = np.nan
-    assert np.isnan(source_errors.at_times(time_s, cubic, np.array([0.97, 1.1, 1.17]))).all()
+    assert np.isnan(sources.at_times(time_s, cubic, np.array([0.97, 1.1, 1.17]))).all()
     holed = np.delete(time_s, [20, 21, 22])
-    assert np.isnan(
-        source_errors.at_times(holed, np.delete(cubic, [20, 21, 22], axis=0), [1.05])
-    ).all()
+    assert np.isnan(sources.at_times(holed, np.delete(cubic, [20, 21, 22], axis=0), [1.05])).all()
 
 
 def test_an_exact_source_has_no_error():
-    _, found = source_errors.errors(source(), REFERENCE)
-    for alignment in source_errors.ALIGNMENTS:
+    _, found = sources.errors(source(), REFERENCE)
+    for alignment in sources.ALIGNMENTS:
         assert np.nanmax(np.abs(found[alignment])) < 0.5  # mm: cubic between frames
 
 
 def test_each_alignment_takes_off_what_it_should():
     shift = np.array([0.1, -0.05, 0.02])
     turned = source(turn=(0.1, 0.3, -0.1), scale=1.1, shift=shift)
-    names, found = source_errors.errors(turned, REFERENCE)
+    names, found = sources.errors(turned, REFERENCE)
     assert names == JOINTS
     for alignment in ("procrustes_take", "procrustes_frame"):
         assert np.nanmax(np.abs(found[alignment])) < 0.6
-    _, found = source_errors.errors(source(shift=shift), REFERENCE)
+    _, found = sources.errors(source(shift=shift), REFERENCE)
     np.testing.assert_allclose(
         np.nanmean(found["body_frame"], axis=(0, 1)), 1000 * UNIT_M * shift, atol=0.1
     )
@@ -88,7 +86,7 @@ def test_the_table_counts_and_adds_up():
     error[:400, 0] = np.nan
     known = np.ones((4000, 2), bool)
     known[:100] = False
-    rows = source_errors.table(["a", "b"], {"body_frame": error}, known).set_index("joint")
+    rows = sources.table(["a", "b"], {"body_frame": error}, known).set_index("joint")
     assert rows.n["a"] == 3600
     assert rows.missing_percent["a"] == pytest.approx(100 * 300 / 3900)
     assert rows.missing_percent["b"] == 0
@@ -142,6 +140,6 @@ def test_the_parts_add_up_and_none_is_negative():
 
 def test_only_joints_of_both_are_compared():
     few = source(joints=["left_hip", "right_hip", "right_ankle", "left_wrist", "right_wrist"])
-    names, found = source_errors.errors(few, REFERENCE)
+    names, found = sources.errors(few, REFERENCE)
     assert names == ["left_hip", "right_hip", "right_ankle", "left_wrist", "right_wrist"]
     assert found["body_frame"].shape[1] == 5

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from courtside.depth.lifting import SKIN_TO_JOINT_M
-from courtside.motion import skin_depths
+from courtside.evaluation import skin_depths
 from courtside.records import limbs
 from courtside.records.take_truth import DeviceTruth, TakeTruth
 

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import trials_made
-from courtside.figures import calibration_table, trials
+from courtside.evaluation.tables import calibration
 
 SFM, OUT, PAPER = ("sfm", 18, True), ("sfm", 18, False), ("paper", 3, True)
 KNOWN, KNOWN_OUT, KNOWN8 = ("known", 18, True), ("known", 18, False), ("known", 8, True)
@@ -20,12 +20,12 @@ def table():
         trials_made.structure(2, n_bridging=10),
         trials_made.known({KNOWN: [0.5, 0.5], KNOWN_OUT: [1.0, 1.0], KNOWN8: [7.0, 7.0]}),
     ]
-    return calibration_table.table(trials.tidy(pd.concat(parts)))
+    return calibration.table(calibration.tidy(pd.concat(parts)))
 
 
 def row(table, choice, n_bridging=np.nan):
     method, n_clicks, in_sample = choice
-    of = trials.pick(table, method=method, n_clicks=n_clicks, in_sample=in_sample)
+    of = calibration.pick(table, method=method, n_clicks=n_clicks, in_sample=in_sample)
     same = of["n_bridging"].isna() if np.isnan(n_bridging) else of["n_bridging"] == n_bridging
     return of[same].squeeze()
 
@@ -76,7 +76,7 @@ def test_sessions_that_differ_in_seeds_are_pooled():
         for seed, value in ((1, 1.0), (2, 2.0), (3, 6.0))
     ]
     parts.append(trials_made.structure({SFM: [50.0, 50.0]}, session="other", n_bridging=40))
-    found = calibration_table.table(trials.tidy(pd.concat(parts)))
+    found = calibration.table(calibration.tidy(pd.concat(parts)))
     assert found["session"].tolist() == ["other", "scenes-1", "scenes-2", "scenes-3", "all 3"]
     pooled = found.iloc[-1]
     assert (pooled.n, pooled.volume_rms_cm_median) == (6, 2.0)
@@ -88,7 +88,7 @@ def test_settings_keep_sessions_of_a_condition_apart():
         trials_made.structure({SFM: [1.0]}, session=f"speed-{at}", condition="speed", speed_kmh=at)
         for at in (1, 2)
     ]
-    found = calibration_table.table(trials.tidy(pd.concat(parts)))
+    found = calibration.table(calibration.tidy(pd.concat(parts)))
     assert found["speed_kmh"].tolist() == [1, 2]
 
 
@@ -104,6 +104,6 @@ def test_walks_through_one_scene_are_no_scenes():
             parts.append(trials_made.structure({SFM: [value] * 9}, n_bridging=40, **labels))
             zero = {KNOWN: [0.0] * 9}
             parts.append(trials_made.known(zero, **labels))
-        found = calibration_table.table(trials.tidy(pd.concat(parts)))
+        found = calibration.table(calibration.tidy(pd.concat(parts)))
         limits.append(row(found[found["session"] == "all 16"], SFM, 40).vs_known_upper_cm)
     assert limits[0] > limits[1] + 0.1 > 3.6

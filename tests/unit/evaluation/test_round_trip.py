@@ -9,8 +9,8 @@ import pytest
 
 import scene
 import walker
+from courtside.evaluation import round_trip
 from courtside.geometry.camera import Camera
-from courtside.motion import round_trip
 from courtside.study.errors import InputError
 
 PUBLISHED = Path(__file__).parents[3] / "config" / "published" / "badminton_tab01.csv"

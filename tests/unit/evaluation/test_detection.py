@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.motion import detection_errors
+from courtside.evaluation import detection
 from courtside.records.keypoints import Keypoints2D
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
@@ -70,13 +70,13 @@ def seen(real, time_s=None, camera=CAMERA, order=None):
 
 
 def evaluate(view, real, clock=None, camera=CAMERA):
-    return detection_errors.evaluate(camera, view, clock or Clock(), real, LIMBS)
+    return detection.evaluate(camera, view, clock or Clock(), real, LIMBS)
 
 
 def test_a_perfect_detection_is_placed_everywhere():
     real = truth()
     rows = evaluate(seen(real), real)
-    assert list(rows.columns) == detection_errors.COLUMNS
+    assert list(rows.columns) == detection.COLUMNS
     assert len(rows) == 10 * 12
     assert rows.placed.all() and rows.found.all() and rows.in_picture.all()
     assert not rows.exchanged.any()
@@ -99,11 +99,11 @@ def test_a_known_displacement_is_a_known_share_of_the_torso(share, placed):
 def test_the_torso_is_as_long_as_it_would_be_seen_square_on():
     # 0.5 m at 8 m in front of a camera of 1400 px without distortion, and the same torso pointing at it.
     camera = scene.ring(1, radius_m=8.0, height_m=1.0)[0]
-    joints, towards = list(detection_errors.TRUNK), camera.cam_from_world[2, :3]
+    joints, towards = list(detection.TRUNK), camera.cam_from_world[2, :3]
     upright = np.array([[0, 0, 1.25], [0, 0, 1.25], [0, 0, 0.75], [0, 0, 0.75]])
     pointing = np.array([0, 0, 1.0]) + np.outer([-0.25, -0.25, 0.25, 0.25], towards)
     for xyz in (upright, pointing):
-        found = detection_errors.torso_px(camera, joints, xyz)
+        found = detection.torso_px(camera, joints, xyz)
         np.testing.assert_allclose(found, scene.FOCAL_PX * 0.5 / 8.0, rtol=1e-9)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.figures import players_table
+from courtside.evaluation.tables import players
 from courtside.records import limbs
 
 MODEL = {"calibration": "sfm-n40", "model": "net"}
@@ -36,7 +36,7 @@ def gain(fusion, than, median, p95, stage="pose3d"):
 
 def table(errors_, kinematics=(), clocks=(), gains=()):
     parts = [pd.DataFrame(list(part)) for part in (kinematics, clocks, gains)]
-    return players_table.table(pd.concat(errors_), *parts)
+    return players.table(pd.concat(errors_), *parts)
 
 
 def test_coverage_is_the_range_over_the_limb_joints_only():
@@ -118,10 +118,10 @@ def test_clocks_none_of_which_is_found_are_counted_as_such():
 
 def test_files_are_read_as_text_where_they_are_text(tmp_path):
     errors().assign(take="007").to_csv(tmp_path / "a.csv", index=False)
-    assert set(players_table.read([tmp_path / "a.csv"])["take"]) == {"007"}
-    assert players_table.read([]).empty
+    assert set(players.read([tmp_path / "a.csv"])["take"]) == {"007"}
+    assert players.read([]).empty
 
 
 def test_a_table_needs_errors():
     with pytest.raises(KeyError):
-        players_table.table(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), pd.DataFrame())
+        players.table(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), pd.DataFrame())

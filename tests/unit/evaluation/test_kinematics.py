@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.motion import kinematic_errors
+from courtside.evaluation import kinematics
 from courtside.records import derived
 
 TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
@@ -48,8 +48,8 @@ def measured(real, shift_m=0.0, faster=0.0, sigma=0.1, step=2):
 
 
 def errors(real, frames, summary):
-    rows = kinematic_errors.table(frames, real, TABLE, {"p1": "m"})
-    rows = kinematic_errors.distances(rows, frames, summary, real, TABLE, {"p1": "m"})
+    rows = kinematics.table(frames, real, TABLE, {"p1": "m"})
+    rows = kinematics.distances(rows, frames, summary, real, TABLE, {"p1": "m"})
     return rows.set_index("point").loc["neck"]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import walker
-from courtside.motion import pose_errors
+from courtside.evaluation import joints as pose_errors
 
 
 def record(n_frames=40, n_persons=1, **changes):

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.motion import pose_errors
+from courtside.evaluation import joints
 from courtside.records import limbs
 
 SHARED = ("time_s", "joints", "person_id")
@@ -129,7 +129,7 @@ def _same(records):
 def _groups(names):
     groups = {}
     for label in SETS:
-        sides = pose_errors.SETS[label]
+        sides = joints.SETS[label]
         of = [name for name in limbs.JOINTS if name.startswith(sides)]
         groups[label] = [names.index(name) for name in of if name in names]
     groups |= {name: [at] for at, name in enumerate(names)}

@@ -10,7 +10,8 @@ import networks_made
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court, joint_adjustment, resection
 from courtside.calibration.records import tie_points
-from courtside.geometry import court_trials, similarity
+from courtside.evaluation import calibration
+from courtside.geometry import similarity
 from scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
@@ -44,9 +45,9 @@ def by_choice(rows):
 
 
 def test_choices_are_whole_sets_and_sets_without_the_scored_points():
-    found = [(n, whole, use.sum()) for n, whole, use in court_trials.choices(COURT, SETS)]
+    found = [(n, whole, use.sum()) for n, whole, use in calibration.choices(COURT, SETS)]
     assert found == [(18, True, 18), (18, False, 16), (8, True, 8), (8, False, 6), (3, True, 3)]
-    for _, whole, use in court_trials.choices(COURT, SETS):
+    for _, whole, use in calibration.choices(COURT, SETS):
         assert use[COURT.indices(["p02", "p03"])].all() == whole
         assert use[COURT.indices(["p01"])].all()
 
@@ -54,14 +55,14 @@ def test_choices_are_whole_sets_and_sets_without_the_scored_points():
 def test_exact_ties_and_clicks_have_no_error():
     real = truth()
     found = by_choice(
-        court_trials.of_ties(record(), real, COURT, clicks_of(real), sets=SETS, **SETTINGS)
+        calibration.of_ties(record(), real, COURT, clicks_of(real), sets=SETS, **SETTINGS)
     )
     assert len(found) == 5 + 5 + 1
     for key, row in found.items():
         assert row["outcome"] == "", key
         for name in ("xy_cm", "volume_rms_cm", "camera_position_cm", "focal_percent"):
             assert row[name] == pytest.approx(0, abs=2e-3), (key, name)
-        assert set(row) <= set(court_trials.COLUMNS)
+        assert set(row) <= set(calibration.COLUMNS)
         assert ("coverage90" in row) == (key[0] == "sfm")
 
 
@@ -70,7 +71,7 @@ def test_a_fault_and_missing_clicks_are_outcomes_of_their_rows():
     clicks = clicks_of(real)
     clicks["side"][COURT.indices(["p02"])] = np.nan
     made = record(fault="court points: no", ties=None)
-    found = by_choice(court_trials.of_ties(made, real, COURT, clicks, sets=SETS, **SETTINGS))
+    found = by_choice(calibration.of_ties(made, real, COURT, clicks, sets=SETS, **SETTINGS))
     for (method, n_clicks, _), row in found.items():
         failed = method in ("sfm", "paper") or n_clicks == 3
         assert bool(row["outcome"]) == failed
@@ -90,7 +91,7 @@ def test_known_cameras_have_no_error_and_fail_where_points_are_too_few():
     ]
     lenses = {camera.name: camera for camera in real}
     found = by_choice(
-        court_trials.of_known(real, COURT, clicks_of(real), lenses, sets=SETS, click_sigma_px=0.9)
+        calibration.of_known(real, COURT, clicks_of(real), lenses, sets=SETS, click_sigma_px=0.9)
     )
     assert len(found) == 5 * 3
     fewest = {"dlt": 6, "known": 8, "known-board": 4}
@@ -99,7 +100,7 @@ def test_known_cameras_have_no_error_and_fail_where_points_are_too_few():
         assert (row["outcome"] == "") == enough, (method, n_clicks, whole)
         if enough:
             assert row["volume_rms_cm"] == pytest.approx(0, abs=0.02), (method, n_clicks)
-    without = court_trials.of_known(
+    without = calibration.of_known(
         real, COURT, clicks_of(real), {}, sets=["all"], click_sigma_px=0.9
     )
     assert {row["method"] for row in without} == {"dlt", "known"}
@@ -113,7 +114,7 @@ def test_cameras_shifted_together_shift_every_point_as_much():
     def covariance(xyz):
         return np.tile(np.eye(3) * 1e-4, (len(xyz), 1, 1))
 
-    errors = court_trials.score(found, real, COURT, clicks_of(real), covariance)
+    errors = calibration.score(found, real, COURT, clicks_of(real), covariance)
     for name in ("xo_cm", "yo_cm", "xy_cm", "volume_rms_cm", "volume_p95_cm", "camera_position_cm"):
         assert errors[name] == pytest.approx(3, abs=1e-4)
     assert errors["camera_rotation_deg"] == pytest.approx(0, abs=1e-5)
@@ -134,7 +135,7 @@ def test_a_linear_matrix_with_skew_is_scored_as_it_is():
         )
         for camera in real
     }
-    errors = court_trials.score_linear(found, real, COURT, clicks_of(real))
+    errors = calibration.score_linear(found, real, COURT, clicks_of(real))
     for name in ("xo_cm", "yo_cm", "volume_rms_cm"):
         assert errors[name] == pytest.approx(2, abs=1e-6)
     assert "camera_position_cm" not in errors

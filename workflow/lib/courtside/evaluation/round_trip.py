@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
+from courtside.evaluation import joints as joint_errors
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
-from courtside.motion import joint_errors
 from courtside.study.errors import InputError
 
 IDENTITY_MM = 1e-6  # an exact round trip returns the point; what is left is arithmetic

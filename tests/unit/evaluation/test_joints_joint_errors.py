@@ -8,7 +8,7 @@ import pytest
 
 import scene
 import walker
-from courtside.motion import joint_errors
+from courtside.evaluation import joints as joint_errors
 from courtside.records import derived
 from courtside.records.keypoints import Keypoints2D
 from courtside.records.sync import Clock
