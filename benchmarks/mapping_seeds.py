@@ -26,7 +26,7 @@ from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration
 from courtside.records import truth
 from courtside.study import yaml_files
-from courtside.virtual import clicking
+from virtualgym.session import clicks
 
 ROOT = Path(__file__).parents[1]
 CLICKS = "click_sigma_px", "click_bias_px", "click_loss"
@@ -72,7 +72,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
     drawn = {"n_draws": n_draws, "seed": 0, "preset": session["virtual"]["preset"], "session": name}
     weights = {key: config["adjust_network"][key] for key in CLICKS}
     found = {}
-    for marked in clicking.draws(real.cameras, real.court_xyz, **drawn):
+    for marked in clicks.draws(real.cameras, real.court_xyz, **drawn):
         for row in calibration.of_ties(
             record, real.cameras, court, marked, sets=["all"], **weights
         ):

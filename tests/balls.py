@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.virtual.mesh import Mesh
+from virtualgym.body.mesh import Mesh
 
 RINGS = 24
 

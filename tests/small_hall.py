@@ -3,8 +3,8 @@
 import numpy as np
 
 from courtside.geometry.camera import Camera
-from courtside.virtual import surfaces
-from courtside.virtual.hall import Scene
+from virtualgym.hall import quads as surfaces
+from virtualgym.hall.hall import Scene
 
 ROOM_M = np.array([[0.0, 0.0, 0.0], [8.0, 9.0, 3.0]])
 SQUARE_M = 0.5

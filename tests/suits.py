@@ -7,7 +7,9 @@ import numpy as np
 import mannequin
 import performers
 from courtside.records.hierarchy import forward
-from courtside.virtual import athlete, body, inertial, motions
+from virtualgym.body import athlete, skinned_body
+from virtualgym.devices import inertial_suit
+from virtualgym.movement import catalogue
 
 RATE_HZ = 60.0
 
@@ -17,7 +19,7 @@ def performer(seed=3, free_s=9.0):
     """Return an `athlete.Athlete` that performs before a single camera."""
     figure = mannequin.dressed("m2")
     rng = np.random.default_rng(seed)
-    motion = motions.single_view(figure.proportions, performers.COURT, rng, free_s=free_s)
+    motion = catalogue.single_view(figure.proportions, performers.COURT, rng, free_s=free_s)
     return athlete.Athlete(figure, motion, racket=False)
 
 
@@ -26,9 +28,9 @@ def times(seconds, start_s=0.0, rate_hz=RATE_HZ):
 
 
 def record(time_s, errors, *, seed=0, rate_hz=RATE_HZ, who=None):
-    """Return an `inertial.Recording`."""
+    """Return an `inertial_suit.Recording`."""
     rng = np.random.default_rng(seed)
-    return inertial.record(who or performer(), time_s, rate_hz, errors, rng)
+    return inertial_suit.record(who or performer(), time_s, rate_hz, errors, rng)
 
 
 def found(recording):
@@ -42,4 +44,4 @@ def true(recording, time_s, who=None):
     xyz = np.array([(who or performer()).joints(t) for t in time_s])
     pose = recording.device_from_world
     xyz = xyz @ pose[:, :3].T + pose[:, 3]
-    return dict(zip(body.JOINTS, np.moveaxis(xyz, 1, 0), strict=True))
+    return dict(zip(skinned_body.JOINTS, np.moveaxis(xyz, 1, 0), strict=True))

@@ -22,7 +22,8 @@ from courtside.calibration.records import tie_points
 from courtside.records import clicks, truth
 from courtside.study import log
 from courtside.study.errors import InputError
-from courtside.virtual import capture, clicking
+from virtualgym.session import clicks as clicking
+from virtualgym.session import session as capture
 
 ROOT = Path(__file__).parents[1]
 SCRIPTS = ROOT / "workflow" / "scripts"

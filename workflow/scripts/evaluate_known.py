@@ -7,7 +7,7 @@ from courtside.evaluation import calibration
 from courtside.geometry import camera as cameras
 from courtside.records import tables, truth
 from courtside.study import log
-from courtside.virtual import clicking
+from virtualgym.session import clicks as clicking
 
 
 def main(truth_npz, court_yaml, lens_toml, errors_csv, *, labels, clicks, sets, click_sigma_px):

@@ -9,7 +9,7 @@ from courtside.calibration.records import tie_points
 from courtside.evaluation import racket
 from courtside.records import tables, truth
 from courtside.study import log
-from courtside.virtual import clicking, racket_swings
+from virtualgym.session import clicks as clicking
 
 VIEWS = 2  # the paper's: the first two fixed cameras of a layout
 
@@ -24,15 +24,15 @@ def main(
         offset = run % len(records)
         ways = racket.calibrate(records[offset], views, court, marked, **options)
         of_run = {"seed": clicks["seed"], "run": run}
-        ends = racket_swings.draw(court, length_m, **of_run)
+        ends = clicking.draw(court, length_m, **of_run)
         below = ends[..., 2].mean(axis=1) < court.net["mid_height_m"]
         for sigma_px, again in product(tips_px, (False, True)):
             tip = {"sigma_px_at_3840": sigma_px, "again": again}
-            seen = racket_swings.click(views, ends, **tip, **of_run)
+            seen = clicking.click(views, ends, **tip, **of_run)
             about = {"offset": offset, "draw": run, "tip_sigma_px": sigma_px, "again": again}
             found = racket.rows(ways, seen, length_m, below)
             rows += [{**about, **row} for row in found]
-    lengths = racket.length_columns(racket_swings.FRAMES)
+    lengths = racket.length_columns(clicking.FRAMES)
     table = pd.DataFrame(rows).reindex(columns=[*about, *racket.COLUMNS, *lengths])
     tables.write(lengths_csv, table, labels)
 

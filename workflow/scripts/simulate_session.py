@@ -5,19 +5,20 @@ from pathlib import Path
 from courtside.calibration.court import court
 from courtside.study import log
 from courtside.study.errors import InputError
-from courtside.virtual import capture, layouts
+from virtualgym.cameras import layouts
+from virtualgym.session import session
 
 
 def main(court_yaml, folder, *, backdrops_npz, settings, names, threads):
-    walks = [capture.WALK] if settings["walk_frames"] else []
+    walks = [session.WALK] if settings["walk_frames"] else []
     expected = [*layouts.LAYOUTS[settings["layout"]], *walks]
     if sorted(names) != sorted(expected):
         raise InputError(
             f"session {Path(folder).name}: expected the cameras (and walk) of layout {settings['layout']}, "
             f"{expected}, found {names}; rename them"
         )
-    capture.simulate(
-        capture.Settings(**settings),
+    session.simulate(
+        session.Settings(**settings),
         court.read(court_yaml),
         folder,
         backdrops_npz=backdrops_npz,

@@ -5,7 +5,9 @@ from pathlib import Path
 from courtside.calibration.court import court
 from courtside.exports import bvh
 from courtside.study import log
-from courtside.virtual import capture, makehuman, takes
+from virtualgym.body import makehuman
+from virtualgym.session import session
+from virtualgym.session import take as takes
 
 
 def body_folder(files):
@@ -15,7 +17,7 @@ def body_folder(files):
 
 def main(court_yaml, body_folder, folder, *, backdrops_npz, settings, take, threads):
     worn = takes.simulate_take(
-        capture.Settings(**settings),
+        session.Settings(**settings),
         takes.TakeSettings(**take),
         court.read(court_yaml),
         body_folder,

@@ -17,7 +17,9 @@ from courtside.inertial import correction
 from courtside.records import skeleton
 from courtside.records.device_motion import DeviceMotion
 from courtside.records.limbs import JOINTS as LIMB_JOINTS
-from courtside.virtual import athlete, bodies, body, inertial, inertial_errors, motions
+from virtualgym.body import athlete, shapes, skinned_body
+from virtualgym.devices import inertial_errors, inertial_suit
+from virtualgym.movement import catalogue
 
 pytestmark = pytest.mark.slow
 SEED = 11
@@ -29,12 +31,12 @@ NOT_MODELLED = "disturbed"
 @cache
 def performed():
     """Return the athlete, the times (T,) of the suit's rows and the true joints (T, 12, 3), in world."""
-    figure = body.Body.read(mannequin.folder(), bodies.BODIES["m2"])
+    figure = skinned_body.Body.read(mannequin.folder(), shapes.BODIES["m2"])
     rng = np.random.default_rng(SEED)
-    motion = motions.single_view(figure.proportions, performers.COURT, rng, free_s=20.0, claps=2)
+    motion = catalogue.single_view(figure.proportions, performers.COURT, rng, free_s=20.0, claps=2)
     mover = athlete.Athlete(figure, motion, racket=False)
     time_s = np.arange(1.0, motion.seconds - 0.5, 1 / 60)
-    chosen = [list(body.JOINTS).index(joint) for joint in LIMB_JOINTS]
+    chosen = [list(skinned_body.JOINTS).index(joint) for joint in LIMB_JOINTS]
     return mover, time_s, np.array([mover.joints(t)[chosen] for t in time_s])
 
 
@@ -69,7 +71,7 @@ def errors_m(strength):
     mover, time_s, true = performed()
     errors = inertial_errors.STRENGTHS[strength]
     rng = np.random.default_rng([SEED, len(strength)])
-    recording = inertial.record(mover, time_s, 60.0, errors, rng)
+    recording = inertial_suit.record(mover, time_s, 60.0, errors, rng)
     names = skeleton.read(mannequin.ROOT / "config" / "skeletons" / "mocopi27.yaml")
     studied = dict(zip(names.device_names(), names.joints, strict=True))
     shape = recording.posed.hierarchy

@@ -1,0 +1,148 @@
+"""Where the fixed cameras of a virtual session stand, and what their lenses are."""
+
+import numpy as np
+
+from courtside.geometry import camera, rotations
+
+FOCAL_WIDTHS = 0.875  # a phone's main camera: 60 degrees across
+LENS = np.array([-0.045, 0.011, 1e-4, 1e-4, 0.0])  # k1 k2 p1 p2 k3 of that model of camera
+AIM_M = 1.3  # above the court's centre
+ROLL_DEG = 0.3  # a tripod set up by eye
+SQUARE_ON_M = 21.0  # layout a: distance from the court's centre
+BEHIND_M = 18.0  # layout b: from the court's centre to the line on which the cameras stand
+BESIDE_M = 20.0  # layout b: between the cameras
+VIEW = 0.5  # tangent of the half angle of view that the court may fill
+HEIGHTS_M = {"side": 1.9, "back": 2.1, "oblique": 1.9, "mirror": 2.0, "front": 2.2}
+LAYOUTS = {  # in the order in which a walk passes them
+    "a": ("side", "back"),
+    "b": ("oblique", "back"),
+    "b-mirror": ("oblique", "back", "mirror"),
+    "b-mirror-front": ("oblique", "back", "mirror", "front"),
+}
+
+
+def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoom=1.0):
+    """Set up the fixed cameras of a layout.
+
+    Parameters
+    ----------
+    layout : str
+        A key of `LAYOUTS`. In "a" two cameras look along the world's x (`side`) and y (`back`). In "b"
+        one stands straight behind the court (`back`), one beside it on a line parallel to x
+        (`oblique`); then the mirror image of that one (`mirror`); then one that faces the players.
+    court : courtside.calibration.court.court.Court
+    size_px : (int, int)
+        Width and height of the pictures.
+    preset : virtualgym.session.presets.Preset
+        How far the lenses differ from unit to unit.
+    rng : numpy.random.Generator
+    baseline_deg : float or None
+        For layout "a" only: the angle between the cameras, seen from the court's centre, instead of 90;
+        `back` stays where it is.
+    zoom : float
+        Focal length over that with which the court fills about half of the picture.
+
+    Returns
+    -------
+    fixed : list of Camera
+        In the order in which a walk passes them.
+
+    Raises
+    ------
+    ValueError
+        If the layout is unknown or an angle is asked of another layout than "a".
+    """
+    if layout not in LAYOUTS:
+        raise ValueError(f"expected a layout of {sorted(LAYOUTS)}, found {layout!r}")
+    if baseline_deg is not None and (layout != "a" or not 0 < baseline_deg <= 180):
+        raise ValueError(
+            f"expected baseline_deg in 0..180 for layout a, found {baseline_deg}, {layout}"
+        )
+    centre, places = court_centre(court), _places(layout, court, baseline_deg)
+    made = []
+    for name in LAYOUTS[layout]:
+        matrix, dist = lens(size_px, preset, rng)
+        matrix[[0, 1], [0, 1]] *= zoom
+        place = centre + np.array([*places[name], HEIGHTS_M[name]])
+        roll_deg = rng.uniform(-ROLL_DEG, ROLL_DEG)
+        pose = look_at(place, centre + np.array([0, 0, AIM_M]), roll_deg)
+        made.append(camera.Camera(name, size_px, matrix, dist, pose))
+    return made
+
+
+def court_centre(court):
+    """Return the middle of the court on the floor, (3,) m."""
+    return np.array([court.size_m[0] / 2, court.size_m[1] / 2, 0.0])
+
+
+def lens(size_px, preset, rng):
+    """Draw the lens of one physical camera.
+
+    Parameters
+    ----------
+    size_px : (int, int)
+        Width and height of its pictures.
+    preset : virtualgym.session.presets.Preset
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    K : (3, 3) float
+        Px.
+    dist : (5,) float
+        k1 k2 p1 p2 k3.
+    """
+    width, height = size_px
+    draws = rng.standard_normal(7)
+    focal_px = FOCAL_WIDTHS * width * (1 + preset.focal_spread * draws[0])
+    shift_px = preset.principal_point_px * width / 1280 * draws[1:3]
+    spreads = np.array([preset.k1_spread, preset.k2_spread, preset.p_spread, preset.p_spread])
+    matrix = np.array(
+        [
+            [focal_px, 0, (width - 1) / 2 + shift_px[0]],
+            [0, focal_px, (height - 1) / 2 + shift_px[1]],
+            [0, 0, 1],
+        ]
+    )
+    return matrix, LENS + np.append(spreads * draws[3:], 0.0)
+
+
+def look_at(place, target, roll_deg=0.0):
+    """Return cam_from_world (3, 4) of a camera that looks from one point (3,) m at another, z up.
+
+    Parameters
+    ----------
+    place, target : (3,) float
+        Metres.
+    roll_deg : float
+        The camera's turn about its optical axis, clockwise as it sees the world.
+    """
+    forward = np.subtract(target, place)
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, [0, 0, 1.0])
+    right /= np.linalg.norm(right)
+    upright = np.stack([right, np.cross(forward, right), forward])
+    roll = rotations.rotation_from_rodrigues([0, 0, -np.radians(roll_deg)])
+    rotation = roll @ upright
+    return np.column_stack([rotation, -rotation @ np.asarray(place, dtype=float)])
+
+
+def _places(layout, court, baseline_deg):
+    """Return (x, y) m of each camera, from the court's centre."""
+    short, long = sorted(court.size_m)
+    # So far that the court fills no more than the view, whichever side it is seen from.
+    needed_m = short / 2 + long / 2 / VIEW
+    if layout == "a":
+        away_m = max(SQUARE_ON_M, needed_m)
+        angle = np.radians(270 - (90 if baseline_deg is None else baseline_deg))
+        return {
+            "side": (away_m * np.cos(angle), away_m * np.sin(angle)),
+            "back": (0.0, -away_m),
+        }
+    away_m = BEHIND_M + max(0.0, needed_m - SQUARE_ON_M)
+    return {
+        "oblique": (-BESIDE_M, -away_m),
+        "back": (0.0, -away_m),
+        "mirror": (BESIDE_M, -away_m),
+        "front": (0.0, away_m),
+    }

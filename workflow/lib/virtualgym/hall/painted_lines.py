@@ -1,0 +1,127 @@
+"""Where the lines, posts and net of a painted court really are: millimetres from where they should be."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+ON_EDGE_M = 1e-6
+POST_M = 0.04
+TAPE_M = 0.075
+NET_DEPTH_M = 0.76
+
+
+@dataclass(frozen=True, eq=False)
+class Net:
+    """A net between two posts that sags between their tips.
+
+    Attributes
+    ----------
+    feet, tips : (2, 3) float
+        Middle of each post's lowest and highest face; world, metres.
+    sag_m : float
+        How much lower the tape is half way.
+    """
+
+    feet: np.ndarray
+    tips: np.ndarray
+    sag_m: float
+
+    def tape(self, share):
+        """Return the tape's upper edge at shares (n,) of the way between the tips, (n, 3) m."""
+        share = np.asarray(share, dtype=float)[:, None]
+        return (
+            self.tips[0]
+            + share * (self.tips[1] - self.tips[0])
+            - [0, 0, 4 * self.sag_m] * (share * (1 - share))
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Paintwork:
+    """A court as it was really painted and put up.
+
+    Attributes
+    ----------
+    lines_m : (L, 4) float
+        Painted rectangles: x0 y0 x1 y1.
+    court_xyz : (P, 3) float
+        Where the court's named points are, in the court's order.
+    net : Net or None
+    """
+
+    lines_m: np.ndarray
+    court_xyz: np.ndarray
+    net: Net | None
+
+
+def put_up(court, preset, rng):
+    """Paint a court and put up its net, each line and post with an error of its own.
+
+    A line is displaced across its width; lines that end at it follow it.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+    preset : virtualgym.session.presets.Preset
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    paintwork : Paintwork
+    """
+    low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    across = np.argmin(high - low, axis=1)
+    error = rng.normal(0, preset.line_sigma_m, len(low))
+    ends = np.stack([low, high], axis=1)  # line, end, axis
+    moved = ends.copy()
+    for line in range(len(low)):
+        for end in (0, 1):
+            for axis in (0, 1):
+                moved[line, end, axis] += (
+                    error[line]
+                    if axis == across[line]
+                    else _shift(low, high, across, error, ends[line, end], axis, line)
+                )
+    xyz = court.xyz.copy()
+    for point in np.flatnonzero(xyz[:, 2] == 0):
+        for axis in (0, 1):
+            xyz[point, axis] += _shift(low, high, across, error, court.xyz[point, :2], axis)
+    net = _net(court.net, preset, rng) if court.net is not None else None
+    if net is not None:
+        _move_posts(court, net, xyz)
+    return Paintwork(moved.reshape(-1, 4), xyz, net)
+
+
+def _shift(low, high, across, error, place, axis, besides=-1):
+    """Return the error along an axis of the line whose edge or middle a place is on; 0 if there is none."""
+    slack = (
+        0.6 * (high - low).min()
+    )  # an end of a line may lie on the other edge of the line it ends at
+    inside = (place >= low - slack) & (place <= high + slack)
+    near = (across == axis) & inside.all(axis=1)
+    if besides >= 0:
+        near[besides] = False
+    if not near.any():
+        return 0.0
+    edges = np.stack([low[:, axis], (low[:, axis] + high[:, axis]) / 2, high[:, axis]])
+    away = np.abs(edges - place[axis]).min(axis=0)
+    away[~near] = np.inf
+    nearest = np.argmin(away)
+    return error[nearest] if away[nearest] < ON_EDGE_M else 0.0
+
+
+def _net(table, preset, rng):
+    feet = np.array([[x, table["y_m"], 0.0] for x in table["x_m"]])
+    feet[:, :2] += rng.normal(0, preset.post_foot_sigma_m, (2, 2))
+    upright = np.array([0, 0, table["post_height_m"]])
+    tips = feet + upright + rng.normal(0, preset.post_tip_sigma_m, (2, 3))
+    return Net(feet, tips, table["post_height_m"] - table["mid_height_m"])
+
+
+def _move_posts(court, net, xyz):
+    """Put the court's points on posts to where the posts are."""
+    for post, x in enumerate(court.net["x_m"]):
+        for height, true in ((0.0, net.feet[post]), (court.net["post_height_m"], net.tips[post])):
+            named = np.array([x, court.net["y_m"], height])
+            xyz[np.abs(court.xyz - named).max(axis=1) < ON_EDGE_M] = true

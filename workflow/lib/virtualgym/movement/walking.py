@@ -1,0 +1,134 @@
+"""Walking: a round, or up and down a lane past another player."""
+
+import numpy as np
+
+from virtualgym.movement import footwork, upper_body
+from virtualgym.movement.footwork import Lap, Station
+
+WALK_M_S = (1.0, 1.25)
+WALK_HZ, WALK_AIR = 2.0, 0.78
+REST_S = (0.5, 0.8)
+LANE_M = 0.5  # of each of two crossing players from the line between them
+LANE_SHARE = 0.6, 0.5  # of half the court's width, of a quarter of its length: to a lane's end
+LANE_M_S = (0.98, 1.06)  # the players stay in step with one another
+TURN_S, TURN_STEPS = 2.2, 4
+
+
+def large_round(player):
+    """Return a motion: a walk round the player's half, racket in hand."""
+    rng, half_m = player.rng, player.half_m
+    angles = rng.uniform(-0.3, 0.3) + np.linspace(-0.42, 0.42, 7) * 2 * np.pi
+    reach = rng.uniform(0.5, 0.65, len(angles))[:, None]
+    wide = np.array([half_m[0], 0.48 * half_m[1]])
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    corners = np.array([0.0, -0.5 * half_m[1]]) + reach * wide * circle
+    rest = rng.uniform(*REST_S, 2)
+    walking_s = footwork.RAMP_S + Lap(corners, 0.0, 1.0).length_m / rng.uniform(*WALK_M_S)
+    lap = Lap(corners, rest[0], rest[0] + walking_s)
+    return along(player, lap, lap.stop_s + rest[1], upper_body.WALK, scatter=0.6)
+
+
+def small_round(player, start_s, lasts_s):
+    """Plan a round in the middle of the player's half that ends where it began, towards the net.
+
+    Parameters
+    ----------
+    player : virtualgym.movement.player.Player
+    start_s, lasts_s : float
+
+    Returns
+    -------
+    lap : virtualgym.movement.footwork.Lap
+    """
+    rng = player.rng
+    middle = np.array([0.0, -0.55 * player.half_m[1]]) + rng.uniform(-0.4, 0.4, 2)
+    side = rng.choice([-1.0, 1.0])
+    round_m = rng.uniform(0.8, 1.0)
+    shape = [
+        (0, 0),
+        (0, 0.35),
+        (0.15, 0.9),
+        (0.9, 1.4),
+        (1.6, 0.4),
+        (0.95, -0.8),
+        (0.2, -0.9),
+        (0, -0.35),
+        (0, 0),
+    ]
+    return Lap(middle + round_m * np.array(shape) * [side, 1.0], start_s, start_s + lasts_s)
+
+
+def along(player, lap, stop_s, walking, *, scatter, **options):
+    """Walk along a curve.
+
+    Parameters
+    ----------
+    player : virtualgym.movement.player.Player
+    lap : virtualgym.movement.footwork.Lap
+    stop_s : float
+        The motion ends; from the lap's end until then the player stands.
+    walking : virtualgym.movement.upper_body.Pose
+    scatter : float
+        See `upper_body.course`.
+    **options
+        Of `player.Motion`.
+
+    Returns
+    -------
+    motion : virtualgym.movement.player.Motion
+    """
+    return _walk(player, lap.ends(0.0, stop_s), walking, scatter, lap, **options)
+
+
+def up_and_down(player, lane, n_turns):
+    """Walk straight along a lane, turn on the spot, walk back, and so on.
+
+    Parameters
+    ----------
+    player : virtualgym.movement.player.Player
+    lane : int
+        0 or 1.
+    n_turns : int
+
+    Returns
+    -------
+    motion : virtualgym.movement.player.Motion
+    """
+    rng, half_m = player.rng, player.half_m
+    sign = 1 if lane == 0 else -1
+    end = sign * np.array(LANE_SHARE) * half_m * [1.0, 0.5]
+    beside = LANE_M * np.array([end[1], -end[0]]) / np.linalg.norm(end)  # on the own right
+    middle = np.array([0.0, -0.5 * half_m[1]]) + beside
+    heading = np.arctan2(-end[0], end[1])
+    places = [middle - end, middle + end]
+    stations = [_stand(0.0, rng.uniform(*REST_S), places[0], heading)]
+    for k in range(n_turns + 1):
+        time_s = stations[-1].leave_s + 2 * np.linalg.norm(end) / rng.uniform(*LANE_M_S)
+        place = places[(k + 1) % 2] + rng.normal(0, 0.03, 2)
+        stations.append(_stand(time_s, time_s + rng.uniform(0.1, 0.2), place, heading))
+        if k < n_turns:
+            heading = heading + np.pi * rng.choice([-1, 1])
+            turned = stations[-1].leave_s + TURN_S
+            stay = rng.uniform(0.1, 0.2)
+            stations.append(_stand(turned, turned + stay, place, heading, steps=TURN_STEPS))
+    last = stations[-1]
+    stations[-1] = _stand(last.arrive_s, last.arrive_s + 0.8, last.place, last.heading)
+    return _walk(player, stations, upper_body.WALK, 0.6, None)
+
+
+def _stand(arrive_s, leave_s, place, heading, steps=None):
+    return Station(
+        arrive_s, leave_s, place, heading, feet=footwork.UPRIGHT, settle_s=0.0, steps=steps
+    )
+
+
+def _walk(player, stations, walking, scatter, lap, **options):
+    route, feet = footwork.plan(
+        stations, player.proportions, player.rng, cadence_hz=WALK_HZ, air=WALK_AIR, route=lap
+    )
+    start_s, stop_s, end_s = stations[0].leave_s, stations[-1].arrive_s, stations[-1].leave_s
+    standing = walking.but(lean=0.0, height=upper_body.STAND.height)
+    keys = [(0.0, standing), (start_s, standing), (start_s + 0.6, walking)]
+    keys += [(stop_s - 0.5, walking), (stop_s + 0.2, standing), (end_s, standing)]
+    course = upper_body.course(keys, player.rng, scatter=scatter)
+    return player.motion(end_s, route, feet, course, **options)

@@ -1,0 +1,237 @@
+"""Clicks of court points and racket ends, as a person would make them."""
+
+import csv
+import zlib
+
+import numpy as np
+
+from courtside.geometry import camera as projection
+from courtside.study.files import atomic
+from virtualgym.body import mesh
+from virtualgym.rendering import rolling_shutter
+from virtualgym.session import presets
+
+FULL_WIDTH_PX = 3840  # clicking errors are stated for pictures of this width
+
+
+def simulate(cameras, points_xyz, *, sigma_px_at_3840, bias_px_at_3840, rng):
+    """Click points as one person would.
+
+    Parameters
+    ----------
+    cameras : list of Camera
+    points_xyz : (P, 3) float
+        Where the points really are, metres.
+    sigma_px_at_3840 : float
+        Standard deviation per axis of one click, px, in a picture 3840 px wide; it scales with the
+        width, as a person zooms in on the same content.
+    bias_px_at_3840 : float
+        Standard deviation per axis of the person's own habit: one vector, the same for every click.
+    rng : numpy.random.Generator
+        Draws the same numbers whatever the cameras see, so that a click depends on nothing but its
+        place in the order.
+
+    Returns
+    -------
+    clicks : dict of str to (P, 2) float
+        For each camera px; NaN where the point or its click is outside the picture.
+    """
+    bias = rng.standard_normal(2) * bias_px_at_3840
+    clicks = {}
+    for camera in cameras:
+        error = bias + rng.standard_normal((len(points_xyz), 2)) * sigma_px_at_3840
+        xy = projection.project(camera, points_xyz) + error * camera.size[0] / FULL_WIDTH_PX
+        seen = ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=1)
+        clicks[camera.name] = np.where(seen[:, np.newaxis], xy, np.nan)
+    return clicks
+
+
+def draws(cameras, points_xyz, *, n_draws, seed, preset, session):
+    """Yield the clicks of several persons, the same for every method and every number of images of a session.
+
+    Parameters
+    ----------
+    cameras : list of Camera
+    points_xyz : (P, 3) float
+        Where the points really are, metres.
+    n_draws, seed : int
+    preset : str
+        A key of `presets.PRESETS`, which says how well people click.
+    session : str
+        Other sessions get other numbers.
+    """
+    made = presets.PRESETS[preset]
+    for draw in range(n_draws):
+        rng = np.random.default_rng([seed, zlib.crc32(session.encode()), draw])
+        yield simulate(
+            cameras,
+            points_xyz,
+            sigma_px_at_3840=made.click_sigma_px_at_3840,
+            bias_px_at_3840=made.click_bias_px_at_3840,
+            rng=rng,
+        )
+
+
+COLUMNS = ("take", "camera", "frame_idx", "end", "x_px", "y_px")
+ENDS = ("top", "butt")
+
+
+class _Ends:
+    """The ends of an athlete's racket, as a surface without triangles."""
+
+    def __init__(self, athlete):
+        self.athlete = athlete
+
+    def mesh(self, time_s):
+        none = np.zeros((0, 3))
+        return mesh.Mesh(self.athlete.racket(time_s), none.astype(np.int32), none.astype(np.uint8))
+
+
+def of_camera(athletes, cameras, times_s, preset, rng):
+    """Click both ends of every racket in every frame of a camera, also where a body hides one.
+
+    Parameters
+    ----------
+    athletes : list of athlete.Athlete
+    cameras : list of Camera, length T
+        The camera as it stands at each frame.
+    times_s : (T,) float
+        Mid-exposure of each frame's middle row, on the athletes' clock.
+    preset : virtualgym.session.presets.Preset
+    rng : numpy.random.Generator
+        For the person's habit in this camera, and each click.
+
+    Returns
+    -------
+    clicks : list of (str, int, str, (2,) float)
+        Camera, frame_idx, end, px; without those beside the picture.
+    """
+    per_px = cameras[0].size[0] / FULL_WIDTH_PX
+    habit = rng.standard_normal(2) * preset.click_bias_px_at_3840
+    holders = [athlete for athlete in athletes if athlete.has_racket]
+    clicks = []
+    for index, (camera, time_s) in enumerate(zip(cameras, times_s, strict=True)):
+        for athlete in holders:
+            shutter = time_s, preset.readout_s, 0.0
+            moving = rolling_shutter.follow(_Ends(athlete), camera, *shutter)
+            shown = rolling_shutter.Screen(moving, camera, *shutter).at(0.0)[:, :2]
+            error = habit + rng.standard_normal((2, 2)) * preset.click_sigma_px_at_3840
+            for end, xy in zip(ENDS, shown + error * per_px, strict=True):
+                if ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all():
+                    clicks.append((camera.name, index, end, xy))
+    return clicks
+
+
+def write(path, take, clicks):
+    """Write clicked ends of rackets as a CSV file, whole or not at all.
+
+    Parameters
+    ----------
+    path : str or Path
+    take : str
+    clicks : iterable of (str, int, str, (2,) float)
+        As `of_camera` returns them.
+    """
+    with atomic(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for camera, frame_idx, end, (x, y) in clicks:
+            table.writerow([take, camera, frame_idx, end, f"{x:.3f}", f"{y:.3f}"])
+
+
+FRAMES, BELOW = 21, 10  # of the published scene, and how many of them are below the net's height
+START_M, END_M = (
+    (0.75, 1.1),
+    (2.1, 2.6),
+)  # heights of the racket's middle in the first and last frame
+REACH_M = (0.4, 0.8)  # from the player's axis to the racket's middle, on the floor
+MARGIN_M = (1.0, 1.5)  # of the player from the edges of the court, and from the net
+TURN_DEG = (30.0, 120.0)  # about the player's axis, to either side, from first to last frame
+RISE_DEG = ((-60.0, 0.0), (20.0, 100.0))  # of the racket above the horizontal, first and last frame
+
+
+def draw(court, length_m, *, seed, run):
+    """Return the `swing` of one run, the same for every session.
+
+    Parameters
+    ----------
+    court, length_m
+        As for `swing`.
+    seed, run : int
+    """
+    return swing(court, length_m, _generator(seed, run, "swing"))
+
+
+def click(cameras, ends, *, sigma_px_at_3840, again, seed, run):
+    """Click both ends of a racket in every frame of every camera.
+
+    Parameters
+    ----------
+    cameras : list of Camera
+    ends : (F, 2, 3) float
+        Top and butt, m.
+    sigma_px_at_3840 : float
+        Standard deviation per axis of one click, px, in a picture 3840 px wide. The errors of one run
+        are the same but for their size. A person's habit, common to all clicks, is left out: it shifts
+        both ends alike.
+    again : bool
+        Whether this is a second time, with new errors.
+    seed, run : int
+
+    Returns
+    -------
+    seen : dict of str to (2 F, 2) float
+        Top and butt, frame after frame, px; NaN outside the picture.
+    """
+    rng = _generator(seed, run, "tips again" if again else "tips")
+    return simulate(
+        cameras,
+        np.reshape(ends, (-1, 3)),
+        sigma_px_at_3840=sigma_px_at_3840,
+        bias_px_at_3840=0.0,
+        rng=rng,
+    )
+
+
+def _generator(seed, run, what):
+    return np.random.default_rng([seed, zlib.crc32(f"racket {what}".encode()), run])
+
+
+def swing(court, length_m, rng):
+    """Move a racket as in a part of a stroke, in the half of the court at y = 0.
+
+    Parameters
+    ----------
+    court : courtside.calibration.court.court.Court
+        With a net: its `mid_height_m` is passed between frames `BELOW` and `BELOW` + 1.
+    length_m : float
+        From top to butt.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ends : (FRAMES, 2, 3) float
+        Top and butt in the world, m.
+
+    Notes
+    -----
+    The player stands anywhere in that half; the racket's middle rises without turning back and goes
+    round the player, while the racket turns from hanging or level to raised. Directions differ from run
+    to run: the error of a length depends on how it lies to the lines of sight.
+    """
+    at = np.arange(1, FRAMES + 1)
+    part = (at - 1) / (FRAMES - 1)
+    low_m, high_m = rng.uniform(*START_M), rng.uniform(*END_M)
+    height_m = np.interp(at, [1, BELOW + 0.5, FRAMES], [low_m, court.net["mid_height_m"], high_m])
+    edge_m, from_net_m = MARGIN_M
+    stand = rng.uniform([edge_m, edge_m], [court.size_m[0] - edge_m, court.net["y_m"] - from_net_m])
+    turn = np.radians(rng.uniform(*TURN_DEG)) * rng.choice([-1, 1])
+    heading = rng.uniform(0, 2 * np.pi) + turn * part
+    rise = np.radians([rng.uniform(*RISE_DEG[0]), rng.uniform(*RISE_DEG[1])]) @ [1 - part, part]
+    reach_m = rng.uniform(*REACH_M)
+    round_player = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    middle = np.column_stack([stand + reach_m * round_player, height_m])
+    yaw = heading + rng.uniform(-np.pi / 2, np.pi / 2)  # the wrist's, about the vertical
+    along = np.stack([np.cos(rise) * np.cos(yaw), np.cos(rise) * np.sin(yaw), np.sin(rise)], axis=1)
+    half = length_m / 2 * along
+    return np.stack([middle + half, middle - half], axis=1)

