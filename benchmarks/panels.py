@@ -4,7 +4,7 @@ import matplotlib.ticker
 import numpy as np
 import rows
 
-from courtside.figures import style
+from courtside.figures.style import style
 from courtside.study.files import atomic
 
 COLUMNS, HEIGHT_MM = 3, 75

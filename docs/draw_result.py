@@ -15,7 +15,12 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.calibration.court import court as courts  # noqa: E402
 from courtside.evaluation import joints as pose_errors  # noqa: E402
-from courtside.figures import close_ups, space, stick, style  # noqa: E402
+from courtside.figures.style import (
+    oblique_view,
+    picture_crops,
+    stick_figure,
+    style,
+)
 from courtside.records import derived, footage, keypoints, skeleton, take_truth  # noqa: E402
 from courtside.video import reader  # noqa: E402
 
@@ -23,7 +28,7 @@ SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
 CALIBRATION, FUSION, NETWORK = "sfm-n40", "all-robust", "blazepose-full"
 LARGE, CLOSE = "front", ("oblique", "back", "mirror")
 RADIUS = np.sqrt(scipy.stats.chi2.ppf(0.9, 3))  # standard deviations: an ellipsoid for nine in ten
-SIGHT = space.Sight(azimuth_deg=-60.0, elevation_deg=10.0)
+SIGHT = oblique_view.Sight(azimuth_deg=-60.0, elevation_deg=10.0)
 TRUE = "#222222"
 
 
@@ -31,7 +36,7 @@ def main(results, png):
     """Read one moment of the take, draw it, and write the picture."""
     take, films = results / SESSION / "takes" / TAKE, results / "virtual" / SESSION / "takes" / TAKE
     joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
-    drawn = stick.stick(joints, derived.read(ROOT / "config" / "derived_joints.yaml"))
+    drawn = stick_figure.stick(joints, derived.read(ROOT / "config" / "derived_joints.yaml"))
     points = keypoints.read_3d(take / "pose3d_corrected" / CALIBRATION / FUSION / f"{NETWORK}.npz")
     seen = footage.read(
         results / SESSION / "calibration" / CALIBRATION / "cameras.toml",
@@ -65,12 +70,16 @@ def show(axis, one, points, frame, drawn):
     found, back = drawn.of(one.view.xy[:, at]), drawn.of(one.reprojected(points, at))
     height, width = image.shape[:2]
     whole = one.camera.name == LARGE
-    part = close_ups.Box(width / 2, height / 2, width, height)
-    close_ups.show(axis, image, part if whole else close_ups.box(back, (width, height), 0.95))
+    part = picture_crops.Box(width / 2, height / 2, width, height)
+    picture_crops.show(
+        axis, image, part if whole else picture_crops.box(back, (width, height), 0.95)
+    )
     size = 0.5 if whole else 1.2
-    close_ups.sticks(axis, found, drawn.bones, close_ups.DETECTED, width=size, dots=not whole)
+    picture_crops.sticks(
+        axis, found, drawn.bones, picture_crops.DETECTED, width=size, dots=not whole
+    )
     look = {"width": 0.8 * size, "outline": 0, "dots": False}
-    close_ups.sticks(axis, back, drawn.bones, close_ups.REPROJECTED, **look)
+    picture_crops.sticks(axis, back, drawn.bones, picture_crops.REPROJECTED, **look)
     axis.set_xlabel(f"camera {one.camera.name}", labelpad=1, fontsize=7)
 
 
@@ -86,11 +95,11 @@ def stand(axis, points, frame, drawn):
         colour = style.side_colour(names[at])
         look = {"facecolor": colour, "alpha": 0.25, "edgecolor": colour, "linewidth": 0.6}
         axis.add_patch(Ellipse(SIGHT.seen(xyz[at]), width, height, angle=angle, **look, zorder=2))
-    space.figures(axis, SIGHT, drawn.of(xyz)[None], drawn, width=1.8)
-    low, high = space.limits(xyz)
+    oblique_view.figures(axis, SIGHT, drawn.of(xyz)[None], drawn, width=1.8)
+    low, high = oblique_view.limits(xyz)
     court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
-    space.floor(axis, SIGHT, low, high, court)
-    space.finish(axis, SIGHT, low)
+    oblique_view.floor(axis, SIGHT, low, high, court)
+    oblique_view.finish(axis, SIGHT, low)
 
 
 def compare(axis, drawn, true):
@@ -98,7 +107,7 @@ def compare(axis, drawn, true):
     for start, stop in drawn.bones:
         ends = [true.get(drawn.joints[at]) for at in (start, stop)]
         if all(end is not None for end in ends):
-            space.line(axis, SIGHT, np.array(ends), color=TRUE, linewidth=0.7, zorder=5)
+            oblique_view.line(axis, SIGHT, np.array(ends), color=TRUE, linewidth=0.7, zorder=5)
 
 
 if __name__ == "__main__":

@@ -64,7 +64,7 @@ def test_editing_a_module_reruns_exactly_what_imports_it(copy):
 
 
 def test_editing_a_figure_module_reruns_that_figure(copy):
-    module = copy / "workflow/lib/courtside/figures/visibility.py"
+    module = copy / "workflow/lib/courtside/figures/take/visibility.py"
     edit(module, "Confidence of the network", "Confidence of this network")
     assert planned(root=copy) == {"draw_visibility": 1}
 

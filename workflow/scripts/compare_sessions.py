@@ -2,7 +2,8 @@
 
 import pandas as pd
 
-from courtside.figures import archive, style
+from courtside.figures.comparison import archive
+from courtside.figures.style import style
 from courtside.statistics import longitudinal
 from courtside.study import log
 

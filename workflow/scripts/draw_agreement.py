@@ -1,6 +1,7 @@
 """Draw the agreement of two networks: pairs, limits of agreement -> figure, CSV."""
 
-from courtside.figures import agreement, style
+from courtside.figures.comparison import agreement
+from courtside.figures.style import style
 from courtside.study import log
 
 

@@ -2,7 +2,8 @@
 
 import pandas as pd
 
-from courtside.figures import badminton_fig05, style
+from courtside.figures.badminton import fig05
+from courtside.figures.style import style
 from courtside.pose import privacy
 from courtside.records import keypoints, skeleton
 from courtside.study import log
@@ -16,7 +17,7 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
         tuple(source): pair
         for source, *pair in zip(sources, paths.pose2d, paths.videos, strict=True)
     }
-    chosen, images = badminton_fig05.examples(rows, layouts), []
+    chosen, images = fig05.examples(rows, layouts), []
     face = [joints.index(name) for name in joints.groups["face"]]
     for example in chosen:
         pose2d, film = files[example["session"], example["camera"]]
@@ -26,8 +27,8 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
             persons = view.xy[:, example["frame_idx"]]
             image = privacy.hide(image, persons, joints.bone_indices(), persons[:, face])
         images.append(image)
-    shares = badminton_fig05.table(rows, layouts)
-    drawing = badminton_fig05.draw(shares, layouts, chosen, images, joints.bones)
+    shares = fig05.table(rows, layouts)
+    drawing = fig05.draw(shares, layouts, chosen, images, joints.bones)
     style.save(drawing, shares, pdf, png, csv)
 
 

@@ -5,17 +5,18 @@ from pathlib import Path
 
 from courtside.calibration.court import court
 from courtside.calibration.records import tie_points
-from courtside.figures import badminton_fig06, style
+from courtside.figures.badminton import fig06
+from courtside.figures.style import style
 from courtside.study import log
 
 
 def main(ties_npz, summary_json, court_yaml, pdf, png, csv):
-    rows = badminton_fig06.table({count: tie_points.read(path) for count, path in ties_npz.items()})
+    rows = fig06.table({count: tie_points.read(path) for count, path in ties_npz.items()})
     n_images = {
         count: json.loads(Path(path).read_text())["n_images"]
         for count, path in summary_json.items()
     }
-    drawing = badminton_fig06.draw(rows, court.read(court_yaml), n_images)
+    drawing = fig06.draw(rows, court.read(court_yaml), n_images)
     style.save(drawing, rows, pdf, png, csv)
 
 

@@ -1,16 +1,17 @@
 """Draw errors by number of bridging images: evaluations of one session -> figure, CSV."""
 
 from courtside.evaluation.tables import calibration
-from courtside.figures import badminton_fig08, style
+from courtside.figures.badminton import fig08
+from courtside.figures.style import style
 from courtside.study import log
 
 
 def main(errors_csv, pdf, png, csv):
     rows = calibration.read(errors_csv)
-    numbers = badminton_fig08.table(rows)
+    numbers = fig08.table(rows)
     layout = rows["layout"].iloc[0]
     title = f"{rows['session'].iloc[0]}: {rows['preset'].iloc[0]} hall, layout {layout}"
-    style.save(badminton_fig08.draw(numbers, title, layout), numbers, pdf, png, csv)
+    style.save(fig08.draw(numbers, title, layout), numbers, pdf, png, csv)
 
 
 if __name__ == "__main__":

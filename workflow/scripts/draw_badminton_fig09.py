@@ -5,7 +5,8 @@ import pandas as pd
 
 from courtside.calibration.court import court as courts
 from courtside.evaluation import round_trip
-from courtside.figures import badminton_fig09, stick, style
+from courtside.figures.badminton import fig09
+from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
@@ -16,7 +17,7 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
     files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
     seen = footage.read(*files, wanted=points.cameras)
-    figure = stick.stick(joints, derived.read(paths.derived))
+    figure = stick_figure.stick(joints, derived.read(paths.derived))
     frames = round_trip.span(points, n_frames, start_s).frames
     frame = (frames.start + frames.stop - 1) // 2
     images = {}
@@ -29,9 +30,9 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
             image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
         images[one.camera.name] = image
     court = courts.read(paths.court) if paths.get("court") else None
-    rows, cameras = badminton_fig09.table(points, seen, frame, figure), [one.camera for one in seen]
+    rows, cameras = fig09.table(points, seen, frame, figure), [one.camera for one in seen]
     measured = pd.read_csv(paths.measures)
-    drawing = badminton_fig09.draw(rows, images, points, cameras, figure, measured, court)
+    drawing = fig09.draw(rows, images, points, cameras, figure, measured, court)
     style.save(drawing, rows, pdf, png, csv)
 
 

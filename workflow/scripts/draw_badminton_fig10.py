@@ -4,7 +4,8 @@ import numpy as np
 
 from courtside.calibration.court import court as courts
 from courtside.evaluation import round_trip
-from courtside.figures import badminton_fig10, stick, style
+from courtside.figures.badminton import fig10
+from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
@@ -15,9 +16,9 @@ def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
     files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
     seen = footage.read(*files, wanted=points.cameras)
-    figure = stick.stick(joints, derived.read(paths.derived))
+    figure = stick_figure.stick(joints, derived.read(paths.derived))
     frames = round_trip.span(points, n_frames, start_s).frames
-    shown = badminton_fig10.instants(frames, n_instants)
+    shown = fig10.instants(frames, n_instants)
 
     def picture(one, time_s):
         at = one.frame_at(time_s)
@@ -32,8 +33,8 @@ def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
         {one.camera.name: picture(one, points.time_s[frame]) for one in seen} for frame in shown
     ]
     court = courts.read(paths.court) if paths.get("court") else None
-    drawing = badminton_fig10.draw(points, figure, frames, shown, pictures, court)
-    style.save(drawing, badminton_fig10.table(points, figure, frames, shown), pdf, png, csv)
+    drawing = fig10.draw(points, figure, frames, shown, pictures, court)
+    style.save(drawing, fig10.table(points, figure, frames, shown), pdf, png, csv)
 
 
 if __name__ == "__main__":

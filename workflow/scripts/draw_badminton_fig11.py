@@ -3,7 +3,8 @@
 import numpy as np
 
 from courtside.evaluation import round_trip
-from courtside.figures import badminton_fig11, stick, style
+from courtside.figures.badminton import fig11
+from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
 from courtside.study import log
@@ -14,12 +15,12 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
     files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
     seen = footage.read(*files, wanted=points.cameras)
-    limbs, figure = joints.groups["limbs"], stick.stick(joints, derived.read(paths.derived))
+    limbs, figure = joints.groups["limbs"], stick_figure.stick(joints, derived.read(paths.derived))
     frames = round_trip.span(points, n_frames, start_s).frames
     cameras = [one.camera for one in seen]
-    limit = badminton_fig11.disagreements(points, cameras, limbs, limit_torso)
-    frame = badminton_fig11.choose(limit[0], frames)
-    rows = badminton_fig11.table(points, seen, limbs, joints.mirror(), frame, limit)
+    limit = fig11.disagreements(points, cameras, limbs, limit_torso)
+    frame = fig11.choose(limit[0], frames)
+    rows = fig11.table(points, seen, limbs, joints.mirror(), frame, limit)
     images, detected, reprojected = {}, {}, {}
     for one in seen:
         at = one.frame_at(points.time_s[frame])
@@ -30,7 +31,7 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
             image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
         name = one.camera.name
         images[name], detected[name], reprojected[name] = image, *map(figure.of, both)
-    drawing = badminton_fig11.draw(rows, images, detected, reprojected, figure, limit_torso)
+    drawing = fig11.draw(rows, images, detected, reprojected, figure, limit_torso)
     style.save(drawing, rows, pdf, png, csv)
 
 

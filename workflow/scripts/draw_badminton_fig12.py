@@ -1,13 +1,14 @@
 """Draw the length of a racket by several calibrations: evaluations of sessions -> figure, CSV."""
 
 from courtside.evaluation.tables import racket
-from courtside.figures import badminton_fig12, style
+from courtside.figures.badminton import fig12
+from courtside.figures.style import style
 from courtside.study import log
 
 
 def main(lengths_csv, pdf, png, csv):
     numbers = racket.table(racket.read(lengths_csv))
-    style.save(badminton_fig12.draw(numbers), numbers, pdf, png, csv)
+    style.save(fig12.draw(numbers), numbers, pdf, png, csv)
 
 
 if __name__ == "__main__":

@@ -2,14 +2,15 @@
 
 import pandas as pd
 
-from courtside.figures import badminton_tab01, style
+from courtside.figures.badminton import tab01
+from courtside.figures.style import style
 from courtside.study import log
 
 
 def main(rows_csv, published_csv, pdf, png, csv, *, title):
     rows = pd.read_csv(rows_csv, dtype={"person": str}, keep_default_na=True)
-    numbers = badminton_tab01.table(rows, pd.read_csv(published_csv))
-    style.save(badminton_tab01.draw(numbers, title), numbers, pdf, png, csv)
+    numbers = tab01.table(rows, pd.read_csv(published_csv))
+    style.save(tab01.draw(numbers, title), numbers, pdf, png, csv)
 
 
 if __name__ == "__main__":

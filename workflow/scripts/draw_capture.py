@@ -1,7 +1,8 @@
 """Draw how a condition of filming changes the error: evaluations of its sessions -> figure, CSV."""
 
 from courtside.evaluation.tables import calibration
-from courtside.figures import conditions, style
+from courtside.figures.calibration import conditions
+from courtside.figures.style import style
 from courtside.study import log
 
 

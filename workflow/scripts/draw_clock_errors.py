@@ -1,7 +1,8 @@
 """Draw the errors of the cameras' clocks: evaluations of takes -> figure, CSV."""
 
 from courtside.evaluation.tables import players
-from courtside.figures import clock_errors, style
+from courtside.figures.style import style
+from courtside.figures.take import clock_errors
 from courtside.study import log
 
 

@@ -1,7 +1,8 @@
 """Draw the named points of a court and the edges that they name: court -> figure, CSV."""
 
 from courtside.calibration.court import court as courts
-from courtside.figures import court_points, style
+from courtside.figures.calibration import court_points
+from courtside.figures.style import style
 from courtside.study import log
 
 

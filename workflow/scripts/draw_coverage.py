@@ -1,7 +1,8 @@
 """Draw stated against true uncertainty: evaluations of several sessions -> figure, CSV."""
 
 from courtside.evaluation.tables import calibration
-from courtside.figures import coverage, style
+from courtside.figures.calibration import coverage
+from courtside.figures.style import style
 from courtside.study import log
 
 

@@ -2,7 +2,8 @@
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.records import covariance as camera_covariance
-from courtside.figures import error_map, style
+from courtside.figures.calibration import error_map
+from courtside.figures.style import style
 from courtside.geometry import camera
 from courtside.study import log
 

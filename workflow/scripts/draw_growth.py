@@ -1,6 +1,7 @@
 """Draw how the time of each step grows with the number of images: benchmarks -> figure, CSV."""
 
-from courtside.figures import growth, style
+from courtside.figures.calibration import growth
+from courtside.figures.style import style
 from courtside.study import log
 
 

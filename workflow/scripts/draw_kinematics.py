@@ -3,15 +3,16 @@
 import pandas as pd
 
 from courtside.calibration.court import court as courts
-from courtside.figures import speeds, style
+from courtside.figures.style import style
+from courtside.figures.take import kinematics
 from courtside.study import log
 
 
 def main(frames_csv, summary_csv, court_yaml, pdf, png, csv):
     frames, summary = pd.read_csv(frames_csv), pd.read_csv(summary_csv)
     court = courts.read(court_yaml) if court_yaml else None
-    drawing = speeds.draw(frames, summary, court)
-    style.save(drawing, speeds.table(frames), pdf, png, csv)
+    drawing = kinematics.draw(frames, summary, court)
+    style.save(drawing, kinematics.table(frames), pdf, png, csv)
 
 
 if __name__ == "__main__":

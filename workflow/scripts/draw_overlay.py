@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from courtside.figures import overlay, style
+from courtside.figures.style import style
+from courtside.figures.take import overlay
 from courtside.geometry import camera as cameras
 from courtside.pose import privacy
 from courtside.reconstruction import resampling

@@ -1,6 +1,7 @@
 """Draw reprojection errors per joint and camera: 3D keypoints -> figure, CSV."""
 
-from courtside.figures import reprojection, style
+from courtside.figures.style import style
+from courtside.figures.take import reprojection
 from courtside.records import keypoints
 from courtside.study import log
 

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.figures import camera_shake, style
+from courtside.figures.style import style
+from courtside.figures.take import camera_shake
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import camera_shake as knocks
 from courtside.records import keypoints, shake_table

@@ -1,6 +1,7 @@
 """Draw the skeletons of all sources in the T-pose: body motions, skeletons, derived joints -> figure, CSV."""
 
-from courtside.figures import joint_map, skeleton_plates, style
+from courtside.figures.devices import skeleton_plates
+from courtside.figures.style import joint_map, style
 from courtside.records import body_motion, derived, skeleton
 from courtside.study import log
 

@@ -1,6 +1,7 @@
 """Draw the metric skeletons in the hall: 3D keypoints, cameras -> figure, CSV."""
 
-from courtside.figures import skeletons, style
+from courtside.figures.style import style
+from courtside.figures.take import skeletons
 from courtside.geometry import camera
 from courtside.records import keypoints, skeleton
 from courtside.study import log

@@ -1,12 +1,13 @@
 """Draw smoothness against accuracy: distortion of takes, errors where a truth is known -> figure, CSV."""
 
-from courtside.figures import smooth_accurate, style
+from courtside.figures.devices import smoothness_accuracy
+from courtside.figures.style import style
 from courtside.study import log
 
 
 def main(distortion_csv, errors_csv, truth_csv, pdf, png, csv, *, labels, kinds):
-    rows = smooth_accurate.read(distortion_csv, labels, errors_csv, truth_csv)
-    style.save(smooth_accurate.draw(rows, kinds=kinds), rows, pdf, png, csv)
+    rows = smoothness_accuracy.read(distortion_csv, labels, errors_csv, truth_csv)
+    style.save(smoothness_accuracy.draw(rows, kinds=kinds), rows, pdf, png, csv)
 
 
 if __name__ == "__main__":

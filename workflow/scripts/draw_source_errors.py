@@ -2,14 +2,15 @@
 
 import pandas as pd
 
-from courtside.figures import source_parts, style
+from courtside.figures.devices import source_errors
+from courtside.figures.style import style
 from courtside.study import log
 
 
 def main(errors_csv, parts_csv, pdf, png, csv, *, kinds):
     errors, parts = pd.read_csv(errors_csv), pd.read_csv(parts_csv)
-    drawing = source_parts.draw(errors, parts, kinds=kinds)
-    style.save(drawing, source_parts.table(errors, parts), pdf, png, csv)
+    drawing = source_errors.draw(errors, parts, kinds=kinds)
+    style.save(drawing, source_errors.table(errors, parts), pdf, png, csv)
 
 
 if __name__ == "__main__":

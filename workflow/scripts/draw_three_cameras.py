@@ -1,7 +1,8 @@
 """Draw errors with two, three and four cameras: evaluations of takes -> figure, CSV."""
 
 from courtside.evaluation.tables import players
-from courtside.figures import style, three_cameras
+from courtside.figures.badminton import three_cameras
+from courtside.figures.style import style
 from courtside.study import log
 
 

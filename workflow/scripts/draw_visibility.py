@@ -1,6 +1,7 @@
 """Draw scores and views over time: 2D, people, clocks, 3D -> figure, CSV."""
 
-from courtside.figures import style, visibility
+from courtside.figures.style import style
+from courtside.figures.take import visibility
 from courtside.reconstruction import resampling
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log

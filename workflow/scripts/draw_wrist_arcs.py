@@ -2,7 +2,8 @@
 
 import pandas as pd
 
-from courtside.figures import style, thesis_fig3
+from courtside.figures.devices import thesis_fig3
+from courtside.figures.style import style
 from courtside.study import log
 
 

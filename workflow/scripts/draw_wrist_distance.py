@@ -1,6 +1,7 @@
 """Draw the distance of the wrists with T-poses and claps: tables of wrists and events -> figure, CSV."""
 
-from courtside.figures import style, wrist_distance
+from courtside.figures.devices import wrist_distance
+from courtside.figures.style import style
 from courtside.study import log
 
 

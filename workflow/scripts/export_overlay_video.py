@@ -1,7 +1,7 @@
 """Burn detections, 3D skeleton and time into a camera's video: video, 2D, people, clocks, 3D -> MP4."""
 
 from courtside.exports import overlay_video
-from courtside.figures import style
+from courtside.figures.style import style
 from courtside.geometry import camera as cameras
 from courtside.records import keypoints, people, skeleton, sync
 from courtside.study import log

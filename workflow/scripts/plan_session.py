@@ -4,7 +4,8 @@ from courtside.calibration.court import court as courts
 from courtside.calibration.planning import cameras, tie_points
 from courtside.calibration.planning import prediction as planning
 from courtside.calibration.records import covariance as camera_covariance
-from courtside.figures import error_map, plan, style
+from courtside.figures.calibration import error_map, plan
+from courtside.figures.style import style
 from courtside.sfm import model
 from courtside.study import log, plans
 from courtside.study.errors import InputError

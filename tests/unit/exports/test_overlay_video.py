@@ -8,7 +8,7 @@ import pytest
 import scene
 import walker
 from courtside.exports import overlay_video
-from courtside.figures import style
+from courtside.figures.style import style
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
 from courtside.video import reader, writer

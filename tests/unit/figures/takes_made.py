@@ -7,13 +7,13 @@ import numpy as np
 
 import scene
 import walker
-from courtside.figures import stick
+from courtside.figures.style import stick_figure
 from courtside.records import derived
 from courtside.records.footage import Footage
 from courtside.records.sync import Clock
 
 DERIVED = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
-STICK = stick.stick(walker.SKELETON, DERIVED)
+STICK = stick_figure.stick(walker.SKELETON, DERIVED)
 CAMERAS = scene.ring(3)
 LIMBS = walker.SKELETON.groups["limbs"]
 

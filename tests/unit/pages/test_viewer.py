@@ -12,7 +12,7 @@ import pytest
 import scene
 import walker
 from courtside.calibration.court import court as courts
-from courtside.figures import style
+from courtside.figures.style import style
 from courtside.pages import page, viewer, viewer_layers
 
 CONFIG = Path(__file__).parents[3] / "config"

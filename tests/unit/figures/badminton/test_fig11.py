@@ -1,0 +1,145 @@
+"""Exactly the joints that were moved are marked, with the distance they were moved by."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import takes_made
+
+import walker
+from courtside.evaluation import detection
+from courtside.figures.badminton import fig11
+from courtside.figures.style import picture_crops
+
+LIMIT = 0.1
+FRAME = 9
+AT = walker.SKELETON.index
+
+
+def moved(*changes):
+    """Return a take in which (frame, joint, camera, dx_px) were detected elsewhere."""
+    record, seen = takes_made.take()
+    error = record.reproj_error_px.copy()
+    views = [one.view.xy.copy() for one in seen]
+    for frame, joint, camera, dx_px in changes:
+        views[camera][0, frame, AT(joint), 0] += dx_px
+        error[0, frame, AT(joint), camera] = dx_px
+    seen = [
+        replace(one, view=replace(one.view, xy=xy)) for one, xy in zip(seen, views, strict=True)
+    ]
+    return replace(record, reproj_error_px=error), seen
+
+
+def limits(record, share=LIMIT):
+    return fig11.disagreements(record, takes_made.CAMERAS, takes_made.LIMBS, share)
+
+
+def table(record, seen):
+    mirror = walker.SKELETON.mirror()
+    limit = limits(record)
+    return fig11.table(record, seen, takes_made.LIMBS, mirror, FRAME, limit)
+
+
+def test_the_limit_is_a_share_of_the_torso_in_each_picture():
+    record, _ = takes_made.take()
+    _, _, limit_px = limits(record)
+    for at, camera in enumerate(takes_made.CAMERAS):
+        torso = detection.torso_px(camera, record.joints, record.xyz[0])
+        assert limit_px[0, at] == pytest.approx(0.1 * np.median(torso))
+
+
+@pytest.mark.parametrize(("share", "marked"), [(0.99, False), (1.01, True)])
+def test_a_joint_is_marked_beyond_the_limit(share, marked):
+    _, _, limit_px = limits(takes_made.take()[0])
+    record, _ = moved((FRAME, "left_wrist", 1, share * limit_px[0, 1]))
+    disagrees, known, _ = limits(record)
+    assert disagrees.sum() == marked
+    assert known.all()
+    if marked:
+        joint = list(takes_made.LIMBS).index("left_wrist")
+        assert disagrees[0, FRAME, joint, 1]
+
+
+def test_the_frame_with_most_marks_is_chosen_and_only_in_the_span():
+    record, _ = moved(
+        (4, "left_wrist", 0, 90), (6, "left_wrist", 0, 90), (6, "left_knee", 2, 90),
+        *((15, joint, 0, 90) for joint in ("left_hip", "left_knee", "left_ankle")),
+    )  # fmt: skip
+    disagrees, _, _ = limits(record)
+    assert fig11.choose(disagrees, slice(2, 12)) == 6
+    assert fig11.choose(disagrees, slice(2, 19)) == 15
+
+
+def test_the_table_marks_exactly_what_was_moved():
+    record, seen = moved(
+        (FRAME, "left_wrist", 1, 60), (FRAME, "right_ankle", 2, 70), (3, "left_wrist", 1, 60)
+    )
+    rows = table(record, seen)
+    marked = rows[rows.disagrees]
+    assert set(zip(marked.camera, marked.joint, strict=True)) == {
+        ("c1", "left_wrist"),
+        ("c2", "right_ankle"),
+    }
+    apart = np.hypot(
+        marked.detected_x_px - marked.reprojected_x_px,
+        marked.detected_y_px - marked.reprojected_y_px,
+    )
+    np.testing.assert_allclose(apart, marked.error_px, atol=1e-6)
+    assert sorted(marked.error_px) == [60, 70]
+    share = rows.set_index(["camera", "joint"]).take_disagree_percent
+    assert share["c1", "left_wrist"] == pytest.approx(100 * 2 / 20)
+    assert share["c0", "left_wrist"] == 0
+
+
+def test_a_joint_without_3d_is_not_known_and_not_marked():
+    record, seen = takes_made.take()
+    error, xyz = record.reproj_error_px.copy(), record.xyz.copy()
+    error[:, :, AT("left_elbow")], xyz[:, :, AT("left_elbow")] = np.nan, np.nan
+    rows = table(replace(record, reproj_error_px=error, xyz=xyz), seen)
+    own = rows[rows.joint == "left_elbow"]
+    assert not own.disagrees.any()
+    assert (own.take_frames == 0).all() and own.take_disagree_percent.isna().all()
+
+
+def test_sides_that_the_fusion_exchanged_are_taken_as_it_took_them():
+    record, seen = takes_made.take()
+    pair = [AT("left_knee"), AT("right_knee")]
+    xy = seen[0].view.xy.copy()
+    xy[:, :, pair] = xy[:, :, pair[::-1]]
+    seen[0] = replace(seen[0], view=replace(seen[0].view, xy=xy))
+    rows = table(record, seen)  # its errors stay 0: the fusion exchanged them back
+    changed = rows.sides_exchanged
+    assert set(zip(rows[changed].camera, rows[changed].joint, strict=True)) == {
+        ("c0", "left_knee"),
+        ("c0", "right_knee"),
+    }
+    np.testing.assert_allclose(rows.detected_x_px, rows.reprojected_x_px, atol=1e-6)
+
+
+def test_rings_are_drawn_where_the_moved_joints_were_detected():
+    record, seen = moved((FRAME, "left_wrist", 1, 60), (FRAME, "right_ankle", 1, 70))
+    rows = table(record, seen)
+    detected = {one.camera.name: takes_made.STICK.of(one.view.xy[:, FRAME]) for one in seen}
+    reprojected = {
+        one.camera.name: takes_made.STICK.of(one.reprojected(record, FRAME)) for one in seen
+    }
+    drawing = fig11.draw(
+        rows, takes_made.pictures(), detected, reprojected, takes_made.STICK, LIMIT
+    )
+    assert [axis.get_xlabel() for axis in drawing.axes[:3]] == [
+        "none above the limit",
+        "right ankle 70 px\nleft wrist 60 px",
+        "none above the limit",
+    ]
+    for at, axis in enumerate(drawing.axes[:3]):
+        rings = [
+            line.get_xydata()[0]
+            for line in axis.lines
+            if line.get_markeredgecolor() == picture_crops.MARKED and line.get_marker() == "o"
+        ]
+        wanted = [seen[1].view.xy[0, FRAME, AT(j)] for j in ("left_wrist", "right_ankle")]
+        np.testing.assert_allclose(rings, wanted if at == 1 else np.zeros((0, 2)).tolist())
+    cells = [text.get_text() for text in drawing.axes[3].texts]
+    assert len(cells) == 3 * 12
+    assert sorted(set(cells)) == ["0", "5"] and cells.count("5") == 2
+    drawing.draw_without_rendering()

@@ -1,0 +1,61 @@
+"""The racket's figure: medians where they belong, the floor and the published values beside them."""
+
+import pandas as pd
+import pytest
+
+import racket_runs
+from courtside.evaluation.tables import racket
+from courtside.figures.badminton import fig12
+
+ERRORS = {way: [(10.0 + at, 12.0, 9.0 + at)] * 3 for at, way in enumerate(racket_runs.WAYS)}
+
+
+def numbers(tmp_path, errors, sessions=("hall", "yard")):
+    parts = [
+        racket_runs.made(errors, session=session, again=again, sigma_px=sigma_px)
+        for session in sessions
+        for again in (False, True)
+        for sigma_px in (0.7, 1.8)
+    ]
+    pd.concat(parts).to_csv(tmp_path / "runs.csv", index=False)
+    return racket.table(racket.read([tmp_path / "runs.csv"]))
+
+
+def medians(axis):
+    """Return the heights of the white strokes: medians of filled boxes."""
+    return [line.get_ydata()[0] for line in axis.lines if line.get_color() == "white"]
+
+
+def stars(axis):
+    return [line.get_ydata()[0] for line in axis.lines if line.get_marker() == "*"]
+
+
+def test_medians_floor_and_published_values_are_drawn(tmp_path):
+    drawing = fig12.draw(numbers(tmp_path, ERRORS))
+    assert len(drawing.axes) == 5 * 2
+    for axis in drawing.axes[:4]:
+        expected = [10, 11, 12, 13, 14, 15, *[12] * 6, 9, 10, 11, 12, 13, 14]
+        assert medians(axis) == expected
+        dashed = [line.get_ydata()[0] for line in axis.lines if line.get_linestyle() == "--"]
+        assert dashed == [15, 12, 14]
+        assert sorted(stars(axis)) == [6.21, 6.27, 8.47, 11.86, 12.30, 12.69]
+    # SfM is way 4: its errors are 3 mm more than those of way 1 and 4 more than those of way 0.
+    assert medians(drawing.axes[4]) == [3, 4, 0, 0, 3, 4]
+    assert sorted(stars(drawing.axes[4])) == pytest.approx([-3.83, -0.83, 0.06])
+
+
+def test_ways_without_a_result_leave_a_gap(tmp_path):
+    drawing = fig12.draw(numbers(tmp_path, ERRORS | {"dlt8": [None] * 3}, ("hall",)))
+    drawing.savefig(tmp_path / "figure.png")
+    found = medians(drawing.axes[0])
+    assert found[1:6] == [11, 12, 13, 14, 15]
+    assert found[0] != found[0]
+
+
+def test_groups_of_published_values_span_ways_of_their_kind():
+    names = [way.name for way in fig12.WAYS]
+    first, last = fig12.PUBLISHED["8-point"]
+    assert names[first : last + 1] == ["dlt8", "known8"]
+    first, last = fig12.PUBLISHED["SfM"]
+    assert names[first : last + 1] == ["paper3", "sfm8", "sfm18"]
+    assert set(names) == set(racket_runs.WAYS)

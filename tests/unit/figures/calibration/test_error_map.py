@@ -1,0 +1,102 @@
+"""Expected errors are those that moving the cameras, and triangulating with OpenCV and SciPy, gives."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+import scene
+from courtside.calibration.court import court
+from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
+from courtside.figures.calibration import error_map
+from courtside.geometry.camera import Camera
+
+COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+K = np.array([[1100.0, 0, 640], [0, 1000, 360], [0, 0, 1]])
+DIST = np.array([-0.05, 0.01, 1e-3, -1e-3, 0.0])
+SHIFT_M, FOCAL_PX = 0.03, 4.0
+
+
+def cameras():
+    places = {"side": (-18, 6.7, 1.9), "back": (3, -14, 2.1)}
+    return [
+        Camera(name, (1280, 720), K, DIST, scene.look_at(place, (3.05, 6.7, 1.3)))
+        for name, place in places.items()
+    ]
+
+
+def covariance():
+    """Two numbers are uncertain: the first camera's shift along its x, and the second one's focal length."""
+    names = list(PARAMETERS)
+    variance = np.zeros(2 * len(names))
+    variance[names.index("tx_m")] = SHIFT_M**2
+    variance[len(names) + names.index("f_px")] = FOCAL_PX**2
+    return CameraCovariance(["side", "back"], np.diag(variance))
+
+
+def triangulate(found, seen, near):
+    def residuals(xyz):
+        made = [scene.opencv_projection(camera, xyz[None])[0] for camera in found]
+        return np.ravel(np.array(made) - seen)
+
+    return least_squares(residuals, near, xtol=1e-14, ftol=1e-14, gtol=1e-14).x
+
+
+def test_the_error_is_that_of_moved_cameras():
+    side, back = cameras()
+    shifted = side.cam_from_world.copy()
+    shifted[0, 3] += SHIFT_M / 100
+    longer = K.copy()
+    longer[0, 0] += 1.1 * FOCAL_PX / 100  # f is along y; x keeps its ratio to it
+    longer[1, 1] += FOCAL_PX / 100
+    trials = [(replace(side, cam_from_world=shifted), back), (side, replace(back, K=longer))]
+    rows = error_map.table([side, back], covariance(), COURT, [0.0, 2.0])
+    for at in (0, 700, 1400, 2600):
+        xyz = rows.loc[at, ["x_m", "y_m", "z_m"]].to_numpy(float)
+        seen = np.array([scene.opencv_projection(camera, xyz[None])[0] for camera in (side, back)])
+        moved = [100 * (triangulate(pair, seen, xyz) - xyz) for pair in trials]
+        expected_cm = 100 * np.sqrt(np.sum(np.square(moved)))
+        assert rows.loc[at, "sigma_cm"] == pytest.approx(expected_cm, rel=0.01)
+
+
+def test_what_a_camera_does_not_see_is_blank():
+    side, back = cameras()
+    narrow = replace(
+        side, K=np.diag([4.0, 4.0, 1.0]) @ K - np.array([[0, 0, 1920], [0, 0, 1080], [0, 0, 0]])
+    )
+    rows = error_map.table([narrow, back], covariance(), COURT, [1.0])
+    rotation, _ = cv2.Rodrigues(narrow.cam_from_world[:, :3])
+    xyz = rows[["x_m", "y_m", "z_m"]].to_numpy()
+    xy, _ = cv2.projectPoints(xyz, rotation, narrow.cam_from_world[:, 3], narrow.K, narrow.dist)
+    inside = ((xy[:, 0] > -0.5) & (xy[:, 0] < (1279.5, 719.5))).all(axis=1)
+    assert 0.1 < inside.mean() < 0.9
+    np.testing.assert_array_equal(rows["sigma_cm"].notna(), inside)
+
+
+def test_the_covariance_must_be_of_these_cameras():
+    with pytest.raises(ValueError, match="back"):
+        error_map.table(cameras()[::-1], covariance(), COURT, [0.0])
+
+
+def test_heights_share_one_scale():
+    rows = error_map.table(cameras(), covariance(), COURT, [0.0, 1.0, 2.0])
+    drawing = error_map.draw(rows, cameras(), COURT, "made up")
+    panels = [axis for axis in drawing.axes if axis.get_title().startswith("z = ")]
+    assert len(panels) == 3
+    levels = {tuple(axis.collections[0].levels) for axis in panels}
+    assert len(levels) == 1
+    (scale,) = levels
+    assert scale[0] <= rows["sigma_cm"].min() <= rows["sigma_cm"].max() <= scale[-1]
+    assert all(
+        {"side\n21 m", "back\n21 m"} <= {t.get_text() for t in axis.texts} for axis in panels
+    )
+
+
+def test_an_unknown_covariance_is_drawn_blank():
+    unknown = CameraCovariance(["side", "back"], np.full((28, 28), np.nan))
+    rows = error_map.table(cameras(), unknown, COURT, [0.0])
+    assert rows["sigma_cm"].isna().all()
+    error_map.draw(rows, cameras(), COURT, "made up").draw_without_rendering()

@@ -1,0 +1,56 @@
+"""The figure of agreement: measures from best to worst, limits in units of the smallest detectable change."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.comparison import agreement
+from courtside.statistics import agreement as exchange
+
+NETWORKS = ("old", "new")
+NOISE = {"a": 0.1, "b": 0.4, "c": 0.9, "d": 2.0, "e": 5.0}
+
+
+def made():
+    rng = np.random.default_rng(0)
+    rows = []
+    for name, noise in NOISE.items():
+        for subject in ("p1", "p2", "p3", "p4"):
+            for repeat in range(5):
+                first = rng.normal(10, 1)
+                second = first + rng.normal(0, noise)
+                rows.append((subject, "s", f"{subject}-{repeat}", name, "m", "", first, second))
+    pairs = pd.DataFrame(rows, columns=exchange.PAIRS)
+    return pairs, exchange.compare(pairs, NETWORKS)
+
+
+def test_measures_shown_run_from_the_best_to_the_worst():
+    _, table = made()
+    shuffled = table.sample(frac=1, random_state=1)
+    assert agreement.choose(shuffled, 3) == ["a", "c", "e"]
+    assert agreement.choose(shuffled, 9) == list("abcde")
+
+
+def test_files_give_back_what_was_written(tmp_path):
+    pairs, table = made()
+    pairs.to_csv(tmp_path / "p.csv", index=False)
+    table.to_csv(tmp_path / "t.csv", index=False)
+    again = agreement.read(tmp_path / "p.csv", tmp_path / "t.csv")
+    pd.testing.assert_frame_equal(again[0], pairs, check_dtype=False)
+    pd.testing.assert_frame_equal(again[1], table, check_dtype=False)
+
+
+def test_points_and_limits_are_where_the_tables_say():
+    pairs, table = made()
+    drawing = agreement.draw(pairs, table, NETWORKS, ["b"])
+    panel, summary = drawing.axes
+    own = pairs[(pairs["measure"] == "b") & (pairs["subject"] == "p1")]
+    np.testing.assert_allclose(panel.lines[0].get_ydata(), own["second"] - own["first"])
+    np.testing.assert_allclose(panel.lines[0].get_xdata(), (own["second"] + own["first"]) / 2)
+    row = table.set_index("measure").loc["b"]
+    flat = {float(line.get_ydata()[0]) for line in panel.lines if len(set(line.get_ydata())) == 1}
+    assert {row["bias"], row["lower"], row["upper"]} <= flat
+    labels = [text.get_text() for text in summary.get_yticklabels()]
+    assert labels == list("abcde")
+    segments = [s for c in summary.collections for s in getattr(c, "get_segments", list)()]
+    wide = row["upper"] / row["detectable"]
+    assert any(np.isclose(s[:, 0].max(), wide) and s[0, 1] == 1 for s in segments)

@@ -1,0 +1,85 @@
+"""Errors of sources: medians joint by joint, parts that fill the bar."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from courtside.figures.devices import source_errors
+from courtside.figures.style import source_styles
+
+MEDIANS = {"mocopi": 60.0, "d415-rgb": 40.0}
+SHARES = {"origin": 10.0, "scale": 20.0, "rotation": 25.0, "time": 5.0, "remainder": 40.0}
+VALUES = {"origin": 12.0, "scale": 1.05, "rotation": 3.0, "time": -0.02}
+
+
+def errors():
+    alignments = (*source_errors.SHOWN, "trunk_frame", "procrustes_take")
+    return pd.DataFrame(
+        [
+            (source, alignment, joint, 100, factor * median, 2 * factor * median)
+            for source, median in MEDIANS.items()
+            for factor, alignment in zip((1, 0.8, 0.5, 0.7, 0.6), alignments, strict=True)
+            for joint in ("right_knee", "left_wrist", "nose", "right_wrist", "all")
+        ],
+        columns=["source", "alignment", "joint", "n", "median_mm", "p95_mm"],
+    )
+
+
+def parts(total=10000.0):
+    rows = [
+        (source, form, part, total * share / 100, share, VALUES.get(part, np.nan))
+        for source in MEDIANS
+        for form in source_errors.FORMS
+        for part, share in {**SHARES, "all": 100.0}.items()
+    ]
+    return pd.DataFrame(
+        rows, columns=["source", "frame", "part", "mean_square_mm2", "percent", "value"]
+    )
+
+
+@pytest.fixture(scope="module")
+def drawing():
+    made = source_errors.draw(errors(), parts())
+    made.draw_without_rendering()
+    return made
+
+
+def test_joints_run_from_the_hands_down_and_end_with_all(drawing):
+    labels = [text.get_text() for text in drawing.subfigs[0].axes[0].get_yticklabels()]
+    assert labels == ["left wrist", "right wrist", "right knee", "nose", "all"]
+
+
+@pytest.mark.parametrize(("panel", "factor"), [(0, 1.0), (1, 0.8), (2, 0.5)])
+def test_each_alignment_has_its_panel_and_its_own_medians(drawing, panel, factor):
+    axis = drawing.subfigs[0].axes[panel]
+    words = ("unaligned", "root-relative", "Procrustes")[panel]
+    assert axis.get_title().startswith(words)
+    for source, median in MEDIANS.items():
+        colour = source_styles.looks([source])[source].colour
+        (line,) = (a for a in axis.lines if a.get_color() == colour)
+        np.testing.assert_allclose(line.get_xdata(), factor * median)
+    ends = np.concatenate([np.array(c.get_segments())[:, :, 0] for c in axis.collections])
+    np.testing.assert_allclose(ends[:, 1], 2 * ends[:, 0])
+
+
+def test_parts_are_stacked_in_order_and_fill_the_bar(drawing):
+    axis = drawing.subfigs[1].axes[0]
+    bars = [patch for patch in axis.patches if abs(patch.get_y() + 0.33) < 1e-6]
+    np.testing.assert_allclose([bar.get_width() for bar in bars], list(SHARES.values()))
+    np.testing.assert_allclose([bar.get_x() for bar in bars], [0, 10, 30, 55, 60])
+    said = axis.texts[0].get_text()
+    assert said == "100 mm rms; shift 12 mm, scale 1.050\nturn 3.0°, time −20 ms"
+
+
+def test_a_source_that_shares_no_frame_with_the_truth_says_so():
+    unknown = parts().assign(mean_square_mm2=np.nan, percent=np.nan, value=np.nan)
+    drawing = source_errors.draw(errors(), unknown)
+    drawing.draw_without_rendering()
+    assert {text.get_text() for text in drawing.subfigs[1].axes[0].texts} == {"no error known"}
+
+
+def test_the_table_holds_the_alignments_drawn_and_all_parts():
+    rows = source_errors.table(errors(), parts())
+    shown = rows[rows["table"] == "errors"]
+    assert set(shown["alignment"]) == set(source_errors.SHOWN)
+    assert (rows["table"] == "parts").sum() == len(parts())

@@ -1,0 +1,133 @@
+"""The wrists' distance: rows of sources, zooms of claps, candidates with their reasons."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from courtside.figures.devices import wrist_distance
+
+HELD_M = 0.08
+
+
+def wrists(offsets, claps_s=(3.0,), rate_hz=50.0):
+    """Return wrists 1.5 m apart that close within 0.5 s before each clap and are held 0.5 s."""
+    time_s = np.arange(0, 12, 1 / rate_hz)
+    parts = []
+    for source, offset in offsets.items():
+        apart = np.full(time_s.shape, 1.5)
+        for at in claps_s:
+            closing = np.interp(time_s - at, [-0.5, 0, 0.5, 1.0], [1.5, HELD_M, HELD_M, 1.5])
+            apart = np.minimum(apart, closing)
+        own = time_s + offset
+        about = {"source": source, "time_s": own, "own_time_s": own, "distance_m": apart}
+        parts.append(pd.DataFrame(about))
+    return pd.concat(parts, ignore_index=True)
+
+
+def event(source, name, time_s, number=np.nan, why=""):
+    return {
+        "source": source,
+        "event": name,
+        "number": number,
+        "time_s": time_s,
+        "own_time_s": time_s,
+        "uncertainty_s": 0.01 if name == "clap" else np.nan,
+        "used": name != "none",
+        "why": why,
+    }
+
+
+def spell(source, start_s=1.0, stop_s=2.0, number=1):
+    return [
+        event(source, f"tpose_{w}", t, number) for w, t in (("start", start_s), ("stop", stop_s))
+    ]
+
+
+TWO = {"cameras": 0.0, "mocopi": 0.0}
+EVENTS = pd.DataFrame(
+    [
+        *spell("mocopi"),
+        event("mocopi", "clap", 3.02, 1),
+        event("mocopi", "none", 9.0, why="the arms are bent"),
+        *spell("cameras"),
+        event("cameras", "clap", 3.0, 1),
+    ]
+)
+
+
+def test_claps_of_all_sources_share_a_panel_and_a_candidate_has_its_own():
+    rows = wrist_distance.table(wrists(TWO, (3.0, 9.0)), EVENTS)
+    claps = rows[rows["event"] == "clap"]
+    assert claps["panel"].tolist() == [1, 1] and claps["source"].tolist() == ["cameras", "mocopi"]
+    other = rows[rows["event"] == "none"].iloc[0]
+    assert (other["panel"], other["note"]) == (2, "a")
+    np.testing.assert_allclose(claps["floor_m"], HELD_M)
+    assert rows.loc[rows["event"].str.startswith("tpose"), "panel"].isna().all()
+
+
+def test_contacts_bands_and_distances_are_where_the_tables_say():
+    distances = wrists(TWO, (3.0, 9.0))
+    drawing = wrist_distance.draw(distances, wrist_distance.table(distances, EVENTS))
+    drawing.draw_without_rendering()
+    above, zooms, notes = drawing.subfigs
+    assert [axis.get_title(loc="left") for axis in above.axes] == ["cameras", "mocopi"]
+    own = distances[distances["source"] == "mocopi"]
+    line = above.axes[1].lines[0]
+    np.testing.assert_array_equal(line.get_xydata(), own[["time_s", "distance_m"]])
+    band = above.axes[1].patches[0].get_bbox()
+    assert (band.x0, band.x1) == (1.0, 2.0)
+    first, second = (axis for axis in zooms.axes if axis.axison)
+    assert first.get_title() == "clap 1, 3.01 s: within 20 ms"
+    assert second.get_title() == "9.00 s: no clap (a)"
+    contact = first.patches[0].get_bbox()
+    assert (contact.x0, contact.x1) == pytest.approx((-10 - 16.45, -10 + 16.45))
+    assert notes.texts[0].get_text() == "a (mocopi, 9.00 s): the arms are bent"
+
+
+def test_without_clocks_each_source_is_shown_by_itself():
+    distances = wrists({"cameras": 0.0, "mocopi": 0.1})
+    events = wrist_distance.table(distances, EVENTS, aligned=False)
+    claps = events[events["event"] == "clap"]
+    assert claps["panel"].nunique() == 2
+    drawing = wrist_distance.draw(distances, events, aligned=False)
+    above, zooms, _ = drawing.subfigs
+    assert "not synchronised" in above.axes[-1].get_xlabel()
+    shared = above.axes[0].get_shared_x_axes().joined(*above.axes)
+    assert not shared
+    assert {axis.get_title() for axis in zooms.axes if axis.axison} >= {
+        "clap 1, cameras, 3.00 s",
+        "clap 1, mocopi, 3.02 s",
+    }
+
+
+def test_a_take_without_any_event_says_why(tmp_path):
+    why = "mocopi: expected a T-pose, found none; film one before the clap"
+    events = pd.DataFrame([event("mocopi", "none", np.nan, why=why)])
+    distances = wrists({"mocopi": 0.0})
+    for name, rows in (("w", distances), ("e", events)):
+        rows.to_csv(tmp_path / f"{name}.csv", index=False)
+    distances, events = wrist_distance.read(tmp_path / "w.csv", tmp_path / "e.csv")
+    drawing = wrist_distance.draw(distances, wrist_distance.table(distances, events), aligned=False)
+    drawing.draw_without_rendering()
+    assert len(drawing.subfigs) == 2
+    assert drawing.subfigs[1].texts[0].get_text() == why
+
+
+def test_reading_gives_back_words_and_empty_reasons(tmp_path):
+    for name, rows in (("w", wrists(TWO)), ("e", EVENTS)):
+        rows.to_csv(tmp_path / f"{name}.csv", index=False)
+    distances, events = wrist_distance.read(tmp_path / "w.csv", tmp_path / "e.csv")
+    assert events["why"].tolist() == EVENTS["why"].tolist()
+    assert len(distances) == len(wrists(TWO))
+
+
+def test_many_candidates_do_not_crowd_out_a_late_clap():
+    events = [event("mocopi", "none", 0.5 + 0.6 * at, why="the arms are bent") for at in range(30)]
+    events = pd.DataFrame([*events, event("mocopi", "clap", 30.0, 1)])
+    distances = wrists({"mocopi": 0.0})
+    rows = wrist_distance.table(distances, events)
+    assert rows.loc[rows["event"] == "none", "note"].tolist()[25:28] == ["z", "aa", "ab"]
+    drawing = wrist_distance.draw(distances, rows)
+    titles = [axis.get_title() for axis in drawing.subfigs[1].axes]
+    assert len(titles) == 9 and any(title.startswith("clap 1, 30.00 s") for title in titles)
+    assert drawing.subfigs[2].texts[0].get_text().endswith("and 12 more, in the CSV")

@@ -1,0 +1,69 @@
+"""The figure of kinematics draws the tables' numbers."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import footwork
+import walker
+from courtside.calibration.court import court
+from courtside.exports import measures
+from courtside.figures.take import kinematics as speeds
+from courtside.kinematics import measures as kinematics
+from courtside.records import derived
+
+CONFIG = Path(__file__).parents[4] / "config"
+
+
+@pytest.fixture(scope="module")
+def tables():
+    time_s, neck = footwork.neck(30, 6, seed=1)
+    xyz, _ = footwork.body(neck, time_s)
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
+    table = derived.read(CONFIG / "derived_joints.yaml")
+    people = kinematics.measure(record, table, "blazepose33", how)
+    return measures.frames(people), measures.summary(people)
+
+
+def twice(rows):
+    return pd.concat([rows, rows.assign(person="p2")], ignore_index=True)
+
+
+def test_the_lines_are_the_tables(tables):
+    frames, summary = tables
+    drawing = speeds.draw(frames, summary, court.read(CONFIG / "courts" / "badminton.yaml"))
+    drawing.draw_without_rendering()
+    plan, speed, angle = drawing.subfigs[0].axes
+    paths = [line for line in plan.lines if len(line.get_xdata()) == len(frames)]
+    np.testing.assert_array_equal(paths[0].get_xydata(), frames[["neck_x_m", "neck_y_m"]])
+    np.testing.assert_array_equal(speed.lines[0].get_ydata(), frames.neck_ground_speed_m_s)
+    band = speed.collections[0].get_paths()[0].vertices[:, 1]
+    top = frames.neck_ground_speed_m_s + 1.645 * frames.neck_ground_speed_sd_m_s
+    assert band.max() == pytest.approx(top.max())
+    np.testing.assert_array_equal(angle.lines[0].get_ydata(), frames.left_knee_flexion_deg)
+    value = summary.set_index("measure").loc["neck_ground_distance", "value"]
+    assert f"{value:.2f}" in plan.get_title()
+
+
+def test_each_person_has_a_row_and_a_court_is_not_needed(tables):
+    frames, summary = (twice(rows) for rows in tables)
+    drawing = speeds.draw(frames, summary, None)
+    drawing.draw_without_rendering()
+    assert len(drawing.subfigs) == 2
+    assert drawing.subfigs[1].axes[0].get_title().startswith("p2")
+
+
+def test_the_table_holds_what_is_drawn(tables):
+    rows = speeds.table(tables[0])
+    assert {"neck_x_m", "mass_ground_speed_m_s", "trunk_lean_deg"} <= set(rows.columns)
+    assert len(rows) == len(tables[0])
+
+
+def test_a_person_who_was_never_seen_is_drawn_empty(tables):
+    frames, summary = (rows.copy() for rows in tables)
+    numbers = frames.select_dtypes("number").columns.difference(["time_s", "frame_idx"])
+    frames[numbers] = np.nan
+    speeds.draw(frames, summary, None).draw_without_rendering()

@@ -1,0 +1,34 @@
+"""The paths drawn are the record's."""
+
+from dataclasses import replace
+
+import numpy as np
+
+import scene
+import walker
+from courtside.figures.style import style
+from courtside.figures.take import skeletons
+
+
+def test_the_table_is_the_record():
+    record = walker.points(n_persons=2)
+    rows = skeletons.table(record)
+    one = rows[(rows.person == "p2") & (rows.joint == "left_ankle")]
+    at = record.joints.tolist().index("left_ankle")
+    np.testing.assert_array_equal(one[["x_m", "y_m", "z_m"]], record.xyz[1, :, at])
+    assert len(rows) == 2 * 4 * 20
+
+
+def test_left_and_right_have_their_colours():
+    drawing = skeletons.draw(walker.points(), scene.ring(3), walker.SKELETON)
+    colours = {line.get_color() for line in drawing.axes[0].lines}
+    assert {style.LEFT, style.RIGHT, style.MIDDLE} <= colours
+    labels = [text.get_text() for text in drawing.axes[1].texts]
+    assert sum("2.0 m high" in label for label in labels) == 3
+
+
+def test_a_take_without_any_point_is_drawn_empty():
+    record = walker.points()
+    empty = replace(record, xyz=np.full_like(record.xyz, np.nan))
+    drawing = skeletons.draw(empty, scene.ring(2), walker.SKELETON)
+    drawing.draw_without_rendering()

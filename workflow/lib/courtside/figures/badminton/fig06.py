@@ -1,0 +1,137 @@
+"""Where structure from motion says the walked camera went, by number of bridging images.
+
+The counterpart of [Shishido2020, fig 6].
+"""
+
+import textwrap
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import court_plan, style
+from courtside.records import image_names
+
+COLUMNS = 4
+FAR_M = 60.0  # from the court's centre: what lies beyond does not widen the panels
+SHOWN = 3  # percentile of the points that tie: the panels reach from there to its counterpart
+ROOM_M = 1.5
+LARGEST_MM = 75  # width of a panel
+TIE = "#999999"
+TEXT_WIDTH = 26  # characters of an outcome in its panel
+
+
+def table(records):
+    """Return what is drawn: n_bridging, kind (fixed, bridging, tie), order, name, x_m, y_m, z_m.
+
+    Parameters
+    ----------
+    records : dict of int to courtside.calibration.records.tie_points.Record
+        By number of bridging images. Without ties there is no frame, and no rows but one with the
+        outcome as name.
+    """
+    parts = []
+    for count, record in records.items():
+        if record.ties is None:
+            rows = {"kind": "outcome", "order": 0, "name": [record.outcome or record.fault]}
+            parts.append(pd.DataFrame({"n_bridging": count, **rows}))
+            continue
+        names, centres = in_order(record)
+        kind = np.where(image_names.are_static(names), "fixed", "bridging")
+        parts.append(_rows(count, kind, names, centres))
+        parts.append(_rows(count, "tie", "", record.xyz))
+    columns = ["n_bridging", "kind", "order", "name", "x_m", "y_m", "z_m"]
+    return pd.concat(parts, ignore_index=True).reindex(columns=columns)
+
+
+def in_order(record):
+    """Return names (V,) and places (V, 3) of registered images: bridging ones by frame, then fixed ones."""
+    names = np.asarray(record.images, dtype=str)
+    order = np.lexsort([names, image_names.are_static(names)])
+    return names[order], record.centres[order]
+
+
+def draw(rows, court, n_images=None):
+    """Draw the table of `table`, one panel for each number of bridging images, the largest first.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+    court : courtside.calibration.court.court.Court
+    n_images : dict of int to int, optional
+        How many images there were, fixed ones included, by number of bridging images.
+    """
+    counts = sorted(rows["n_bridging"].unique(), reverse=True)
+    columns = min(COLUMNS, len(counts))
+    n_rows = -(-len(counts) // columns)
+    low, high = _limits(rows, court)
+    width = min(style.WIDTH_MM / columns - 10, LARGEST_MM)
+    drawing = style.figure(min(225, 22 + n_rows * (8 + width * (high - low)[1] / (high - low)[0])))
+    axes = drawing.subplots(n_rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axis, count in zip(axes.flat, counts, strict=False):
+        _draw_panel(axis, rows[rows["n_bridging"] == count], court, (n_images or {}).get(count))
+        axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x (m)", ylabel="y (m)")
+        axis.label_outer()
+    for axis in axes.flat[len(counts) :]:
+        axis.set_visible(False)
+    for axis in axes.flat[len(counts) - columns : len(counts)]:
+        axis.xaxis.set_tick_params(labelbottom=True)
+        axis.set_xlabel("x (m)")
+    drawing.legend(*_legend(axes.flat[0]), loc="outside lower center", ncols=3)
+    return drawing
+
+
+def _rows(count, kind, names, xyz):
+    columns = {"n_bridging": count, "kind": kind, "order": np.arange(len(xyz)), "name": names}
+    return pd.DataFrame({**columns, "x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2]})
+
+
+def _limits(rows, court):
+    cameras = rows.loc[rows["kind"].isin(["fixed", "bridging"]), ["x_m", "y_m"]].to_numpy()
+    middle = np.asarray(court.size_m) / 2
+    cameras = cameras[np.linalg.norm(cameras - middle, axis=1) < FAR_M]
+    every = np.concatenate([cameras, [[0, 0]], [court.size_m]])
+    ties = rows.loc[rows["kind"] == "tie", ["x_m", "y_m"]].to_numpy()
+    ties = ties[np.linalg.norm(ties - middle, axis=1) < FAR_M]
+    if len(ties):
+        every = np.concatenate([every, np.percentile(ties, [SHOWN, 100 - SHOWN], axis=0)])
+    return every.min(axis=0) - ROOM_M, every.max(axis=0) + ROOM_M
+
+
+def _draw_panel(axis, rows, court, n_images):
+    court_plan.draw(axis, court, colour="black", least_pt=0.4)
+    count = rows["n_bridging"].iloc[0]
+    outcome = rows.loc[rows["kind"] == "outcome", "name"]
+    if len(outcome):
+        text = textwrap.fill(outcome.iloc[0], TEXT_WIDTH, max_lines=11)
+        look = {
+            "ha": "center",
+            "va": "center",
+            "fontsize": 6,
+            "transform": axis.transAxes,
+            "zorder": 6,
+        }
+        axis.text(0.5, 0.5, text, bbox={"facecolor": "white", "edgecolor": "#999999"}, **look)
+        axis.set_title(f"N = {count}: no result")
+        return
+    of = {kind: part for kind, part in rows.groupby("kind")}
+    ties = of.get("tie", rows[:0])
+    look = {"color": TIE, "markersize": 1.2, "markeredgewidth": 0, "zorder": 0, "rasterized": True}
+    axis.plot(ties["x_m"], ties["y_m"], "o", **look)
+    path = of.get("bridging", rows[:0])
+    axis.plot(
+        path["x_m"], path["y_m"], ".-", color=style.LEFT, markersize=2.5, linewidth=0.8, zorder=3
+    )
+    fixed = of.get("fixed", rows[:0])
+    axis.plot(fixed["x_m"], fixed["y_m"], "s", color=style.RIGHT, markersize=4, zorder=4)
+    found = len(path) + len(fixed)
+    axis.set_title(f"N = {count}: {found}{f' of {n_images}' if n_images else ''} images")
+
+
+def _legend(axis):
+    looks = [
+        (".-", style.LEFT, "bridging images, in order of filming"),
+        ("s", style.RIGHT, "fixed cameras"),
+        (".", TIE, "points that tie the images"),
+    ]
+    handles = [axis.plot([], [], form, color=colour, markersize=4)[0] for form, colour, _ in looks]
+    return handles, [words for *_, words in looks]

@@ -1,0 +1,210 @@
+"""Joints as the network saw them and as the 3D skeleton says: where the two disagree.
+
+The counterpart of [Shishido2020, fig 11], with the limbs that disagree marked by rule.
+"""
+
+import numpy as np
+import pandas as pd
+from matplotlib.lines import Line2D
+
+from courtside.evaluation import detection
+from courtside.figures.style import picture_crops, style
+from courtside.records import reasons
+
+WIDEST_MM = 62  # of a panel
+ASPECT = 0.75  # width over height of a panel
+LINE = 1.4  # points, in the widest panel
+LISTED = 3  # joints named below a panel
+PIXELS = ("detected_x_px", "detected_y_px", "reprojected_x_px", "reprojected_y_px")
+
+
+def disagreements(points, cameras, joints, limit_torso):
+    """Say where a camera's keypoint does not fit the 3D joint.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    cameras : list of Camera
+        Of `points`, in its order.
+    joints : sequence of str, length K
+        Those of `points` that are asked for.
+    limit_torso : float
+        Share of the length of the person's torso in that camera's picture (its median over the take).
+
+    Returns
+    -------
+    disagrees : (P, T, K, C) bool
+        The reprojection error is above the limit.
+    known : (P, T, K, C) bool
+        Both the keypoint and the 3D joint are there.
+    limit_px : (P, C) float
+    """
+    at = [list(points.joints).index(joint) for joint in joints]
+    torso = [detection.torso_px(camera, points.joints, points.xyz) for camera in cameras]
+    limit_px = limit_torso * np.nanmedian(torso, axis=-1).T
+    error = points.reproj_error_px[:, :, at]
+    with np.errstate(invalid="ignore"):
+        return error > limit_px[:, None, None], np.isfinite(error), limit_px
+
+
+def choose(disagrees, frames):
+    """Return the frame, of a slice of them, in which most joints disagree; the first of several."""
+    return frames.start + int(disagrees[:, frames].sum(axis=(0, 2, 3)).argmax())
+
+
+def table(points, footage, joints, mirror, frame, limit):
+    """Return the joints of one frame in every camera, and how often they disagree in the take.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    footage : list of courtside.records.footage.Footage
+        Of the cameras of `points`, in its order.
+    joints : sequence of str
+        Which joints.
+    mirror : sequence of int
+        For each joint of `points` the index of the same one of the other body side.
+    frame : int
+        Of `points`.
+    limit : (disagrees, known, limit_px)
+        Of `disagreements`, for these joints.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        For each person, camera and joint the pixel where the camera's nearest frame has it (with sides as the
+        fusion took them: `sides_exchanged` says where it took the other side's) and where the 3D joint
+        projects; error_px as the fusion measured it at the frame's time; whether it rests on the view
+        (accepted); then of the whole take the frames with both (take_frames) and the share in which they
+        disagree (take_disagree_percent).
+    """
+    disagrees, known, limit_px = limit
+    at = [list(points.joints).index(joint) for joint in joints]
+    parts = []
+    for camera, one in enumerate(footage):
+        own = one.frame_at(points.time_s[frame])
+        reprojected = one.reprojected(points, own)
+        for person, name in enumerate(points.person_id):
+            seen = one.view.xy[person, own]
+            error = points.reproj_error_px[person, frame, :, camera]
+            exchanged = _exchanged(seen, reprojected[person], mirror, error)
+            seen = np.where(exchanged[:, None], seen[mirror], seen)
+            drawn = np.column_stack([seen, reprojected[person]])[at]
+            columns = {
+                "time_s": points.time_s[frame],
+                "person": str(name),
+                "camera": one.camera.name,
+                "joint": list(joints),
+                **dict(zip(PIXELS, drawn.T, strict=True)),
+                "sides_exchanged": exchanged[at],
+                "error_px": error[at],
+                "limit_px": limit_px[person, camera],
+                "accepted": points.accepted[person, frame, at, camera],
+                "disagrees": disagrees[person, frame, :, camera],
+                "reason": [reasons.WORDS[int(c)] for c in points.reason[person, frame, at]],
+                "take_frames": known[person, :, :, camera].sum(axis=0),
+                "take_disagree_percent": _percent(disagrees, known, person, camera),
+            }
+            parts.append(pd.DataFrame(columns))
+    return pd.concat(parts, ignore_index=True)
+
+
+def _exchanged(seen, reprojected, mirror, error):
+    """Say for which joints the fusion's error is that of the other side's keypoint, (J,) bool."""
+    own = np.linalg.norm(seen - reprojected, axis=1)
+    other = np.linalg.norm(seen[mirror] - reprojected, axis=1)
+    with np.errstate(invalid="ignore"):
+        return np.abs(other - error) < np.abs(own - error)
+
+
+def _percent(disagrees, known, person, camera):
+    times, of = (each[person, :, :, camera].sum(axis=0) for each in (disagrees, known))
+    return np.where(of > 0, 100 * times / np.maximum(of, 1), np.nan)
+
+
+def draw(rows, images, detected, reprojected, stick, limit_torso):
+    """Draw every camera's picture of the persons, and below how often joints disagree in the take.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `table`.
+    images : dict of str to (H, W, 3) uint8
+        By camera, BGR, faces hidden where wished.
+    detected, reprojected : dict of str to (P, K, 2) float
+        By camera the joints of the stick figure, px.
+    stick : courtside.figures.style.stick_figure.Stick
+    limit_torso : float
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    names, n_rows = list(images), rows.groupby(["person", "camera"], sort=False).ngroups
+    width = min(style.WIDTH_MM / len(names), WIDEST_MM)
+    heights = width / ASPECT + 27, 21 + 5.5 * n_rows
+    drawing = style.figure(sum(heights))
+    upper, lower = drawing.subfigures(2, 1, height_ratios=heights)
+    axes = upper.subplots(1, len(names), squeeze=False)[0]
+    line = LINE * np.sqrt(width / WIDEST_MM)
+    for axis, name in zip(axes, names, strict=True):
+        both, size = [detected[name], reprojected[name]], images[name].shape[1::-1]
+        picture_crops.show(axis, images[name], picture_crops.box(both, size, ASPECT))
+        look = {"width": 2.2 * line, "outline": 0.8, "dots": False}
+        picture_crops.sticks(axis, detected[name], stick.bones, picture_crops.DETECTED, **look)
+        look = {"width": line, "outline": 0}
+        picture_crops.sticks(
+            axis, reprojected[name], stick.bones, picture_crops.REPROJECTED, **look
+        )
+        axis.set_title(name)
+        _mark(axis, rows[(rows.camera == name) & rows.disagrees], 7 * line)
+    upper.legend(*_legend(limit_torso, line), loc="outside lower center", ncols=3)
+    upper.suptitle(f"frame at {rows.time_s.iloc[0]:.2f} s", fontsize=8)
+    _draw_shares(lower, rows)
+    return drawing
+
+
+def _mark(axis, marked, size):
+    for row in marked.itertuples():
+        ends = np.array([[getattr(row, key) for key in PIXELS[at : at + 2]] for at in (0, 2)])
+        axis.plot(*ends.T, "--", color=picture_crops.MARKED, linewidth=1.0, zorder=4)
+        picture_crops.rings(axis, ends[:1], size=size)
+    worst = marked.sort_values("error_px", ascending=False)
+    lines = [f"{row.joint.replace('_', ' ')} {row.error_px:.0f} px" for row in worst.itertuples()]
+    more = [f"and {len(lines) - LISTED} more"] if len(lines) > LISTED else []
+    look = {"fontsize": 7, "color": "#c00000" if lines else "black"}
+    axis.set_xlabel("\n".join([*lines[:LISTED], *more]) or "none above the limit", **look)
+
+
+def _legend(limit_torso, line):
+    look = {
+        "color": picture_crops.MARKED,
+        "linestyle": "--",
+        "marker": "o",
+        "markerfacecolor": "none",
+    }
+    handles = [
+        Line2D([], [], color=picture_crops.DETECTED, linewidth=3),
+        Line2D([], [], color=picture_crops.REPROJECTED, linewidth=1.5, marker="o", markersize=3),
+        Line2D([], [], linewidth=1.0, markersize=7 * line, **look),
+    ]
+    limit = f"apart by more than {100 * limit_torso:.0f} % of the torso"
+    return handles, ["detected", "3D skeleton, reprojected", limit]
+
+
+def _draw_shares(part, rows):
+    axis, several = part.subplots(), rows.person.nunique() > 1
+    joints = list(dict.fromkeys(rows.joint))
+    rows = rows.assign(where=rows.camera + (", " + rows.person if several else ""))
+    shares = rows.pivot(index="where", columns="joint", values="take_disagree_percent")
+    shares = shares.loc[list(dict.fromkeys(rows["where"])), joints]
+    axis.imshow(shares, aspect="auto", cmap="Reds", vmin=0, vmax=100)
+    for (y, x), value in np.ndenumerate(shares.to_numpy()):
+        colour = "white" if value > 60 else "black"
+        text = "–" if np.isnan(value) else f"{value:.0f}"
+        axis.text(x, y, text, ha="center", va="center", fontsize=7, color=colour)
+    axis.set_xticks(range(len(joints)), [name.replace("_", "\n") for name in joints], fontsize=7)
+    axis.set_yticks(range(len(shares)), shares.index, fontsize=7)
+    axis.tick_params(length=0)
+    axis.spines[:].set_visible(False)
+    axis.set_title("The whole take: in how many percent of the frames the two are so far apart")

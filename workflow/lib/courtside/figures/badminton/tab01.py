@@ -1,0 +1,170 @@
+"""Table 1 of the paper as it was measured, and what its protocol cannot see: four rows per joint."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.ticker import FuncFormatter
+
+from courtside.figures.style import style
+
+ALL = "all"
+PANELS = (  # row of the table, title, filled marks
+    (("rounded", "rounded_published"), "B  round trip, rounded (mm)"),
+    (("reprojection", "left_out"), "C  detection to reprojection (px)"),
+    (("truth",), "D  distance to the truth (mm)"),
+)
+HOLLOW = ("rounded_published", "left_out")
+COLOURS = (style.CYCLE[0], style.CYCLE[1], style.CYCLE[2], style.CYCLE[3], style.CYCLE[4])
+SPREAD = 0.62  # of the distance between joints that the marks of one joint share
+WIDE = 20.0  # a panel whose means differ by more is logarithmic
+LEGEND = (
+    "filled: the picture's own pixels (B), views used (C); "
+    "hollow: pixels of the published width (B), views left out (C)"
+)
+
+
+def table(rows, published, person=None):
+    """Put the published values beside the rows of one person.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `courtside.evaluation.round_trip.table`, for one or more sets of cameras.
+    published : pandas.DataFrame
+        joint, mean_mm, sd_mm, n_frames, source.
+    person : str, optional
+        The first one by default.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        The same columns; the published rows have `published` as row, no person and 2 cameras. Joints are in
+        the published order, others behind them, and `all` is last.
+    """
+    own = rows[rows["person"] == (person or rows["person"].iloc[0])]
+    theirs = pd.DataFrame(
+        {
+            "person": "",
+            "n_cameras": 2,
+            "cameras": published["source"],
+            "row": "published",
+            "joint": published["joint"],
+            "unit": "mm",
+            "mean": published["mean_mm"],
+            "sd": published["sd_mm"],
+            "n": published["n_frames"],
+            "over": published["n_frames"].map("{} frames".format),
+        }
+    )
+    means = theirs.iloc[:1].assign(
+        joint=ALL,
+        mean=theirs["mean"].mean(),
+        sd=theirs["sd"].mean(),
+        n=len(theirs),
+        over=f"joints, each: {theirs['over'].iloc[0]}",
+    )
+    whole = pd.concat([own, theirs, means], ignore_index=True)
+    order = [*published["joint"], *(j for j in own["joint"].unique() if j != ALL), ALL]
+    place = whole["joint"].map({joint: at for at, joint in reversed(list(enumerate(order)))})
+    return whole.iloc[np.argsort(place, kind="stable")].reset_index(drop=True)
+
+
+def draw(rows, title=""):
+    """Draw the table of `table`: means with standard deviations, one panel for each row B, C and D.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+    title : str
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    joints = list(dict.fromkeys(rows["joint"]))
+    sets = rows.loc[rows["row"] == "exact", ["n_cameras", "cameras"]].drop_duplicates()
+    sets = list(sets.sort_values("n_cameras", kind="stable").itertuples(index=False, name=None))
+    drawing = style.figure(42 + 5.6 * len(joints))
+    axes = drawing.subplots(1, len(PANELS), sharey=True)
+    for axis, (names, heading) in zip(axes, PANELS, strict=True):
+        for name in names:
+            for at, (_, cameras) in enumerate(sets):
+                part = rows[(rows["row"] == name) & (rows["cameras"] == cameras)]
+                shift = SPREAD * ((at + 0.5) / len(sets) - 0.5)
+                _marks(axis, part, joints, shift, COLOURS[at % len(COLOURS)], name not in HOLLOW)
+        axis.set_title(heading)
+        axis.grid(axis="x", color="#dddddd", linewidth=0.5)
+    theirs = rows[rows["row"] == "published"].set_index("joint").reindex(joints)
+    place = np.arange(len(joints)) - SPREAD / 2 - 0.08
+    axes[0].errorbar(
+        theirs["mean"],
+        place,
+        xerr=theirs["sd"],
+        fmt="*",
+        color="black",
+        markersize=5,
+        linewidth=0.8,
+    )
+    for axis, (names, _) in zip(axes, PANELS, strict=True):
+        _scale(axis, rows.loc[rows["row"].isin(names), "mean"])
+    _without_truth(axes[-1], rows)
+    labels = [joint.replace("_", " ") for joint in joints]
+    axes[0].set(yticks=np.arange(len(joints)), yticklabels=labels)
+    axes[0].invert_yaxis()
+    _explain(drawing, axes[0], sets)
+    drawing.suptitle(f"{title}\n{_identity(rows)}".strip(), fontsize=8)
+    return drawing
+
+
+def _marks(axis, part, joints, shift, colour, filled):
+    part = part.set_index("joint").reindex(joints)
+    axis.errorbar(
+        part["mean"],
+        np.arange(len(joints)) + shift + (0.0 if filled else 0.07),
+        xerr=part["sd"],
+        fmt="o",
+        color=colour,
+        markerfacecolor=colour if filled else "white",
+        markersize=3,
+        linewidth=0.8 if filled else 0.4,
+    )
+
+
+def _scale(axis, means):
+    if means.max() > WIDE * means[means > 0].min():
+        axis.set_xlim(left=0.5 * means[means > 0].min())
+        axis.set_xscale("log")
+        axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    else:
+        axis.set_xlim(left=0)
+
+
+def _without_truth(axis, rows):
+    known = rows.loc[rows["row"] == "truth", "mean"].notna().any()
+    if not known:
+        axis.text(0.5, 0.5, "no truth:\na real session", transform=axis.transAxes, ha="center")
+        axis.set_xticks([])
+
+
+def _explain(drawing, axis, sets):
+    marks = [
+        axis.errorbar([], [], xerr=[], fmt="o", color=COLOURS[at % len(COLOURS)], markersize=3)
+        for at in range(len(sets))
+    ]
+    names = [f"{count} cameras: {cameras.replace('+', ', ')}" for count, cameras in sets]
+    marks.append(axis.errorbar([], [], xerr=[], fmt="*", color="black", markersize=5))
+    names.append("published, 2 cameras")
+    drawing.legend(
+        marks,
+        names,
+        loc="outside lower center",
+        ncols=2,
+        title=LEGEND,
+        title_fontsize=7,
+        fontsize=7,
+    )
+
+
+def _identity(rows):
+    exact = rows[(rows["row"] == "exact") & (rows["joint"] != ALL)]
+    mean = exact["mean"].max()
+    return f"A  exact round trip: 0 mm (largest mean of a joint {mean:.0e} mm): it is an identity"

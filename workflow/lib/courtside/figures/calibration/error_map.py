@@ -1,0 +1,116 @@
+"""Where on the court a calibration is to be trusted: the 3D error that its covariance lets expect."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.court import quality
+from courtside.figures.style import court_plan, style
+from courtside.geometry import camera as camera_models
+
+COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
+LEVELS = 14  # of colour, about
+ROOM_M = 3.2  # around the court, for the cameras
+
+
+def table(cameras, covariance, court, heights_m):
+    """Return the expected error over the court.
+
+    Parameters
+    ----------
+    cameras : list of Camera
+    covariance : courtside.calibration.records.covariance.CameraCovariance
+        Of the same cameras, in the same order.
+    court : courtside.calibration.court.court.Court
+    heights_m : sequence of float
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        x_m, y_m, z_m and sigma_cm: the root of the trace of a point's covariance, cm; NaN where a
+        camera does not see the point, or its covariance is unknown.
+
+    Raises
+    ------
+    ValueError
+        If the covariance is of other cameras.
+    """
+    if list(covariance.cameras) != [camera.name for camera in cameras]:
+        raise ValueError(f"covariance of {covariance.cameras}, cameras {[c.name for c in cameras]}")
+    xyz = quality.volume(court, heights_m, COLUMNS, ROWS)
+    network = selection.of_cameras(cameras)
+    sigma = np.full(len(xyz), np.nan)
+    seen = np.all([_sees(camera, xyz) for camera in cameras], axis=0)
+    if seen.any():
+        spread = point_covariance.point_covariance(network, covariance.of_columns(), xyz[seen])
+        sigma[seen] = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
+    return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
+
+
+def _sees(camera, xyz):
+    xy = camera_models.project(camera, xyz)
+    with np.errstate(invalid="ignore"):
+        return ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=-1)
+
+
+def draw(rows, cameras, court, title):
+    """Draw the table of `table`: one panel per height, one scale of colours.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+    cameras : list of Camera
+    court : courtside.calibration.court.court.Court
+    title : str
+    """
+    heights = rows["z_m"].unique()
+    wide, tall = np.asarray(court.size_m) + 2 * ROOM_M
+    drawing = style.figure(min(160, 18 + (style.WIDTH_MM - 30) / len(heights) * tall / wide))
+    axes = drawing.subplots(1, len(heights), sharex=True, sharey=True, squeeze=False)[0]
+    known = rows["sigma_cm"].dropna()
+    low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
+    levels = MaxNLocator(LEVELS).tick_values(low, max(high, low + 1e-3))
+    for axis, height in zip(axes, heights, strict=True):
+        part = rows[rows["z_m"] == height]
+        filled = _draw_height(axis, part, levels)
+        court_plan.draw(axis, court)
+        for camera in cameras:
+            _point_to(axis, camera, court)
+        axis.set_title(f"z = {height:g} m: median {part['sigma_cm'].median():.2f} cm")
+        axis.set(xlim=(-ROOM_M, wide - ROOM_M), ylim=(-ROOM_M, tall - ROOM_M), xlabel="x (m)")
+        for each in (axis.xaxis, axis.yaxis):
+            each.set_major_locator(MaxNLocator(4, integer=True, steps=[1, 2, 5, 10]))
+    axes[0].set_ylabel("y (m)")
+    bar = drawing.colorbar(filled, ax=list(axes), pad=0.01, aspect=30, ticks=levels[::2])
+    bar.set_label("expected 3D error (cm)")
+    drawing.suptitle(title, fontsize=8)
+    return drawing
+
+
+def _draw_height(axis, part, levels):
+    x, y = (part[name].unique() for name in ("x_m", "y_m"))
+    values = part["sigma_cm"].to_numpy().reshape(len(y), len(x))
+    filled = axis.contourf(x, y, values, levels=levels, cmap="YlGnBu", zorder=0)
+    if np.isfinite(values).any() and np.nanmax(values) > np.nanmin(values):
+        lines = axis.contour(
+            x, y, values, levels=levels[::2], colors="black", linewidths=0.5, zorder=2
+        )
+        for text in axis.clabel(lines, fontsize=6.5):
+            text.set_path_effects([withStroke(linewidth=1.8, foreground="white")])
+    return filled
+
+
+def _point_to(axis, camera, court):
+    """Mark at the court's edge from where a camera, which stands far outside, looks."""
+    centre = np.asarray(court.size_m) / 2
+    away = camera.centre_in_world[:2] - centre
+    outward = away / np.linalg.norm(away)
+    reach = np.min((centre + 0.3) / np.maximum(np.abs(outward), 1e-9))
+    tip = centre + reach * outward
+    arrow = {"arrowstyle": "-|>", "color": "black", "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+    axis.annotate("", tip, tip + 1.1 * outward, arrowprops=arrow, zorder=5)
+    text = f"{camera.name}\n{np.linalg.norm(away):.0f} m"
+    axis.text(*(tip + 2.0 * outward), text, ha="center", va="center", fontsize=6.5)

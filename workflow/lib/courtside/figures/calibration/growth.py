@@ -1,0 +1,96 @@
+"""How the time of each step grows with the number of bridging images."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import bars, style
+
+VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_bridging>\d+)-o(?P<offset>\d+)")
+ONCE = "once per session"
+MARKERS = "osv^Dx"
+
+
+def table(paths):
+    """Read benchmark files.
+
+    Parameters
+    ----------
+    paths : sequence of str or Path
+        `{step}/{mapper}-n{N}-o{offset}.tsv`; a file of another name is a step done once.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        step, mapper, n_bridging, offset, seconds, max_rss_mb; the mean where a file has several runs.
+    """
+    rows = []
+    for path in map(Path, paths):
+        found = VARIANT.fullmatch(path.stem)
+        runs = pd.read_csv(path, sep="\t", na_values="-")
+        of = {"mapper": found["mapper"] if found else ONCE}
+        of |= {key: int(found[key]) if found else np.nan for key in ("n_bridging", "offset")}
+        rows.append({"step": path.parent.name, **of, "seconds": runs["s"].mean()})
+        rows[-1]["max_rss_mb"] = pd.to_numeric(runs["max_rss"], errors="coerce").mean()
+    keys = ["step", "mapper", "n_bridging", "offset"]
+    return pd.DataFrame(rows).sort_values(keys, ignore_index=True)
+
+
+def exponents(rows):
+    """Return for each step and mapper the exponent and factor of a power law through the seconds.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `table`.
+
+    Returns
+    -------
+    laws : pandas.DataFrame
+        step, mapper, exponent, factor_s (seconds at N = 1), n; NaN for fewer than two numbers of images.
+    """
+    laws = []
+    for (step, mapper), group in rows[rows["mapper"] != ONCE].groupby(["step", "mapper"]):
+        law = (np.nan, np.nan)
+        if group["n_bridging"].nunique() > 1:
+            law = np.polyfit(np.log(group["n_bridging"]), np.log(group["seconds"]), 1)
+        laws.append((step, mapper, law[0], np.exp(law[1]), len(group)))
+    return pd.DataFrame(laws, columns=["step", "mapper", "exponent", "factor_s", "n"])
+
+
+def draw(rows, title=""):
+    """Draw the table of `table` with its power laws.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+    title : str
+    """
+    drawing = style.figure(95)
+    axis = drawing.subplots()
+    laws = exponents(rows)
+    looks = zip(laws.itertuples(), style.CYCLE * 2, MARKERS * 2, strict=False)
+    for law, colour, marker in looks:
+        of = rows[(rows["step"] == law.step) & (rows["mapper"] == law.mapper)]
+        label = f"{law.step}, {law.mapper}"
+        if np.isfinite(law.exponent):
+            label += f": N$^{{{law.exponent:.2f}}}$ (n = {law.n})"
+            ends = np.array([of["n_bridging"].min(), of["n_bridging"].max()])
+            axis.plot(ends, law.factor_s * ends**law.exponent, color=colour, linewidth=0.9)
+        axis.plot(
+            of["n_bridging"], of["seconds"], marker, color=colour, markersize=4.5, label=label
+        )
+    once = rows[rows["mapper"] == ONCE].groupby("step")["seconds"].sum()
+    for (step, seconds), line in zip(once.items(), ("--", ":", "-."), strict=False):
+        axis.axhline(
+            seconds, color="#777777", linestyle=line, linewidth=0.9, label=f"{step}, {ONCE}"
+        )
+    counts = sorted(rows["n_bridging"].dropna().astype(int).unique())
+    bars.ticks_at(axis, counts)
+    bars.plain_log(axis)
+    axis.set(xlabel="bridging images N", ylabel="time (s)", title=title)
+    axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
+    drawing.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    return drawing

@@ -1,0 +1,107 @@
+"""How the error to expect of a planned session falls with the number of bridging images."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import style
+
+COLUMNS = (
+    "n_images",
+    "neighbour_deg",
+    "n_ties",
+    "least_ties",
+    "error_median_cm",
+    "error_p05_cm",
+    "error_p95_cm",
+    "enough",
+    "fault",
+)
+
+
+def table(predictions, chosen):
+    """Return one row per number of bridging images.
+
+    Parameters
+    ----------
+    predictions : list of courtside.calibration.planning.prediction.Prediction
+    chosen : courtside.calibration.planning.prediction.Prediction or None
+        The one with the fewest images that will do.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        `n_images`, `neighbour_deg` (widest angle between neighbouring views), `n_ties`, `least_ties` (of a
+        fixed camera), quantiles of the root mean square error over the volume, `enough` (1 for the one
+        chosen and all with more images), `fault`.
+    """
+    rows = [
+        (p.n_images, p.neighbour_deg, p.n_ties, p.least_ties, p.error_cm[1], p.error_cm[0], p.error_cm[2],
+         int(chosen is not None and p.n_images >= chosen.n_images), p.fault)
+        for p in sorted(predictions, key=lambda p: p.n_images)
+    ]  # fmt: skip
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def draw(rows, title, *, min_points, widest_deg, target_cm=None):
+    """Draw the table of `table`: error above, widest angle between neighbours and fewest ties below.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+    title : str
+    min_points : int
+        Fewest ties of a fixed camera.
+    widest_deg : float
+        Widest angle between neighbouring views that holds a model together.
+    target_cm : float, optional
+    """
+    drawing = style.figure(110)
+    above, angle, ties = drawing.subplots(3, 1, sharex=True, height_ratios=[2.2, 1, 1])
+    walked, alone = rows[rows["n_images"] > 0], rows[rows["n_images"] == 0]
+    n = walked["n_images"]
+    band = n, walked["error_p05_cm"], walked["error_p95_cm"]
+    above.fill_between(*band, color=style.CYCLE[5], alpha=0.4)
+    above.plot(
+        n,
+        walked["error_median_cm"],
+        "o-",
+        color=style.CYCLE[0],
+        label="median; band: 90 % of sessions",
+    )
+    if alone["error_median_cm"].notna().any():
+        label, value = "court points alone", alone["error_median_cm"].iloc[0]
+        above.axhline(value, color="#777777", linestyle="--", linewidth=0.9, label=label)
+    if target_cm is not None:
+        above.axhline(target_cm, color=style.CYCLE[1], linewidth=0.9, label="wanted")
+    _mark_enough(above, walked)
+    above.set(ylabel="expected 3D error (cm)", ylim=(0, 1.35 * rows["error_p95_cm"].max()))
+    above.legend(loc="upper right", ncols=2)
+    _draw_limit(angle, n, walked["neighbour_deg"], widest_deg, "neighbours\n(degrees)")
+    _draw_limit(ties, n, walked["least_ties"], min_points, "fewest ties")
+    ties.set(xlabel="bridging images", xscale="log")
+    ties.set_xticks(n, [f"{count:d}" for count in n], minor=False)
+    ties.set_xticks([], minor=True)
+    drawing.suptitle(title, fontsize=8)
+    return drawing
+
+
+def _draw_limit(axis, n, values, limit, label):
+    axis.plot(n, values, "s-", color=style.CYCLE[0], markersize=3.5)
+    axis.axhline(limit, color=style.CYCLE[1], linewidth=0.9)
+    top = np.nanmax([limit, *values]) if len(values) else limit
+    axis.set(ylabel=label, ylim=(0, 1.15 * top))
+
+
+def _mark_enough(axis, walked):
+    enough = walked[walked["enough"] == 1]
+    if len(enough):
+        first = enough.iloc[0]
+        label = f"enough: {first['n_images']:.0f} images"
+        axis.plot(
+            first["n_images"],
+            first["error_median_cm"],
+            "*",
+            color=style.CYCLE[1],
+            markersize=11,
+            label=label,
+        )

@@ -1,0 +1,138 @@
+"""Differences of two networks against their means, and limits of agreement against what repeats explain."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import style
+
+COLOURS = {"yes": "#009E73", "unsure": "#E69F00", "no": "#D55E00"}
+WORDS = {
+    "yes": "may be exchanged",
+    "unsure": "limits within, their 95 % intervals not",
+    "no": "not to be exchanged",
+}
+MARKERS = "os^Dv<>P*X"  # one for each subject
+BAND = "#dddddd"
+TEXT = ("subject", "unit", "definition", "definitions_differ", "verdict", "sentence")
+SHOWN = 4
+FURTHEST = 8.0  # smallest detectable changes: limits beyond are cut off
+
+
+def read(pairs_csv, table_csv):
+    """Read the tables of a comparison, with empty texts as such.
+
+    Parameters
+    ----------
+    pairs_csv, table_csv : str or Path
+        Of `courtside.statistics.agreement`.
+
+    Returns
+    -------
+    pairs, table : pandas.DataFrame
+    """
+    tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in (pairs_csv, table_csv)]
+    for table in tables:
+        for name in set(TEXT) & set(table):
+            table[name] = table[name].astype(object).fillna("")
+    return tables
+
+
+def choose(table, count=SHOWN):
+    """Choose measures to show: spread evenly from the best agreement to the worst.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Of `courtside.statistics.agreement.compare`.
+    count : int
+
+    Returns
+    -------
+    measures : list of str
+    """
+    known = table[table["verdict"].isin(COLOURS)]
+    order = known.assign(ratio=_ratio(known)).sort_values("ratio", kind="stable")["measure"]
+    at = np.unique(np.linspace(0, len(order) - 1, min(count, len(order))).round().astype(int))
+    return order.iloc[at].tolist()
+
+
+def _ratio(table):
+    return np.maximum(-table["lower"], table["upper"]) / table["detectable"]
+
+
+def draw(pairs, table, networks, measures=None):
+    """Draw differences against means of some measures, and the limits of all.
+
+    Parameters
+    ----------
+    pairs, table : pandas.DataFrame
+        Of `courtside.statistics.agreement`.
+    networks : (str, str)
+    measures : list of str, optional
+        Those of the upper panels; `choose` otherwise.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    known = table[table["verdict"].isin(COLOURS)]
+    measures = measures or choose(table)
+    drawing = style.figure(80 + 3.4 * len(known))
+    above, below = drawing.subfigures(2, 1, height_ratios=[62, 18 + 3.4 * len(known)])
+    axes = above.subplots(1, len(measures), squeeze=False)[0]
+    for axis, measure in zip(axes, measures, strict=True):
+        row = known[known["measure"] == measure].iloc[0]
+        _differences(axis, pairs[pairs["measure"] == measure], row)
+    axes[0].set_ylabel(f"{networks[1]}\nless {networks[0]}")
+    above.supxlabel("mean of the two networks", fontsize=8)
+    _all_limits(below.subplots(), known)
+    return drawing
+
+
+def _differences(axis, part, row):
+    part = part.dropna(subset=["first", "second"])
+    detectable = row["detectable"]
+    axis.axhspan(-detectable, detectable, color=BAND, linewidth=0, zorder=0)
+    for at, (_, own) in enumerate(part.groupby("subject", sort=True)):
+        mean, difference = (own["first"] + own["second"]) / 2, own["second"] - own["first"]
+        axis.plot(mean, difference, MARKERS[at % len(MARKERS)], color="#444444", markersize=2.8)
+    colour = COLOURS[row["verdict"]]
+    axis.axhline(row["bias"], color="black", linewidth=0.8)
+    for name in ("lower", "upper"):
+        axis.axhline(row[name], color=colour, linestyle="--", linewidth=1.0)
+    reach = 1.35 * max(detectable, -row["lower"], row["upper"])
+    axis.set_ylim(-reach, reach)
+    axis.set_title(f"{_words(row['measure'])} ({row['unit'] or '1'})", fontsize=7)
+    axis.tick_params(labelsize=7)
+
+
+def _words(measure):
+    words = measure.replace("_", " ")
+    half = words.rfind(" ", 0, 18)
+    return words if len(words) <= 18 or half < 0 else f"{words[:half]}\n{words[half + 1 :]}"
+
+
+def _all_limits(axis, known):
+    place = np.arange(len(known))
+    axis.axvspan(-1, 1, color=BAND, linewidth=0, zorder=0)
+    axis.axvline(0, color="#999999", linewidth=0.6)
+    for name, colour in COLOURS.items():
+        at = np.flatnonzero(known["verdict"] == name)
+        part = known.iloc[at]
+        unit = part["detectable"].to_numpy()
+        axis.hlines(
+            at, part["lower_from"] / unit, part["upper_to"] / unit, color=colour, linewidth=0.5
+        )
+        axis.hlines(at, part["lower"] / unit, part["upper"] / unit, color=colour, linewidth=2.2)
+        label = f"{WORDS[name]}: {len(part)}"
+        axis.plot(part["bias"] / unit, at, "o", color=colour, markersize=3, label=label)
+    ends = known[["lower", "upper"]].div(known["detectable"], axis=0).abs().to_numpy()
+    reach = min(max(2.0, 1.15 * ends.max(initial=1.0)), FURTHEST)
+    axis.set_xlim(-reach, reach)
+    labels = known["measure"].str.replace("_", " ") + np.where(
+        known["definitions_differ"] != "", " *", ""
+    )
+    axis.set_yticks(place, labels, fontsize=6)
+    axis.set_ylim(len(known) - 0.4, -0.6)
+    axis.set_xlabel("difference, in smallest detectable changes of the network in use")
+    axis.figure.legend(loc="outside lower center", ncols=3)

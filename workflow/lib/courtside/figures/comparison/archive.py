@@ -1,0 +1,110 @@
+"""The measures of one subject over sessions, with the change that repeats alone would explain."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import bars, style
+
+N_COLUMNS = 3
+LEVEL = 3  # names of more sessions are written aslant
+BAND = "#dddddd"
+LOOKS = {  # verdict: colour, marker, filled, words
+    "first": ("black", "o", True, "first session"),
+    "within": ("#666666", "o", True, "within the smallest detectable change"),
+    "real": ("#D55E00", "o", True, "real change"),
+    "untold": ("#666666", "o", False, "untold: no repeats"),
+    "mixed": ("#CC79A7", "D", False, "measured in another way: not to be compared"),
+}
+BESIDE = ["change", "detectable", "freedom", "verdict", "mixed"]
+
+
+def table(values, changes):
+    """Put changes beside values.
+
+    Parameters
+    ----------
+    values, changes : pandas.DataFrame
+        Of `courtside.statistics.longitudinal`.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        The columns of both; the first value of a measure has the verdict `first` and no change.
+    """
+    beside = pd.DataFrame(index=values.index, columns=BESIDE, dtype=object)
+    for measure, part in values.groupby("measure", sort=False):
+        own = changes.loc[changes["measure"] == measure, BESIDE]
+        beside.loc[part.index[1:]] = own.to_numpy(dtype=object)
+        beside.loc[part.index[0], ["verdict", "mixed"]] = "first", ""
+    numbers = beside[["change", "detectable"]].astype(float)
+    freedom = pd.to_numeric(beside["freedom"]).astype("Int64")
+    beside = beside.assign(**numbers, freedom=freedom)
+    return pd.concat([values, beside], axis=1)
+
+
+def draw(rows, subject):
+    """Draw every measure in a panel of its own, sessions from left to right.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `table`.
+    subject : str
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    measures = list(dict.fromkeys(rows["measure"]))
+    n_rows = -(-len(measures) // N_COLUMNS)
+    drawing = style.figure(24 + 44 * n_rows)
+    axes = drawing.subplots(n_rows, N_COLUMNS, squeeze=False).ravel()
+    sessions = rows[["order", "session", "date"]].drop_duplicates().sort_values("order")
+    for axis, measure in zip(axes, measures, strict=False):
+        part = rows[rows["measure"] == measure]
+        _panel(axis, part)
+        axis.set_title(f"{measure.replace('_', ' ')} ({part['unit'].iloc[0] or '1'})")
+        axis.set_xticks(sessions["order"], _names(sessions), fontsize=6.5)
+        axis.tick_params(axis="x", rotation=25 if len(sessions) > LEVEL else 0)
+        axis.set_xlim(sessions["order"].min() - 0.4, sessions["order"].max() + 0.4)
+    for axis in axes[len(measures) :]:
+        axis.set_axis_off()
+    _explain(drawing, rows)
+    drawing.suptitle(f"subject {subject}", fontsize=8)
+    return drawing
+
+
+def _names(sessions):
+    pairs = sessions[["session", "date"]].itertuples(index=False)
+    return [f"{session}\n{date}".strip() for session, date in pairs]
+
+
+def _panel(axis, part):
+    first, later = part.iloc[0], part.iloc[1:]
+    banded = later[np.isfinite(later["detectable"]) & (later["verdict"] != "mixed")]
+    for _, row in banded.iterrows():
+        at = [row["order"] - 0.35, row["order"] + 0.35]
+        low, high = first["value"] - row["detectable"], first["value"] + row["detectable"]
+        axis.fill_between(at, low, high, color=BAND, linewidth=0, zorder=0)
+    axis.axhline(first["value"], color="#999999", linewidth=0.6, zorder=0.5)
+    for verdict, (colour, marker, filled, _) in LOOKS.items():
+        own = part[part["verdict"] == verdict]
+        axis.errorbar(
+            own["order"],
+            own["value"],
+            yerr=own["sd_takes"],
+            fmt=marker,
+            color=colour,
+            markerfacecolor=colour if filled else "white",
+            markersize=4.5,
+            linewidth=0.8,
+        )
+
+
+def _explain(drawing, rows):
+    shown = [name for name in LOOKS if (rows["verdict"] == name).any()]
+    marks = []
+    for name in shown:
+        colour, marker, filled, words = LOOKS[name]
+        marks.append(bars.mark(colour, marker=marker, filled=filled, label=words))
+    drawing.legend(handles=marks, loc="outside lower center", ncols=3)

@@ -1,0 +1,198 @@
+"""All sources' skeletons in the T-pose, from the front and from the side, and one map of their joints."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import joint_map, schematic_pose, source_styles, style
+
+N_COLUMNS = 2
+PLATE_MM, LINE_MM = 76, 4.2
+ASIDE = 1.75  # units: the side view stands that far to the right of the front view
+ARM_UNITS = 0.25  # numbers of joints higher than that stand above them, of others outwards
+WIDE, TOP = (-1.3, 2.2), 1.12
+LOWEST, ROOM = -1.45, 0.25  # of the feet, at least; below them, for words
+AXES = (((0, 1), 0.0, "from the front"), ((2, 1), ASIDE, "from the right"))
+WORDS = {  # of derived joints, in the table
+    "head_centre": "centre of the head",
+    "head_mass": "mass of the head",
+    "mid_shoulder": "middle of the shoulders",
+    "mid_hip": "middle of the hips",
+    "pelvis_thorax": "stands for the navel",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Plate:
+    """One skeleton as it is drawn.
+
+    Attributes
+    ----------
+    source : str
+        Empty for a skeleton of which there is no recording.
+    skeleton : courtside.records.skeleton.Skeleton
+    xyz : (J, 3) float
+        Body axes and units; NaN where missing.
+    kind : str
+        As for `courtside.figures.style.source_styles`.
+    """
+
+    source: str
+    skeleton: object
+    xyz: np.ndarray
+    kind: str
+
+
+def plates(bodies, skeletons, skeleton_of, kinds=None):
+    """Return the plates: one for each recording, and one for each skeleton without any.
+
+    Parameters
+    ----------
+    bodies : list of courtside.records.body_motion.BodyMotion
+    skeletons : list of courtside.records.skeleton.Skeleton
+    skeleton_of : dict of str to str
+        Skeleton of each source.
+    kinds : dict of str to str, optional
+        As for `courtside.figures.style.source_styles.kind_of`.
+
+    Returns
+    -------
+    plates : list of Plate
+        Of a recording the medians over its T-pose; of the others a schematic one.
+    """
+    known = {skeleton.name: skeleton for skeleton in skeletons}
+    found = []
+    for body in bodies:
+        skeleton = known[skeleton_of[body.source]]
+        start_s, stop_s = body.tpose_s
+        still = body.fixed[(body.time_s >= start_s) & (body.time_s <= stop_s)]
+        seen = np.isfinite(still).all(axis=2).any(axis=0)
+        xyz = np.full((len(skeleton.joints), 3), np.nan)
+        for at, joint in enumerate(body.joints):
+            if seen[at] and str(joint) in skeleton.joints:
+                xyz[skeleton.index(str(joint))] = np.nanmedian(still[:, at], axis=0)
+        kind = source_styles.kind_of(body.source, kinds)
+        found.append(Plate(body.source, skeleton, xyz, kind))
+    shown = {plate.skeleton.name for plate in found}
+    for name, skeleton in known.items():
+        if name not in shown:
+            xyz = schematic_pose.tpose(skeleton.joints)
+            found.append(Plate("", skeleton, xyz, "other"))
+    return found
+
+
+def table(found, rows):
+    """Return the numbers drawn, one row per joint of each plate.
+
+    Parameters
+    ----------
+    found : list of Plate
+    rows : pandas.DataFrame
+        Of `courtside.figures.style.joint_map`.
+
+    Returns
+    -------
+    table : pandas.DataFrame
+        source: `schematic` where there is no recording; skeleton, number, joint, device_name; x, y, z in body
+        units; stands_for: the common joints in which it has a part, with its weight.
+    """
+    parts = {}
+    for _, row in rows.iterrows():
+        for number, weight in zip(row["numbers"], row["weights"], strict=True):
+            said = f"{row['common']} {weight:g}"
+            parts.setdefault((row["skeleton"], number), []).append(said)
+    lines = []
+    for plate in found:
+        called = plate.skeleton.device_names()
+        for number, joint in enumerate(plate.skeleton.joints):
+            about = {
+                "source": plate.source or "schematic",
+                "skeleton": plate.skeleton.name,
+                "number": number,
+                "joint": joint,
+                "device_name": called[number],
+                **dict(zip("xyz", plate.xyz[number], strict=True)),
+                "stands_for": "; ".join(parts.get((plate.skeleton.name, number), [])),
+            }
+            lines.append(about)
+    return pd.DataFrame(lines)
+
+
+def draw(found, rows):
+    """Draw plates above, the map of joints below.
+
+    Parameters
+    ----------
+    found : list of Plate
+    rows : pandas.DataFrame
+        Of `courtside.figures.style.joint_map`, of the plates' skeletons.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    n_rows = -(-len(found) // N_COLUMNS)
+    heights = [PLATE_MM * n_rows, 12 + LINE_MM * rows["common"].nunique()]
+    drawing = style.figure(sum(heights))
+    above, below = drawing.subfigures(2, 1, height_ratios=heights)
+    axes = above.subplots(n_rows, N_COLUMNS, squeeze=False).ravel()
+    numbered = rows[rows["definition"] == ""].groupby("skeleton")["numbers"].sum()
+    for axis in axes:
+        axis.set_axis_off()
+    low = min(LOWEST, *(np.nanmin(plate.xyz[:, 1]) for plate in found)) - ROOM
+    for axis, plate in zip(axes, found, strict=False):
+        axis.set(xlim=WIDE, ylim=(low, TOP))
+        _draw_plate(axis, plate, numbered.get(plate.skeleton.name, ()))
+    _draw_map(below.subplots(), rows)
+    return drawing
+
+
+def _draw_plate(axis, plate, numbered):
+    colour = source_styles.COLOURS.get(plate.kind, source_styles.OTHER)
+    for pair, aside, words in AXES:
+        at = plate.xyz[:, pair] + (aside, 0)
+        for start, stop in plate.skeleton.bones:
+            ends = at[[plate.skeleton.index(start), plate.skeleton.index(stop)]]
+            axis.plot(*ends.T, color=colour, linewidth=1.1, alpha=0.55, zorder=2)
+        axis.plot(*at.T, "o", color=colour, markersize=2.6, zorder=3)
+        axis.plot([aside], [0], "+", color="black", markersize=6, zorder=1)
+        axis.text(aside, axis.get_ylim()[0], words, ha="center", va="bottom", fontsize=7)
+    for number in numbered:
+        x, y, _ = plate.xyz[number]
+        if y > ARM_UNITS:
+            look = {"xytext": (0, 4), "ha": "center", "va": "bottom"}
+        else:
+            outwards, ha = (5, "left") if x > 0 else (-5, "right")
+            look = {"xytext": (outwards, 0), "ha": ha, "va": "center"}
+        look |= {"textcoords": "offset points", "fontsize": 6, "color": "#333333"}
+        axis.annotate(f"{number}", (x, y), **look)
+    axis.set_aspect("equal")
+    said = f"{plate.skeleton.name}, {len(plate.skeleton.joints)} joints"
+    axis.set_title(f"{plate.source or 'no recording, schematic'}: {said}", pad=2)
+
+
+def _draw_map(axis, rows):
+    names, common = (list(dict.fromkeys(rows[key])) for key in ("skeleton", "common"))
+    wide = 1 / (len(names) + 0.9)
+    left = {name: (at + 0.9) * wide for at, name in enumerate(names)}
+    axis.set_axis_off()
+    axis.set(xlim=(0, 1), ylim=(len(common) + 0.6, -1.0))
+    for name in names:
+        axis.text(left[name], -0.5, name, va="center", fontsize=7, fontweight="bold")
+    axis.text(0, -0.5, "common joint", va="center", fontsize=7, fontweight="bold")
+    axis.axhline(0, color="black", linewidth=0.6)
+    for y, joint in enumerate(common):
+        own = rows[rows["common"] == joint]
+        words = (
+            f"left, right {joint}" if (own["definition"] == "").all() else WORDS.get(joint, joint)
+        )
+        mark = "" if own["same"].all() else " †"
+        axis.text(0, y + 0.5, words + mark, va="center", fontsize=6.5)
+        for _, row in own.iterrows():
+            cell = joint_map.cell(row)
+            axis.text(left[row["skeleton"]], y + 0.5, cell, va="center", fontsize=6.5)
+    said = (
+        "* computed from several joints    † what stands for it is another point in each skeleton"
+    )
+    axis.text(0, len(common) + 0.4, said, va="center", fontsize=6.5)

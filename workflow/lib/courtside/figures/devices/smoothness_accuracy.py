@@ -1,0 +1,133 @@
+"""Smoothness of the wrists against accuracy, source by source: the thesis's finding as numbers."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import bars, source_styles, style
+
+TAKE = ["session", "take"]
+ALIGNMENT = "body_frame"
+SINGLE_REACH = -1.41  # SPARC of one minimum-jerk reach (Balasubramanian et al. 2012)
+TRUE = "black"
+MM = 1000
+PANELS = {
+    "median_error_mm": "median error of all joints against the truth (mm)",
+    "distortion_mm": "mean distance of the wrists to their own arcs (mm)",
+}
+
+
+def table(distortion, errors=None, truth=None):
+    """Put smoothness beside accuracy, one row for each take and source.
+
+    Parameters
+    ----------
+    distortion : pandas.DataFrame
+        Of `courtside.kinematics.wrist_arcs`, with session, take, source, unit_m and sparc.
+    errors : pandas.DataFrame, optional
+        Of `courtside.evaluation.sources`, with session, take and source, of the takes that have a truth.
+    truth : pandas.DataFrame, optional
+        In the form of `distortion`, of the true wrists; source is the one they are to be compared with.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        session, take, source; sparc: mean of both wrists, with sparc_low and sparc_high, the two;
+        distortion_mm: mean of both wrists, in millimetres of the source's own unit; median_error_mm:
+        unaligned, of all joints; sparc_true: of the true wrists, mean of both; these empty where no truth is
+        known.
+    """
+    mm = MM * distortion["mean_distance"] * distortion["unit_m"]
+    rows = distortion.assign(distortion_mm=mm).groupby([*TAKE, "source"], sort=False)
+    rows = rows.agg(
+        sparc=("sparc", "mean"),
+        sparc_low=("sparc", "min"),
+        sparc_high=("sparc", "max"),
+        distortion_mm=("distortion_mm", "mean"),
+    ).reset_index()
+    key = [*TAKE, "source"]
+    if errors is None:
+        rows = rows.assign(median_error_mm=np.nan)
+    else:
+        whole = errors[(errors["alignment"] == ALIGNMENT) & (errors["joint"] == "all")]
+        beside = whole[[*key, "median_mm"]].rename(columns={"median_mm": "median_error_mm"})
+        rows = rows.merge(beside, on=key, how="left")
+    if truth is None:
+        return rows.assign(sparc_true=np.nan)
+    true = truth.groupby(key)["sparc"].mean().rename("sparc_true").reset_index()
+    return rows.merge(true, on=key, how="left")
+
+
+def read(distortion_csv, labels, errors_csv=(), truth_csv=()):
+    """Read the tables of several takes.
+
+    Parameters
+    ----------
+    distortion_csv : sequence of str or Path
+    labels : sequence of dict of str to str
+        session and take of each of them.
+    errors_csv, truth_csv : sequence of str or Path
+        With session and take as columns.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        Of `table`.
+    """
+    pairs = zip(distortion_csv, labels, strict=True)
+    distortion = pd.concat([pd.read_csv(path).assign(**label) for path, label in pairs])
+    return table(distortion, _read(errors_csv), _read(truth_csv))
+
+
+def _read(paths):
+    text = dict.fromkeys(TAKE, str)
+    found = [pd.read_csv(path, dtype=text) for path in paths]
+    return pd.concat(found, ignore_index=True) if found else None
+
+
+def draw(rows, *, kinds=None):
+    """Draw smoothness over the error, where a truth is known, and over the distortion, where a clap is.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `table`.
+    kinds : dict of str to str, optional
+        As for `courtside.figures.style.source_styles.kind_of`.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    shown = [name for name in PANELS if rows[name].notna().any()] or list(PANELS)[1:]
+    looks = source_styles.looks(rows["source"], kinds)
+    drawing = style.figure(95)
+    axes = drawing.subplots(1, len(shown), sharey=True, squeeze=False)[0]
+    for axis, name in zip(axes, shown, strict=True):
+        axis.axhline(SINGLE_REACH, color="#bbbbbb", linewidth=0.8, zorder=0)
+        for source, look in looks.items():
+            own = rows[rows["source"] == source].dropna(subset=[name])
+            axis.vlines(own[name], own["sparc_low"], own["sparc_high"], color=look.colour, lw=0.8)
+            axis.plot(own[name], own["sparc"], look.marker, color=look.colour, markersize=5)
+            axis.plot(own[name], own["sparc_true"], "_", color=TRUE, markersize=9, mew=1.2)
+        axis.set_xlim(left=0)
+        axis.set_xlabel(PANELS[name])
+    axes[0].set_ylabel("SPARC of the wrists' speed\n(nearer to 0 is smoother)")
+    _draw_best(axes[0])
+    marks = [bars.mark(look.colour, marker=look.marker, label=name) for name, look in looks.items()]
+    marks.append(bars.mark("#bbbbbb", marker="", line="-", label="one minimum-jerk reach"))
+    if rows["sparc_true"].notna().any():
+        marks.append(bars.mark(TRUE, marker="_", label="the true wrists, same time"))
+    drawing.legend(handles=marks, loc="outside lower center", ncols=4)
+    return drawing
+
+
+def _draw_best(axis):
+    axis.annotate(
+        "smooth and accurate",
+        (0.01, 0.99),
+        xytext=(0.09, 0.9),
+        xycoords="axes fraction",
+        fontsize=7,
+        color="#777777",
+        arrowprops={"arrowstyle": "->", "color": "#aaaaaa", "linewidth": 0.8},
+    )

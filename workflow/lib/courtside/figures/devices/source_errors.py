@@ -1,0 +1,139 @@
+"""How far each source is from the truth, joint by joint, and what its error is made of."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import bars, source_styles, style
+
+SHOWN = {  # alignments of `courtside.evaluation.sources`, from the hardest to the kindest
+    "body_frame": "unaligned\n(body frame of the T-pose)",
+    "root_relative": "root-relative\n(middle of the hips laid on top)",
+    "procrustes_frame": "Procrustes\n(similarity for each frame)",
+}
+FORMS = {"fixed": "frame of the T-pose", "following": "frame that goes with the trunk"}
+PARTS = {
+    "origin": "#999999",
+    "scale": style.CYCLE[4],
+    "rotation": style.CYCLE[2],
+    "time": style.CYCLE[3],
+    "remainder": "#333333",
+}
+VALUES = {
+    "origin": "shift {:.0f} mm",
+    "scale": "scale {:.3f}",
+    "rotation": "turn {:.1f}°",
+    "time": "time {:+.0f} ms",
+}
+MS = 1000
+ORDER = ("wrist", "elbow", "shoulder", "hip", "knee", "ankle")
+
+
+def table(errors, parts):
+    """Return the numbers drawn: errors per joint, then parts, in one table.
+
+    Parameters
+    ----------
+    errors, parts : pandas.DataFrame
+        Of `courtside.evaluation.sources`, with `source`; parts also with `frame`.
+    """
+    errors = errors[errors["alignment"].isin(SHOWN)].assign(table="errors")
+    rows = pd.concat([errors, parts.assign(table="parts")], ignore_index=True)
+    return rows.set_index("table").reset_index()
+
+
+def draw(errors, parts, *, kinds=None):
+    """Draw errors above, their parts below.
+
+    Parameters
+    ----------
+    errors, parts : pandas.DataFrame
+        As for `table`.
+    kinds : dict of str to str, optional
+        As for `courtside.figures.style.source_styles.kind_of`.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    looks = source_styles.looks(errors["source"], kinds)
+    joints = _joints(errors["joint"])
+    heights = [26 + (2.5 + 1.2 * len(looks)) * len(joints), 24 + 10 * len(looks)]
+    drawing = style.figure(sum(heights))
+    above, below = drawing.subfigures(2, 1, height_ratios=heights)
+    _draw_errors(above, errors, looks, joints)
+    _draw_parts(below, parts, looks)
+    return drawing
+
+
+def _joints(names):
+    """Return the joints in the order drawn: from the hands down, both sides together, all at the end."""
+
+    def rank(name):
+        part = name.split("_", 1)[-1]
+        return (ORDER.index(part) if part in ORDER else len(ORDER), part, name)
+
+    return [*sorted(set(names) - {"all"}, key=rank), "all"]
+
+
+def _draw_errors(part, errors, looks, joints):
+    axes = part.subplots(1, len(SHOWN), sharex=True, sharey=True)
+    step = 0.8 / len(looks)
+    for axis, (alignment, words) in zip(axes, SHOWN.items(), strict=True):
+        rows = errors[errors["alignment"] == alignment]
+        for number, (source, look) in enumerate(looks.items()):
+            own = rows[rows["source"] == source].set_index("joint").reindex(joints)
+            y = np.arange(len(joints)) + (number - (len(looks) - 1) / 2) * step
+            axis.hlines(y, own["median_mm"], own["p95_mm"], color=look.colour, linewidth=0.9)
+            axis.plot(own["median_mm"], y, look.marker, color=look.colour, markersize=3.5)
+        axis.set_title(words)
+        axis.axhline(len(joints) - 1.5, color="#bbbbbb", linewidth=0.6)
+        axis.grid(axis="x", color="#eeeeee", linewidth=0.6)
+        axis.set_axisbelow(True)
+        axis.set_xscale("log")  # sources differ by more than a hundred times
+        axis.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes[0].set_yticks(range(len(joints)), [name.replace("_", " ") for name in joints])
+    axes[0].set_ylim(len(joints) - 0.5, -0.5)
+    axes[len(SHOWN) // 2].set_xlabel(
+        "distance to the truth (mm): median, line to the 95 % quantile"
+    )
+    marks = [bars.mark(look.colour, marker=look.marker, label=name) for name, look in looks.items()]
+    part.legend(handles=marks, loc="outside upper center", ncols=min(4, len(marks)))
+
+
+def _draw_parts(part, parts, looks):
+    axes = part.subplots(1, len(FORMS), sharey=True, sharex=True)
+    for axis, (form, words) in zip(axes, FORMS.items(), strict=True):
+        rows = parts[parts["frame"] == form]
+        for y, source in enumerate(looks):
+            own = rows[rows["source"] == source].set_index("part")
+            _draw_bar(axis, y, own)
+        axis.set_title(words)
+        axis.set_xlim(0, 100)
+        axis.set_xlabel("share of the mean squared error (%)")
+    axes[0].set_yticks(np.arange(len(looks)), list(looks))
+    for tick, look in zip(axes[0].get_yticklabels(), looks.values(), strict=True):
+        tick.set_color(look.colour)
+    axes[0].set_ylim(len(looks) - 0.4, -0.6)
+    marks = [
+        bars.mark(colour, marker="s", label=name.replace("origin", "place of the origin"))
+        for name, colour in PARTS.items()
+    ]
+    part.legend(handles=marks, loc="outside lower center", ncols=len(marks))
+
+
+def _draw_bar(axis, y, own):
+    """Draw one source's parts as a bar, with the size of the whole and of the corrections below it."""
+    known = "all" in own.index and np.isfinite(own.loc["all", "mean_square_mm2"])
+    if not known:
+        axis.text(1, y, "no error known", va="center", fontsize=6.5)
+        return
+    start = 0.0
+    for name, colour in PARTS.items():
+        width = own.loc[name, "percent"]
+        axis.barh(y - 0.12, width, 0.42, left=start, color=colour, linewidth=0)
+        start += width
+    values = own["value"].mul(pd.Series({"time": MS}), fill_value=1)
+    fitted = [form.format(values[name]) for name, form in VALUES.items()]
+    size = np.sqrt(own.loc["all", "mean_square_mm2"])
+    said = f"{size:.0f} mm rms; {', '.join(fitted[:2])}\n{', '.join(fitted[2:])}"
+    axis.text(0.5, y + 0.13, said.replace("-", "−"), va="top", fontsize=6, linespacing=1.05)

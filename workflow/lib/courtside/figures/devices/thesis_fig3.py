@@ -1,0 +1,180 @@
+"""Figures 3.1 and 3.2 of the thesis: the wrists seen along the trunk, from the T-pose to the clap.
+
+With the circle that the thesis expects, of radius 1 about the origin, and the arcs that straight arms can
+follow: about the subject's own shoulders.
+"""
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from courtside.figures.style import source_styles, style
+
+CIRCLE, ARC, TRUE = "#bbbbbb", "#444444", "black"
+MM = 1000
+N_COLUMNS = 3
+BEYOND = np.radians(12)  # arcs are drawn on by that
+LEAST = ((-1.2, 1.2), (-0.3, 1.15))  # of x and z that are shown
+ROOM = 0.06
+BESIDE = ["shoulder_x", "shoulder_z", "radius", "mean_distance", "p95_distance", "mean_off_circle"]
+
+
+def table(paths, distortion, sources=None):
+    """Return the numbers drawn: each point of the paths with its own arc and that wrist's distortion.
+
+    Parameters
+    ----------
+    paths, distortion : pandas.DataFrame
+        Of `courtside.kinematics.wrist_arcs`, with `source`; distortion also with `unit_m`.
+    sources : list of str, optional
+        All of them otherwise.
+    """
+    rows = paths.merge(distortion[["source", "side", *BESIDE]], on=["source", "side"], how="left")
+    return rows if sources is None else rows[rows["source"].isin(sources)].reset_index(drop=True)
+
+
+def draw(paths, distortion, source, *, kinds=None, truth=None):
+    """Draw one source, the thesis's figure.
+
+    Parameters
+    ----------
+    paths, distortion : pandas.DataFrame
+        As for `table`.
+    source : str
+    kinds : dict of str to str, optional
+        As for `courtside.figures.style.source_styles.kind_of`.
+    truth : pandas.DataFrame, optional
+        The true wrists in the form of `paths`, `source` being the source that they are to be compared with.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    drawing = style.figure(118)
+    axis = drawing.subplots()
+    look = source_styles.looks([source], kinds)[source]
+    own, off, true = (_of(rows, source) for rows in (paths, distortion, truth))
+    _panel(axis, own, off, look, true)
+    _names(axis, own)
+    axis.set(**_limits([own, true]), ylabel="z, forwards (units)")
+    axis.set_xlabel("x, from the right hand to the left (units; 1 is half the wrist span)")
+    axis.set_title(f"{source}: {_title(own, off)}")
+    drawing.legend(handles=_marks(look.colour, true), loc="outside lower center", ncols=4)
+    return drawing
+
+
+def draw_all(paths, distortion, *, kinds=None, truth=None):
+    """Draw all sources side by side, on equal axes.
+
+    Parameters
+    ----------
+    paths, distortion : pandas.DataFrame
+    kinds : dict of str to str, optional
+    truth : pandas.DataFrame, optional
+        As for `draw`.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    looks = source_styles.looks(paths["source"], kinds)
+    n_rows = -(-len(looks) // N_COLUMNS)
+    drawing = style.figure(24 + 49 * n_rows)
+    share = {"sharex": True, "sharey": True, "squeeze": False}
+    axes = drawing.subplots(n_rows, min(N_COLUMNS, len(looks)), **share)
+    for axis, (source, look) in zip(axes.ravel(), looks.items(), strict=False):
+        own, off = _of(paths, source), _of(distortion, source)
+        _panel(axis, own, off, look, _of(truth, source))
+        axis.set_title(f"{source}\n{_short(off)}")
+        axis.set(**_limits([paths, truth]))
+    for axis in axes.ravel()[len(looks) :]:
+        axis.set_axis_off()
+    for axis in axes[:, 0]:
+        axis.set_ylabel("z, forwards (units)")
+    shown = axes.ravel()[: len(looks)]
+    for axis in shown[-axes.shape[1] :]:
+        axis.tick_params(labelbottom=True)
+        axis.set_xlabel("x, to the left hand (units)")
+    marks = _marks(style.MIDDLE, truth if truth is not None else paths.iloc[:0])
+    drawing.legend(handles=marks, loc="outside lower center", ncols=4)
+    return drawing
+
+
+def _of(rows, source):
+    return None if rows is None else rows[rows["source"] == source]
+
+
+def _panel(axis, own, off, look, true):
+    turn = np.linspace(-BEYOND, np.pi + BEYOND, 181)
+    axis.plot(np.cos(turn), np.sin(turn), color=CIRCLE, linewidth=1.2, zorder=1)
+    axis.axhline(0, color="#e5e5e5", linewidth=0.6, zorder=0)
+    axis.plot(0, 0, "+", color=CIRCLE, markersize=7, zorder=1)
+    for row in off.itertuples():
+        axis.plot(*_arc(row), "--", color=ARC, linewidth=0.9, zorder=2)
+        axis.plot(row.shoulder_x, row.shoulder_z, "^", color=ARC, markersize=5, zorder=2)
+    if true is not None:
+        for _, path in true.groupby("side"):
+            axis.plot(path["x"], path["z"], color=TRUE, linewidth=0.8, zorder=3)
+    for _, path in own.groupby("side"):
+        axis.plot(path["x"], path["z"], color=look.colour, linewidth=0.9, zorder=4)
+        axis.plot(path["x"], path["z"], ".", color=look.colour, markersize=3, zorder=4)
+        known = path[np.isfinite(path["x"])]
+        for end, mark in ((known.head(1), "s"), (known.tail(1), "o")):
+            axis.plot(end["x"], end["z"], mark, color=look.colour, mfc="white", ms=6, zorder=5)
+    axis.set_aspect("equal")
+
+
+def _arc(row):
+    """Return x and z of a wrist's own arc, from beside the body to the middle and a little further."""
+    aside = np.clip(-abs(row.shoulder_x) / row.radius, -1, 1)
+    turn = np.linspace(-BEYOND, np.arccos(aside) + BEYOND, 91)
+    outwards = 1 if row.side == "left" else -1
+    x = row.shoulder_x + outwards * row.radius * np.cos(turn)
+    return x, row.shoulder_z + row.radius * np.sin(turn)
+
+
+def _names(axis, own):
+    for side, path in own.groupby("side"):
+        start = path[np.isfinite(path["x"])].head(1)
+        for x, z in start[["x", "z"]].to_numpy():
+            inwards, ha = (8, "left") if x < 0 else (-8, "right")
+            place = {"xytext": (inwards, 0), "textcoords": "offset points"}
+            axis.annotate(f"{side} wrist", (x, z), ha=ha, va="center", fontsize=7, **place)
+
+
+def _limits(tables):
+    known = [rows[["x", "z"]].to_numpy() for rows in tables if rows is not None]
+    known = np.concatenate([*known, np.transpose(LEAST)])
+    low, high = np.nanmin(known, axis=0) - ROOM, np.nanmax(known, axis=0) + ROOM
+    return {"xlim": (low[0], high[0]), "ylim": (low[1], high[1])}
+
+
+def _title(own, off):
+    time_s = own["time_s"]
+    mm = MM * off["mean_distance"] * off["unit_m"]
+    pairs = zip(off["side"], off["mean_distance"], mm, strict=True)
+    said = ", ".join(f"{side} {units:.3f} ({mm:.0f} mm)" for side, units, mm in pairs)
+    return (
+        f"{time_s.nunique()} frames in {time_s.max() - time_s.min():.2f} s from T-pose to clap\n"
+        f"mean distance to the own arc: {said}; to the circle: {off['mean_off_circle'].mean():.3f}"
+    )
+
+
+def _short(off):
+    return f"off own arcs {off['mean_distance'].mean():.3f}, off circle {off['mean_off_circle'].mean():.3f}"
+
+
+def _marks(colour, true):
+    def mark(label, **look):
+        return Line2D([], [], label=label, **look)
+
+    hollow = {"color": colour, "linestyle": "none", "mfc": "white", "ms": 6}
+    marks = [
+        mark("wrist, every frame", color=colour, marker=".", lw=0.9, ms=4),
+        mark("end of the T-pose", marker="s", **hollow),
+        mark("clap", marker="o", **hollow),
+        mark("shoulder in the T-pose", color=ARC, marker="^", linestyle="none", ms=5),
+        mark("own arc, about the shoulder", color=ARC, linestyle="--", lw=0.9),
+        mark("circle of radius 1 about the origin", color=CIRCLE, lw=1.2),
+    ]
+    drawn = true is not None and len(true)
+    return marks + ([mark("truth", color=TRUE, lw=0.8)] if drawn else [])

@@ -1,0 +1,235 @@
+"""The distance of the wrists over time, with T-poses and claps, and every clap from close by."""
+
+import textwrap
+from string import ascii_lowercase
+
+import numpy as np
+import pandas as pd
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from courtside.calibration import point_covariance
+from courtside.figures.style import bars, source_styles, style
+
+ROW_MM, TICKS_MM, ZOOM_MM, LINE_MM = 19, 4, 48, 3.4
+N_COLUMNS, MOST_PANELS, MOST_NOTES = 3, 9, 18
+SAME_S = 0.5  # claps of different sources within that are one clap
+BEFORE_S, AFTER_S = 0.15, 0.3  # shown about a clap
+TOP_M = 0.6  # shown of it
+HELD_S = (0.03, 0.2)  # after the contact, while the hands are held together
+TPOSE, NOT = "#dddddd", "#888888"
+WRAP = 128
+MS = 1000
+
+
+def read(wrists_csv, events_csv):
+    """Read wrists and events as `courtside.events.detect` has them."""
+    events = pd.read_csv(events_csv)
+    why = events["why"].astype(object).where(events["why"].notna(), "").astype(str)
+    return pd.read_csv(wrists_csv), events.assign(why=why)
+
+
+def table(wrists, events, *, aligned=True):
+    """Put beside each event which panel shows it, and how far the wrists are apart while they are held.
+
+    Parameters
+    ----------
+    wrists, events : pandas.DataFrame
+        Of `courtside.events.detect`.
+    aligned : bool
+        Whether time_s is on one clock for all sources; each source is shown by itself otherwise.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        events, ordered by source and time, with `panel`: number of the zoom from 1, empty where there is
+        none; `floor_m`: median distance from 0.03 to 0.2 s after a clap or candidate; `note`: the letter that
+        marks a candidate which is no clap.
+    """
+    rows = events.assign(panel=np.nan, floor_m=np.nan, note="")
+    order = {source: at for at, source in enumerate(dict.fromkeys(wrists["source"]))}
+    key = rows["source"].map(order)
+    rows = rows.assign(key=key).sort_values(["key", "time_s"], kind="stable", ignore_index=True)
+    rows = rows.drop(columns="key")
+    shown = rows[rows["event"].isin(["clap", "none"]) & rows["time_s"].notna()]
+    for at, row in shown.iterrows():
+        own = wrists[wrists["source"] == row["source"]]
+        later = own["time_s"] - row["time_s"]
+        held = own.loc[later.between(*HELD_S), "distance_m"]
+        rows.loc[at, "floor_m"] = held.median()
+    for number, members in enumerate(_together(shown, aligned), 1):
+        rows.loc[members, "panel"] = number
+    missed = shown.index[shown["event"] == "none"]
+    rows.loc[missed, "note"] = [_letter(at) for at in range(len(missed))]
+    return rows
+
+
+def draw(wrists, events, *, kinds=None, aligned=True):
+    """Draw the whole take, one row for each source, and below it every clap.
+
+    Parameters
+    ----------
+    wrists : pandas.DataFrame
+        Of `courtside.events.detect`.
+    events : pandas.DataFrame
+        Of `table`.
+    kinds : dict of str to str, optional
+        As for `courtside.figures.style.source_styles.kind_of`.
+    aligned : bool
+        As for `table`.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    looks = source_styles.looks(wrists["source"], kinds)
+    notes, panels = _notes(events), _panels(events)
+    n_rows = -(-len(panels) // N_COLUMNS)
+    row_mm = ROW_MM + (0 if aligned else TICKS_MM)
+    heights = [12 + row_mm * len(looks), ZOOM_MM * n_rows, 4 + LINE_MM * len(notes)]
+    wanted = [True, n_rows > 0, bool(notes)]
+    heights = [height for height, want in zip(heights, wanted, strict=True) if want]
+    drawing = style.figure(sum(heights) + 12)
+    parts = list(drawing.subfigures(len(heights), 1, height_ratios=heights, squeeze=False).ravel())
+    _draw_rows(parts.pop(0), wrists, events, looks, aligned)
+    if n_rows:
+        _draw_zooms(parts.pop(0), wrists, events, panels, looks, aligned)
+    if notes:
+        parts.pop(0).text(0.01, 0.98, "\n".join(notes), va="top", fontsize=6.5, linespacing=1.25)
+    drawing.legend(handles=_marks(), loc="outside lower center", ncols=5, columnspacing=1.2)
+    return drawing
+
+
+def _together(shown, aligned):
+    """Return lists of the index of events that are one, claps before candidates that nobody else shows."""
+    groups = []
+    for at, row in shown.sort_values("time_s", kind="stable").iterrows():
+        for group in reversed(groups):
+            near = row["time_s"] - shown.loc[group[0], "time_s"] <= SAME_S
+            if near and (aligned or shown.loc[group[0], "source"] == row["source"]):
+                group.append(at)
+                break
+        else:
+            groups.append([at])
+    return groups
+
+
+def _letter(at):
+    more, letter = divmod(at, 26)
+    return (ascii_lowercase[more - 1] if more else "") + ascii_lowercase[letter]
+
+
+def _panels(events):
+    """Return the numbers of the panels shown, in order of time; those with a clap come first to be kept."""
+    with_clap = set(events.loc[events["event"] == "clap", "panel"])
+    numbers = events["panel"].dropna().unique()
+    ranked = sorted(numbers, key=lambda number: (number not in with_clap, number))
+    return sorted(ranked[:MOST_PANELS])
+
+
+def _notes(events):
+    """Return the lines that say why candidates are no claps, and what is missing."""
+    missed = events[events["event"] == "none"]
+    lines = []
+    for row in missed.head(MOST_NOTES).itertuples():
+        said = f"{row.note} ({row.source}, {row.time_s:.2f} s): {row.why}"
+        if not np.isfinite(row.time_s):
+            said = row.why if row.why.startswith(row.source) else f"{row.source}: {row.why}"
+        lines += textwrap.wrap(said, WRAP, subsequent_indent="    ")
+    if len(missed) > MOST_NOTES:
+        lines.append(f"and {len(missed) - MOST_NOTES} more, in the CSV")
+    return lines
+
+
+def _draw_rows(part, wrists, events, looks, aligned):
+    axes = part.subplots(len(looks), 1, sharex=aligned, squeeze=False)[:, 0]
+    top = wrists["distance_m"].max()
+    top = 1.25 * top if np.isfinite(top) else 1.0
+    for axis, (source, look) in zip(axes, looks.items(), strict=True):
+        own = wrists[wrists["source"] == source]
+        axis.plot(own["time_s"], own["distance_m"], color=look.colour, linewidth=0.8)
+        _draw_events(axis, events[events["source"] == source], look.colour, top)
+        axis.set_ylim(0, top)
+        axis.set_title(source, loc="left", color=look.colour, pad=2)
+    clock = "on the reference clock" if aligned else "on each source's own clock: not synchronised"
+    axes[-1].set_xlabel(f"time (s), {clock}")
+    part.supylabel("distance of the wrists (m)", fontsize=8)
+
+
+def _draw_events(axis, own, colour, top):
+    spells = own.pivot_table(index="number", columns="event", values="time_s")
+    if {"tpose_start", "tpose_stop"} <= set(spells):
+        for row in spells.dropna(subset=["tpose_start", "tpose_stop"]).itertuples():
+            axis.axvspan(row.tpose_start, row.tpose_stop, color=TPOSE, linewidth=0, zorder=0)
+    for row in own[own["event"] == "clap"].itertuples():
+        axis.axvline(row.time_s, color=colour, linewidth=0.7)
+        axis.text(row.time_s, top, f" {row.number:.0f}", va="top", color=colour, fontsize=7)
+    for row in own[own["note"] != ""].itertuples():
+        axis.axvline(row.time_s, color=NOT, linewidth=0.7, linestyle="--")
+        axis.text(row.time_s, top, f" {row.note}", va="top", color=NOT, fontsize=7)
+
+
+def _draw_zooms(part, wrists, events, panels, looks, aligned):
+    n_rows = -(-len(panels) // N_COLUMNS)
+    axes = part.subplots(n_rows, N_COLUMNS, squeeze=False).ravel()
+    for axis, panel in zip(axes, panels, strict=False):
+        members = events[events["panel"] == panel]
+        claps = members[members["event"] == "clap"]
+        centre_s = (claps if len(claps) else members)["time_s"].median()
+        sources = looks if aligned else dict.fromkeys(members["source"])
+        for source in sources:
+            _draw_close(axis, wrists[wrists["source"] == source], centre_s, looks[source])
+        for row in members.itertuples():
+            _draw_contact(axis, row, centre_s, looks[row.source].colour)
+        axis.set_xlim(-MS * BEFORE_S, MS * AFTER_S)
+        axis.set_ylim(0, TOP_M)
+        axis.set_title(_title(members, claps, centre_s, aligned))
+    for axis in axes[len(panels) :]:
+        axis.set_axis_off()
+    for axis in axes[::N_COLUMNS]:
+        axis.set_ylabel("distance (m)")
+    left = events["panel"].nunique() - len(panels)
+    also = f" ({left} more times at which the hands come together are not shown)" if left else ""
+    part.supxlabel(
+        f"time from the contact, their median where there are several (ms){also}", fontsize=8
+    )
+
+
+def _draw_close(axis, own, centre_s, look):
+    near = own[(own["time_s"] - centre_s).between(-BEFORE_S, AFTER_S)]
+    time_ms = MS * (near["time_s"] - centre_s)
+    axis.plot(time_ms, near["distance_m"], look.line, color=look.colour, linewidth=0.8)
+    axis.plot(time_ms, near["distance_m"], look.marker, color=look.colour, markersize=2.2)
+
+
+def _draw_contact(axis, row, centre_s, colour):
+    at = MS * (row.time_s - centre_s)
+    if row.event == "clap":
+        reach = MS * point_covariance.WITHIN_90 * row.uncertainty_s
+        axis.axvspan(at - reach, at + reach, color=colour, alpha=0.15, linewidth=0, zorder=0)
+        axis.axvline(at, color=colour, linewidth=0.9)
+        held = at + MS * np.array(HELD_S)
+        axis.plot(held, [row.floor_m] * 2, color=colour, linewidth=2.2, alpha=0.6)
+    else:
+        axis.axvline(at, color=colour, linewidth=0.7, linestyle="--")
+
+
+def _title(members, claps, centre_s, aligned):
+    said = f"{centre_s:.2f} s" if aligned else f"{members['source'].iloc[0]}, {centre_s:.2f} s"
+    if claps.empty:
+        return f"{said}: no clap ({', '.join(members['note'])})"
+    numbers = "/".join(f"{number:.0f}" for number in sorted(set(claps["number"])))
+    said = f"clap {numbers}, {said}"
+    if len(claps) > 1:
+        said += f": within {MS * np.ptp(claps['time_s']):.0f} ms"
+    return said
+
+
+def _marks():
+    return [
+        Patch(color=TPOSE, label="T-pose"),
+        bars.mark(style.MIDDLE, marker="", line="-", label="clap: contact"),
+        Patch(color=style.MIDDLE, alpha=0.2, label="its 90 % interval"),
+        Line2D([], [], color=style.MIDDLE, alpha=0.6, linewidth=2.2, label="held, median"),
+        bars.mark(NOT, marker="", line="--", label="hands together, no clap (letters)"),
+    ]

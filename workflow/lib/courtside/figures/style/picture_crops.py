@@ -1,0 +1,124 @@
+"""Parts of a picture around a person, with stick figures drawn on them as lines, not as pixels."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from courtside.figures.style import style
+
+MARGIN = 1.2  # of the person's extent, around it
+LARGEST_PX = 800  # longest side of what is kept of a picture
+LEAST_PX = 60  # a box is no smaller: of a person of whom a joint or two are known
+DETECTED, REPROJECTED, MARKED = (
+    tuple(value / 255 for value in bgr[::-1])
+    for bgr in (style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR)
+)
+
+
+@dataclass(frozen=True)
+class Box:
+    """A part of a picture: its middle and its width and height, px; it may reach beyond the picture."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+def box(xy, size, aspect=1.0):
+    """Return the part of a picture that shows some points.
+
+    Parameters
+    ----------
+    xy : (..., 2) float
+        Px; NaN are ignored.
+    size : (int, int)
+        Width and height of the picture, which is shown whole where no point is known.
+    aspect : float
+        Width over height of the part.
+
+    Returns
+    -------
+    box : Box
+    """
+    known = np.asarray(xy, dtype=float).reshape(-1, 2)
+    known = known[np.isfinite(known).all(axis=1)]
+    if not len(known):
+        known = np.array([[0, 0], size], dtype=float) / MARGIN
+        known += np.array(size) * (1 - 1 / MARGIN) / 2
+    low, high = known.min(axis=0), known.max(axis=0)
+    width, height = np.maximum(MARGIN * (high - low), LEAST_PX)
+    width, height = max(width, height * aspect), max(height, width / aspect)
+    return Box(*((low + high) / 2), width, height)
+
+
+def show(axis, image, part):
+    """Show a part of a picture, in the picture's own coordinates.
+
+    Parameters
+    ----------
+    axis : matplotlib.axes.Axes
+    image : (H, W, 3) uint8
+        BGR.
+    part : Box
+        What lies beyond the picture stays empty.
+    """
+    left, top = part.x - part.width / 2, part.y - part.height / 2
+    x0, y0 = max(0, int(left)), max(0, int(top))
+    x1, y1 = (max(0, int(np.ceil(end)) + 1) for end in (left + part.width, top + part.height))
+    cut = image[y0:y1, x0:x1, ::-1]
+    extent = (x0 - 0.5, x0 + cut.shape[1] - 0.5, y0 + cut.shape[0] - 0.5, y0 - 0.5)
+    if cut.size:
+        scale = min(1.0, LARGEST_PX / max(cut.shape[:2]))
+        if scale < 1:  # what no print shows would only make the file large
+            cut = cv2.resize(
+                np.ascontiguousarray(cut), None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA
+            )
+        axis.imshow(cut, extent=extent, interpolation="bicubic")
+    axis.set(xlim=(left, left + part.width), ylim=(top + part.height, top))
+    axis.set(xticks=[], yticks=[], aspect="equal", facecolor="#eeeeee")
+    axis.spines[:].set_visible(False)
+
+
+def sticks(axis, xy, bones, colour, *, width=1.2, outline=0.8, dots=True):
+    """Draw stick figures.
+
+    Parameters
+    ----------
+    axis : matplotlib.axes.Axes
+    xy : (..., K, 2) float
+        One or more figures, px; a line without both ends is left out.
+    bones : sequence of (int, int)
+    colour : str or tuple
+    width, outline : float
+        Points: of a line, and how much wider a black one behind it is.
+    dots : bool
+        Whether joints are drawn.
+    """
+    behind = [(width + outline, "black")] if outline else []
+    for one in np.reshape(xy, (-1, *np.shape(xy)[-2:])):
+        ends = [one[list(bone)] for bone in bones if np.isfinite(one[list(bone)]).all()]
+        for line_width, line_colour in (*behind, (width, colour)):
+            look = {"linewidth": line_width, "solid_capstyle": "round", "color": line_colour}
+            for end in ends:
+                axis.plot(*end.T, **look)
+        if dots:
+            look = {"markersize": 2.2 * width, "markeredgewidth": outline / 2, "zorder": 3}
+            axis.plot(*one.T, "o", color=colour, markeredgecolor="black", **look)
+
+
+def rings(axis, xy, colour=None, size=9.0):
+    """Put rings around points.
+
+    Parameters
+    ----------
+    axis : matplotlib.axes.Axes
+    xy : (n, 2) float
+    colour : str, optional
+        Red by default.
+    size : float
+        Points.
+    """
+    look = {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 1.3, "zorder": 4}
+    axis.plot(*np.reshape(xy, (-1, 2)).T, "o", markeredgecolor=colour or MARKED, **look)

@@ -1,0 +1,128 @@
+"""Errors of the cameras' clocks against the truth, in milliseconds and in millimetres at a fast wrist."""
+
+import numpy as np
+
+from courtside.calibration import point_covariance
+from courtside.figures.style import bars, style
+
+SPEED_M_S = 12.0  # of a wrist in a smash: millimetres per millisecond
+LIMIT_MS = 8.0  # what the study asks for at 30 frames per second
+FURTHEST_MS = 40.0  # errors beyond are marked at the edge, with their number
+COLOURS = {"yes": style.CYCLE[0], "no": style.CYCLE[1], "unused": "#888888"}
+WORDS = {
+    "yes": "90 % interval holds the truth",
+    "no": "does not",
+    "unused": "not used: the recording does not determine it",
+}
+LABELS = ["session", "take", "camera", "calibration", "model"]
+
+
+def table(rows):
+    """Put the intervals and what they hold beside the errors of clocks.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `courtside.figures.players_table.read`: the tables of `evaluate_clocks`.
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        Ordered by label, with lower_ms and upper_ms of the 90 % interval about worst_error_ms, the largest
+        error in the take; worst_error_mm at `SPEED_M_S`; and `holds`: yes, no, or unused for a clock whose
+        status is not `found`.
+    """
+    rows = rows.sort_values(LABELS, kind="stable").reset_index(drop=True)
+    reach = point_covariance.WITHIN_90 * rows["sigma_ms"]
+    inside = np.where(rows["worst_error_ms"].abs() <= reach, "yes", "no")
+    return rows.assign(
+        lower_ms=rows["worst_error_ms"] - reach,
+        upper_ms=rows["worst_error_ms"] + reach,
+        worst_error_mm=rows["worst_error_ms"] * SPEED_M_S,
+        holds=np.where(rows["status"] == "found", inside, "unused"),
+    )
+
+
+def draw(rows):
+    """Draw the errors, one line per camera of a take.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Of `table`.
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    drawing = style.figure(40 + 3.8 * len(rows))
+    axis = drawing.subplots()
+    edge = _edge(rows)
+    axis.axvspan(-LIMIT_MS, LIMIT_MS, color="#eeeeee", linewidth=0, zorder=0)
+    axis.axvline(0, color="#999999", linewidth=0.6)
+    for holds, colour in COLOURS.items():
+        part = rows[rows["holds"] == holds]
+        inside = part[part["worst_error_ms"].abs() <= edge]
+        axis.hlines(inside.index, inside["lower_ms"], inside["upper_ms"], color=colour)
+        face = "white" if holds == "unused" else colour
+        axis.plot(inside["worst_error_ms"], inside.index, "o", color=colour, mfc=face, markersize=4)
+        for at, row in part.drop(inside.index).iterrows():
+            _beyond(axis, at, row["worst_error_ms"], edge, colour)
+    axis.set_xlim(-1.02 * edge, 1.02 * edge)
+    axis.set_ylim(len(rows) - 0.4, -0.6)
+    axis.set_yticks(np.arange(len(rows)), _names(rows), fontsize=6.5)
+    axis.set_xlabel("clock less truth, where in the take it is largest (ms)")
+    above = axis.secondary_xaxis(
+        "top", functions=(lambda ms: SPEED_M_S * ms, lambda mm: mm / SPEED_M_S)
+    )
+    above.set_xlabel(f"way of a wrist at {SPEED_M_S:g} m/s in that time (mm)")
+    drawing.suptitle(_title(rows), fontsize=8)
+    there = [holds for holds in COLOURS if (rows["holds"] == holds).any()]
+    marks = [bars.mark(COLOURS[h], filled=h != "unused", line="-", label=WORDS[h]) for h in there]
+    drawing.legend(handles=marks, loc="outside lower center", ncols=3)
+    return drawing
+
+
+def _edge(rows):
+    known = rows.loc[rows["holds"] != "unused", ["lower_ms", "upper_ms"]].abs().to_numpy()
+    known = known[np.isfinite(known)]
+    return float(np.clip(1.1 * known.max(initial=0.0), 1.5 * LIMIT_MS, FURTHEST_MS))
+
+
+def _beyond(axis, at, error_ms, edge, colour):
+    if not np.isfinite(error_ms):
+        return
+    side = np.sign(error_ms)
+    where = "right" if side > 0 else "left"
+    face = "white" if colour == COLOURS["unused"] else colour
+    axis.plot(side * edge, at, ">" if side > 0 else "<", color=colour, mfc=face, markersize=4)
+    axis.annotate(
+        f"{error_ms:.0f} ms".replace("-", "\N{MINUS SIGN}"),
+        (side * edge, at),
+        xytext=(-5 * side, 0),
+        textcoords="offset points",
+        ha=where,
+        va="center",
+        fontsize=6.5,
+        color=colour,
+    )
+
+
+def _names(rows):
+    shown = ["session", "take", "camera"]
+    shown += [name for name in ("calibration", "model") if rows[name].nunique() > 1]
+    return rows[shown].agg(" ".join, axis=1).tolist()
+
+
+def _title(rows):
+    used = rows[rows["holds"] != "unused"]
+    left = len(rows) - len(used)
+    if used.empty:
+        return f"none of {len(rows)} clocks is determined by its recording"
+    held, worst = (used["holds"] == "yes").sum(), used["worst_error_ms"].abs().max()
+    close = (used["worst_error_ms"].abs() <= LIMIT_MS).sum()
+    title = (
+        f"{held} of {len(used)} intervals of 90 % hold the truth ({100 * held / len(used):.0f} %); "
+    )
+    title += f"largest error {worst:.1f} ms; {close} of {len(used)} within {LIMIT_MS:g} ms (shaded)"
+    return title + (f"; {left} not determined" if left else "")

@@ -1,0 +1,78 @@
+"""How far the cameras' keypoints lie from the 3D skeleton they gave, per joint and camera."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import style
+
+SMALLEST_PX = 0.5  # where the logarithmic axis begins
+
+
+def table(points):
+    """Return the statistics of reprojection errors.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        joint, camera, n (frames and persons with an error), n_accepted, then of all errors
+        p05_px, median_px, p95_px, mean_px, and of the accepted ones accepted_median_px.
+    """
+    rows = []
+    for at, joint in enumerate(points.joints):
+        for view, camera in enumerate(points.cameras):
+            error = points.reproj_error_px[:, :, at, view].ravel()
+            known = np.isfinite(error)
+            used = error[known & points.accepted[:, :, at, view].ravel()]
+            rows.append(
+                (joint, camera, known.sum(), len(used), *_spread(error[known]), _median(used))
+            )
+    names = ["p05_px", "median_px", "p95_px", "mean_px", "accepted_median_px"]
+    return pd.DataFrame(rows, columns=["joint", "camera", "n", "n_accepted", *names])
+
+
+def _spread(values):
+    if not len(values):
+        return (np.nan,) * 4
+    return (*np.percentile(values, [5, 50, 95]), values.mean())
+
+
+def _median(values):
+    return np.median(values) if len(values) else np.nan
+
+
+def draw(rows):
+    """Draw the table of `table`: medians with 5-95 % ranges, one panel per camera."""
+    cameras, joints = list(dict.fromkeys(rows.camera)), list(dict.fromkeys(rows.joint))
+    drawing = style.figure(30 + 3.6 * len(joints))
+    axes = drawing.subplots(1, len(cameras), sharey=True, sharex=True, squeeze=False)[0]
+    for axis, camera in zip(axes, cameras, strict=True):
+        part = rows[rows.camera == camera].set_index("joint").loc[joints]
+        place = np.arange(len(joints))
+        share = part.n_accepted.sum() / max(part.n.sum(), 1)
+        axis.hlines(
+            place, part.p05_px, part.p95_px, color="#999999", linewidth=1.2, label="5-95 % of all"
+        )
+        axis.plot(
+            part.median_px, place, "o", color=style.RIGHT, markersize=3, label="median of all"
+        )
+        axis.plot(
+            part.accepted_median_px,
+            place,
+            "|",
+            color=style.LEFT,
+            markersize=7,
+            label="median of accepted",
+        )
+        axis.set_title(f"{camera}: {100 * share:.0f} % accepted")
+        axis.set(yticks=place, yticklabels=[joint.replace("_", " ") for joint in joints])
+        axis.set_xlabel("reprojection error (px)")
+        axis.grid(axis="x", color="#dddddd", linewidth=0.5)
+    axes[0].invert_yaxis()
+    axes[0].set(xscale="log", xlim=(SMALLEST_PX, None))
+    handles, labels = axes[0].get_legend_handles_labels()
+    drawing.legend(handles, labels, loc="outside lower center", ncols=3)
+    return drawing

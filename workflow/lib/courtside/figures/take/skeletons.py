@@ -1,0 +1,129 @@
+"""The metric skeletons in the hall, with the paths of hands and feet."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.ticker import MultipleLocator
+
+from courtside.figures.style import style
+
+PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
+ROOM_M = 0.2  # shown around the skeletons
+ARROW_M = 0.6
+
+
+def table(points):
+    """Return the drawn paths: time_s, person, joint, x_m, y_m, z_m."""
+    parts = [
+        pd.DataFrame(
+            {
+                "time_s": points.time_s,
+                "person": str(person),
+                "joint": joint,
+                **{f"{axis}_m": xyz[:, n] for n, axis in enumerate("xyz")},
+            }
+        )
+        for at, person in enumerate(points.person_id)
+        for joint in PATHS
+        for xyz in [points.xyz[at, :, list(points.joints).index(joint)]]
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def draw(points, cameras, skeleton, n_poses=5):
+    """Draw skeletons at several times, once in perspective and once from above.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    cameras : list of Camera
+    skeleton : Skeleton
+    n_poses : int
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    drawing = style.figure(95)
+    space = drawing.add_subplot(1, 2, 1, projection="3d")
+    above = drawing.add_subplot(1, 2, 2)
+    _draw_space(space, points, skeleton, n_poses)
+    _draw_above(above, points, cameras, skeleton, n_poses)
+    return drawing
+
+
+def _poses(points, n_poses):
+    at = np.unique(np.linspace(0, len(points.time_s) - 1, n_poses).round().astype(int))
+    return list(zip(at, np.linspace(0.35, 1.0, len(at)), strict=True))
+
+
+def _bones(points, skeleton, n_poses):
+    """Yield both ends (2, 3), colour and opacity of every bone to draw."""
+    for frame, opacity in _poses(points, n_poses):
+        for person in range(len(points.person_id)):
+            xyz = points.xyz[person, frame]
+            for start, stop in skeleton.bones:
+                ends = xyz[[skeleton.index(start), skeleton.index(stop)]]
+                colours = {style.side_colour(start), style.side_colour(stop)}
+                yield ends, colours.pop() if len(colours) == 1 else style.MIDDLE, opacity
+
+
+def _paths(points):
+    for joint in PATHS:
+        at = list(points.joints).index(joint)
+        for person in range(len(points.person_id)):
+            yield points.xyz[person, :, at], style.side_colour(joint)
+
+
+def _limits(points):
+    known = points.xyz.reshape(-1, 3)
+    known = known[np.isfinite(known).all(axis=1)]
+    if not len(known):
+        known = np.zeros((1, 3))
+    low, high = np.percentile(known, [0.5, 99.5], axis=0)
+    return np.floor(2 * (low - ROOM_M)) / 2, np.ceil(2 * (high + ROOM_M)) / 2
+
+
+def _draw_space(axis, points, skeleton, n_poses):
+    low, high = _limits(points)
+    for ends, colour, opacity in _bones(points, skeleton, n_poses):
+        axis.plot(*ends.T, color=colour, alpha=opacity, linewidth=1.2)
+    for path, colour in _paths(points):
+        axis.plot(*path.T, color=colour, linewidth=0.6, alpha=0.8)
+    _floor(axis, low, high)
+    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(0, high[2]))
+    axis.set(xlabel="x (m)", ylabel="y (m)", zlabel="z (m)")
+    axis.set_box_aspect((high[0] - low[0], high[1] - low[1], high[2]), zoom=0.9)
+    for each in (axis.xaxis, axis.yaxis, axis.zaxis):
+        each.set_major_locator(MultipleLocator(1.0))
+    axis.view_init(elev=18, azim=-60)
+    axis.set_title("Skeletons and paths of wrists and ankles")
+
+
+def _floor(axis, low, high):
+    for x in np.arange(np.ceil(low[0]), high[0] + 1e-9):
+        axis.plot([x, x], [low[1], high[1]], [0, 0], color="#cccccc", linewidth=0.5)
+    for y in np.arange(np.ceil(low[1]), high[1] + 1e-9):
+        axis.plot([low[0], high[0]], [y, y], [0, 0], color="#cccccc", linewidth=0.5)
+
+
+def _draw_above(axis, points, cameras, skeleton, n_poses):
+    for ends, colour, opacity in _bones(points, skeleton, n_poses):
+        axis.plot(*ends[:, :2].T, color=colour, alpha=opacity, linewidth=1.0)
+    for path, colour in _paths(points):
+        axis.plot(*path[:, :2].T, color=colour, linewidth=0.6, alpha=0.8)
+    for camera in cameras:
+        x, y, z = camera.centre_in_world
+        forward = camera.cam_from_world[2, :2] * ARROW_M
+        axis.plot(x, y, "ks", markersize=4)
+        axis.annotate("", (x + forward[0], y + forward[1]), (x, y), arrowprops={"arrowstyle": "->"})
+        axis.annotate(
+            f"{camera.name}\n{z:.1f} m high", (x, y), (5, 5), textcoords="offset points", fontsize=7
+        )
+    for label, colour in (("left", style.LEFT), ("right", style.RIGHT), ("middle", style.MIDDLE)):
+        axis.plot([], [], color=colour, label=label)
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=3)
+    axis.set(xlabel="x (m)", ylabel="y (m)", title="From above, with the cameras")
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.margins(0.12)
+    axis.grid(color="#dddddd", linewidth=0.5)
+    axis.set_axisbelow(True)

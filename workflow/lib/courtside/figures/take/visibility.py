@@ -1,0 +1,76 @@
+"""What the cameras saw over time: the network's confidence, and how many views each joint rests on."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.figures.style import style
+
+
+def table(points, views):
+    """Return scores and numbers of views over time.
+
+    Parameters
+    ----------
+    points : Keypoints3D
+    views : list of Keypoints2D
+
+    Returns
+    -------
+    rows : pandas.DataFrame
+        time_s, person, joint, n_views, and one column score_<camera> each; empty where the camera saw
+        nothing.
+    """
+    n_persons, n_frames, n_joints = points.n_views.shape
+    columns = {
+        "time_s": np.tile(np.repeat(points.time_s, n_joints), n_persons),
+        "person": np.repeat(points.person_id, n_frames * n_joints),
+        "joint": np.tile(points.joints, n_persons * n_frames),
+        "n_views": points.n_views.ravel(),
+    }
+    for view in views:
+        at = np.abs(view.time_s[:, None] - points.time_s).argmin(axis=0)
+        columns[f"score_{view.camera}"] = view.score[:, at].ravel()
+    return pd.DataFrame(columns)
+
+
+def draw(rows, skeleton):
+    """Draw the table of `table`: one line panel of scores, one picture of view counts.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+    skeleton : Skeleton
+
+    Returns
+    -------
+    drawing : matplotlib.figure.Figure
+    """
+    joints = list(skeleton.joints)
+    drawing = style.figure(60 + 3.0 * len(joints))
+    upper, lower = drawing.subplots(2, 1, sharex=True, height_ratios=[1, 0.07 * len(joints) + 0.6])
+    limbs = rows[rows.joint.isin(skeleton.groups["limbs"])]
+    names = [name for name in rows.columns if name.startswith("score_")]
+    for name, colour in zip(names, np.resize(style.CYCLE, len(names)), strict=True):
+        mean = limbs.groupby("time_s")[name].mean()
+        upper.plot(mean.index, mean, color=colour, linewidth=1, label=name.removeprefix("score_"))
+    upper.set(ylabel="mean score", ylim=(0, 1.02))
+    upper.set_title("Confidence of the network, mean over the 12 limb joints")
+    upper.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    counts = rows.groupby(["joint", "time_s"]).n_views.min().unstack().loc[joints]
+    times = counts.columns.to_numpy()
+    step = np.median(np.diff(times)) if len(times) > 1 else 1.0
+    extent = (times[0] - step / 2, times[-1] + step / 2, len(joints) - 0.5, -0.5)
+    image = lower.imshow(
+        counts,
+        aspect="auto",
+        extent=extent,
+        vmin=0,
+        vmax=len(names),
+        cmap="viridis",
+        interpolation="nearest",
+    )
+    lower.set(yticks=range(len(joints)), yticklabels=[joint.replace("_", " ") for joint in joints])
+    lower.tick_params(axis="y", labelsize=6)
+    lower.set(xlabel="time (s)", title="Views that each joint rests on (0: missing)")
+    drawing.colorbar(image, ax=lower, ticks=range(len(names) + 1), label="views", pad=0.01)
+    return drawing
