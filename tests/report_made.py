@@ -56,7 +56,7 @@ def moved(camera, shift_px=0.1):
 
 
 def files_of_take(folder, n_frames=20):
-    """Write what `report_facts.of_take` reads of a take with one person; return its paths."""
+    """Write what `facts.of_take` reads of a take with one person; return its paths."""
     lines = ["frame_idx,time_s,person,neck_reason", "0,0.0,p1,uncertain"]
     lines += [f"{at},{at / 50},p1,ok" for at in range(1, n_frames)]
     paths = {

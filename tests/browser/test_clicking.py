@@ -10,8 +10,8 @@ import pytest
 
 import court_pictures
 from courtside.geometry import camera as projection
-from courtside.pages import clicking_page
 from courtside.pages import page as pages
+from courtside.pages.clicking import page as clicking_page
 from courtside.records import clicks
 
 pytestmark = pytest.mark.browser

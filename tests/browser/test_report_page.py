@@ -4,7 +4,7 @@ import pytest
 
 import report_made
 from courtside.pages import page as pages
-from courtside.pages import report
+from courtside.pages.report import report
 
 pytestmark = pytest.mark.browser
 

@@ -12,7 +12,8 @@ import scene
 import walker
 from courtside.calibration.court import court
 from courtside.pages import page as pages
-from courtside.pages import viewer, viewer_layers
+from courtside.pages.viewer import layers as viewer_layers
+from courtside.pages.viewer import viewer
 
 pytestmark = pytest.mark.browser
 COURT = Path(__file__).parents[2] / "config" / "courts" / "badminton.yaml"

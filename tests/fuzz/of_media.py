@@ -12,7 +12,7 @@ from courtside.calibration import chessboard
 from courtside.drafting import draft as session_advice
 from courtside.drafting import guess as session_guess
 from courtside.drafting import survey
-from courtside.pages import clicking_page
+from courtside.pages.clicking import page
 from courtside.pose import tflite_onnx
 from courtside.sfm import database, model
 from courtside.study import yaml_files
@@ -50,7 +50,7 @@ def jpegs(folder):
 def read_photo(path):
     """Read a photo as a frame of a walk and as a picture to click in."""
     with contextlib.suppress(ValueError):  # the page takes dark ones too
-        clicking_page.frame("c", path, jpeg_quality=80)
+        page.frame("c", path, jpeg_quality=80)
     found = walk_frames.read_photo(path)
     require(found.dtype == np.uint8 and found.ndim == 3, "a picture of another kind")
     return found

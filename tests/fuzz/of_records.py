@@ -11,7 +11,7 @@ from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
-from courtside.pages import viewer_layers
+from courtside.pages.viewer import layers
 from courtside.records import (
     body_motion,
     device_motion,
@@ -48,7 +48,7 @@ def motion(folder):
 
 def read_layer(path):
     """Read a device's motion as the page of a take does."""
-    return viewer_layers.read(path, "suit", walker.SKELETON)
+    return layers.read(path, "suit", walker.SKELETON)
 
 
 def persons(folder):

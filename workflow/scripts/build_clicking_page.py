@@ -1,7 +1,8 @@
 """Build the page for clicking: static pictures, court, earlier clicks and proposals -> one HTML file."""
 
 from courtside.calibration.court import court as courts
-from courtside.pages import clicking_page, page
+from courtside.pages import page
+from courtside.pages.clicking import page as clicking_page
 from courtside.records import clicks, proposals
 from courtside.study import log
 

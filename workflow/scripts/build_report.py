@@ -1,6 +1,7 @@
 """Put what the study has made into one HTML file: measures, warnings, figures, quality, methods -> page."""
 
-from courtside.pages import page, report
+from courtside.pages import page
+from courtside.pages.report import report
 from courtside.study import log
 
 

@@ -7,7 +7,9 @@ whether it is to be `placed` onto the first layer.
 
 from courtside.calibration.court import court as courts
 from courtside.geometry import camera
-from courtside.pages import page, viewer, viewer_layers
+from courtside.pages import page
+from courtside.pages.viewer import layers as viewer_layers
+from courtside.pages.viewer import viewer
 from courtside.records import skeleton, sync
 from courtside.study import log
 

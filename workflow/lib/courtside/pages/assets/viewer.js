@@ -313,7 +313,7 @@ function wireHand(viewer) {
   }, { passive: false });
 }
 
-/** What `courtside.viewer` offers; pages/viewer.py says it in words. */
+/** What `courtside.viewer` offers; pages/viewer/viewer.py says it in words. */
 function hook(viewer) {
   const { view } = viewer;
   const find = (name) => view.layers.find((layer) => layer.name === name);

@@ -1,5 +1,5 @@
 "use strict";
-/* Unpacks what pages/packing.py and pages/viewer_layers.py pack. */
+/* Unpacks what pages/viewer/packing.py and pages/viewer/layers.py pack. */
 
 const LEAST = 1e-5, MOST = 10, LEVELS = 254, ANGLES = 255, STEP_M = 0.001, PX = 0.01;
 

@@ -1,16 +1,11 @@
 """The report of a study: a page that a coach can read, then every figure, each session's quality, methods."""
 
-from courtside.pages import (
-    page,
-    report_coach,
-    report_facts,
-    report_figures,
-    report_methods,
-    report_quality,
-    report_warnings,
-)
+from courtside.pages import page
 from courtside.pages.page import text
-from courtside.pages.report_figures import identity
+from courtside.pages.report import coach, methods, quality, warnings
+from courtside.pages.report import facts as report_facts
+from courtside.pages.report import figures as report_figures
+from courtside.pages.report.figures import identity
 
 LEAD = (
     "Every number comes with the interval that holds nine errors in ten, as far as the pictures "
@@ -30,9 +25,9 @@ def build(study):
         `title`; `parameters` (the steps as configured); `sessions`, each with `name`, `description`,
         `virtual`, `way`, `mapper`, `n_images`, `fusion`, `model`, `overrides`, `limits` (`max_shift_px`,
         `max_zoom_percent`), perhaps `withheld` (lines that say what is not made for want of consent), `files`
-        (of `report_facts.of_session`) and `takes`, each with `name`, `fusion`, `links` and `files` (of
-        `report_facts.of_take`); `figures` as `report_figures.figure` takes them, with `session` and `take`;
-        `tables` as `report_figures.table` takes them.
+        (of `facts.of_session`) and `takes`, each with `name`, `fusion`, `links` and `files` (of
+        `facts.of_take`); `figures` as `figures.figure` takes them, with `session` and `take`;
+        `tables` as `figures.table` takes them.
 
     Returns
     -------
@@ -53,7 +48,7 @@ def build(study):
         "figures": ("Figures", drawn),
         "quality": ("How far to trust it", _quality(known)),
         "tables": ("Tables", "".join(map(report_figures.table, study["tables"]))),
-        "methods": ("Methods", report_methods.paragraphs(study["parameters"], study["sessions"])),
+        "methods": ("Methods", methods.paragraphs(study["parameters"], study["sessions"])),
     }
     parts = {key: part for key, part in parts.items() if part[1]}
     sections = "".join(
@@ -71,19 +66,19 @@ def build(study):
 def _read(session):
     """Return what is known of a session: what is said of it, facts and warnings of itself and its takes."""
     facts = report_facts.of_session(session["files"])
-    found = report_warnings.of_session(facts, session["way"], **session["limits"])
+    found = warnings.of_session(facts, session["way"], **session["limits"])
     takes = []
     for take in session["takes"]:
         read = report_facts.of_take(take["files"])
         said = {**take, "id": identity("take", session["name"], take["name"])}
-        takes.append((said, read, report_warnings.of_take(read, **session["limits"])))
+        takes.append((said, read, warnings.of_take(read, **session["limits"])))
     said = {**session, "id": identity("quality", session["name"])}
     return {"said": said, "facts": facts, "found": found, "takes": takes}
 
 
 def _lead():
-    levels = zip(("good", "look", "doubt"), report_coach.LIGHTS, strict=True)
-    return LEAD.format(**{name: report_coach.light(level) for name, level in levels})
+    levels = zip(("good", "look", "doubt"), coach.LIGHTS, strict=True)
+    return LEAD.format(**{name: coach.light(level) for name, level in levels})
 
 
 def _contents(parts, known, grouped):
@@ -114,16 +109,16 @@ def _measured(known, grouped):
             continue
         kind = ' <span class="badge">simulated</span> ' if said["virtual"] else " "
         if session["facts"]["quality"]:
-            kind += report_coach.light(report_warnings.worst(session["found"]), "Cameras")
+            kind += coach.light(warnings.worst(session["found"]), "Cameras")
         made.append(
             f'<h3 id="{identity("session", said["name"])}">{text(said["name"])}{kind}</h3>'
-            f"<p>{text(said['description'])}</p>{report_coach.withheld(said.get('withheld', ()))}"
-            f"{report_coach.warnings(session['found'])}"
+            f"<p>{text(said['description'])}</p>{coach.withheld(said.get('withheld', ()))}"
+            f"{coach.warnings(session['found'])}"
         )
         for take, facts, found in session["takes"]:
             key = (said["name"], take["name"])
             figures = _group_id(key) if key in grouped else None
-            made.append(report_coach.take(take, facts, found, figures))
+            made.append(coach.take(take, facts, found, figures))
     return "".join(made)
 
 
@@ -131,15 +126,15 @@ def _glance(known):
     rows = []
     for session in known:
         for take, facts, found in session["takes"]:
-            level = max(report_warnings.worst(found), report_warnings.worst(session["found"]))
+            level = max(warnings.worst(found), warnings.worst(session["found"]))
             for person, measures in facts["persons"].items():
                 cells = [
-                    report_coach.with_error(*measures[name][:3]) if name in measures else "–"
+                    coach.with_error(*measures[name][:3]) if name in measures else "–"
                     for name in ("neck_distance", "neck_speed_mean", "neck_speed_max")
                 ]
                 link = f'<a href="#{take["id"]}">{text(session["said"]["name"])}, {text(take["name"])}</a>'
                 link += "&nbsp;*" if session["said"]["virtual"] else ""
-                values = [report_coach.light(level), link, text(person), *cells]
+                values = [coach.light(level), link, text(person), *cells]
                 rows.append("".join(f"<td>{value}</td>" for value in values))
     if not rows:
         return ""
@@ -148,7 +143,7 @@ def _glance(known):
     body = "".join(f"<tr>{row}</tr>" for row in rows)
     table = f"<table class='glance'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
     note = '<p class="soft">* simulated: nobody was filmed.</p>' if "&nbsp;*</td>" in body else ""
-    return report_coach.scrolling(table, "all takes at a glance") + note
+    return coach.scrolling(table, "all takes at a glance") + note
 
 
 def _figures(grouped):
@@ -172,12 +167,10 @@ def _group_name(key):
 
 def _quality(known):
     made = [
-        report_quality.session(
-            session["said"], session["facts"], session["found"], session["takes"]
-        )
+        quality.session(session["said"], session["facts"], session["found"], session["takes"])
         for session in known
     ]
     if not made:
         return ""
     about = "How the marks are set; a warning of the study itself asks for a look at least."
-    return f"<details><summary>{about}</summary>{report_quality.limits()}</details>{''.join(made)}"
+    return f"<details><summary>{about}</summary>{quality.limits()}</details>{''.join(made)}"

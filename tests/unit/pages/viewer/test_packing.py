@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from unpacking import covariance_of, size_of, unpacked
 
-from courtside.pages import packing
+from courtside.pages.viewer import packing
 
 
 def path(n_frames=300):

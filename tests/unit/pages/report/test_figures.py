@@ -3,7 +3,7 @@
 import pytest
 
 import report_made
-from courtside.pages import report_figures
+from courtside.pages.report import figures as report_figures
 from courtside.study.errors import InputError
 
 

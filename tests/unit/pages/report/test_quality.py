@@ -4,7 +4,8 @@ import math
 import re
 
 import report_made
-from courtside.pages import report_facts, report_quality, report_warnings
+from courtside.pages.report import facts as report_facts
+from courtside.pages.report import quality, warnings
 
 
 def page(tmp_path, **changes):
@@ -13,8 +14,8 @@ def page(tmp_path, **changes):
     take = session["takes"][0]
     known = report_facts.of_take(take["files"]) | changes
     facts = report_facts.of_session(session["files"])
-    found = [report_warnings.Warned(report_warnings.LOOK, "Calibration: odd.")]
-    return report_quality.session(session, facts, found, [(take, known, [])])
+    found = [warnings.Warned(warnings.LOOK, "Calibration: odd.")]
+    return quality.session(session, facts, found, [(take, known, [])])
 
 
 def cells(html, first):
@@ -57,18 +58,18 @@ def test_errors_of_simulated_takes_are_those_of_their_rule(tmp_path):
 
 
 def test_what_is_not_known_is_a_dash():
-    assert report_quality.number(None) == report_quality.number(math.nan) == "–"
-    assert report_quality.percent(None) == "–"
-    assert report_quality.percent(0.123) == "12.3 %"
+    assert quality.number(None) == quality.number(math.nan) == "–"
+    assert quality.percent(None) == "–"
+    assert quality.percent(0.123) == "12.3 %"
 
 
 def test_tables_scroll_by_themselves_and_escape():
-    html = report_quality.table(("a",), [(report_made.ROGUE,)], report_made.ROGUE)
+    html = quality.table(("a",), [(report_made.ROGUE,)], report_made.ROGUE)
     assert html.startswith('<div class="scroll" tabindex="0" role="region"')
     assert "<img" not in html
-    assert report_quality.table(("a",), [], "nothing") == ""
+    assert quality.table(("a",), [], "nothing") == ""
 
 
 def test_the_limits_of_the_lights_are_all_told():
-    html = report_quality.limits()
-    assert html.count("<tr>") == len(report_warnings.LIMITS) + 1
+    html = quality.limits()
+    assert html.count("<tr>") == len(warnings.LIMITS) + 1

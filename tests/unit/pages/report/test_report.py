@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 import pytest
 
 import report_made
-from courtside.pages import report
+from courtside.pages.report import report
 
 
 class Read(HTMLParser):

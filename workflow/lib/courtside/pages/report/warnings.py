@@ -47,7 +47,7 @@ def of_take(facts, *, max_shift_px, max_zoom_percent):
     Parameters
     ----------
     facts : dict
-        As `report_facts.of_take` returns it.
+        As `facts.of_take` returns it.
     max_shift_px, max_zoom_percent : float
         What the configuration lets a fixed camera move.
 
@@ -73,7 +73,7 @@ def of_session(facts, way, *, max_shift_px, max_zoom_percent):
     Parameters
     ----------
     facts : dict
-        As `report_facts.of_session` returns it.
+        As `facts.of_session` returns it.
     way : str or None
         The calibration that its takes are measured with; None without one.
     max_shift_px, max_zoom_percent : float
@@ -219,7 +219,7 @@ def joints(found):
     Parameters
     ----------
     found : dict
-        `joints` as `report_facts.of_skeleton` gives them.
+        `joints` as `facts.of_skeleton` gives them.
     """
     if not found:
         return []
@@ -244,7 +244,7 @@ def distance(person, measures):
     ----------
     person : str
     measures : dict
-        As `report_facts.of_take` gives them.
+        As `facts.of_take` gives them.
     """
     value, half = measures.get("neck_distance", (math.nan, math.nan))[:2]
     if math.isnan(value):

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from courtside.pages import report_coach
-from courtside.pages.report_warnings import DOUBT, GOOD, LOOK, Warned
+from courtside.pages.report import coach
+from courtside.pages.report.warnings import DOUBT, GOOD, LOOK, Warned
 from report_made import ROGUE
 
 FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_paths": []}
@@ -24,11 +24,11 @@ FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_pa
     ],
 )
 def test_numbers_are_as_exact_as_their_error(value, half, unit, expected):
-    assert report_coach.with_error(value, half, unit) == expected
+    assert coach.with_error(value, half, unit) == expected
 
 
 def test_a_light_says_its_colour_in_a_shape_and_a_word():
-    shapes = {level: report_coach.light(level) for level in (GOOD, LOOK, DOUBT)}
+    shapes = {level: coach.light(level) for level in (GOOD, LOOK, DOUBT)}
     words = {GOOD: "Good", LOOK: "Look", DOUBT: "Doubt"}
     assert all(words[level] in html for level, html in shapes.items())
     assert len({html.split('hidden="true">')[1][0] for html in shapes.values()}) == 3
@@ -47,7 +47,7 @@ def test_a_take_says_distance_speeds_and_angles():
         "seconds": 24.03,
     }
     said = {"id": "take-x", "name": "smash", "links": [("a/viewer.html", "3D viewer")]}
-    html = report_coach.take(said, facts, [Warned(LOOK, "Camera left moved.")])
+    html = coach.take(said, facts, [Warned(LOOK, "Camera left moved.")])
     for words in ("29.33 &plusmn; 0.38 m", "in 24.0 s", "from 94 of 100 frames", "left knee, bend"):
         assert words in html
     assert 'href="a/viewer.html"' in html and "Camera left moved." in html
@@ -60,20 +60,20 @@ def test_the_truth_of_a_simulated_take_is_told():
         "persons": {"p1": {"neck_distance": (1.0, 0.1, "m", True)}},
         "true_paths": [row],
     }
-    html = report_coach.take({"id": "t", "name": "t", "links": []}, facts, [])
+    html = coach.take({"id": "t", "name": "t", "links": []}, facts, [])
     assert "2.3 % too short" in html
 
 
 def test_what_is_only_worth_knowing_is_folded_away():
-    html = report_coach.warnings([Warned(LOOK, "one"), Warned(GOOD, "two")])
+    html = coach.warnings([Warned(LOOK, "one"), Warned(GOOD, "two")])
     assert html.index("one") < html.index("<details>") < html.index("two")
-    assert report_coach.warnings([]) == ""
+    assert coach.warnings([]) == ""
 
 
 def test_words_of_users_stay_text():
     measures = {"neck_distance": (1.0, 0.1, ROGUE, True)}
     facts = FACTS | {"persons": {ROGUE: measures}, "devices": [{"source": ROGUE}]}
     said = {"id": "t", "name": ROGUE, "links": [(ROGUE, ROGUE)]}
-    html = report_coach.take(said, facts, [Warned(LOOK, ROGUE)], ROGUE)
-    html += report_coach.take(said, facts | {"persons": {}}, [])
+    html = coach.take(said, facts, [Warned(LOOK, ROGUE)], ROGUE)
+    html += coach.take(said, facts | {"persons": {}}, [])
     assert "<img" not in html and "</script>" not in html

@@ -2,8 +2,8 @@
 
 import math
 
-from courtside.pages import report_warnings as warned
 from courtside.pages.page import text
+from courtside.pages.report import warnings as warned
 
 # Shape and word say what the colour says.
 LIGHTS = {
@@ -57,8 +57,8 @@ def take(said, facts, found, figures_id=None):
     said : dict
         `id`, `name`, `links` ([(address, words)]) of the take.
     facts : dict
-        As `report_facts.of_take` returns it.
-    found : list of courtside.pages.report_warnings.Warned
+        As `facts.of_take` returns it.
+    found : list of courtside.pages.report.warnings.Warned
     figures_id : str, optional
         Where its figures are on the page.
     """

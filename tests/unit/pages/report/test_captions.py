@@ -4,32 +4,32 @@ from pathlib import Path
 
 import pytest
 
-from courtside.pages import report_captions
+from courtside.pages.report import captions
 
-CAPTIONS = sorted((Path(__file__).parents[3] / "workflow" / "report").glob("draw_*.rst"))
+CAPTIONS = sorted((Path(__file__).parents[4] / "workflow" / "report").glob("draw_*.rst"))
 
 
 def test_wildcards_and_parameters_are_put_in():
     source = (
         "Take {{ snakemake.wildcards.take }}, {{ snakemake.params.step.n_frames }} frames, ``x_m``."
     )
-    html = report_captions.render(source, {"take": "smash1"}, {"step": {"n_frames": 17}})
+    html = captions.render(source, {"take": "smash1"}, {"step": {"n_frames": 17}})
     assert html.startswith("<p>Take smash1, 17 frames, ")
     assert "x_m" in html and "``" not in html
 
 
 def test_what_depends_on_a_parameter_is_left_out():
     source = "A.{% if snakemake.params.blur_faces %} Faces are hidden.{% endif %}"
-    assert "Faces" in report_captions.render(source, {}, {"blur_faces": True})
-    assert "Faces" not in report_captions.render(source, {}, {"blur_faces": False})
+    assert "Faces" in captions.render(source, {}, {"blur_faces": True})
+    assert "Faces" not in captions.render(source, {}, {"blur_faces": False})
 
 
 def test_paragraphs_stay_apart():
-    assert report_captions.render("One.\n\nTwo.").count("<p>") == 2
+    assert captions.render("One.\n\nTwo.").count("<p>") == 2
 
 
 def test_markup_of_another_kind_is_text():
-    html = report_captions.render("a < b & <script>alert(1)</script>")
+    html = captions.render("a < b & <script>alert(1)</script>")
     assert "<script" not in html
     assert "a &lt; b &amp; &lt;script&gt;" in html
 
@@ -40,7 +40,7 @@ def test_markup_of_another_kind_is_text():
 )
 def test_nothing_is_brought_in_from_elsewhere(source):
     hostname = Path("/etc/hostname")
-    html = report_captions.render(source)
+    html = captions.render(source)
     assert "<script" not in html
     if hostname.is_file() and hostname.read_text().strip():
         assert hostname.read_text().strip() not in html
@@ -51,7 +51,7 @@ def test_nothing_is_brought_in_from_elsewhere(source):
 )
 def test_what_is_not_given_is_said(source):
     with pytest.raises(ValueError, match="caption: "):
-        report_captions.render(source)
+        captions.render(source)
 
 
 @pytest.mark.parametrize("path", CAPTIONS, ids=lambda path: path.stem)
@@ -59,6 +59,6 @@ def test_every_caption_of_the_study_is_text(path):
     wildcards = dict.fromkeys(("session", "take", "model", "calibration", "plan"), "word")
     step = {"n_frames": 17, "n_instants": 3, "limit_torso": 0.1}
     params = {"networks": ["one", "two"], "source": "mocopi", "blur_faces": True, "step": step}
-    html = report_captions.render(path.read_text(), wildcards, params)
+    html = captions.render(path.read_text(), wildcards, params)
     assert html.count("<p>") >= 1
     assert "problematic" not in html and "system-message" not in html and "{{" not in html

@@ -2,9 +2,9 @@
 
 import math
 
-from courtside.pages import report_warnings as warned
 from courtside.pages.page import text
-from courtside.pages.report_coach import light, scrolling, warnings
+from courtside.pages.report import warnings as warned
+from courtside.pages.report.coach import light, scrolling, warnings
 
 
 def table(head, rows, label):
@@ -34,8 +34,8 @@ def session(said, facts, found, takes):
     said : dict
         `name`, `id`, `way` (the calibration of its takes), `cameras` of the session.
     facts : dict
-        As `report_facts.of_session` returns it.
-    found : list of courtside.pages.report_warnings.Warned
+        As `facts.of_session` returns it.
+    found : list of courtside.pages.report.warnings.Warned
     takes : list of (dict, dict, list)
         What is said of each take, its facts and its warnings.
     """

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from courtside.geometry import similarity
-from courtside.pages import packing
+from courtside.pages.viewer import packing
 from courtside.records import device_motion, keypoints, reasons
 from courtside.records.sync import Clock
 from courtside.study.errors import DAMAGED, InputError

@@ -7,7 +7,7 @@ import pytest
 
 import report_made
 import walker
-from courtside.pages import report_facts
+from courtside.pages.report import facts as report_facts
 from courtside.records import reasons
 from courtside.study.errors import InputError
 

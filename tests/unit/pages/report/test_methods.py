@@ -5,7 +5,7 @@ import copy
 import pytest
 
 import report_made
-from courtside.pages import report_methods
+from courtside.pages.report import methods
 
 
 @pytest.fixture
@@ -14,7 +14,7 @@ def study(tmp_path):
 
 
 def said(study):
-    return report_methods.paragraphs(study["parameters"], study["sessions"])
+    return methods.paragraphs(study["parameters"], study["sessions"])
 
 
 def test_the_configuration_is_told(study):

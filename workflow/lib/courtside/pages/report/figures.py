@@ -3,9 +3,10 @@
 import re
 from pathlib import Path
 
-from courtside.pages import pictures, report_captions, report_facts
+from courtside.pages import pictures
 from courtside.pages.page import text
-from courtside.pages.report_coach import scrolling
+from courtside.pages.report import captions, facts
+from courtside.pages.report.coach import scrolling
 from courtside.study.errors import InputError
 
 TITLES = {
@@ -90,7 +91,7 @@ def figure(said, name):
     except OSError as error:
         raise InputError(f"{said['png']}: expected a PNG, found: {error}; draw it again") from None
     source = Path(said["caption"]).read_text(encoding="utf-8")
-    caption = report_captions.render(source, said["wildcards"], said["params"])
+    caption = captions.render(source, said["wildcards"], said["params"])
     heading, way = title(Path(said["png"]).stem, said["session"] == PLANS)
     links = " &middot; ".join(
         f'<a href="{text(a)}">{text(words)}</a>' for a, words in said["links"]
@@ -135,7 +136,7 @@ def table(said):
     said : dict
         `file` (path), `title`, `words`, `link` (address).
     """
-    columns, rows = report_facts.whole_table(said["file"])
+    columns, rows = facts.whole_table(said["file"])
     full = [at for at, _ in enumerate(columns) if any(row[at] for row in rows)]
     head = "".join(f"<th scope='col'>{text(columns[at].replace('_', ' '))}</th>" for at in full)
     body = "".join(f"<tr>{''.join(_cell(row[at]) for at in full)}</tr>" for row in rows)

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from unpacking import size_of, unpacked
 
 import walker
-from courtside.pages import viewer_layers
+from courtside.pages.viewer import layers
 from courtside.records import device_motion, keypoints
 from courtside.records.sync import Clock
 from courtside.study.errors import InputError
@@ -34,25 +34,25 @@ def device(n_frames=40, rate_hz=50):
 
 
 def test_covariances_add_up_and_say_what_they_cover(record):
-    alone = viewer_layers.of_points("raw", record, walker.SKELETON)
+    alone = layers.of_points("raw", record, walker.SKELETON)
     np.testing.assert_array_equal(alone.covariance, record.covariance_2d)
     assert alone.covers == "keypoints only, cameras taken as exact"
     known = replace(record, covariance_camera=2 * record.covariance_2d)
-    both = viewer_layers.of_points("raw", known, walker.SKELETON)
+    both = layers.of_points("raw", known, walker.SKELETON)
     np.testing.assert_allclose(both.covariance, 3 * record.covariance_2d)
     assert both.covers == "keypoints and cameras"
 
 
 def test_the_reprojection_error_is_that_of_views_used(record):
-    layer = viewer_layers.of_points("raw", record, walker.SKELETON)
+    layer = layers.of_points("raw", record, walker.SKELETON)
     used = record.reproj_error_px[0, 5, 7, [0, 2]]  # c1 is rejected there
     assert layer.error_px[0, 5, 7] == pytest.approx(np.sqrt((used**2).mean()))
     assert np.isnan(layer.error_px[0, 3, 4])
 
 
 def test_the_packed_layer_holds_the_records_numbers(record):
-    layer = viewer_layers.of_points("raw", record, walker.SKELETON)
-    content = viewer_layers.packed(layer, np.zeros(3), every=2)
+    layer = layers.of_points("raw", record, walker.SKELETON)
+    content = layers.packed(layer, np.zeros(3), every=2)
     shape = (2, 33, 20)
     assert content["time_s"] == record.time_s[::2].tolist()
     assert content["bones"][0] == [11, 12]  # both shoulders in BlazePose's order
@@ -60,7 +60,7 @@ def test_the_packed_layer_holds_the_records_numbers(record):
     assert known.all()  # frame 3, where a joint is missing, is not kept
     sigma = size_of(unpacked(content["ellipsoid"], (2, 33, 6, 20))[:, :, :3])
     np.testing.assert_allclose(sigma[0, 0, :, 0], [0.01, 0.02, 0.03], rtol=0.028)
-    error_px = size_of(unpacked(content["error_px"], shape)) / viewer_layers.PX
+    error_px = size_of(unpacked(content["error_px"], shape)) / layers.PX
     np.testing.assert_allclose(
         error_px, np.moveaxis(layer.error_px[:, ::2], 1, 2), rtol=0.03, equal_nan=True
     )
@@ -69,8 +69,8 @@ def test_the_packed_layer_holds_the_records_numbers(record):
 
 def test_what_is_missing_says_why(record):
     record.xyz[0, 6, 2] = np.nan  # called ok all the same
-    layer = viewer_layers.of_points("raw", record, walker.SKELETON)
-    content = viewer_layers.packed(layer, np.zeros(3))
+    layer = layers.of_points("raw", record, walker.SKELETON)
+    content = layers.packed(layer, np.zeros(3))
     reason = unpacked(content["reason"], (2, 33, 40))
     assert reason[0, 4, 3] == record.reason[0, 3, 4] == 4
     assert reason[0, 2, 6] == 255
@@ -80,28 +80,26 @@ def test_what_is_missing_says_why(record):
 def test_files_are_told_apart(tmp_path, record):
     keypoints.write_3d(tmp_path / "points.npz", record)
     device_motion.write(tmp_path / "device.npz", device())
-    read = viewer_layers.read(tmp_path / "points.npz", "raw", walker.SKELETON)
+    read = layers.read(tmp_path / "points.npz", "raw", walker.SKELETON)
     assert read.person_id == ("p1", "p2")
     clock = Clock(offset_s=1.0, drift_ppm=100.0)
-    read = viewer_layers.read(
-        tmp_path / "device.npz", "mocopi", walker.SKELETON, person="p1", clock=clock
-    )
+    read = layers.read(tmp_path / "device.npz", "mocopi", walker.SKELETON, person="p1", clock=clock)
     assert (read.person_id, len(read.time_s)) == (("p1",), 39)
     assert read.time_s[0] == pytest.approx((0.02 - 1) / 1.0001)
     (tmp_path / "other.npz").write_bytes(b"nothing")
     with pytest.raises(InputError, match=r"other\.npz.*expected"):
-        viewer_layers.read(tmp_path / "other.npz", "x", walker.SKELETON)
+        layers.read(tmp_path / "other.npz", "x", walker.SKELETON)
 
 
 def test_a_device_is_put_where_the_person_is(record):
     turn = Rotation.from_euler("z", 70, degrees=True).as_matrix()
     moved = replace(device(), xyz=device().xyz @ turn.T + [5, -3, 0.2])
-    layer = viewer_layers.of_device("mocopi", moved, walker.SKELETON, "p1")
-    onto = viewer_layers.of_points("raw", record, walker.SKELETON)
-    found = viewer_layers.placed(layer, onto)
+    layer = layers.of_device("mocopi", moved, walker.SKELETON, "p1")
+    onto = layers.of_points("raw", record, walker.SKELETON)
+    found = layers.placed(layer, onto)
     np.testing.assert_allclose(found.xyz[0], device().xyz[1:], atol=1e-9)
     with pytest.raises(InputError, match="found 0 persons"):
-        viewer_layers.placed(replace(layer, person_id=("p9",)), onto)
+        layers.placed(replace(layer, person_id=("p9",)), onto)
 
 
 @pytest.mark.parametrize(
@@ -113,6 +111,6 @@ def test_a_device_is_put_where_the_person_is(record):
     ],
 )
 def test_layers_that_do_not_fit(record, change, word):
-    layer = viewer_layers.of_points("raw", record, walker.SKELETON)
+    layer = layers.of_points("raw", record, walker.SKELETON)
     with pytest.raises(ValueError, match=word):
         replace(layer, **change)

@@ -13,9 +13,11 @@ import scene
 import walker
 from courtside.calibration.court import court as courts
 from courtside.figures.style import style
-from courtside.pages import page, viewer, viewer_layers
+from courtside.pages import page
+from courtside.pages.viewer import layers as viewer_layers
+from courtside.pages.viewer import viewer
 
-CONFIG = Path(__file__).parents[3] / "config"
+CONFIG = Path(__file__).parents[4] / "config"
 ROGUE = '</script><img src="https://example.invalid/x">"&'
 
 

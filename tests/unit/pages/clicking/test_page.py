@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court as courts
-from courtside.pages import clicking_page
+from courtside.pages.clicking import page
 from courtside.study.errors import InputError
 
-COURT = Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml"
+COURT = Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml"
 
 
 @pytest.fixture(scope="module")
@@ -35,14 +35,14 @@ def given(built):
 
 def test_a_picture_is_taken_as_it_is_or_made_smaller(picture):
     path, image = picture
-    exact = clicking_page.frame("left", path)
+    exact = page.frame("left", path)
     assert (exact.size, exact.mime, exact.image) == ((80, 60), "image/png", path.read_bytes())
-    small = clicking_page.frame("left", path, jpeg_quality=95)
+    small = page.frame("left", path, jpeg_quality=95)
     assert small.mime == "image/jpeg"
     again = cv2.imdecode(np.frombuffer(small.image, np.uint8), cv2.IMREAD_COLOR)
     assert again.shape == image.shape
     path.with_suffix(".jpg").write_bytes(small.image)
-    assert clicking_page.frame("left", path.with_suffix(".jpg")).mime == "image/jpeg"
+    assert page.frame("left", path.with_suffix(".jpg")).mime == "image/jpeg"
 
 
 @pytest.mark.parametrize("content", [b"", b"no picture", None])
@@ -51,21 +51,21 @@ def test_a_file_that_is_no_picture_is_named(tmp_path, content):
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(InputError, match=r"odd\.png: expected a .*picture") as fault:
-        clicking_page.frame("left", path)
+        page.frame("left", path)
     assert "\n" not in str(fault.value)
 
 
 def test_the_page_holds_points_clicks_and_targets(court, picture):
     path, _ = picture
-    clicks = clicking_page.by_point(np.array([[1.25, 2.0]] + [[np.nan, 3.0]] * 17), court.points)
+    clicks = page.by_point(np.array([[1.25, 2.0]] + [[np.nan, 3.0]] * 17), court.points)
     assert clicks == {"p01": [1.25, 2.0]}
-    assert clicking_page.by_point(None, court.points) == {}
+    assert page.by_point(None, court.points) == {}
     frames = [
-        clicking_page.frame("left", path, clicks=clicks),
-        clicking_page.frame("left", path, take="smash", frame_idx=7),
+        page.frame("left", path, clicks=clicks),
+        page.frame("left", path, take="smash", frame_idx=7),
     ]
     targets = {"court_points.csv": "data/hall/court_points.csv"}
-    held = given(clicking_page.build("<hall>", court, frames, targets=targets))
+    held = given(page.build("<hall>", court, frames, targets=targets))
     assert held["session"] == "<hall>"
     assert [point["name"] for point in held["court"]["points"]] == list(court.points)
     assert held["court"]["points"][4]["marks"] == [
@@ -80,8 +80,8 @@ def test_kept_work_belongs_to_one_session_its_pictures_and_its_clicks(court, pic
     path, _ = picture
 
     def stamp(session="hall", camera="left", clicks=None, proposals=None):
-        frame = clicking_page.frame(camera, path, clicks=clicks, proposals=proposals)
-        return given(clicking_page.build(session, court, [frame], targets={}))["stamp"]
+        frame = page.frame(camera, path, clicks=clicks, proposals=proposals)
+        return given(page.build(session, court, [frame], targets={}))["stamp"]
 
     assert stamp() == stamp(proposals={"p01": {"x": 1, "y": 2, "sigma_px": 0.1}})
     different = [
@@ -95,6 +95,6 @@ def test_kept_work_belongs_to_one_session_its_pictures_and_its_clicks(court, pic
 
 @pytest.mark.parametrize("names", [[], ["left", "left"]])
 def test_pictures_are_of_different_cameras(court, picture, names):
-    frames = [clicking_page.frame(name, picture[0]) for name in names]
+    frames = [page.frame(name, picture[0]) for name in names]
     with pytest.raises(ValueError, match="expected pictures of different cameras"):
-        clicking_page.build("hall", court, frames, targets={})
+        page.build("hall", court, frames, targets={})

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from courtside.pages import report_warnings as warned
+from courtside.pages.report import warnings as warned
 from courtside.records.sync import Clock
 
 STILL = {

@@ -14,7 +14,8 @@ the joints in the canvas, px) and `opened_ms` (from the start of loading to the 
 import numpy as np
 
 from courtside.geometry import camera as camera_models
-from courtside.pages import page, viewer_layers
+from courtside.pages import page
+from courtside.pages.viewer import layers as viewer_layers
 
 LARGEST_BYTES = 7_500_000  # of all layers; the rest of the page is some 60 kB
 LEFT, RIGHT, MIDDLE = "#0072B2", "#D55E00", "#666666"  # as in the figures
