@@ -25,7 +25,7 @@ from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration
 from courtside.records import truth
-from courtside.study import yaml_files
+from courtside.study.configuration import yaml_files
 from virtualgym.session import clicks
 
 ROOT = Path(__file__).parents[1]

@@ -5,7 +5,7 @@ import numpy as np
 import rows
 
 from courtside.figures.style import style
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 COLUMNS, HEIGHT_MM = 3, 75
 MARKERS = "os^vDP"

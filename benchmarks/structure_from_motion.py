@@ -31,7 +31,7 @@ from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, quality, sfm_alignment
 from courtside.records import clicks, image_names, truth
 from courtside.sfm import database, features, grid, mapping, matching, model, registration
-from courtside.study import yaml_files
+from courtside.study.configuration import yaml_files
 
 ROOT = Path(__file__).parents[1]
 STEPS = "features", "matching", "mapping"

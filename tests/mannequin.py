@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from courtside.study import artefacts
 from courtside.study.errors import InputError
+from courtside.study.execution import artefacts
 from virtualgym.body import shapes, skinned_body
 from virtualgym.body.stance import SIDES, Stance
 

@@ -20,8 +20,8 @@ import yaml
 from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
 from courtside.records import clicks, truth
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
 from virtualgym.session import session as capture
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from courtside.study import configuration, yaml_files
+from courtside.study.configuration import configuration, yaml_files
 
 ROOT = Path(__file__).parents[1]
 PROGRAM = ("Snakefile", "workflow", "benchmarks")

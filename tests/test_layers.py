@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from courtside.study import digest
+from courtside.study.execution import digest
 
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "workflow" / "lib"

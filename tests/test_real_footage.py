@@ -19,7 +19,7 @@ from courtside.geometry import triangulation
 from courtside.pose import decoders, foreground, tracking
 from courtside.reconstruction import fusion
 from courtside.records import keypoints, skeleton
-from courtside.study import yaml_files
+from courtside.study.configuration import yaml_files
 from courtside.video import reader, static_picture
 from real_data import REAL, needs_real
 

@@ -12,14 +12,15 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.study import artefacts, files, parts  # noqa: E402
 from courtside.study.errors import InputError  # noqa: E402
+from courtside.study.execution import artefacts, files
+from courtside.study.provenance import sbom  # noqa: E402
 
 
 def main(repository):
     """Return the list of parts of a repository."""
     about = tomllib.loads((repository / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    return parts.of_study(
+    return sbom.of_study(
         (repository / "environment.lock").read_text(encoding="utf-8"),
         artefacts.read(repository / "config" / "external.yaml").values(),
         name=about["name"],

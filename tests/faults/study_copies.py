@@ -8,7 +8,8 @@ import sys
 import tempfile
 import zipfile
 
-from courtside.study import artefacts, comparison
+from courtside.study.execution import artefacts
+from courtside.study.provenance import comparison
 from smoke.snakemake_runs import FOLDER, ROOT, TINY, copy_repository
 
 EXTERNAL = [ROOT / folder / "results" / "external" for folder in (".", FOLDER)]

@@ -15,7 +15,7 @@ from courtside.drafting import survey
 from courtside.pages.clicking import page
 from courtside.pose import tflite_onnx
 from courtside.sfm import database, model
-from courtside.study import yaml_files
+from courtside.study.configuration import yaml_files
 from courtside.video import reader, walk_frames
 from fuzz.format import Format, require
 from fuzz.of_cameras import clicked, own_toml, real

@@ -10,16 +10,13 @@ import yaml
 
 from courtside.calibration.court import court
 from courtside.records import derived, skeleton, sync
-from courtside.study import (
-    artefacts,
-    checksums,
-    comparison,
+from courtside.study.configuration import (
     configuration,
-    files,
     plans,
-    verification,
-    yaml_files,
-)  # fmt: skip
+    yaml_files,  # fmt: skip
+)
+from courtside.study.execution import artefacts, checksums, files
+from courtside.study.provenance import comparison, verification
 from fuzz.format import Format, require
 
 ROOT = Path(__file__).parents[2]

@@ -11,7 +11,7 @@ import time
 import pytest
 import yaml
 
-from courtside.study import comparison
+from courtside.study.provenance import comparison
 from smoke.snakemake_runs import FOLDER, ROOT, TINY, copy_repository
 
 PROFILE = ROOT / "profiles" / "slurm" / "config.yaml"

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 import yaml
 
-from courtside.study import digest
+from courtside.study.execution import digest
 from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, planned, run
 
 RESULTS = FOLDER / "results"

@@ -11,8 +11,8 @@ from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
 from courtside.records import clicks, image_names
 from courtside.sfm import model, registration
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 
 def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options):

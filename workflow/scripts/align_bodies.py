@@ -7,8 +7,8 @@ from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
 from courtside.events.tpose import TPose
 from courtside.records import body_motion, derived, device_motion, sync
-from courtside.study import log
-from courtside.study.files import write_json
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
 
 
 def main(device_npz, sync_json, chosen_json, derived_yaml, body_npz, frame_json, *, skeleton, like):

@@ -9,8 +9,8 @@ from courtside.geometry import camera as cameras
 from courtside.reconstruction import resampling
 from courtside.reconstruction.association import associate
 from courtside.records import keypoints, people, skeleton, sync
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 
 def main(paths, people_npz, *, persons):

@@ -4,7 +4,7 @@ from courtside.calibration.court import court as courts
 from courtside.pages import page
 from courtside.pages.clicking import page as clicking_page
 from courtside.records import clicks, proposals
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(

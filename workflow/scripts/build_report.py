@@ -2,7 +2,7 @@
 
 from courtside.pages import page
 from courtside.pages.report import report
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(html, *, study):

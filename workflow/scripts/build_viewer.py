@@ -11,7 +11,7 @@ from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
 from courtside.records import skeleton, sync
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(paths, html, *, title, layers, notes=()):

@@ -7,9 +7,9 @@ from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
 from courtside.geometry import camera_fields
 from courtside.records import clicks
-from courtside.study import log
 from courtside.study.errors import InputError
-from courtside.study.files import write_json
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
 
 
 def main(

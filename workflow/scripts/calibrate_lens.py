@@ -5,7 +5,7 @@ import numpy as np
 
 from courtside.calibration import chessboard
 from courtside.geometry import camera as cameras
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(images, lens_toml, *, camera, inner_corners):

@@ -4,7 +4,7 @@ import cv2
 import pandas as pd
 
 from courtside.records import tables
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import static_picture, walk_frames
 
 

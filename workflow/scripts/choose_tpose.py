@@ -3,8 +3,8 @@
 from courtside.body_frame import common
 from courtside.events import detect
 from courtside.records import device_motion, sync
-from courtside.study import log
-from courtside.study.files import write_json
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
 
 
 def main(device_npz, sync_json, chosen_json, *, devices, stated):

@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.records import keypoints, tables
 from courtside.statistics import agreement, longitudinal
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(measures_csv, pose3d_npz, pairs_csv, table_csv, *, labels, joint_labels, networks, **step):

@@ -5,7 +5,7 @@ import pandas as pd
 from courtside.figures.comparison import archive
 from courtside.figures.style import style
 from courtside.statistics import longitudinal
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(measures_csv, agreement_csv, pdf, png, csv, *, labels, subject, measures, allow_mixed):

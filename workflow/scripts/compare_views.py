@@ -2,7 +2,7 @@
 
 from courtside.evaluation import camera_sets
 from courtside.records import keypoints, tables
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, distances_csv, *, fusions, labels):

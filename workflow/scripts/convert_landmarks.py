@@ -2,7 +2,7 @@
 
 from courtside.depth import single_view
 from courtside.records import device_motion, frame_times, keypoints
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose2d_npz, device_npz, frames_csv=None, *, source):

@@ -1,7 +1,7 @@
 """Convert one network: TFLite -> ONNX."""
 
 from courtside.pose import tflite_onnx
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(tflite_path, onnx_path, *, outputs):

@@ -8,8 +8,8 @@ from courtside.exports import bvh
 from courtside.inertial import correction
 from courtside.records import device_motion, skeleton, sync
 from courtside.records.hierarchy import forward
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 ABSENT = sync.Clock(status="unknown", note="not in the file")
 

@@ -2,7 +2,7 @@
 
 from courtside.reconstruction import joint_correction
 from courtside.records import keypoints
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(filtered_npz, offsets_csv, corrected_npz, *, sex_of):

@@ -5,7 +5,7 @@ import numpy as np
 
 from courtside.pose import decoders, foreground, tracklets
 from courtside.records import keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader
 
 

@@ -2,7 +2,7 @@
 
 from courtside.figures.comparison import agreement
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pairs_csv, table_csv, pdf, png, csv, *, networks):

@@ -6,7 +6,7 @@ from courtside.figures.badminton import fig05
 from courtside.figures.style import style
 from courtside.pose import privacy
 from courtside.records import keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader
 
 

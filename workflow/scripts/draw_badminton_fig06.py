@@ -7,7 +7,7 @@ from courtside.calibration.court import court
 from courtside.calibration.records import tie_points
 from courtside.figures.badminton import fig06
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(ties_npz, summary_json, court_yaml, pdf, png, csv):

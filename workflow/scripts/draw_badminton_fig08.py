@@ -3,7 +3,7 @@
 from courtside.evaluation.tables import calibration
 from courtside.figures.badminton import fig08
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(errors_csv, pdf, png, csv):

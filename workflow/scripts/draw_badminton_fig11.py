@@ -7,7 +7,7 @@ from courtside.figures.badminton import fig11
 from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
 from courtside.records import derived, footage, keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader
 
 

@@ -3,7 +3,7 @@
 from courtside.evaluation.tables import racket
 from courtside.figures.badminton import fig12
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(lengths_csv, pdf, png, csv):

@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.figures.badminton import tab01
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(rows_csv, published_csv, pdf, png, csv, *, title):

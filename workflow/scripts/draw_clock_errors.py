@@ -3,7 +3,7 @@
 from courtside.evaluation.tables import players
 from courtside.figures.style import style
 from courtside.figures.take import clock_errors
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(errors_csv, pdf, png, csv):

@@ -3,7 +3,7 @@
 from courtside.calibration.court import court as courts
 from courtside.figures.calibration import court_points
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(court_yaml, pdf, png, csv):

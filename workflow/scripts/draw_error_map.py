@@ -5,7 +5,7 @@ from courtside.calibration.records import covariance as camera_covariance
 from courtside.figures.calibration import error_map
 from courtside.figures.style import style
 from courtside.geometry import camera
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(cameras_toml, covariance_npz, court_yaml, pdf, png, csv, *, title, heights_m):

@@ -2,7 +2,7 @@
 
 from courtside.figures.calibration import growth
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(benchmarks_tsv, pdf, png, csv, *, title):

@@ -5,7 +5,7 @@ import pandas as pd
 from courtside.calibration.court import court as courts
 from courtside.figures.style import style
 from courtside.figures.take import kinematics
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(frames_csv, summary_csv, court_yaml, pdf, png, csv):

@@ -8,7 +8,7 @@ from courtside.geometry import camera as cameras
 from courtside.pose import privacy
 from courtside.reconstruction import resampling
 from courtside.records import keypoints, people, skeleton, sync
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader
 
 

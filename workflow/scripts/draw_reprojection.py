@@ -3,7 +3,7 @@
 from courtside.figures.style import style
 from courtside.figures.take import reprojection
 from courtside.records import keypoints
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, pdf, png, csv):

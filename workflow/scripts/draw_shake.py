@@ -9,8 +9,8 @@ from courtside.figures.take import camera_shake
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import camera_shake as knocks
 from courtside.records import keypoints, shake_table
-from courtside.study import log
-from courtside.study.files import atomic
+from courtside.study.execution import log
+from courtside.study.execution.files import atomic
 
 
 def main(paths, outputs):

@@ -3,7 +3,7 @@
 from courtside.figures.devices import skeleton_plates
 from courtside.figures.style import joint_map, style
 from courtside.records import body_motion, derived, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(body_npz, skeleton_yaml, derived_yaml, pdf, png, csv, *, skeletons, kinds):

@@ -4,7 +4,7 @@ from courtside.figures.style import style
 from courtside.figures.take import skeletons
 from courtside.geometry import camera
 from courtside.records import keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, cameras_toml, skeleton_yaml, pdf, png, csv):

@@ -2,7 +2,7 @@
 
 from courtside.figures.devices import smoothness_accuracy
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(distortion_csv, errors_csv, truth_csv, pdf, png, csv, *, labels, kinds):

@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.figures.devices import source_errors
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(errors_csv, parts_csv, pdf, png, csv, *, kinds):

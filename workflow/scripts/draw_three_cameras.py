@@ -3,7 +3,7 @@
 from courtside.evaluation.tables import players
 from courtside.figures.badminton import three_cameras
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(errors_csv, kinematics_csv, pdf, png, csv, *, cameras):

@@ -4,7 +4,7 @@ from courtside.figures.style import style
 from courtside.figures.take import visibility
 from courtside.reconstruction import resampling
 from courtside.records import keypoints, people, skeleton, sync
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(paths, pdf, png, csv):

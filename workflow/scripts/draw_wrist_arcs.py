@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.figures.devices import thesis_fig3
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(paths_csv, distortion_csv, truth_csv, pdf, png, csv, *, kinds):

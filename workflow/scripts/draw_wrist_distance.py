@@ -2,7 +2,7 @@
 
 from courtside.figures.devices import wrist_distance
 from courtside.figures.style import style
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(wrists_csv, events_csv, pdf, png, csv, *, aligned, kinds):

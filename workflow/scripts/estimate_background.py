@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader, static_picture
 
 

@@ -6,7 +6,7 @@ import pandas as pd
 from courtside.body_frame import common, frame
 from courtside.evaluation import sources
 from courtside.records import body_motion, derived, device_motion, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(body_npz, frame_json, truth_npz, derived_yaml, errors_csv, *, labels, person, owners):

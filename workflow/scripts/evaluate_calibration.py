@@ -11,7 +11,7 @@ from courtside.calibration.planning import cameras
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration
 from courtside.records import image_names, tables, truth
-from courtside.study import log
+from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
 
 CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there

@@ -5,7 +5,7 @@ import pandas as pd
 
 from courtside.calibration import point_covariance
 from courtside.records import sync, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(sync_json, truth_npz, errors_csv, *, labels):

@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.evaluation import detection
 from courtside.records import keypoints, skeleton, sync, tables, take_truth, truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, labels):

@@ -5,7 +5,7 @@ import numpy as np
 from courtside.evaluation import camera_sets
 from courtside.evaluation import joints as pose_errors
 from courtside.records import keypoints, limbs, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, truth_npz, gains_csv, *, fusions, pairs, labels):

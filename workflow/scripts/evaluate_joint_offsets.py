@@ -5,7 +5,7 @@ import numpy as np
 from courtside.evaluation import joints
 from courtside.reconstruction import joint_correction
 from courtside.records import keypoints, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, truth_npz, offsets_csv, *, sex_of, about):

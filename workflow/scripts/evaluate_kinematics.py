@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.evaluation import kinematics
 from courtside.records import derived, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(paths, errors_csv, *, labels, sex_of):

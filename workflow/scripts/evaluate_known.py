@@ -6,7 +6,7 @@ from courtside.calibration.court import court as courts
 from courtside.evaluation import calibration
 from courtside.geometry import camera as cameras
 from courtside.records import tables, truth
-from courtside.study import log
+from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
 
 

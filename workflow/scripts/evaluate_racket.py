@@ -8,7 +8,7 @@ from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
 from courtside.evaluation import racket
 from courtside.records import tables, truth
-from courtside.study import log
+from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
 
 VIEWS = 2  # the paper's: the first two fixed cameras of a layout

@@ -6,7 +6,7 @@ from courtside.evaluation import joints as joint_errors
 from courtside.evaluation import round_trip
 from courtside.geometry import camera as cameras
 from courtside.records import derived, keypoints, skeleton, sync, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(

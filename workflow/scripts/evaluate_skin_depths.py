@@ -2,7 +2,7 @@
 
 from courtside.evaluation import skin_depths
 from courtside.records import device_motion, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(lifted_npz, truth_npz, depths_csv, *, device, about, skin_m=None, beyond_m=None):

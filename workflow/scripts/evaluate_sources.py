@@ -11,7 +11,7 @@ from courtside.evaluation import sources
 from courtside.kinematics import smoothness, wrist_arcs
 from courtside.records import body_motion, derived, device_motion, tables, take_truth
 from courtside.records.sync import Clock
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_hz):

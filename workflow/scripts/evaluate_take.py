@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.evaluation import joints
 from courtside.records import keypoints, tables, take_truth
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, truth_npz, errors_csv, *, labels):

@@ -4,7 +4,7 @@ from courtside.exports import overlay_video
 from courtside.figures.style import style
 from courtside.geometry import camera as cameras
 from courtside.records import keypoints, people, skeleton, sync
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader, writer
 
 COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR

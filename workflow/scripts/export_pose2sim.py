@@ -4,7 +4,7 @@ from courtside.exports import pose2sim
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import resampling
 from courtside.records import keypoints, people, skeleton, sync
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(paths, folder):

@@ -2,7 +2,7 @@
 
 from courtside.exports import c3d, tidy, trc
 from courtside.records import keypoints
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, person_id, trc_path, c3d_path, csv_path):

@@ -6,7 +6,7 @@ import pandas as pd
 
 from courtside.records import tables
 from courtside.sfm import features, grid
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(static_png, frames_csv, features_db, table_csv, *, threads, **options):

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from courtside.records import frame_table
 from courtside.sfm import usable
-from courtside.study import log
 from courtside.study.errors import InputError
-from courtside.study.files import atomic_folder
+from courtside.study.execution import log
+from courtside.study.execution.files import atomic_folder
 from courtside.video import walk_frames
 
 

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from courtside.records import tables
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader, static_picture, walk_frames
 
 

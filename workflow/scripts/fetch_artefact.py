@@ -1,6 +1,6 @@
 """Fetch one pinned artefact: mirror folder or package registry -> its named members."""
 
-from courtside.study import artefacts, log
+from courtside.study.execution import artefacts, log
 
 
 def main(external_yaml, name, member_paths, *, mirror_folder):

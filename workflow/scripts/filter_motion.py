@@ -2,7 +2,7 @@
 
 from courtside.kinematics import filtering
 from courtside.records import keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(raw_npz, skeleton_yaml, filtered_npz, *, max_gap_s, order, cutoff_hz):

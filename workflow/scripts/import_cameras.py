@@ -2,8 +2,8 @@
 
 from courtside.calibration import file_formats
 from courtside.geometry import camera
-from courtside.study import log
-from courtside.study.files import write_json
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
 
 
 def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):

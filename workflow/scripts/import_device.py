@@ -2,7 +2,7 @@
 
 from courtside.devices import mocopi, nuitrack
 from courtside.records import device_motion, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(recording, skeleton_yaml, motion_npz, *, device, kind):

@@ -2,7 +2,7 @@
 
 from courtside.devices import openpose
 from courtside.records import keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader
 
 

@@ -2,7 +2,7 @@
 
 from courtside.exports import pose2sim
 from courtside.records import keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(trc_files, persons, skeleton_yaml, pose3d_npz, model):

@@ -3,7 +3,7 @@
 from courtside.depth import lifting, single_view, surfaces
 from courtside.devices import open_depth
 from courtside.records import device_motion, frame_times, keypoints, skeleton
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m=None, **sampling):

@@ -2,7 +2,7 @@
 
 from courtside.events import detect
 from courtside.records import device_motion, tables
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(device_npz, wrists_csv, events_csv):

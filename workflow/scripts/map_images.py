@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 
 from courtside.sfm import grid, mapping
-from courtside.study import log
-from courtside.study.files import write_json
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
 
 
 def main(

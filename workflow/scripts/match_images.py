@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.records import tables
 from courtside.sfm import grid, matching
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(features_db, features_csv, frames_csv, matches_db, table_csv, **options):

@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.kinematics import smoothness, wrist_arcs
 from courtside.records import body_motion, tables
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(body_npz, paths_csv, distortion_csv, *, sparc_rate_hz):

@@ -4,7 +4,7 @@ from courtside.exports import measures
 from courtside.kinematics import cutoffs, filtering
 from courtside.kinematics import measures as kinematics
 from courtside.records import derived, keypoints, skeleton, tables
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_csv, **step):

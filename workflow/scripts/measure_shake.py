@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from courtside.records import shake_table
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import reader, shake_tracking
 
 

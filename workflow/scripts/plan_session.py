@@ -7,8 +7,9 @@ from courtside.calibration.records import covariance as camera_covariance
 from courtside.figures.calibration import error_map, plan
 from courtside.figures.style import style
 from courtside.sfm import model
-from courtside.study import log, plans
+from courtside.study.configuration import plans
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 THINNING = ("min_angle_deg", "max_error_px", "max_points", "seed")
 WEIGHTS = ("images_per_part", "tie_sigma", "click_sigma_px", "click_bias_px", "click_loss")

@@ -6,8 +6,8 @@ from courtside.calibration.click_proposals import proposals as court_proposals
 from courtside.calibration.court import court as courts
 from courtside.geometry import camera as cameras
 from courtside.records import proposals
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 
 def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_share, **options):

@@ -6,8 +6,8 @@ from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, known_points, quality
 from courtside.geometry import camera as camera_models
 from courtside.records import clicks
-from courtside.study import log
-from courtside.study.files import write_json
+from courtside.study.execution import log
+from courtside.study.execution.files import write_json
 
 
 def main(

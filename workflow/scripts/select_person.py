@@ -1,7 +1,7 @@
 """Select the person who wears devices among those of the fixed cameras: 3D keypoints -> one more source."""
 
 from courtside.records import device_motion, keypoints
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(pose3d_npz, device_npz, *, person):

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from courtside.calibration.court import court
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 from virtualgym.cameras import layouts
 from virtualgym.session import session
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from courtside.calibration.court import court
 from courtside.exports import bvh
-from courtside.study import log
+from courtside.study.execution import log
 from virtualgym.body import makehuman
 from virtualgym.session import session
 from virtualgym.session import take as takes

@@ -2,7 +2,7 @@
 
 from courtside.geometry import camera as cameras
 from courtside.records import keypoints, sync
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.synchronisation import cameras as camera_sync
 
 WRIST_M_S = 12.0  # of a smash: what the uncertainty is worth in space

@@ -2,7 +2,7 @@
 
 from courtside.events import detect
 from courtside.records import device_motion, sync, tables
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.synchronisation import devices as device_sync
 
 

@@ -2,7 +2,7 @@
 
 from courtside.evaluation.tables import calibration
 from courtside.records import tables
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(errors_csv, table_csv, *, n_reference):

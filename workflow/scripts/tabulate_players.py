@@ -2,7 +2,7 @@
 
 from courtside.evaluation.tables import players
 from courtside.records import tables
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def main(paths, table_csv):

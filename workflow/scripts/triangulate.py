@@ -9,8 +9,8 @@ from courtside.geometry import camera as cameras
 from courtside.reconstruction import camera_shake, resampling
 from courtside.reconstruction import fusion as camera_error
 from courtside.records import keypoints, people, shake_table, skeleton, sync
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 
 def main(paths, pose3d_npz, *, persons, used, rule, **options):

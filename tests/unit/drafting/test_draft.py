@@ -6,7 +6,7 @@ import yaml
 from courtside.drafting import draft as session_draft
 from courtside.drafting import guess as session_guess
 from courtside.drafting.guess import Recording
-from courtside.study import configuration, session_faults
+from courtside.study.configuration import configuration, session_faults
 from courtside.study.errors import InputError
 
 

@@ -5,7 +5,7 @@ import yaml
 from courtside.drafting import draft
 from courtside.drafting import guess as session_guess
 from courtside.drafting.guess import Recording
-from courtside.study import configuration
+from courtside.study.configuration import configuration
 
 
 def recording(path, **more):

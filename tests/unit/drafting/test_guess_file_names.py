@@ -3,7 +3,7 @@
 import pytest
 
 from courtside.drafting import guess
-from courtside.study import configuration
+from courtside.study.configuration import configuration
 
 
 @pytest.mark.parametrize(

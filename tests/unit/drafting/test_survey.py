@@ -11,7 +11,7 @@ import video_files
 import yaml
 
 from courtside.drafting import survey
-from courtside.study import configuration
+from courtside.study.configuration import configuration
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 

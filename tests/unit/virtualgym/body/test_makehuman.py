@@ -8,8 +8,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import mannequin
-from courtside.study import artefacts
 from courtside.study.errors import InputError
+from courtside.study.execution import artefacts
 from virtualgym.body import makehuman, pose_bones, shapes
 
 

@@ -27,8 +27,8 @@ import pandas as pd
 
 from courtside.records import reasons
 from courtside.records.device_motion import DeviceMotion
-from courtside.study import log
 from courtside.study.errors import InputError, reading
+from courtside.study.execution import log
 
 COLLARS = ("left_collar", "right_collar")  # one point under two names
 SIDED = ("collar", "shoulder", "elbow", "wrist", "hand", "fingertip")

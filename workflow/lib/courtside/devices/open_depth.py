@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.devices import depth_folder
 from courtside.devices.realsense import recording as realsense
-from courtside.study import log
+from courtside.study.execution import log
 
 
 def read(path, name):

@@ -6,7 +6,7 @@ import re
 import yaml
 
 from courtside.drafting import guess as file_names
-from courtside.study import configuration, yaml_files
+from courtside.study.configuration import configuration, yaml_files
 from courtside.study.errors import InputError
 
 MARK = "# guess:"

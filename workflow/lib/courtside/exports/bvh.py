@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.records.hierarchy import NO_PARENT
 from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 INDENT = "  "
 NO_TIP = np.zeros(3)

@@ -10,7 +10,7 @@ import ezc3d
 import numpy as np
 
 from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 MM_PER_M = 1000.0
 MISSING = -1.0

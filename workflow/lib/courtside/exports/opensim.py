@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 from courtside.exports import markers
 from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 VERSION = "40000"
 # In the models of Rajagopal et al. 2016 and Beaucage-Gauvreau et al. 2019, of which Pose2Sim's is made, the

@@ -17,7 +17,7 @@ from courtside.geometry import camera as camera_files
 from courtside.records import reasons
 from courtside.records.keypoints import Keypoints3D
 from courtside.study.errors import InputError
-from courtside.study.files import atomic_folder
+from courtside.study.execution.files import atomic_folder
 
 # Skeletons that Pose2Sim knows under a name of its own, points in the same order.
 MODELS = {

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from courtside.study.errors import InputError, reading
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 WORLD_AXES = [1, 2, 0]  # TRC X, Y, Z <- world axis
 TRC_AXES = [2, 0, 1]  # world x, y, z <- TRC axis

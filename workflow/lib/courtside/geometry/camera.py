@@ -9,7 +9,7 @@ import tomli_w
 
 from courtside.geometry import camera_fields, rotations
 from courtside.study.errors import InputError, reading
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 OTHER_TABLES = ("metadata", "capture_volume", "charuco", "checkerboard")  # as Pose2Sim has it
 TOLERANCE_PX = 1e-10

@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.geometry import rotations
 from courtside.records.hierarchy import forward
-from courtside.study.files import write_json
+from courtside.study.execution.files import write_json
 
 
 @dataclass(frozen=True)

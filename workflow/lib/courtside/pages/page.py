@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 ASSETS = Path(__file__).with_name("assets")
 ALWAYS = "page"  # page.css and page.js are in every page

@@ -7,7 +7,7 @@ from onnx import helper
 from courtside.pose import tflite_graph, tflite_operators
 from courtside.pose.onnx_writer import Writer
 from courtside.study.errors import InputError
-from courtside.study.files import atomic, sha256
+from courtside.study.execution.files import atomic, sha256
 
 OPSET = 17
 IR_VERSION = 8

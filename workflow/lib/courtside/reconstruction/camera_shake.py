@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as cameras
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 LONGEST_GAP_S = 0.2  # frames without a measurement that are bridged by a line
 SAME_FRAME = 0.25  # of a frame: a time that agrees with a row of the table

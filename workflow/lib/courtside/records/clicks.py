@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 COLUMNS = ("camera", "point", "frame_idx", "x_px", "y_px")
 STATIC = 0  # frame_idx of the static picture

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from courtside.records import reasons
-from courtside.study import yaml_files
+from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading
 
 SUM_TOLERANCE = 1e-9

@@ -6,7 +6,7 @@ Every file holds `format` (what it is, with a version) beside its arrays, and ne
 import numpy as np
 
 from courtside.study.errors import InputError, reading
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 KINDS = {"float": np.floating, "int": np.integer, "bool": np.bool_, "str": np.str_}
 

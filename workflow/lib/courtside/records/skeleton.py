@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from courtside.study import yaml_files
+from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading
 
 SIDES = {"left_": "right_", "right_": "left_"}

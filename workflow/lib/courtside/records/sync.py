@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from courtside.study.errors import InputError, reading
-from courtside.study.files import read_json, write_json
+from courtside.study.execution.files import read_json, write_json
 
 FORM = "courtside sync 1"
 USABLE = ("reference", "found", "assumed")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from courtside.study.errors import InputError, reading
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 REMAKE = "delete it and run the study again"
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pycolmap
 
 from courtside.study.errors import reading
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 pycolmap.logging.minloglevel = pycolmap.logging.Level.ERROR.value
 

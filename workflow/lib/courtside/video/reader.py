@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 from courtside.video.decoder import decode_checked, display_matrix, pictures
 from courtside.video.packets import list_packets
 

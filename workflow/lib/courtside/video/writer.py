@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 
 from courtside.study.errors import InputError
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 KEYFRAME_EVERY = 12  # frames: seeking decodes no more than these
 LARGEST_DENOMINATOR = 10_000  # keeps the container's clock far below its 32 bits

@@ -6,7 +6,7 @@ import zlib
 import numpy as np
 
 from courtside.geometry import camera as projection
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 from virtualgym.body import mesh
 from virtualgym.rendering import rolling_shutter
 from virtualgym.session import presets

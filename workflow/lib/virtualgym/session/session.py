@@ -8,7 +8,7 @@ import numpy as np
 
 from courtside.records import clicks as click_records
 from courtside.records import truth
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import writer
 from virtualgym.cameras import layouts, walk_path
 from virtualgym.devices import chessboard

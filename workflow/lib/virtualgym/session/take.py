@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from courtside.records import take_truth
-from courtside.study import log
+from courtside.study.execution import log
 from courtside.video import writer
 from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.cameras import camera_shake, layouts

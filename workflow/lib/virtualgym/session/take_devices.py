@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.devices.realsense import writer
 from courtside.records import take_truth
-from courtside.study import log
+from courtside.study.execution import log
 from virtualgym.body import skinned_body
 from virtualgym.devices import depth_camera, inertial_suit
 from virtualgym.hall import hall

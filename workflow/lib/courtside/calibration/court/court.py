@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from courtside.geometry import camera_fields
-from courtside.study import yaml_files
+from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError
 
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")

@@ -19,8 +19,8 @@ from courtside.devices.realsense import lens, rosbag, text
 from courtside.geometry import camera_fields, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.frame_times import FrameTimes
-from courtside.study import log
 from courtside.study.errors import InputError
+from courtside.study.execution import log
 
 PICTURES = re.compile(
     r"(/device_\d+/sensor_\d+/(Depth|Color)_\d+)/image/data(/compressed|/compressedDepth)?"

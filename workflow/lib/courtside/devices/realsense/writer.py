@@ -10,7 +10,7 @@ from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from scipy.spatial.transform import Rotation
 
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 STATIC_NS = 1  # the time in the recording of everything that does not change
 STREAM_INFO = "uint32 fps\nstring encoding\nbool is_recommended\n"

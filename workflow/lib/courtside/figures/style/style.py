@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from courtside.study.files import atomic
+from courtside.study.execution.files import atomic
 
 WIDTH_MM = 180
 DOTS_PER_INCH = 150

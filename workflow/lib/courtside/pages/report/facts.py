@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.records import keypoints, limbs, reasons, sync, tables
-from courtside.study.files import read_json
+from courtside.study.execution.files import read_json
 
 NINE_IN_TEN = 1.645  # standard deviations that hold 90 % of normal errors
 SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")

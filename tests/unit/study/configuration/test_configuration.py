@@ -1,0 +1,421 @@
+"""The configuration that is committed has no fault; a bad one reports all of its own."""
+
+import copy
+import math
+import shutil
+from pathlib import Path
+
+import pytest
+import yaml
+
+from courtside.study.configuration import configuration, yaml_files
+
+CONFIG = Path(__file__).parents[4] / "config"
+SESSION = {
+    "description": "a hall",
+    "court": "none",
+    "subjects": {"p1": None},
+    "cameras": {"left": None, "right": {"crop_px": [0, 0, 100, 50]}},
+    "calibration": {"file": "cal.toml"},
+    "takes": {"t1": {"videos": {"left": "l.mp4", "right": "r.mp4"}}},
+}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a copy of config/ with a session `hall` whose files exist."""
+    shutil.copytree(CONFIG, tmp_path / "config")
+    for name in ("cal.toml", "l.mp4", "r.mp4"):
+        (tmp_path / name).touch()
+    return tmp_path / "config"
+
+
+def load(folder, session=None, **changes):
+    (folder / "sessions" / "hall.yaml").write_text(yaml.safe_dump(session or SESSION))
+    alone = {"sessions": ["hall"], "variations": []}
+    config = yaml_files.read(CONFIG / "config.yaml") | alone | changes
+    return configuration.load(config, "config/config.yaml", folder, root=folder.parent)
+
+
+def faults(folder, session=None, **changes):
+    with pytest.raises(configuration.ConfigurationError) as caught:
+        load(folder, session, **changes)
+    assert all("\n" not in line for line in caught.value.faults)
+    return caught.value.faults
+
+
+def changed(*keys, value):
+    session = copy.deepcopy(SESSION)
+    inner = session
+    for key in keys[:-1]:
+        inner = inner[key]
+    inner[keys[-1]] = value
+    return session
+
+
+@pytest.mark.parametrize("name", ["config", "tiny", "full"])
+def test_the_committed_configuration_has_no_fault(name):
+    config = yaml_files.read(CONFIG / "config.yaml") | yaml_files.read(CONFIG / f"{name}.yaml")
+    study = configuration.load(config, f"config/{name}.yaml", CONFIG)
+    variations = [name for name in study.sessions if study.sessions[name].condition]
+    assert list(study.sessions) == config["sessions"] + variations
+    assert len(variations) == sum(
+        math.prod(map(len, config["conditions"][name]["vary"].values()))
+        for name in config["variations"]
+    )
+
+
+def test_every_committed_session_has_no_fault():
+    config = yaml_files.read(CONFIG / "config.yaml")
+    config["sessions"] = [path.stem for path in (CONFIG / "sessions").glob("*.yaml")]
+    study = configuration.load(config, "config/config.yaml", CONFIG)
+    assert len(study.sessions) >= 2
+
+
+def test_a_session_becomes_records(folder):
+    session = load(folder).sessions["hall"]
+    assert session.takes["t1"].subjects == ("p1",)
+    assert session.cameras["right"].crop_px == (0, 0, 100, 50)
+    assert session.court is None
+    assert session.blur_faces
+    assert session.calibration_camera_names() == {"left": "left", "right": "right"}
+
+
+def test_an_override_changes_one_key_and_keeps_the_others(folder):
+    session = SESSION | {"override": {"triangulate": {"max_error_px": 40}}}
+    study = load(folder, session)
+    ours, common = study.sessions["hall"].parameters["triangulate"], study.parameters["triangulate"]
+    assert ours == common | {"max_error_px": 40}
+    assert common["max_error_px"] != 40
+
+
+def test_all_faults_of_all_files_come_at_once(folder):
+    (folder / "sessions" / "gym.yaml").write_text("description: 3\ncourts: none\n")
+    steps = yaml_files.read(CONFIG / "config.yaml")
+    found = faults(
+        folder,
+        changed("takes", "t1", "videos", "centre", value="c.mp4"),
+        sessions=["hall", "gym", "nowhere"],
+        models=["blazepose-full", "resnet"],
+        draw_overlay=steps["draw_overlay"],
+    )
+    text = "\n".join(found)
+    for part in ("resnet", "nowhere", "gym.yaml: description", "did you mean 'court'?", "'centre'"):
+        assert part in text
+    assert len(found) >= 6
+
+
+@pytest.mark.parametrize(
+    ("changes", "parts"),
+    [
+        ({"fusions": ["all-robust", "all-robust"]}, ["fusions", "entries that differ"]),
+        ({"draw_overlay": {"n_frame": 3}}, ["draw_overlay", "did you mean 'n_frames'?"]),
+        ({"draw_overlay": {"n_frames": 0}}, ["draw_overlay.n_frames", "at least 1", "found 0"]),
+        ({"draw_overlay": {"n_frames": "x"}}, ["draw_overlay.n_frames", "integer", "'x'"]),
+        ({"sessions": ["../hall"]}, ["sessions.0", "'../hall'"]),
+        ({"sessions": ["hall; ls"]}, ["sessions.0"]),
+        ({"sessions": ["hall\n"]}, ["sessions.0"]),
+        ({"sessions": ["external"]}, ["sessions", "'external'; rename it"]),
+    ],
+)
+def test_a_fault_of_the_study_names_key_and_value(folder, changes, parts):
+    found = faults(folder, **changes)
+    assert any(all(part in line for part in ["config/config.yaml", *parts]) for line in found)
+
+
+@pytest.mark.parametrize(
+    ("session", "parts"),
+    [
+        (changed("takes", "t1", "videos", "left", value="gone.mp4"), ["videos.left", "gone.mp4"]),
+        (changed("takes", "t1", "trim_s", value=[3, 1]), ["trim_s", "start before the stop"]),
+        (changed("takes", "t1", "subjects", value=["p2"]), ["subjects", "'p2'"]),
+        (changed("takes", "t1", "videos", value={"left": "l.mp4"}), ["videos", "at least 2"]),
+        (changed("court", value="squash"), ["court", "'squash'"]),
+        (changed("subjects", "p1", value={"height_m": 174}), ["height_m", "at most 2.5", "174"]),
+        (changed("cameras", "left", value={"crop": [0, 0, 1, 1]}), ["did you mean 'crop_px'?"]),
+        (changed("takes", "Take 1", value={}), ["takes", "lower-case letters"]),
+        (
+            changed("override", value={"triangulat": {}}),
+            ["override", "did you mean 'triangulate'?"],
+        ),
+        (changed("override", value={"triangulate": {"min_views": 1}}), ["min_views", "at least 2"]),
+        (
+            changed("calibration", "file", value="results/external/pose2sim/nothing.toml"),
+            ["calibration.file", "member of external.yaml"],
+        ),
+    ],
+)
+def test_a_fault_of_a_session_names_key_and_value(folder, session, parts):
+    found = faults(folder, session)
+    assert any(all(part in line for part in ["hall.yaml", *parts]) for line in found), found
+
+
+def test_a_model_must_fit_its_artefact_and_skeleton(folder):
+    models = yaml_files.read(CONFIG / "models.yaml")
+    models["blazepose-full"]["skeleton"] = "octopus"
+    models["blazepose-full"]["landmarks"]["sha256"] = "0" * 64
+    (folder / "models.yaml").write_text(yaml.safe_dump(models))
+    text = "\n".join(faults(folder))
+    assert "blazepose-full.skeleton" in text
+    assert "blazepose-full.landmarks" in text
+
+
+def test_a_fault_in_one_file_hides_no_fault_in_another(folder):
+    (folder / "external.yaml").write_text("a: {sha256: x, licence: MIT, members: {../b: y}}\n")
+    (folder / "models.yaml").write_text("m: {decoder: heatmap}\n")
+    (folder / "sessions" / "gym.yaml").write_text("court: none\ncourt: none\n")
+    session = changed("takes", "t1", "videos", "left", value="gone.mp4")
+    found = faults(folder, session, sessions=["hall", "gym", "hal"], draw_overlay={"n_frames": 0})
+    for part in (
+        "external.yaml: a.sha256",
+        "external.yaml: a.members: expected text",
+        "external.yaml: a: expected either",
+        "models.yaml: m.decoder",
+        "config.yaml: draw_overlay.n_frames",
+        "hall.yaml: takes.t1.videos.left",
+        "gym.yaml: line 2: expected each key once, found 'court' again",
+        "did you mean 'hall'?",
+    ):
+        assert len([line for line in found if part in line]) == 1, (part, found)
+    assert all("expected" in line for line in found)
+
+
+@pytest.mark.parametrize("name", ["external", "networks", "run", "figures", "virtual"])
+def test_a_session_may_not_be_named_like_a_folder_of_results(folder, name):
+    shutil.copy(CONFIG / "sessions" / "walk-4cams.yaml", folder / "sessions" / f"{name}.yaml")
+    assert len(faults(folder, sessions=[name])) == 1
+
+
+@pytest.mark.parametrize(
+    ("override", "part"),
+    [
+        ({"filter_motion": {"cutoff_hz": {"head": 6, "trunk": 6, "arms": 6, "legs": 600}}}, "600"),
+        ({"filter_motion": {"max_gap_s": float("nan")}}, "type number, found nan"),
+        ({"filter_motion": {"max_gap_s": float("inf")}}, "type number, found inf"),
+        ({"filter_motion": {"max_gap_s": 10**400}}, "type number, found 1000"),
+        ({"draw_overlay": {"n_frames": 3.0}}, "type integer, found 3.0"),
+        ({"draw_overlay": {"n_frames": True}}, "type integer, found True"),
+        ({"triangulate": {"fix_sides": "yes"}}, "type boolean, found 'yes'"),
+        ({"detect_pose": [1]}, "type object, found [1]"),
+        ({"sessions": ["hall"]}, "found 'sessions'"),
+    ],
+)
+def test_an_override_obeys_the_rules_of_its_step(folder, override, part):
+    found = faults(folder, SESSION | {"override": override})
+    assert len(found) == 1
+    assert "hall.yaml: override" in found[0]
+    assert part in found[0]
+
+
+def test_an_override_of_all_cut_offs_is_taken(folder):
+    cutoff_hz = {"head": 1, "trunk": 2, "arms": 3, "legs": 4}
+    study = load(folder, SESSION | {"override": {"filter_motion": {"cutoff_hz": cutoff_hz}}})
+    common = study.parameters["filter_motion"]
+    ours = study.sessions["hall"].parameters["filter_motion"]
+    assert ours == common | {"cutoff_hz": cutoff_hz}
+
+
+@pytest.mark.parametrize(
+    ("session", "part"),
+    [
+        (changed("calibration", "file", value="cal.toml\n"), "calibration.file"),
+        (changed("takes", "t1\n", value=SESSION["takes"]["t1"]), "takes"),
+        (changed("takes", "$(ls)", value=SESSION["takes"]["t1"]), "takes"),
+        (changed("subjects", "p\n2", value={"height_m": 9}), "subjects.'p\\n2'.height_m"),
+        (changed("cameras", "a/b", value=None), "cameras"),
+        (changed("cameras", "left", value={"crop_px": [0, 0, 0, 50]}), "cameras.left.crop_px.2"),
+        (changed("cameras", "left", value={"crop_px": [0, 0, 50]}), "at least 4 entries"),
+        (changed("takes", "t1", "trim_s", value=[float("nan"), 1]), "takes.t1.trim_s.0"),
+        (changed("takes", "t1", "trim_s", value=[1, 1]), "takes.t1.trim_s"),
+        (changed("court", value="../config"), "court"),
+        (
+            changed("calibration", "file", value="results/external/../../cal.toml"),
+            "member of external.yaml",
+        ),
+    ],
+)
+def test_odd_names_paths_and_numbers_are_one_line(folder, session, part):
+    assert any(part in line for line in faults(folder, session))
+
+
+def test_a_skeleton_is_a_name_not_a_path(folder):
+    models = yaml_files.read(CONFIG / "models.yaml")
+    models["blazepose-full"]["skeleton"] = "../skeletons/blazepose33"
+    (folder / "models.yaml").write_text(yaml.safe_dump(models))
+    assert "blazepose-full.skeleton" in "\n".join(faults(folder))
+
+
+def test_every_missing_key_is_named(folder):
+    config = yaml_files.read(CONFIG / "config.yaml")
+    del config["fusions"], config["filter_motion"]["order"]
+    with pytest.raises(configuration.ConfigurationError) as caught:
+        configuration.load(config, "mine.yaml", folder)
+    assert [line.split(";")[0] for line in caught.value.faults] == [
+        "mine.yaml: top level: expected the key 'fusions', missing ['fusions']",
+        "mine.yaml: filter_motion: expected the key 'order', missing ['order']",
+    ]
+
+
+VIRTUAL = {
+    "description": "a virtual hall",
+    "court": "badminton",
+    "cameras": {"side": None, "back": None},
+    "walks": {"walk": {}},
+    "virtual": {
+        "preset": "plain",
+        "layout": "a",
+        "seed": 1,
+        "size_px": [640, 360],
+        "walk_frames": 9,
+    },
+}
+
+
+def test_a_virtual_session_with_variations_becomes_sessions(folder):
+    condition = {"session": "hall", "set": {"walk_frames": 5}, "vary": {"seed": [4, 6]}}
+    condition["override"] = {"sweep": {"n_images": [4]}}
+    study = load(folder, VIRTUAL, variations=["speed"], conditions={"speed": condition})
+    assert list(study.sessions) == ["hall", "speed-0", "speed-1"]
+    varied = study.sessions["speed-1"]
+    assert (varied.virtual["seed"], varied.virtual["walk_frames"]) == (6, 5)
+    assert varied.walks == {"walk": "results/virtual/speed-1/walk.mp4"}
+    assert varied.parameters["sweep"]["n_images"] == [4]
+    assert varied.parameters["sweep"]["mappers"] == study.parameters["sweep"]["mappers"]
+
+
+@pytest.mark.parametrize(
+    ("condition", "parts"),
+    [
+        ({"vary": {"sped_kmh": [1]}}, ["conditions.c.vary", "did you mean 'speed_kmh'?"]),
+        ({"vary": {"speed_kmh": 4}}, ["conditions.c.vary.speed_kmh", "type array, found 4"]),
+        ({"vary": {"speed_kmh": []}}, ["conditions.c.vary.speed_kmh", "at least 1 entries"]),
+        (
+            {"vary": {"speed_kmh": [4, -1]}},
+            ["conditions.c.vary.speed_kmh.1", "more than 0, found -1"],
+        ),
+        ({"vary": {"size_px": [[640, 361]]}}, ["vary.size_px.0.1", "a multiple of 2", "found 361"]),
+        ({"vary": {"layout": ["c"]}}, ["vary.layout.0", "one of ['a', 'b'", "found 'c'"]),
+        ({"vary": {}}, ["conditions.c.vary", "at least 1 entries"]),
+        ({"set": {"boards": 1}}, ["conditions.c.set.boards", "type boolean, found 1"]),
+        ({"set": {"frames": 1}}, ["conditions.c.set", "found 'frames'"]),
+        ({"override": {"swep": {}}}, ["conditions.c.override", "did you mean 'sweep'?"]),
+        ({"override": {"conditions": {}}}, ["conditions.c.override", "found 'conditions'"]),
+        ({"override": {"sweep": {"n_images": [1]}}}, ["override.sweep.n_images.0", "at least 2"]),
+        ({"varied": {}}, ["conditions.c", "found 'varied'"]),
+    ],
+)
+def test_a_fault_of_a_condition_names_key_and_value(folder, condition, parts):
+    condition = {"session": "hall", "vary": {"seed": [1]}, **condition}
+    (line,) = faults(folder, VIRTUAL, variations=["c"], conditions={"c": condition})
+    assert all(part in line for part in ["config/config.yaml: conditions.c", *parts]), line
+
+
+@pytest.mark.parametrize(
+    ("step", "key", "value"),
+    [
+        *[("sweep", "n_images", v) for v in ([1], [5, 5], 5, [2.5])],
+        *[("sweep", "n_offsets", v) for v in (0, 4)],
+        *[("sweep", "offsets_up_to", v) for v in (-1, "all")],
+        *[("sweep", "mappers", v) for v in ([], ["glomap"], ["global", "global"])],
+        *[("extract_static", "frames", v) for v in (0, 201)],
+        *[("extract_static", "max_shift_px", v) for v in (0, "1 px")],
+        *[("extract_static", "max_zoom_percent", v) for v in (0, None)],
+        *[("extract_frames", "every_s", v) for v in (0, -1)],
+        *[("extract_features", "max_features", v) for v in (99, 65537)],
+        *[("extract_features", "first_octave", v) for v in (-2, 3, 0.5)],
+        *[("extract_features", "focal_factor", v) for v in (0.1, 11)],
+        *[("match_images", "max_ratio", v) for v in (0, 1.1)],
+        *[("match_images", "seed", v) for v in (-1, True)],
+        *[("map_images", "rule", v) for v in ("odd", None)],
+        *[("map_images", "seed", v) for v in (-1, 1.0)],
+        *[
+            ("map_images", "colmap", v)
+            for v in ({"global": {}}, {"global": {}, "incremental": {}, "x": {}})
+        ],
+        *[("adjust_network", "min_points", v) for v in (2, "20")],
+        *[("adjust_network", "tie_sigma", v) for v in (0, -1)],
+        *[("adjust_network", "tie_loss", v) for v in (0,)],
+        *[("adjust_network", "click_sigma_px", v) for v in (0,)],
+        *[("adjust_network", "click_bias_px", v) for v in (-0.1, "x")],
+        *[("adjust_network", "click_loss", v) for v in (0, float("inf"))],
+        *[("adjust_network", "images_per_part", v) for v in (9, 40.5)],
+        *[("adjust_network", "min_angle_deg", v) for v in (-1, 91)],
+        *[("adjust_network", "max_error_px", v) for v in (0,)],
+        *[("adjust_network", "max_points", v) for v in (19,)],
+        *[("adjust_network", "seed", v) for v in (-1,)],
+        *[("evaluate_calibration", "n_draws", v) for v in (0,)],
+        *[("evaluate_calibration", "seed", v) for v in (-1,)],
+        *[("evaluate_calibration", "sets", v) for v in ([], ["All"], ["all", "all"])],
+        *[("draw_error_map", "heights_m", v) for v in ([], [0, 1, 2, 3, 4], [-1], [11])],
+    ],
+)
+def test_every_number_of_the_calibration_has_its_limits(folder, step, key, value):
+    block = yaml_files.read(CONFIG / "config.yaml")[step]
+    found = faults(folder, **{step: block | {key: value}})
+    assert len(found) == 1 and found[0].startswith(f"config/config.yaml: {step}.{key}")
+    missing = {name: inner for name, inner in block.items() if name != key}
+    (line,) = faults(folder, **{step: missing})
+    assert f"{step}: expected the key '{key}'" in line
+    (line,) = faults(folder, SESSION | {"override": {step: {key: value}}})
+    assert f"hall.yaml: override.{step}.{key}" in line
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "files",
+        "sfm",
+        "sfm-40",
+        "sfm-n0",
+        "known",
+        "dlt-n8",
+        "paper-global",
+        "known8-boards",
+        "dlt8-board",
+    ],
+)
+def test_a_calibration_that_is_none_is_named(folder, name):
+    (line,) = faults(folder, calibrations=[name])
+    assert "calibrations.0: expected text that matches" in line and f"found {name!r}" in line
+
+
+@pytest.mark.parametrize(
+    ("changes", "parts"),
+    [
+        ({"virtual": {"layout": "a"}}, ["virtual: expected the key 'preset'"]),
+        ({"virtual": VIRTUAL["virtual"] | {"size_px": [640]}}, ["virtual.size_px", "at least 2"]),
+        (
+            {"virtual": VIRTUAL["virtual"] | {"walk_frames": 1}},
+            ["virtual.walk_frames", "two or more"],
+        ),
+        ({"virtual": VIRTUAL["virtual"] | {"speed_kmh": 0}}, ["virtual.speed_kmh", "more than 0"]),
+        ({"virtual": VIRTUAL["virtual"] | {"people": -1}}, ["virtual.people", "at least 0"]),
+        ({"virtual": VIRTUAL["virtual"] | {"baseline_deg": 181}}, ["baseline_deg", "at most 180"]),
+        ({"virtual": VIRTUAL["virtual"] | {"static_frames": 0}}, ["static_frames", "at least 1"]),
+        ({"virtual": VIRTUAL["virtual"] | {"stabilizer": True}}, ["did you mean 'stabiliser'?"]),
+        ({"walks": {"walk": {"vido": "w.mp4"}}}, ["walks.walk", "did you mean 'video'?"]),
+        ({"walks": {"walk": {"video": "w", "images": "i"}}}, ["walks.walk", "found {"]),
+        ({"walks": {"Walk": {}}}, ["walks: expected", "lower-case letters"]),
+        ({"cameras": {"side": {"chessboard": {"images": "b"}}}}, ["chessboard: expected the key"]),
+        (
+            {
+                "cameras": {
+                    "side": {"chessboard": {"images": "b", "inner_corners": [7, 2], "square_m": 1}}
+                }
+            },
+            ["chessboard.inner_corners.1", "at least 3"],
+        ),
+        (
+            {
+                "cameras": {
+                    "side": {"chessboard": {"images": "b", "inner_corners": [7, 4], "square_m": 60}}
+                }
+            },
+            ["chessboard.square_m", "at most 1", "found 60"],
+        ),
+        ({"court_points": ""}, ["court_points"]),
+    ],
+)
+def test_a_fault_of_a_virtual_session_names_key_and_value(folder, changes, parts):
+    found = faults(folder, VIRTUAL | changes)
+    assert any(all(part in line for part in ["hall.yaml: ", *parts]) for line in found), found

@@ -1,0 +1,331 @@
+"""What a session's file gets wrong beyond its schema, and what conditions do: one line each."""
+
+import pytest
+
+from courtside.study.configuration import session_faults
+
+FILE = "gym.yaml"
+RECORDED = {
+    "court": "badminton",
+    "cameras": {"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}},
+    "walks": {"w": {"video": "w.mp4"}},
+    "court_points": "p.csv",
+}
+VIRTUAL = {
+    "court": "badminton",
+    "cameras": {"side": None, "back": None},
+    "walks": {"walk": {}},
+    "virtual": {
+        "preset": "plain",
+        "layout": "b",
+        "seed": 1,
+        "size_px": [640, 360],
+        "walk_frames": 9,
+    },
+}
+
+
+@pytest.fixture
+def root(tmp_path):
+    for name in ("a.mp4", "b.mp4", "w.mp4", "p.csv", "c.toml"):
+        (tmp_path / name).touch()
+    (tmp_path / "courts").mkdir()
+    (tmp_path / "courts" / "badminton.yaml").touch()
+    return tmp_path
+
+
+def find(root, content):
+    found = list(session_faults.find(root, FILE, content, {}, root))
+    assert all("\n" not in line and line.startswith(FILE) for line in found)
+    return found
+
+
+def without(content, *keys):
+    return {key: value for key, value in content.items() if key not in keys}
+
+
+FILMED = {"virtual": {"motion": "shot", "seconds": 2, "seed": 1, "players": {"p1": {"body": "m1"}}}}
+PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        RECORDED,
+        VIRTUAL,
+        PLAYERS | {"views": {"two": ["side", "back"]}},
+        without(PLAYERS, "walks")
+        | {"virtual": PLAYERS["virtual"] | {"walk_frames": 0}}
+        | {"calibration": {"file": "results/gym/calibration/sfm-n40/cameras.toml"}},
+        without(RECORDED, "court_points") | {"court": "none"},
+        RECORDED | {"walks": {"w": {"video": "w.mp4"}, "v": {"images": "a.mp4"}}},
+        without(RECORDED, "walks") | {"calibration": {"file": "c.toml"}},
+        RECORDED | {"cameras": {"a": {"static": "a.mp4"}}},
+        {"court": "none", "cameras": {}, "walks": {"w": {"images": "w.mp4"}}},
+        VIRTUAL
+        | {"cameras": {"side": {"chessboard": {"images": "results/virtual/g/boards/side"}}}},
+    ],
+)
+def test_good_sessions_have_no_fault(root, content):
+    assert find(root, content) == []
+
+
+@pytest.mark.parametrize(
+    ("content", "parts"),
+    [
+        (
+            RECORDED | {"court": "squash"},
+            ["court: expected 'none' or one of ['badminton']", "'squash'"],
+        ),
+        (
+            RECORDED | {"cameras": {"a": None, "b": {"static": "b.mp4"}}},
+            ["cameras.a: expected `static`"],
+        ),
+        (
+            RECORDED | {"walks": {"w": {}}},
+            ["walks.w: expected `video` or `images`", "found neither"],
+        ),
+        (RECORDED | {"walks": {"w": None}}, ["walks.w: expected `video` or `images`"]),
+        (
+            RECORDED | {"walks": {"w": {"video": "x.mp4"}}},
+            ["walks.w.video: expected a file", "x.mp4"],
+        ),
+        (
+            RECORDED | {"walks": {"a": {"video": "w.mp4"}}},
+            ["walks.a: expected a name that no camera has"],
+        ),
+        (
+            RECORDED
+            | {
+                "court_points": "q.csv",
+                "cameras": {"a": None, "b": {"static": "b.mp4"}},
+                "walks": {},
+            },
+            ["court_points: expected a file", "q.csv"],
+        ),
+        (RECORDED | {"court": "none"}, ["court_points: expected none without a court"]),
+        (
+            without(RECORDED, "court_points"),
+            ["expected `court_points`", "a page to click them on, or set court: none"],
+        ),
+        (
+            without(without(RECORDED, "walks"), "court_points"),
+            ["expected `walks`, `court_points` or `calibration`, found none"],
+        ),
+        (
+            RECORDED
+            | {"cameras": {"a": {"static": "a.mp4"}}, "takes": {"t": {"videos": {"a": "a.mp4"}}}}
+            | {"subjects": {"p1": None}},
+            ["cameras: expected two or more, found 1"],
+        ),
+        (
+            RECORDED | {"cameras": {"a": {"static": "a.mp4", "chessboard": {"images": "boards"}}}},
+            ["cameras.a.chessboard.images: expected a file", "boards"],
+        ),
+        (VIRTUAL | {"court": "none"}, ["court: expected a court to build the virtual hall around"]),
+        (VIRTUAL | {"cameras": {}}, ["virtual: expected cameras"]),
+        (without(VIRTUAL, "walks"), ["virtual.walk_frames: expected two or more with a walk"]),
+        (
+            VIRTUAL | {"takes": {"t": FILMED}},
+            ["takes.t: expected `subjects`", "name the persons of the take"],
+        ),
+        (
+            PLAYERS | {"takes": {"t": None}},
+            ["takes.t: expected the key 'virtual' and not 'videos' in a virtual session, found []"],
+        ),
+        (
+            PLAYERS
+            | {
+                "takes": {"t": {"virtual": FILMED["virtual"] | {"players": {"p2": {"body": "m1"}}}}}
+            },
+            ["takes.t.virtual.players: expected each of ['p1'], found ['p2']"],
+        ),
+        (
+            PLAYERS | {"takes": {"t": {"virtual": FILMED["virtual"] | {"clocks": {"up": {}}}}}},
+            ["takes.t.virtual.clocks: expected one of", "found 'up'"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"d": {"file": "d.bvh"}}}}},
+            ["takes.t.devices.d.file: expected a file", "d.bvh"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}}
+            | {"takes": {"t": {"devices": {"d": {"file": "a.mp4", "subject": "p2"}}}}},
+            ["takes.t.devices.d.subject: expected one of ['p1'], found 'p2'"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"a": {"file": "a.mp4"}}}}},
+            ["takes.t.devices: expected names that no camera has, found 'a'"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}}
+            | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"up": {"offset_s": 1.0}}}}},
+            ["takes.t.clocks: expected one of ['a'], found 'up'"],
+        ),
+        (
+            RECORDED
+            | {"subjects": {"p1": None}}
+            | {"takes": {"t": {"videos": {"a": "a.mp4"}, "clocks": {"a": {"offset_s": 1.0}}}}},
+            ["takes.t.clocks.a: expected no offset or drift of the first camera"],
+        ),
+        (PLAYERS | {"views": {"two": ["side", "up"]}}, ["views.two: expected one of", "'up'"]),
+        (
+            RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},
+            [
+                "takes.t: expected the key 'videos' or 'devices' and not 'virtual' in a recorded session"
+            ],
+        ),
+        (
+            VIRTUAL | {"court_points": "p.csv"},
+            ["court_points: expected no file of its own", "remove it"],
+        ),
+        (
+            VIRTUAL | {"walks": {"walk": {"video": "w.mp4"}}},
+            ["walks.walk.video: expected no file of its own"],
+        ),
+        (
+            VIRTUAL | {"cameras": {"side": {"static": "a.mp4"}}},
+            ["cameras.side.static: expected no file"],
+        ),
+        (
+            VIRTUAL | {"virtual": VIRTUAL["virtual"] | {"baseline_deg": 30}},
+            ["virtual.baseline_deg: expected it with layout a only, found b; remove it"],
+        ),
+    ],
+)
+def test_a_contradiction_is_one_line(root, content, parts):
+    (line,) = find(root, content)
+    assert [part for part in parts if part not in line] == []
+
+
+OTHERS = {"pose2d": {"body25b": {"a": "a.mp4", "b": "b.mp4"}}}
+
+
+@pytest.mark.parametrize(
+    ("take", "override", "parts"),
+    [
+        (
+            {"pose2d": {"spider": {"a": "a.mp4"}}},
+            {},
+            ["takes.t.pose2d: expected one of", "'spider'"],
+        ),
+        (
+            {"pose2d": {"body25b": {"up": "a.mp4"}}},
+            {},
+            ["pose2d.body25b: expected one of ['a', 'b']"],
+        ),
+        ({"pose3d": {"body25b": {"p2": "a.mp4"}}}, {}, ["pose3d.body25b: expected one of ['p1']"]),
+        (
+            {"pose3d": {"body25b": {"p1": "no.trc"}}},
+            {},
+            ["pose3d.body25b.p1: expected a file", "no.trc"],
+        ),
+    ],
+)
+def test_keypoints_of_other_programs_are_checked(root, take, override, parts):
+    (root / "skeletons").mkdir()
+    (root / "skeletons" / "body25b.yaml").touch()
+    videos = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
+    content = RECORDED | {"subjects": {"p1": None}, "takes": {"t": videos | take}}
+    (line,) = find(root, content | {"override": override})
+    assert [part for part in parts if part not in line] == []
+
+
+def test_a_take_without_the_keypoints_that_its_session_wants_is_named(root):
+    (root / "skeletons").mkdir()
+    (root / "skeletons" / "body25b.yaml").touch()
+    videos = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
+    content = RECORDED | {"subjects": {"p1": None}, "override": {"models": ["body25b"]}}
+    assert find(root, content | {"takes": {"t": videos | OTHERS}}) == []
+    (line,) = find(root, content | {"takes": {"t": videos | OTHERS, "u": videos}})
+    assert "takes.u.pose2d: expected body25b, as override.models says, found none" in line
+
+
+def test_court_points_may_be_clicked_later_where_there_are_pictures_to_click_on(root):
+    assert find(root, RECORDED | {"court_points": "q.csv"}) == []
+
+
+def test_a_session_of_devices_alone_needs_no_cameras(root):
+    taken = {"t": {"devices": {"webcam": {"file": "a.mp4"}}}}
+    content = {"description": "d", "court": "none", "cameras": {}, "subjects": {"p1": None}}
+    assert find(root, content | {"takes": taken}) == []
+
+
+def test_files_of_artefacts_must_be_members(root):
+    content = RECORDED | {"court_points": "results/external/pack/points.csv"}
+    (line,) = find(root, content)
+    assert "court_points: expected a member of external.yaml" in line
+
+
+FOUND = {"gym": ("gym.yaml", VIRTUAL), "hall": ("hall.yaml", RECORDED)}
+
+
+def conditions(**content):
+    condition = {"session": "gym", "vary": {"seed": [1, 2]}, **content}
+    config = {"variations": ["speed"], "conditions": {"speed": condition}}
+    return session_faults.conditions("config.yaml", config, FOUND)
+
+
+def test_a_good_condition_has_no_fault():
+    assert conditions() == []
+    assert conditions(vary={"layout": ["a"], "baseline_deg": [30, 60]}) == []
+    assert conditions(set={"layout": "a"}, vary={"baseline_deg": [30, 60]}) == []
+
+
+@pytest.mark.parametrize(
+    ("content", "parts"),
+    [
+        (
+            {"session": "nowhere"},
+            ["speed.session: expected one of ['gym', 'hall'], found 'nowhere'"],
+        ),
+        ({"session": "hall"}, ["speed.session: expected a virtual session, found 'hall'"]),
+        (
+            {"set": {"seed": 3}},
+            ["speed: expected seed in either `set` or `vary`, found it in both"],
+        ),
+        (
+            {"vary": {"baseline_deg": [30]}},
+            ["speed.baseline_deg: expected it with layout a only, found b"],
+        ),
+        (
+            {"vary": {"layout": ["a", "b-mirror"]}, "set": {"baseline_deg": 30}},
+            ["speed.baseline_deg: expected it with layout a only, found b-mirror"],
+        ),
+    ],
+)
+def test_a_fault_of_a_condition_is_one_line(content, parts):
+    (line,) = conditions(**content)
+    assert line.startswith("config.yaml: conditions.speed")
+    assert [part for part in parts if part not in line] == []
+
+
+def test_unknown_variations_are_named():
+    config = {"variations": ["sped"], "conditions": {"speed": {}}}
+    assert session_faults.conditions("config.yaml", config, FOUND) == [
+        "config.yaml: variations: expected one of ['speed'], found 'sped'"
+    ]
+
+
+@pytest.mark.parametrize("name", ["speed", "speed-0", "speed-12"])
+def test_a_session_may_not_have_the_name_of_a_variation(name):
+    condition = {"session": "gym", "vary": {"seed": [1]}}
+    config = {"variations": ["speed"], "conditions": {"speed": condition}}
+    found = FOUND | {name: ("x.yaml", VIRTUAL), "speed-x": ("y.yaml", VIRTUAL)}
+    (line,) = session_faults.conditions("config.yaml", config, found)
+    assert f"expected a name that no session has, found session '{name}'; rename it" in line
+
+
+def test_conditions_that_are_not_run_are_not_checked():
+    config = {"variations": [], "conditions": {"speed": {"session": "nowhere", "vary": {}}}}
+    assert session_faults.conditions("config.yaml", config, FOUND) == []
+
+
+def test_a_name_that_no_disk_takes_is_a_file_that_is_not_there(root):
+    camera = {"static": "x" * 300}
+    (line,) = find(root, RECORDED | {"cameras": {"a": camera, "b": {"static": "b.mp4"}}})
+    assert "cameras.a.static: expected a file, found none" in line

@@ -1,0 +1,172 @@
+"""Sessions built from their files, and variations of virtual ones."""
+
+from courtside.study.configuration import session_files, sessions
+
+CONTENT = {
+    "description": "d",
+    "court": "hall",
+    "subjects": {"p1": None, "p2": {"height_m": 1.8}},
+    "cameras": {"a": None, "b": {"crop_px": [1, 2, 3, 4], "name_in_calibration": "B"}},
+    "calibration": {"file": "c.toml"},
+    "takes": {
+        "t1": {"videos": {"a": "1", "b": "2"}, "subjects": ["p2"], "trim_s": [0.5, 2]},
+        "t2": {"videos": {"a": "3", "b": "4"}},
+    },
+    "override": {"step": {"x": 5}},
+}
+
+
+def test_a_session_holds_what_its_file_says():
+    parameters = {"step": {"x": 1, "y": 2}, "models": ["m"]}
+    found = session_files.session("s", "s.yaml", CONTENT, parameters)
+    assert found.court == "hall"
+    assert found.subjects["p2"] == sessions.Subject(height_m=1.8)
+    assert found.cameras["b"] == sessions.FixedCamera(None, (1, 2, 3, 4), "B")
+    assert hash(found.cameras["b"]) == hash(sessions.FixedCamera(None, (1, 2, 3, 4), "B"))
+    assert found.cameras["a"].crop_px is None
+    assert found.calibration_camera_names() == {"a": "a", "b": "B"}
+    assert (found.takes["t1"].subjects, found.takes["t1"].trim_s) == (("p2",), (0.5, 2))
+    assert (found.takes["t2"].subjects, found.takes["t2"].trim_s) == (("p1", "p2"), None)
+    assert found.parameters == {"step": {"x": 5, "y": 2}, "models": ["m"]}
+    assert parameters == {"step": {"x": 1, "y": 2}, "models": ["m"]}
+
+
+VIRTUAL = {
+    "description": "d",
+    "court": "badminton",
+    "cameras": {
+        "side": {"chessboard": {"images": "b", "inner_corners": [7, 4], "square_m": 0.06}},
+        "back": None,
+    },
+    "walks": {"walk": {}},
+    "virtual": {
+        "preset": "plain",
+        "layout": "a",
+        "seed": 1,
+        "size_px": [640, 360],
+        "walk_frames": 40,
+        "boards": True,
+    },
+    "override": {"sweep": {"n_images": [12]}},
+}
+PARAMETERS = {
+    "sweep": {"n_images": [40], "mappers": ["global"]},
+    "step": {"x": 1},
+    "calibrations": ["sfm-n40"],
+    "conditions": {"speed": {"override": {}}},
+}
+
+
+def test_a_session_with_walks_names_its_recordings(tmp_path):
+    (tmp_path / "p.csv").touch()
+    content = {
+        **{"description": "d", "court": "none", "court_points": "p.csv"},
+        "cameras": {"a": {"static": "a.mp4"}},
+        "walks": {"w1": {"video": "w1.mp4"}, "w2": {"images": "photos"}},
+    }
+    found = session_files.session("s", "s.yaml", content, {}, tmp_path)
+    assert found.walks == {"w1": "w1.mp4", "w2": "photos"}
+    assert (found.court, found.court_points, found.cameras["a"].static) == (None, "p.csv", "a.mp4")
+    assert (found.takes, found.subjects, found.calibration_file, found.virtual) == (
+        {},
+        {},
+        None,
+        None,
+    )
+    assert found.filmed() == ["a", "w1", "w2"]
+
+
+def test_a_virtual_session_gets_its_files_by_name():
+    found = session_files.session("gym", "gym.yaml", VIRTUAL, PARAMETERS)
+    assert found.cameras["side"].static == "results/virtual/gym/side.mp4"
+    assert found.cameras["back"].static == "results/virtual/gym/back.mp4"
+    assert found.cameras["side"].chessboard["square_m"] == 0.06
+    assert found.walks == {"walk": "results/virtual/gym/walk.mp4"}
+    assert found.court_points == "results/virtual/gym/court_points.csv"
+    assert found.films_boards() and found.condition == {}
+    assert found.parameters["sweep"] == {"n_images": [12], "mappers": ["global"]}
+
+
+def variations(**content):
+    base = session_files.session("gym", "gym.yaml", VIRTUAL, PARAMETERS)
+    return session_files.variations(base, "speed", {"session": "gym", **content})
+
+
+def test_every_combination_of_values_is_one_session():
+    found = variations(vary={"speed_kmh": [1, 4], "stabiliser": [True, False]})
+    assert [s.condition for s in found.values()] == [
+        {"condition": "speed", "speed_kmh": 1, "stabiliser": True},
+        {"condition": "speed", "speed_kmh": 1, "stabiliser": False},
+        {"condition": "speed", "speed_kmh": 4, "stabiliser": True},
+        {"condition": "speed", "speed_kmh": 4, "stabiliser": False},
+    ]
+    assert list(found) == [s.name for s in found.values()] == [f"speed-{k}" for k in range(4)]
+    assert found["speed-2"].virtual["speed_kmh"] == 4
+    assert found["speed-2"].virtual["stabiliser"] is True
+
+
+def test_a_variation_has_its_own_files_and_no_boards():
+    found = variations(vary={"seed": [7]}, set={"walk_frames": 20})["speed-0"]
+    assert found.walks == {"walk": "results/virtual/speed-0/walk.mp4"}
+    assert found.cameras["back"].static == "results/virtual/speed-0/back.mp4"
+    assert found.court_points == "results/virtual/speed-0/court_points.csv"
+    expected = VIRTUAL["virtual"] | {"seed": 7, "walk_frames": 20, "boards": False}
+    assert found.virtual == expected
+    assert all(camera.chessboard is None for camera in found.cameras.values())
+    assert found.calibrations() == []
+
+
+def test_an_override_of_a_variation_starts_from_that_of_its_session():
+    override = {"sweep": {"mappers": ["incremental"]}}
+    found = variations(vary={"seed": [7]}, override=override)["speed-0"].parameters
+    assert found["sweep"] == {"n_images": [12], "mappers": ["incremental"]}
+    assert found["step"] == {"x": 1}
+    assert PARAMETERS["sweep"] == {"n_images": [40], "mappers": ["global"]}
+    assert PARAMETERS["calibrations"] == ["sfm-n40"]
+
+
+def test_boards_can_be_asked_for_in_a_variation():
+    assert variations(vary={"seed": [7]}, set={"boards": True})["speed-0"].films_boards()
+
+
+def test_a_virtual_take_gets_the_videos_of_all_cameras():
+    filmed = {"motion": "shot", "seconds": 2, "seed": 1, "players": {"p1": {"body": "m1"}}}
+    takes = {"t1": {"virtual": filmed, "synchronised": True}}
+    content = {
+        **VIRTUAL,
+        "subjects": {"p1": None},
+        "takes": takes,
+        "views": {"two": ["side", "back"]},
+    }
+    found = session_files.session("gym", "gym.yaml", content, PARAMETERS)
+    folder = "results/virtual/gym/takes/t1"
+    videos = {"side": f"{folder}/side.mp4", "back": f"{folder}/back.mp4"}
+    assert found.takes["t1"] == sessions.Take("t1", videos, ("p1",), None, True, False, filmed)
+    assert found.views == {"two": ("side", "back")}
+    varied = session_files.variations(found, "speed", {"vary": {"seed": [3]}})["speed-0"]
+    assert varied.takes == {}
+
+
+def test_a_session_may_override_lists_of_methods():
+    content = {**CONTENT, "override": {"fusions": ["two-dlt"]}}
+    found = session_files.session(
+        "s", "s.yaml", content, {"fusions": ["all-robust"], "models": ["m"]}
+    )
+    assert found.parameters == {"fusions": ["two-dlt"], "models": ["m"]}
+
+
+def test_court_points_that_nobody_has_clicked_are_waited_for(tmp_path):
+    content = {
+        "description": "d",
+        "court": "badminton",
+        "cameras": {"a": {"static": "a.mp4"}, "b": {"static": "b.mp4"}},
+        "walks": {"w": {"video": "w.mp4"}},
+        "court_points": "p.csv",
+    }
+    parameters = {"calibrations": ["sfm-n40", "known18"], "take_calibrations": ["sfm-n40"]}
+    found = session_files.session("s", "s.yaml", content, parameters, tmp_path)
+    assert (found.court_points, found.unclicked, found.calibrations()) == (None, "p.csv", [])
+    (tmp_path / "p.csv").touch()
+    found = session_files.session("s", "s.yaml", content, parameters, tmp_path)
+    assert (found.court_points, found.unclicked) == ("p.csv", None)
+    assert found.calibrations() == ["sfm-n40", "known18"]

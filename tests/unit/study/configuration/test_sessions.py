@@ -1,0 +1,118 @@
+"""Records of sessions and models, and what a session can do with its recordings."""
+
+import pytest
+
+from courtside.study.configuration import sessions
+
+NETWORK = {"artefact": "a", "member": "m", "sha256": "0" * 64}
+
+
+def test_a_heat_map_model_passes_its_input_to_the_decoder():
+    entry = {
+        "decoder": "heatmaps",
+        "skeleton": "cpm14",
+        "detector": NETWORK,
+        "landmarks": NETWORK,
+        "input": {"range": [0, 255], "channels": "bgr"},
+    }
+    model = sessions.model("m", entry)
+    assert model.decoder_options() == {
+        "decoder": "heatmaps",
+        "input_range": [0, 255],
+        "channels": "bgr",
+    }
+
+
+def test_blazepose_needs_no_input():
+    entry = {"decoder": "blazepose", "skeleton": "s", "detector": NETWORK, "landmarks": NETWORK}
+    assert sessions.model("m", entry).decoder_options() == {"decoder": "blazepose"}
+    assert sessions.model("m", entry).landmarks.outputs is None
+
+
+WAYS = [
+    *("file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40"),
+    *("known18", "known8", "dlt18", "known18-board"),
+]
+BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
+
+
+def session(**changes):
+    fields = dict.fromkeys(["court", "calibration_file", "court_points", "virtual"])
+    fields |= {"name": "s", "file": "s.yaml", "description": "d", "condition": {}}
+    fields |= {
+        "subjects": {},
+        "takes": {},
+        "walks": {},
+        "blur_faces": True,
+        "views": {},
+        "halfbody": None,
+    }
+    fields |= {"cameras": {"a": sessions.FixedCamera(), "b": sessions.FixedCamera()}}
+    return sessions.Session(**{**fields, "parameters": {"calibrations": WAYS}, **changes})
+
+
+@pytest.mark.parametrize(
+    ("recordings", "ways"),
+    [
+        ({"calibration_file": "c.toml"}, ["file"]),
+        ({"walks": {"w": "w.mp4"}}, ["sfm-n40"]),
+        ({"court_points": "p.csv"}, ["known18", "known8", "dlt18"]),
+        (
+            {"court_points": "p.csv", "walks": {"w": "w.mp4"}},
+            [way for way in WAYS if way not in ("file", "known18-board")],
+        ),
+        ({"walks": {"w": "photos"}, "cameras": {}}, []),
+        ({}, []),
+    ],
+)
+def test_each_session_has_the_calibrations_that_its_recordings_allow(recordings, ways):
+    assert session(**recordings).calibrations() == ways
+
+
+def test_calibration_with_boards_needs_those_of_every_camera():
+    every = {name: sessions.FixedCamera(chessboard=BOARD) for name in "ab"}
+    one = {**every, "b": sessions.FixedCamera()}
+    made = {"court_points": "p.csv", "cameras": every}
+    assert session(**made).calibrations()[-1] == "known18-board"
+    assert "known18-board" not in session(**{**made, "cameras": one}).calibrations()
+    assert session(cameras=every).calibrations() == []
+
+
+def test_the_sweep_has_offsets_for_few_images_only():
+    sweep = {"n_images": [5, 40, 75], "n_offsets": 3, "offsets_up_to": 40}
+    parameters = {"sweep": sweep | {"mappers": ["global", "incremental"]}}
+    found = session(parameters=parameters).variants()
+    assert found == [
+        *("global-n5-o0", "global-n5-o1", "global-n5-o2"),
+        *("global-n40-o0", "global-n40-o1", "global-n40-o2", "global-n75-o0"),
+        *("incremental-n5-o0", "incremental-n5-o1", "incremental-n5-o2"),
+        *("incremental-n40-o0", "incremental-n40-o1", "incremental-n40-o2", "incremental-n75-o0"),
+    ]
+
+
+def test_only_virtual_sessions_film_boards():
+    assert session(walks={"w": "w.mp4"}).filmed() == ["a", "b", "w"]
+    assert session(virtual={"boards": True}).films_boards()
+    assert not session(virtual={"boards": False}).films_boards()
+    assert not session(virtual={}).films_boards()
+    assert not session().films_boards()
+
+
+def test_ways_to_fuse_views_are_those_whose_cameras_a_session_names():
+    names = ["all-robust", "two-dlt", "three-dlt", "halfbody"]
+    parameters = {"fusions": names[:1], "compared_fusions": names[1:]}
+    plain = session(parameters=parameters)
+    assert plain.fusions() == ["all-robust"]
+    assert plain.fused_cameras("all-robust") == ("a", "b")
+    assert plain.fusions("compared_fusions") == []
+    halves = {"centre": "b", "left": "a", "right": "c"}
+    named = session(parameters=parameters, views={"two": ("b", "a")}, halfbody=halves)
+    assert named.fusions("compared_fusions") == ["two-dlt", "halfbody"]
+    assert named.fused_cameras("two-dlt") == ("b", "a")
+    assert named.fused_cameras("halfbody") == ("b", "a", "c")
+
+
+def test_takes_are_measured_with_those_calibrations_that_the_study_names():
+    parameters = {"calibrations": WAYS, "take_calibrations": ["known8", "file", "known18"]}
+    found = session(court_points="p.csv", parameters=parameters)
+    assert found.take_calibrations() == ["known18", "known8"]

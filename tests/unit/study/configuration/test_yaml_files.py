@@ -1,0 +1,97 @@
+"""YAML read strictly."""
+
+import pytest
+
+from courtside.study.configuration import yaml_files
+from courtside.study.errors import InputError
+
+
+def read(tmp_path, text):
+    path = tmp_path / "f.yaml"
+    path.write_text(text)
+    return yaml_files.read(path)
+
+
+def test_a_mapping_is_read_with_anchors(tmp_path):
+    found = read(tmp_path, "a: &x {b: 1}\nc: *x\nd: {<<: *x, e: 2}\n")
+    assert found == {"a": {"b": 1}, "c": {"b": 1}, "d": {"b": 1, "e": 2}}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: 1\nb: 2\na: 3\n", "line 3: expected each key once, found 'a' again"),
+        ("takes:\n  no: 1\n", "line 2: expected a name, found False"),
+        ("1: 2\n", "line 1: expected a name, found 1"),
+        ("a: [1\n", "line 2"),
+        ("- 1\n", "expected keys and values, found list"),
+        ("", "expected keys and values, found NoneType"),
+        ("a: !!python/object/apply:os.system [ls]\n", "could not determine a constructor"),
+    ],
+)
+def test_what_is_wrong_is_one_line_with_its_number(tmp_path, text, message):
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    assert message in str(caught.value)
+    assert "f.yaml" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_one_line(tmp_path):
+    with pytest.raises(InputError, match="expected a readable YAML file"):
+        yaml_files.read(tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: 2026-02-30\n",
+        "a: " + "1" * 5000,
+        "a: !!int ''\n",
+        "a: !!bool x\n",
+        "a: !!float x\n",
+        "a: !!timestamp x\n",
+        "a: 0b_\n",
+        "a: \0\n",
+        "? [a]\n: 1\n",
+        "a: " + "[" * 5000,
+        "on: 1\n",
+        "2026-11-21: 1\n",
+    ],
+)
+def test_values_that_do_not_exist_are_one_line(tmp_path, text):
+    with pytest.raises(InputError, match=r"f\.yaml: ") as caught:
+        read(tmp_path, text)
+    assert "\n" not in str(caught.value)
+
+
+def test_other_bytes_than_utf_8_are_one_line(tmp_path):
+    (tmp_path / "f.yaml").write_bytes("a: Jörg".encode("latin-1"))
+    with pytest.raises(InputError, match="expected a readable YAML file"):
+        yaml_files.read(tmp_path / "f.yaml")
+
+
+LAUGHS = "a0: &a0 [x, x, x, x]\n" + "".join(
+    f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'] * 10)}]\n" for k in range(1, 12)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (LAUGHS, "aliases of aliases"),
+        ("a: &a [*a]\n", "too deep nesting"),
+        ("a: " + "[" * 200 + "]" * 200, "too deep nesting"),
+        ("a: 0x" + "f" * 6000, "thousands of digits"),
+        ("a: b\n" + "#" * (1 << 20), "1048581 characters"),
+    ],
+)
+def test_what_would_fill_time_or_memory_is_one_line_at_once(tmp_path, text, found):
+    with pytest.raises(InputError, match=rf"f\.yaml: expected .*, found .*{found}") as caught:
+        read(tmp_path, text)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_mark_that_windows_puts_first_is_left_out(tmp_path):
+    (tmp_path / "f.yaml").write_bytes(b"\xef\xbb\xbfa: 1\n")
+    assert yaml_files.read(tmp_path / "f.yaml") == {"a": 1}

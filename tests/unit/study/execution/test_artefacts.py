@@ -1,0 +1,225 @@
+"""Fetching pinned files: mirror and registry, checksums, and archives that mean harm."""
+
+import hashlib
+import io
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+
+import pytest
+
+from courtside.study.errors import InputError
+from courtside.study.execution import artefacts
+from courtside.study.execution.artefacts import Artefact
+
+CONFIG = Path(__file__).parents[4] / "config"
+CONTENT = {"pkg/a.bin": b"a" * 1000, "pkg/b.bin": b"b" * 10, "pkg/other.txt": b"unwanted"}
+
+
+def sha256(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+@pytest.fixture
+def mirror(tmp_path):
+    folder = tmp_path / "mirror"
+    folder.mkdir()
+    with zipfile.ZipFile(folder / "thing-1.0-py3-none-any.whl", "w") as archive:
+        for name, content in CONTENT.items():
+            archive.writestr(name, content)
+    return folder
+
+
+def artefact(mirror, **changes):
+    wheel = mirror / "thing-1.0-py3-none-any.whl"
+    entry = {
+        "requirement": "thing==1.0",
+        "sha256": sha256(wheel.read_bytes()),
+        "licence": "MIT",
+        "members": {name: sha256(CONTENT[name]) for name in ("pkg/a.bin", "pkg/b.bin")},
+    }
+    return Artefact.of("thing", entry | changes)
+
+
+def outputs(tmp_path):
+    return {name: tmp_path / "out" / name for name in ("pkg/a.bin", "pkg/b.bin")}
+
+
+def made(tmp_path):
+    return [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+
+
+def test_only_the_named_members_are_unpacked(mirror, tmp_path):
+    artefacts.fetch(artefact(mirror), outputs(tmp_path), mirror_folder=mirror)
+    assert {path.read_bytes() for path in made(tmp_path)} == {
+        CONTENT["pkg/a.bin"],
+        CONTENT["pkg/b.bin"],
+    }
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"sha256": "0" * 64}, "expected sha256 0000"),
+        ({"members": {"pkg/a.bin": "0" * 64, "pkg/b.bin": "0" * 64}}, "member pkg/a.bin: expected"),
+        (
+            {"members": {"pkg/a.bin": sha256(b"a" * 1000), "pkg/b.bin": "0" * 64}},
+            "member pkg/b.bin",
+        ),
+    ],
+)
+def test_a_wrong_checksum_leaves_nothing(mirror, tmp_path, changes, message):
+    with pytest.raises(InputError, match=message):
+        artefacts.fetch(artefact(mirror, **changes), outputs(tmp_path), mirror_folder=mirror)
+    assert made(tmp_path) == []
+
+
+def test_a_missing_member_leaves_nothing(mirror, tmp_path):
+    wanted = {"pkg/a.bin": sha256(CONTENT["pkg/a.bin"]), "pkg/none": "0" * 64}
+    places = {name: tmp_path / "out" / name for name in wanted}
+    with pytest.raises(InputError, match="expected the member pkg/none"):
+        artefacts.fetch(artefact(mirror, members=wanted), places, mirror_folder=mirror)
+    assert made(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["../escape", "/etc/passwd", "pkg/../../escape"])
+def test_a_member_outside_is_refused(mirror, tmp_path, name):
+    with pytest.raises(InputError, match="expected members inside"):
+        artefacts.fetch(artefact(mirror), {name: tmp_path / "out" / "x"}, mirror_folder=mirror)
+
+
+def test_a_member_that_is_too_large_is_refused(mirror, tmp_path, monkeypatch):
+    monkeypatch.setattr(artefacts, "LARGEST_MEMBER_BYTES", 999)
+    with pytest.raises(InputError, match=r"pkg/a\.bin: expected at most"):
+        artefacts.fetch(artefact(mirror), outputs(tmp_path), mirror_folder=mirror)
+    assert made(tmp_path) == []
+
+
+def test_a_single_file_is_its_own_member(tmp_path):
+    (tmp_path / "net.tflite").write_bytes(b"net")
+    entry = {"mirror_file": "net.tflite", "sha256": sha256(b"net"), "licence": "MIT"}
+    one = Artefact.of("net", entry | {"members": {"net.tflite": sha256(b"net")}})
+    artefacts.fetch(one, {"net.tflite": tmp_path / "out" / "net.tflite"}, mirror_folder=tmp_path)
+    assert (tmp_path / "out" / "net.tflite").read_bytes() == b"net"
+
+
+def test_what_no_registry_holds_must_be_in_the_mirror(tmp_path):
+    entry = {"mirror_file": "net.tflite", "sha256": "0" * 64, "licence": "MIT", "members": {}}
+    with pytest.raises(InputError, match=r"net\.tflite in the folder that `mirror_folder`"):
+        artefacts.fetch(Artefact.of("net", entry), {}, mirror_folder=None)
+    with pytest.raises(InputError, match="mirror_folder: expected a folder"):
+        artefacts.fetch(Artefact.of("net", entry), {}, mirror_folder=tmp_path / "none")
+
+
+def test_offline_is_one_line_that_says_what_to_do(mirror, tmp_path, monkeypatch):
+    one = artefact(mirror)
+    for key, value in {
+        "PIP_INDEX_URL": "http://127.0.0.1:9/simple",
+        "PIP_EXTRA_INDEX_URL": "",
+        "PIP_FIND_LINKS": "",
+        "PIP_CONFIG_FILE": "/dev/null",
+        "PIP_RETRIES": "0",
+    }.items():
+        monkeypatch.setenv(key, value)
+    with pytest.raises(InputError) as caught:
+        artefacts.fetch(one, outputs(tmp_path))
+    assert "go online, or put the wheel" in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert made(tmp_path) == []
+
+
+def test_the_committed_register_reads():
+    known = artefacts.read(CONFIG / "external.yaml")
+    assert {"mediapipe", "pose2sim", "cpm-mobile-14"} <= set(known)
+
+
+def test_the_mirror_comes_before_the_registry(mirror, tmp_path, monkeypatch):
+    monkeypatch.setattr(artefacts.subprocess, "run", None)  # a call would raise TypeError
+    artefacts.fetch(artefact(mirror), outputs(tmp_path), mirror_folder=mirror)
+    assert len(made(tmp_path)) == 2
+
+
+def test_a_wheel_is_found_by_its_normalised_name(mirror, tmp_path):
+    one = artefact(mirror, requirement="My.odd-Thing==1.0")
+    (mirror / "thing-1.0-py3-none-any.whl").rename(mirror / "my_odd_thing-1.0-py3-none-any.whl")
+    (mirror / "my_odd-1.0-py3-none-any.whl").touch()
+    (mirror / "nameless.whl").touch()
+    artefacts.fetch(one, outputs(tmp_path), mirror_folder=mirror)
+    assert len(made(tmp_path)) == 2
+
+
+def test_a_wrong_checksum_is_refused_before_the_file_is_opened(mirror, tmp_path, monkeypatch):
+    one = artefact(mirror, sha256="0" * 64)
+    monkeypatch.setattr(artefacts.zipfile, "ZipFile", None)
+    with pytest.raises(InputError, match="expected sha256 0000"):
+        artefacts.fetch(one, outputs(tmp_path), mirror_folder=mirror)
+
+
+def bomb(mirror, declared, crc=None):
+    """Rewrite the wheel so that pkg/a.bin, 1000 bytes, declares another size."""
+    path = mirror / "thing-1.0-py3-none-any.whl"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in ("pkg/b.bin", "pkg/a.bin"):
+            archive.writestr(name, CONTENT[name])
+    content = bytearray(path.read_bytes())
+    entry = content.rindex(b"PK\1\2")  # the last entry of the directory
+    struct.pack_into("<I", content, entry + 24, declared)
+    if crc is not None:
+        struct.pack_into("<I", content, entry + 16, crc)
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize(
+    ("declared", "crc", "message"),
+    [
+        (2 << 30, None, "expected at most 1 GiB, found 2147483648 bytes"),
+        (10, None, "expected a whole file"),
+        (10, zlib.crc32(b"a" * 10), "expected sha256"),
+    ],
+)
+def test_a_false_size_leaves_nothing(mirror, tmp_path, declared, crc, message):
+    bomb(mirror, declared, crc)
+    wanted = dict(reversed(outputs(tmp_path).items()))
+    assert next(iter(wanted)) == "pkg/b.bin"  # the sound member comes first
+    with pytest.raises(InputError, match=r"member pkg/a\.bin") as caught:
+        artefacts.fetch(artefact(mirror), wanted, mirror_folder=mirror)
+    assert message in str(caught.value)
+    assert made(tmp_path) == []
+
+
+def test_a_damaged_member_leaves_nothing(mirror, tmp_path):
+    path = mirror / "thing-1.0-py3-none-any.whl"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in CONTENT.items():
+            archive.writestr(name, content)
+    content = bytearray(path.read_bytes())
+    content[30 + len("pkg/a.bin")] = 0xFF  # the first byte of the deflated stream
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"pkg/a\.bin: expected a whole file"):
+        artefacts.fetch(artefact(mirror), outputs(tmp_path), mirror_folder=mirror)
+    assert made(tmp_path) == []
+
+
+def test_a_wheel_that_is_no_zip_file_is_one_line(mirror, tmp_path):
+    (mirror / "thing-1.0-py3-none-any.whl").write_bytes(b"<html>not found</html>")
+    with pytest.raises(InputError, match="expected a zip file"):
+        artefacts.fetch(artefact(mirror), outputs(tmp_path), mirror_folder=mirror)
+
+
+def test_a_single_file_that_reads_as_a_zip_file_is_copied_whole(mirror, tmp_path):
+    wheel = mirror / "thing-1.0-py3-none-any.whl"
+    content = b"network" + wheel.read_bytes()
+    assert zipfile.is_zipfile(io.BytesIO(content))
+    (mirror / "net.tflite").write_bytes(content)
+    entry = {"mirror_file": "net.tflite", "sha256": sha256(content), "licence": "MIT"}
+    one = Artefact.of("net", entry | {"members": {"net.tflite": sha256(content)}})
+    artefacts.fetch(one, {"net.tflite": tmp_path / "out" / "net.tflite"}, mirror_folder=mirror)
+    assert (tmp_path / "out" / "net.tflite").read_bytes() == content
+
+
+def test_a_file_that_is_not_in_the_mirror_folder_is_named_with_its_note(tmp_path):
+    entry = {"mirror_file": "n.bin", "sha256": "0" * 64, "licence": "MIT", "note": "ask Ann"}
+    one = Artefact.of("net", entry | {"members": {}})
+    with pytest.raises(InputError, match=r"expected n\.bin in the folder .*; ask Ann"):
+        artefacts.fetch(one, {}, mirror_folder=tmp_path)

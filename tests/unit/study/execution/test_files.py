@@ -1,0 +1,131 @@
+"""Files appear whole or not at all."""
+
+import hashlib
+import json
+
+import numpy as np
+import pytest
+
+from courtside.study.errors import InputError
+from courtside.study.execution import files
+
+
+def test_a_file_appears_when_the_block_ends(tmp_path):
+    path = tmp_path / "deep" / "table.csv"
+    with files.atomic(path) as temporary:
+        temporary.write_text("a")
+        assert not path.exists()
+        assert temporary.suffix == ".csv"
+        assert temporary.parent == path.parent
+    assert path.read_text() == "a"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    with pytest.raises(RuntimeError), files.atomic(path) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_checksum_is_sha256(tmp_path):
+    content = np.random.default_rng(0).bytes(3_000_001)
+    (tmp_path / "f").write_bytes(content)
+    assert files.sha256(tmp_path / "f") == hashlib.sha256(content).hexdigest()
+
+
+def test_an_interruption_leaves_nothing(tmp_path):
+    with pytest.raises(KeyboardInterrupt), files.atomic(tmp_path / "a.npz") as temporary:
+        temporary.write_text("half")
+        raise KeyboardInterrupt
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_two_writers_of_one_file_do_not_meet(tmp_path):
+    path = tmp_path / "a.npz"
+    with files.atomic(path) as one:
+        with files.atomic(path) as other:
+            assert one != other
+            one.write_text("1")
+            other.write_text("2")
+        assert path.read_text() == "2"
+    assert path.read_text() == "1"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_checksum_of_an_empty_file(tmp_path):
+    (tmp_path / "f").touch()
+    assert files.sha256(tmp_path / "f") == hashlib.sha256(b"").hexdigest()
+
+
+def test_json_is_written_for_people(tmp_path):
+    files.write_json(tmp_path / "a.json", {"size_px": [1, 2], "name": "Ä"})
+    assert json.loads((tmp_path / "a.json").read_text()) == {"size_px": [1, 2], "name": "Ä"}
+    assert (tmp_path / "a.json").read_text().endswith("}\n")
+
+
+def names(path):
+    return sorted(p.name for p in path.iterdir())
+
+
+def test_a_folder_appears_when_the_block_ends(tmp_path):
+    path = tmp_path / "new" / "frames"
+    with files.atomic_folder(path) as beside:
+        (beside / "a.png").write_text("a")
+        assert not path.exists() and beside.parent == path.parent
+    assert names(path) == ["a.png"] and names(tmp_path / "new") == ["frames"]
+
+
+@pytest.mark.parametrize("content", [[], ["old.png"]])
+def test_an_older_folder_is_replaced(tmp_path, content):
+    path = tmp_path / "frames"
+    path.mkdir()
+    for name in content:
+        (path / name).write_text("old")
+    with files.atomic_folder(path) as beside:
+        (beside / "a.png").write_text("a")
+        assert names(path) == content
+    assert names(path) == ["a.png"] and names(tmp_path) == ["frames"]
+
+
+def test_a_failing_block_leaves_the_older_one(tmp_path):
+    path = tmp_path / "frames"
+    path.mkdir()
+    (path / "old.png").write_text("old")
+    with pytest.raises(RuntimeError, match="disk"), files.atomic_folder(path) as beside:
+        (beside / "half.png").write_text("half")
+        raise RuntimeError("disk")
+    assert names(path) == ["old.png"] and names(tmp_path) == ["frames"]
+
+
+def test_json_is_read_and_anything_else_is_one_line(tmp_path):
+    path = tmp_path / "a.json"
+    files.write_json(path, {"a": [1, None]})
+    assert files.read_json(path) == {"a": [1, None]}
+    for content in (b"", b"{", b"\xff\xfe", b"[" * 100_000, b"1" * 5000):
+        path.write_bytes(content)
+        with pytest.raises(InputError, match=r"a\.json: expected JSON, found: .*; do so") as caught:
+            files.read_json(path, "do so")
+        assert len(str(caught.value).splitlines()) == 1
+
+
+def test_what_killed_jobs_left_is_deleted_and_nothing_else(tmp_path):
+    kept = [
+        tmp_path / "deep" / name
+        for name in ("walk.png", ".hidden", ".keep.me.png", "a.0a1b2c3d.png")
+    ]
+    kept[0].parent.mkdir()
+    for path in kept:
+        path.write_text("x")
+    held = []
+    for make in (files.atomic, files.atomic_folder):
+        writing = make(tmp_path / "deep" / "take.mp4")
+        held.append(writing)  # as of a killed job, the block never ends
+        path = writing.__enter__()
+        (path / "0.png" if path.is_dir() else path).write_text("half")
+    assert len(list((tmp_path / "deep").iterdir())) == 6
+    files.delete_unfinished(tmp_path)
+    assert sorted((tmp_path / "deep").iterdir()) == sorted(kept)

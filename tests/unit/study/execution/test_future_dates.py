@@ -1,0 +1,42 @@
+"""Files dated in the future are told before any job runs."""
+
+import os
+import subprocess
+import time
+
+import pytest
+
+from courtside.study.errors import InputError
+from courtside.study.execution import future_dates
+
+DAY_S = 86400.0
+
+
+def dated(path, when_s):
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("x")
+    os.utime(path, (when_s, when_s))
+    return path
+
+
+def test_files_of_the_past_and_missing_folders_pass(tmp_path):
+    dated(tmp_path / "data" / "old.mp4", time.time() - 7000 * DAY_S)
+    dated(tmp_path / "data" / "now.mp4", time.time())
+    assert future_dates.check([tmp_path / "data", tmp_path / "none"]) is None
+
+
+def test_the_file_furthest_ahead_is_named_and_the_advice_mends_it(tmp_path):
+    dated(tmp_path / "data" / "near.mp4", time.time() + DAY_S)
+    dated(tmp_path / "data" / "far.mp4", time.time() + 400 * DAY_S)
+    with pytest.raises(
+        InputError, match=r"far\.mp4: expected a date in the past.*as in 1 more file"
+    ) as e:
+        future_dates.check([tmp_path / "data"])
+    assert "\n" not in str(e.value)
+    subprocess.run(str(e.value).rpartition(": ")[2], shell=True, check=True)
+    assert future_dates.check([tmp_path / "data"]) is None
+
+
+def test_a_link_that_leads_nowhere_is_no_concern_of_dates(tmp_path):
+    (tmp_path / "lost").symlink_to(tmp_path / "nothing")
+    assert future_dates.check([tmp_path]) is None

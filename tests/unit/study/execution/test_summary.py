@@ -1,0 +1,98 @@
+"""The words at the end of a run: what was made and where, or what failed and what to do."""
+
+import pytest
+
+from courtside.study.errors import SPARE_MEMORY
+from courtside.study.execution import summary
+
+MADE = [
+    *(
+        f"results/hall/takes/smash/figures/{name}.{form}"
+        for name in "abcd"
+        for form in ("png", "csv")
+    ),
+    "results/figures/e.png",
+    "results/hall/takes/smash/pages/viewer.net.html",
+    "results/hall/calibration/sfm-n40/cameras.toml",
+    "results/hall/takes/smash/pose3d/sfm-n40/all/net.p1.trc",
+    "results/hall/sfm/features.db",
+]
+
+
+def test_what_was_made_is_counted_by_kind():
+    lines = summary.finished(MADE, 200.4).splitlines()
+    assert lines[0] == "Courtside: finished, 13 files made in 3 min 20 s."
+    assert "  figures (5): results/hall/takes/smash/figures/, results/figures/" in lines
+    assert "  3D viewers (1): results/hall/takes/smash/pages/viewer.net.html" in lines
+    assert "  calibrated cameras (1): results/hall/calibration/sfm-n40/cameras.toml" in lines
+    assert not any("features.db" in line for line in lines)
+
+
+def test_many_folders_are_counted():
+    made = [f"results/s{at}/figures/x.png" for at in range(9)]
+    assert "s0/figures/, results/s1/figures/, results/s2/figures/ and 6 more" in summary.finished(
+        made, 1
+    )
+
+
+def test_what_to_look_at_is_there(tmp_path):
+    (tmp_path / "report.html").touch()
+    there, gone = str(tmp_path / "report.html"), str(tmp_path / "gone.html")
+    assert summary.finished(MADE, 1, [gone, there]).endswith(f"Look at {there}.")
+    assert "Look at" not in summary.finished(MADE, 1, [gone])
+
+
+def test_nothing_to_do_is_said():
+    assert (
+        summary.finished([], 3.0)
+        == "Courtside: everything was there already, nothing had to be made."
+    )
+
+
+def test_a_failure_gives_the_fault_the_log_and_what_to_do(tmp_path):
+    log = tmp_path / "take.log"
+    log.write_text(
+        "2026-01-01 10:00:00,000 INFO 3 of 9\n"
+        "2026-01-01 10:00:01,000 ERROR smash.mp4: expected a video, found text; give a video\n"
+        "Removing output files\n"
+    )
+    faults = [("detect_pose", [str(log)]), ("fetch_artefact", [])]
+    text = summary.failed(faults, 12, 30, 61, ".snakemake/log/run.log")
+    assert "stopped after 12 of 30 jobs, 1 min 1 s" in text
+    assert (
+        f"detect_pose: smash.mp4: expected a video, found text; give a video (whole log: {log})"
+        in text
+    )
+    assert "fetch_artefact: no log of its own" in text
+    assert "same command again" in text and "snakemake --unlock" in text
+    assert text.endswith("Log of the run: .snakemake/log/run.log")
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        ("one\ntwo\n\n", "two"),
+        ("", f"its log is empty: it was killed, or disk or memory are full; {SPARE_MEMORY}"),
+        (
+            "2026-01-01 10:00:00,000 INFO 3 of 9\n",
+            "it was killed, or ran out of memory; its last words: 2026-01-01 10:00:00,000 INFO 3 of 9",
+        ),
+    ],
+)
+def test_a_log_without_an_error_gives_its_last_line(tmp_path, content, expected):
+    log = tmp_path / "take.log"
+    log.write_text(content)
+    assert f"rule: {expected} (whole" in summary.failed([("rule", [str(log)])], 0, 1, 1)
+
+
+def test_many_failures_are_counted():
+    text = summary.failed([("rule", [])] * 7, 0, 9, 1)
+    assert text.count("rule: ") == 3 and "and 4 more jobs" in text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(41.6, "42 s"), (60, "1 min 0 s"), (3599, "59 min 59 s"), (7500, "2 h 5 min")],
+)
+def test_durations_are_words(seconds, words):
+    assert summary.duration(seconds) == words

@@ -1,0 +1,147 @@
+"""A planned session, as `config/plans/<plan>.yaml` states it."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from courtside.study.configuration import configuration, yaml_files
+
+HEIGHT_M = 1.6  # at which people hold a camera
+TEXTURE = "plain"
+
+
+@dataclass(frozen=True)
+class PlannedCamera:
+    """A fixed camera.
+
+    Attributes
+    ----------
+    place_m, aim_m : tuple of float
+        Where it stands and what it looks at, m.
+    size_px : tuple of int
+        Width and height.
+    focal_px, fov_deg : float or None
+        One of them: focal length, or field of view across the width.
+    """
+
+    place_m: tuple
+    aim_m: tuple
+    size_px: tuple
+    focal_px: float | None = None
+    fov_deg: float | None = None
+
+
+@dataclass(frozen=True)
+class PlannedWalk:
+    """The walk of the mobile camera.
+
+    Attributes
+    ----------
+    way_m : tuple of tuple of float
+        Places on the floor that it passes, first and last included.
+    height_m : float
+    aim_m, size_px, focal_px, fov_deg
+        As of `PlannedCamera`.
+    """
+
+    way_m: tuple
+    height_m: float
+    aim_m: tuple
+    size_px: tuple
+    focal_px: float | None = None
+    fov_deg: float | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A session that is only planned.
+
+    Attributes
+    ----------
+    description, court : str
+    hall_m : tuple of tuple of float
+        Two opposite corners.
+    texture : str
+        A key of `courtside.calibration.planning.tie_points.TEXTURES`.
+    cameras : dict of str to PlannedCamera
+    walk : PlannedWalk
+    n_images : tuple of int
+        Numbers of bridging images, increasing.
+    click_sigma_px : float or None
+        Scatter of a click per axis at a width of 3840 px, where it is not the study's.
+    target_cm : float or None
+        Error that is wanted.
+    """
+
+    description: str
+    court: str
+    hall_m: tuple
+    texture: str
+    cameras: dict
+    walk: PlannedWalk
+    n_images: tuple
+    click_sigma_px: float | None
+    target_cm: float | None
+
+
+def read(path):
+    """Read a plan.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    plan : Plan
+
+    Raises
+    ------
+    InputError
+        Every fault of the file, one line each.
+    """
+    content = yaml_files.read(path)
+    faults = configuration.schema_faults(content, "plan", Path(path))
+    if not faults:
+        faults = list(_faults(path, content))
+    if faults:
+        raise configuration.ConfigurationError(faults)
+    walk = {key: _frozen(value) for key, value in content["walk"].items()}
+    way_m = (walk.pop("from_m"), *walk.pop("via_m", ()), walk.pop("to_m"))
+    return Plan(
+        description=content["description"],
+        court=content["court"],
+        hall_m=_frozen(content["hall_m"]),
+        texture=content.get("texture", TEXTURE),
+        cameras={
+            name: PlannedCamera(**{key: _frozen(value) for key, value in camera.items()})
+            for name, camera in content["cameras"].items()
+        },
+        walk=PlannedWalk(**({"height_m": HEIGHT_M} | walk), way_m=way_m),
+        n_images=tuple(sorted(content["n_images"])),
+        click_sigma_px=content.get("click_sigma_px"),
+        target_cm=content.get("target_cm"),
+    )
+
+
+def _faults(path, content):
+    low, high = (
+        [pick(pair) for pair in zip(*content["hall_m"], strict=True)] for pick in (min, max)
+    )
+    if any(b - a < 1 for a, b in zip(low, high, strict=True)):
+        yield f"{path}: hall_m: expected corners 1 m or more apart along each axis, found {low}, {high}"
+    walk = content["walk"]
+    height_m = walk.get("height_m", HEIGHT_M)
+    way_m = [walk["from_m"], *walk.get("via_m", []), walk["to_m"]]
+    places = {f"cameras.{name}.place_m": at["place_m"] for name, at in content["cameras"].items()}
+    places |= {f"walk: place {at}": [*spot, height_m] for at, spot in enumerate(way_m)}
+    for where, place in places.items():
+        if not all(a <= x <= b for a, x, b in zip(low, place, high, strict=True)):
+            yield f"{path}: {where}: expected a place within hall_m, found {place}; correct one of them"
+    for one, other in pairwise(way_m):
+        if one == other:
+            yield f"{path}: walk: expected places that differ, found {one} twice in a row; leave one out"
+
+
+def _frozen(value):
+    return tuple(_frozen(part) for part in value) if isinstance(value, list) else value

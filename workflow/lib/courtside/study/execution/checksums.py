@@ -1,0 +1,83 @@
+"""Checksums of many large files, computed again only for a file whose size or date changed."""
+
+import hashlib
+import time
+from pathlib import Path
+
+from courtside.study.errors import DAMAGED
+from courtside.study.execution import files
+
+FORMAT = 1
+# A file that changed a moment ago may change again within one tick of the file system's clock.
+SETTLED_NS = 2_000_000_000
+
+
+def of_path(path):
+    """Return the SHA-256 of a file, or of a folder: of the names and checksums of all files in it."""
+    path = Path(path)
+    if not path.is_dir():
+        return files.sha256(path)
+    digest = hashlib.sha256()
+    for file in members(path):
+        digest.update(f"{file.relative_to(path).as_posix()}\0{files.sha256(file)}\n".encode())
+    return digest.hexdigest()
+
+
+def members(folder):
+    """Return all files in a folder, in the order of their names, without Snakemake's time stamp."""
+    found = (path for path in Path(folder).rglob("*") if path.is_file())
+    return sorted(path for path in found if path.name != ".snakemake_timestamp")
+
+
+class Checksums:
+    """The checksums of a study's inputs, kept in one JSON file between runs.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where they are kept; a file that cannot be read as such is taken for an empty one.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        self.known = self._read()
+        self.changed = False
+
+    def _read(self):
+        try:
+            content = files.read_json(self.path)
+            if content["format"] != FORMAT:
+                return {}
+            return {
+                name: [int(size), int(stamp_ns), str(value)]
+                for name, (size, stamp_ns, value) in content["files"].items()
+            }
+        except DAMAGED:
+            return {}
+
+    def of(self, path):
+        """Return the SHA-256 of a file or folder; None if there is none."""
+        path = Path(path)
+        if path.is_dir():
+            return of_path(path)
+        try:
+            state = path.stat()
+        except FileNotFoundError:
+            return None
+        stamp = [state.st_size, state.st_mtime_ns]
+        kept = self.known.get(str(path))
+        if kept and kept[:2] == stamp:
+            return kept[2]
+        value = files.sha256(path)
+        if time.time_ns() - state.st_mtime_ns > SETTLED_NS:
+            self.known[str(path)] = [*stamp, value]
+            self.changed = True
+        return value
+
+    def write(self):
+        """Keep what is known of files that are still there."""
+        if not self.changed:
+            return
+        there = {name: kept for name, kept in sorted(self.known.items()) if Path(name).exists()}
+        files.write_json(self.path, {"format": FORMAT, "files": there})
+        self.changed = False

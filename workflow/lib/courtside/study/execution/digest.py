@@ -1,0 +1,264 @@
+"""A digest of the code that a rule runs, so that editing a library module reruns what uses it.
+
+Snakemake notices a changed script, but not a changed module that the script imports.
+"""
+
+import ast
+import contextlib
+import hashlib
+import json
+import re
+from functools import cache
+from pathlib import Path
+
+from courtside.study.errors import InputError
+from courtside.study.execution import files
+
+PACKAGE = "courtside"
+# Fields that differ between Python versions, or say where a node stands, not what it does.
+IGNORED = {"ctx", "kind", "type_comment", "type_ignores", "type_params"}
+
+
+# Packages that are imported by another name than they are installed by.
+INSTALLED_AS = {"cv2": "opencv-python-headless", "PIL": "pillow", "yaml": "pyyaml"}
+
+
+def rule_digest(script, library, lock_text):
+    """Return the digest of all that a rule runs, as `<code>-<packages>`, each 64 hexadecimal digits.
+
+    Parameters
+    ----------
+    script, library : str or Path
+        As of `code_digest`.
+    lock_text : str
+        The lock: `name==version` at the start of lines, perhaps with markers.
+
+    Notes
+    -----
+    Packages are those that the code imports itself, as the lock pins them: a new version of one reruns what
+    imports it, a new version of a tool that no rule imports reruns nothing.
+    """
+    pins = "\n".join(sorted(packages_of(script, library, lock_text)))
+    return f"{code_digest(script, library)}-{hashlib.sha256(pins.encode()).hexdigest()}"
+
+
+def packages_of(script, library, lock_text):
+    """Return the pins of the packages that a script's code imports.
+
+    Parameters
+    ----------
+    script, library : str or Path
+        As of `code_digest`.
+    lock_text : str
+        As of `rule_digest`.
+
+    Returns
+    -------
+    pins : set of str
+        Each `name==version`, with its marker.
+    """
+    paths = [Path(script), *(_file(name, Path(library)) for name in modules_of(script, library))]
+    imported = {name for path in paths for name in _parsed(path)[2]}
+    wanted = {_plain(INSTALLED_AS.get(name, name)) for name in imported}
+    pins = _pins(lock_text)
+    return {pin for name in wanted & set(pins) for pin in pins[name]}
+
+
+@cache
+def _pins(lock_text):
+    """Return {name: its pins} of a lock: several where platforms or interpreters differ."""
+    found = {}
+    for line in re.findall(r"^[A-Za-z0-9][^\n\\]*==[^\n\\]*", lock_text, re.M):
+        found.setdefault(_plain(re.split(r"\[|==", line)[0]), []).append(line.strip())
+    return found
+
+
+def _plain(name):
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def code_digest(script, library):
+    """Return the digest of a script and of every library module it reaches, 64 hexadecimal digits.
+
+    Parameters
+    ----------
+    script : str or Path
+    library : str or Path
+        The folder that holds the package `courtside`.
+
+    Returns
+    -------
+    digest : str
+        Changes with the syntax trees, not with comments, docstrings or formatting.
+
+    Raises
+    ------
+    InputError
+        If a file has a syntax error.
+    """
+    parts = [_parsed(Path(script))[0]]
+    parts += [
+        _parsed(_file(name, Path(library)))[0] for name in sorted(modules_of(script, library))
+    ]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def modules_of(script, library):
+    """Return the names of all library modules that a file imports, directly or through one another.
+
+    Parameters
+    ----------
+    script : str or Path
+    library : str or Path
+        The folder that holds the package `courtside`.
+
+    Returns
+    -------
+    names : set of str
+        Full names, packages included.
+    """
+    return _reached(Path(script), Path(library), lambda path: _parsed(path)[1], _file)
+
+
+class Remembered:
+    """Digests that are kept in a file from run to run: parsing all code takes longer than a small plan.
+
+    All is found by the SHA-256 of files' content, so that nothing kept can be out of date. A file that is
+    missing or damaged costs time only. Files are read once in the life of an object.
+
+    Parameters
+    ----------
+    path : str or Path
+        A JSON file.
+    lock_text : str
+        As of `rule_digest`.
+    """
+
+    def __init__(self, path, lock_text):
+        self._path, self._lock_text = Path(path), lock_text
+        self._kept = _read(self._path)
+        self._used = {}
+        self._sha256 = cache(files.sha256)
+        self._file = cache(_file)
+        # Of another way to digest, or another lock, nothing kept counts.
+        self._own = hashlib.sha256((files.sha256(__file__) + lock_text).encode()).hexdigest()
+
+    def digest(self, script, library):
+        """Return `rule_digest` of a script, from the file where its code was met before.
+
+        Parameters
+        ----------
+        script : str or Path
+        library : str or Path
+
+        Returns
+        -------
+        digest : str
+
+        Raises
+        ------
+        InputError
+            If a file has a syntax error.
+        """
+        script, library = Path(script), Path(library)
+        names = sorted(_reached(script, library, self._imports, self._file))
+        paths = [script, *(self._file(name, library) for name in names)]
+        content = "\n".join([self._own, *map(self._sha256, paths)])
+        key = hashlib.sha256(content.encode()).hexdigest()
+        return self._get(key, lambda: rule_digest(script, library, self._lock_text))
+
+    def save(self):
+        """Write what this run used, where that is not what the file holds, and where it may be written."""
+        if self._used != self._kept:
+            with contextlib.suppress(OSError, InputError):
+                files.write_json(self._path, self._used)
+            self._kept = dict(self._used)
+
+    def _imports(self, path):
+        key = f"{self._own} {self._sha256(path)}"
+        return self._get(key, lambda: " ".join(_parsed(path)[1])).split()
+
+    def _get(self, key, find):
+        if key not in self._used:
+            self._used[key] = self._kept[key] if key in self._kept else find()
+        return self._used[key]
+
+
+def _read(path):
+    """Return what was kept, nothing where that cannot be read."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    there = isinstance(content, dict) and all(isinstance(v, str) for v in content.values())
+    return content if there else {}
+
+
+def _reached(script, library, imports_of, find):
+    found, waiting = set(), [script]
+    while waiting:
+        for name in imports_of(waiting.pop()):
+            for reached in _with_parents(name):
+                file = find(reached, library)
+                if file is not None and reached not in found:
+                    found.add(reached)
+                    waiting.append(file)
+    return found
+
+
+def _with_parents(name):
+    parts = name.split(".")
+    return [".".join(parts[: at + 1]) for at in range(len(parts))]
+
+
+def _file(name, library):
+    """Return the file of a module, None for a name that is not a module (a function, say)."""
+    base = library.joinpath(*name.split("."))
+    for file in (base.with_suffix(".py"), base / "__init__.py"):
+        if file.is_file():
+            return file
+    return None
+
+
+@cache
+def _parsed(path):
+    """Return (tree as text, names imported from the package, other packages imported) of a file."""
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    except SyntaxError as error:
+        raise InputError(
+            f"{path}: expected Python, found a syntax error in line {error.lineno}: {error.msg}"
+        ) from None
+    names = list(_imports(tree))
+    inner = tuple(name for name in names if name.split(".")[0] == PACKAGE)
+    return _text(tree), inner, frozenset(name.split(".")[0] for name in names) - {PACKAGE}
+
+
+def _imports(tree):
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        else:
+            continue
+        yield from names
+
+
+def _text(node):
+    if isinstance(node, list):
+        return "[" + ",".join(_text(item) for item in node) + "]"
+    if not isinstance(node, ast.AST):
+        return repr(node)
+    fields = []
+    for name, value in ast.iter_fields(node):
+        if name == "body" and isinstance(value, list):
+            value = [item for item in value if not _is_text(item)]
+        if name not in IGNORED and value is not None and value != []:
+            fields.append(f"{name}={_text(value)}")
+    return f"{type(node).__name__}({','.join(fields)})"
+
+
+def _is_text(node):
+    """Tell docstrings, and other statements that are only a string."""
+    return isinstance(node, ast.Expr) and isinstance(getattr(node.value, "value", None), str)

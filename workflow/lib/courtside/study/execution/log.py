@@ -1,0 +1,85 @@
+"""Where a script's messages go, and how its errors look."""
+
+import logging
+import sys
+import time
+from pathlib import Path
+
+from courtside.study.errors import InputError
+from courtside.study.execution import machine_resources
+
+FORMAT = "%(asctime)s %(levelname)s %(message)s"
+logger = logging.getLogger("courtside")
+
+
+def to_file(path):
+    """Send messages, warnings and errors of this process to a log file.
+
+    An `InputError` that nothing catches becomes one line, and so does a full disk, a file that may not be
+    written, or too little memory; any other error keeps its traceback. An error that cannot be written to
+    the log, for its disk is full too, goes to standard error.
+
+    Parameters
+    ----------
+    path : str or Path
+        The log file of the job; Snakemake shows it when the job fails.
+    """
+    sys.excepthook = _log_exception
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handlers = [_LogFile(path, mode="w")]
+    logging.basicConfig(handlers=handlers, level=logging.INFO, format=FORMAT, force=True)
+    logging.captureWarnings(True)
+
+
+class _LogFile(logging.FileHandler):
+    def handleError(self, record):
+        if record.levelno >= logging.ERROR:
+            print(self.format(record), file=sys.stderr)
+
+
+def _log_exception(kind, error, trace):
+    line = str(error) if issubclass(kind, InputError) else machine_resources.in_words(error)
+    if line is not None:
+        logger.error("%s", line)
+    else:
+        logger.critical("unexpected error", exc_info=(kind, error, trace))
+
+
+def progress(items, total, what, every_s=5.0):
+    """Pass items through and say how far the work is, in the log and on a terminal.
+
+    Parameters
+    ----------
+    items : iterable
+        The work.
+    total : int or None
+        How many are expected; None where that is unknown.
+    what : str
+        What is counted, with its owner: `"cam_01: frames"`.
+    every_s : float
+        Seconds between two messages.
+
+    Yields
+    ------
+    item
+        Each item, unchanged.
+    """
+    start = last = time.monotonic()
+    count = 0
+    for count, item in enumerate(items, start=1):
+        yield item
+        now = time.monotonic()
+        if now - last >= every_s:
+            last = now
+            _say(what, count, total, now - start)
+    _say(what, count, total, time.monotonic() - start)
+
+
+def _say(what, count, total, elapsed_s):
+    rate = count / elapsed_s if elapsed_s > 0 else 0.0
+    of = f" of {total}" if total else ""
+    message = f"{what}: {count}{of}, {rate:.1f} per second"
+    logger.info("%s", message)
+    if sys.stderr.isatty():
+        print(message, file=sys.stderr)

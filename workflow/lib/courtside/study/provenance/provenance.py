@@ -1,0 +1,262 @@
+"""What each figure, table and exported file rests on, written beside the results as one JSON file each.
+
+A job is a dictionary: rule, script (its file name or None), code (digest of the script and of the library
+code that it reaches, or None), inputs and outputs (paths), params (without the digest), done (its outputs are
+up to date), made (in this run).
+"""
+
+import dataclasses
+import json
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+
+from courtside.study.execution import checksums, files
+
+FORMAT = 1
+FINAL = {
+    ".pdf",
+    ".png",
+    ".csv",
+    ".html",
+    ".trc",
+    ".c3d",
+    ".bvh",
+    ".txt",
+}  # read by people or other programs
+
+
+def record(jobs, folder, *, run, root, pinned=(), targets=()):
+    """Write the sidecars of all final files that are new since theirs, and the record of the run.
+
+    Parameters
+    ----------
+    jobs : list of dict
+        All jobs that the study asked for, in the form above.
+    folder : str or Path
+        The folder of the records: `provenance.json`, `checksums.json`, `provenance/<file>.json`.
+    run : dict
+        What is the same for all files: `command` (list of words, without the file), `surroundings`, `config`,
+        `config_files` (paths).
+    root : str or Path
+        The folder of all results; sidecars are named after files below it.
+    pinned : sequence of str
+        Starts of paths of files that are given with checksum though a job made them: artefacts, networks.
+    targets : collection of str
+        Files that were asked for by name: they are final whatever their kind.
+
+    Returns
+    -------
+    written : list of str
+        The files that got a new sidecar.
+
+    Notes
+    -----
+    A file that was not made again keeps its sidecar, so that this says what the file was made of, not what it
+    would be made of now.
+    """
+    folder = Path(folder)
+    known = checksums.Checksums(folder / "checksums.json")
+    due = []
+    for job in jobs:
+        names = [name for name in job["outputs"] if _is_final(name, targets, folder, root)]
+        due.append([n for n in names if job["done"] and _is_due(n, job, sidecar(folder, n, root))])
+    reach = upstream(jobs)
+    written = []
+    for at, names in enumerate(due):
+        if not names:
+            continue
+        body = {**origin(jobs, reach[at], known.of, pinned), **run["surroundings"]}
+        for name in names:
+            files.write_json(sidecar(folder, name, root), _sidecar(jobs[at], name, run, body))
+            written.append(name)
+    _prune(folder / "provenance", root)
+    files.write_json(folder / "provenance.json", _of_run(run, known))
+    known.write()
+    return written
+
+
+def sidecar(folder, name, root):
+    """Return the path of a file's sidecar.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder of the records.
+    name : str
+    root : str or Path
+        The folder of all results.
+    """
+    name = Path(name)
+    inner = name.relative_to(root) if name.is_relative_to(root) else Path(name.name)
+    return Path(folder) / "provenance" / inner.with_name(f"{inner.name}.json")
+
+
+def _is_final(name, targets, folder, root):
+    if Path(name).suffix in FINAL or name in targets:
+        return True
+    return sidecar(folder, name, root).exists()
+
+
+def _is_due(name, job, record_of_it):
+    """Tell whether a file is there and has no sidecar that is younger than itself."""
+    path = Path(name)
+    if not path.exists():
+        return False
+    if job["made"] or not record_of_it.exists():
+        return True
+    # Of a folder, Snakemake's time stamp in it says when it was made.
+    stamp = path / ".snakemake_timestamp" if path.is_dir() else path
+    stamp = stamp if stamp.exists() else path
+    return stamp.stat().st_mtime_ns > record_of_it.stat().st_mtime_ns
+
+
+def upstream(jobs):
+    """Return, for each job, the set of indices of itself and of all jobs that it rests on.
+
+    Raises
+    ------
+    ValueError
+        If two jobs make one file, or jobs rest on one another in a circle.
+    """
+    maker = makers(jobs)
+    before = [
+        {maker[name] for name in job["inputs"] if name in maker and maker[name] != at}
+        for at, job in enumerate(jobs)
+    ]
+    found, open_jobs = {}, set()
+    for start in range(len(jobs)):
+        waiting = [start]
+        while waiting:
+            at = waiting[-1]
+            missing = [] if at in found else [other for other in before[at] if other not in found]
+            if missing:
+                if open_jobs.intersection(missing):
+                    raise ValueError(f"jobs rest on one another in a circle: {jobs[at]['rule']}")
+                open_jobs.add(at)
+                waiting += missing
+                continue
+            waiting.pop()
+            open_jobs.discard(at)
+            if at not in found:
+                found[at] = frozenset({at}).union(*(found[other] for other in before[at]))
+    return [found[at] for at in range(len(jobs))]
+
+
+def makers(jobs):
+    """Return {file: index of the job that makes it}."""
+    maker = {}
+    for at, job in enumerate(jobs):
+        for name in job["outputs"]:
+            if maker.setdefault(name, at) != at:
+                raise ValueError(f"two jobs make {name}")
+    return maker
+
+
+def origin(jobs, reached, sha256_of, pinned=()):
+    """Return what a job's files rest on.
+
+    Parameters
+    ----------
+    jobs : list of dict
+    reached : set of int
+        The job and all that it rests on, of `upstream`.
+    sha256_of : callable
+        Checksum of a path, None for one that is gone.
+    pinned : sequence of str
+
+    Returns
+    -------
+    origin : dict
+        inputs and artefacts {path: sha256}, settings {rule: [params of its jobs, each once]},
+        seeds {name: [values]}, code {script: digest}.
+    """
+    upstream_jobs = [jobs[at] for at in sorted(reached)]
+    made = {name for job in upstream_jobs for name in job["outputs"]}
+    used = {name for job in upstream_jobs for name in job["inputs"]}
+    kept = {name for name in used & made if name.startswith(tuple(pinned))}
+    settings, seeds = {}, {}
+    for job in upstream_jobs:
+        params = plain(job["params"])
+        if params:
+            settings.setdefault(job["rule"], {})[json.dumps(params, sort_keys=True)] = params
+        for name, value in _seeds(params, job["rule"]):
+            values = seeds.setdefault(name, [])
+            values += [value] * (value not in values)
+    return {
+        "inputs": {name: sha256_of(name) for name in sorted(used - made)},
+        "artefacts": {name: sha256_of(name) for name in sorted(kept)},
+        "settings": {
+            rule: [each[text] for text in sorted(each)] for rule, each in sorted(settings.items())
+        },
+        "seeds": {name: sorted(values, key=str) for name, values in sorted(seeds.items())},
+        "code": dict(
+            sorted((job["script"], job["code"]) for job in upstream_jobs if job["script"])
+        ),
+    }
+
+
+def _seeds(value, where):
+    """Yield (name, value) of every number that is called a seed, at any depth."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            if (key == "seed" or key.endswith("_seed")) and not isinstance(inner, dict):
+                yield f"{where}.{key}", inner
+            else:
+                yield from _seeds(inner, f"{where}.{key}")
+    elif isinstance(value, list):
+        for inner in value:
+            yield from _seeds(inner, where)
+
+
+def plain(value):
+    """Return a value as JSON can hold it: paths as text, sets in order, records as dictionaries."""
+    if value is None or isinstance(value, bool | int | float):
+        return value
+    if isinstance(value, str | Path):
+        return str(value)
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        value = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, set | frozenset):
+        return sorted((plain(inner) for inner in value), key=str)
+    if isinstance(value, list | tuple):
+        return [plain(inner) for inner in value]
+    return f"a {type(value).__name__}"
+
+
+def command(words, name):
+    """Return the command that makes exactly one file again, to be given in the repository's folder."""
+    return shlex.join([*words, "--", str(name)])
+
+
+def _sidecar(job, name, run, body):
+    return {
+        "format": FORMAT,
+        "file": name,
+        "sha256": checksums.of_path(name),
+        "rule": job["rule"],
+        "command": command(run["command"], name),
+        "recorded": "when it was made" if job["made"] else "after it was made, by a later run",
+        **body,
+    }
+
+
+def _of_run(run, known):
+    config_files = {str(path): known.of(path) for path in run["config_files"]}
+    return {
+        "format": FORMAT,
+        "command": shlex.join(run["command"]),
+        "config_files": config_files,
+        "config": plain(run["config"]),
+        **run["surroundings"],
+    }
+
+
+def _prune(folder, root):
+    """Delete the sidecars of files that are gone."""
+    for path in folder.rglob("*.json"):
+        inner = path.relative_to(folder)
+        if not (Path(root) / inner.with_name(inner.name.removesuffix(".json"))).exists():
+            path.unlink()

@@ -1,0 +1,130 @@
+"""What a study is made of from outside, as a CycloneDX 1.6 list: packages of the lock, pinned artefacts."""
+
+import re
+from importlib import metadata
+
+from courtside.study.errors import InputError
+
+# A package of a lock that pip can install: `name[extra]==version ; marker \` and the lines of its hashes.
+PACKAGE = re.compile(
+    r"^(?P<name>[A-Za-z0-9._-]+)(?:\[[^]]*\])?==(?P<version>[^\s;\\]+)(?: *; *(?P<marker>[^\\\n]+?))? *\\?\n"
+    r"(?P<hashes>(?: +--hash=sha256:[0-9a-f]{64} *\\?\n)*)",
+    re.M,
+)
+# What names a licence, and is neither its text nor a copyright.
+LICENCE_NAME = re.compile(r"(?!Copyright)[^\n]{2,60}")
+SPDX = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*")
+
+
+def of_study(lock_text, artefacts, *, name, version, licence):
+    """Return the list of parts of a study.
+
+    Parameters
+    ----------
+    lock_text : str
+        A lock with hashes.
+    artefacts : iterable of courtside.study.execution.artefacts.Artefact
+    name, version, licence : str
+        Of the study itself.
+
+    Returns
+    -------
+    bom : dict
+        JSON of CycloneDX 1.6, without date and serial number: the same parts give the same bytes.
+
+    Raises
+    ------
+    InputError
+        If a requirement of the lock is not pinned with hashes.
+
+    Notes
+    -----
+    A package has the checksums of all files that the lock allows: one for each platform. Its licence is what
+    the package installed here says, of just this version; a package for other platforms has none.
+    """
+    study = {"type": "application", "name": name, "version": version, **_licences(licence)}
+    parts = [*packages(lock_text), *map(_artefact, artefacts)]
+    return {
+        "bomFormat": "CycloneDX",
+        "specVersion": "1.6",
+        "version": 1,
+        "metadata": {"component": {**study, "bom-ref": name}},
+        "components": sorted(parts, key=lambda part: part["bom-ref"]),
+    }
+
+
+def packages(lock_text):
+    """Return the components of all packages of a lock."""
+    found = [_package(match) for match in PACKAGE.finditer(lock_text)]
+    n_named = len(re.findall(r"^[^\s#]", lock_text, re.M))
+    if n_named != len(found) or not all(part["hashes"] for part in found):
+        raise InputError(
+            f"environment.lock: expected hashes for each of {n_named} requirements, found them for "
+            f"{sum(bool(part['hashes']) for part in found)}; compile it with --generate-hashes"
+        )
+    return found
+
+
+def _package(match):
+    name, version = match["name"], match["version"]
+    part = {
+        "type": "library",
+        "bom-ref": f"pkg:pypi/{name.lower()}@{version}",
+        "name": name,
+        "version": version,
+        "purl": f"pkg:pypi/{name.lower()}@{version}",
+        "hashes": _hashes(re.findall(r"sha256:([0-9a-f]{64})", match["hashes"])),
+        **_licences(installed_licence(name, version)),
+    }
+    if match["marker"]:
+        part["properties"] = [{"name": "marker", "value": match["marker"].strip()}]
+    return part
+
+
+def installed_licence(name, version):
+    """Return what the installed package says of its licence; None where that version is not installed."""
+    try:
+        about = metadata.metadata(name)
+    except metadata.PackageNotFoundError:
+        return None
+    if about["Version"] != version:
+        return None
+    classified = [c.split(" :: ")[-1] for c in about.get_all("Classifier", []) if "License" in c]
+    titles = [about.get("License") or "", *_titles_of_licence_files(name)]
+    named = [line.strip() for line in titles if LICENCE_NAME.fullmatch(line.strip())]
+    return about.get("License-Expression") or next(iter([*classified, *named]), None)
+
+
+def _titles_of_licence_files(name):
+    """Return the first lines of a package's licence files."""
+    found = (file for file in metadata.files(name) or () if file.name.startswith("LICEN"))
+    texts = (file.locate() for file in found)
+    return [
+        path.read_text(encoding="utf-8").strip().split("\n")[0] for path in texts if path.is_file()
+    ]
+
+
+def _artefact(artefact):
+    name, _, version = (artefact.requirement or artefact.name).partition("==")
+    part = {"type": "data", "bom-ref": f"artefact:{artefact.name}", "name": name}
+    part |= {"version": version, "purl": f"pkg:pypi/{name}@{version}"} if version else {}
+    part |= {"description": artefact.note} if artefact.note else {}
+    members = [
+        {"type": "file", "bom-ref": f"artefact:{artefact.name}/{member}", "name": member}
+        | {"hashes": _hashes([sha256])}
+        for member, sha256 in sorted(artefact.members.items())
+    ]
+    own = {"hashes": _hashes([artefact.sha256]), **_licences(artefact.licence)}
+    return {**part, **own, "components": members}
+
+
+def _hashes(checksums):
+    return [{"alg": "SHA-256", "content": checksum} for checksum in checksums]
+
+
+def _licences(said):
+    if not said:
+        return {}
+    return {
+        "licenses": [{"expression": said} if SPDX.fullmatch(said) else {"license": {"name": said}}]
+    }

@@ -1,0 +1,112 @@
+"""A table of checksums, stage after stage, that says where two machines' results part."""
+
+import csv
+import fnmatch
+from pathlib import Path
+
+from courtside.study.errors import InputError
+from courtside.study.execution import files
+from courtside.study.provenance import comparison
+
+# In the order in which the study computes them. First match wins: pattern of the path below results/.
+STAGES = (
+    ("artefacts", "external/*"),
+    ("networks", "networks/*"),
+    ("truth of simulations", "virtual/*.npz"),
+    ("clicks of simulations", "virtual/*.csv"),
+    ("films", "virtual/*.mp4"),
+    ("other recordings", "virtual/*"),
+    ("pictures of fixed cameras", "*/static/*"),
+    ("pictures of walks", "*/frames/*"),
+    ("features", "*/sfm/features.*"),
+    ("matches", "*/sfm/matches.*"),
+    ("mapping", "*/sfm/*.bin"),
+    ("mapping", "*/sfm/*/summary.json"),
+    ("adjustment", "*/sfm/*"),
+    ("calibration", "*/calibration/*"),
+    ("2D keypoints", "*/pose2d/*"),
+    ("device recordings", "*/devices/*"),
+    ("clocks", "*/sync/*"),
+    ("people", "*/people/*"),
+    ("3D keypoints", "*/pose3d*"),
+    ("evaluation", "*/evaluation/*"),
+    ("all others", "*"),
+)
+COLUMNS = ("stage", "name", "bytes", "sha256")
+
+
+def stage_of(name):
+    """Return the stage that makes a file, by its path below the folder of results."""
+    return next(stage for stage, pattern in STAGES if fnmatch.fnmatch(name, pattern))
+
+
+def measure(results):
+    """Return the checksum of every file that the comparison of two results trees looks at.
+
+    Parameters
+    ----------
+    results : str or Path
+
+    Returns
+    -------
+    rows : dict of str to (int, str)
+        Size in bytes and SHA-256, by path below the folder.
+    """
+    paths = {name: Path(results) / name for name in comparison.names(results)}
+    return {name: (path.stat().st_size, files.sha256(path)) for name, path in paths.items()}
+
+
+def write(path, rows):
+    """Write what `measure` found to a CSV file."""
+    order = list(dict(STAGES))
+    ranked = sorted(rows, key=lambda name: (order.index(stage_of(name)), name))
+    with files.atomic(path) as temporary, temporary.open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(COLUMNS)
+        writer.writerows([stage_of(name), name, *rows[name]] for name in ranked)
+
+
+def read(path):
+    """Read what `write` wrote; an `InputError` says what is wrong with a file that is none."""
+    with Path(path).open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.reader(stream))
+    if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
+        raise InputError(
+            f"{path}: expected columns {', '.join(COLUMNS)}, found {', '.join(rows[0] if rows else [])}; "
+            "make the table with --write-checksums"
+        )
+    return {name: (int(size), digest) for _, name, size, digest in rows[1:]}
+
+
+def table(here, there):
+    """Return lines for people: files by stage, and the first stage whose bytes are not the same.
+
+    Parameters
+    ----------
+    here, there : dict of str to (int, str)
+        As `measure` or `read` gives them.
+
+    Returns
+    -------
+    lines : list of str
+    n_different : int
+        Files whose bytes differ, or that one side lacks.
+    """
+    rows = [["stage", "bit-equal", "other bytes", "only here", "only there"]]
+    first, n_different = "", 0
+    for stage in dict(STAGES):
+        ours = {name for name in here if stage_of(name) == stage}
+        theirs = {name for name in there if stage_of(name) == stage}
+        equal = sum(here[name] == there[name] for name in ours & theirs)
+        counts = [equal, len(ours & theirs) - equal, len(ours - theirs), len(theirs - ours)]
+        if ours | theirs:
+            rows.append([stage, *map(str, counts)])
+        n_different += sum(counts[1:])
+        first = first or (stage if counts[1] else "")
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    lines.append(f"first stage with other bytes: {first or 'none'}")
+    return lines, n_different

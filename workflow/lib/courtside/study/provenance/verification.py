@@ -1,0 +1,227 @@
+"""Which files of a study would come out otherwise now, and why, by their sidecars."""
+
+import shlex
+import subprocess
+import sys
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+from courtside.study.errors import InputError
+from courtside.study.execution import checksums, digest, files
+from courtside.study.provenance import environment
+from courtside.study.provenance.provenance import FORMAT, command
+
+REPEATED = {"--directory", "--configfile", "--config"}  # options of a command that is repeated
+OF_RUN = {"command": str, "config_files": dict}  # what a record must hold
+OF_FILE = {
+    "file": str, "sha256": str, "inputs": dict, "artefacts": dict, "code": dict, "packages": dict,
+    "lock_sha256": str | None, "python": str,
+}  # fmt: skip
+DRAWN = {".pdf", ".png", ".csv"}  # in folders named figures: all have sidecars
+
+
+def read(folder):
+    """Return all sidecars below a folder such as results/run, in the order of their names.
+
+    Raises
+    ------
+    InputError
+        If there is none, or one is not a sidecar of this version.
+    """
+    folder = Path(folder) / "provenance"
+    paths = sorted(folder.rglob("*.json"))
+    if not paths:
+        raise InputError(
+            f"{folder}: expected sidecars of results, found none; run snakemake in this folder first"
+        )
+    return [_read(path, OF_FILE) for path in paths]
+
+
+def _read(path, kinds):
+    content = files.read_json(path, "delete it")
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise InputError(f"{path}: expected a sidecar of format {FORMAT}; delete it")
+    for key, kind in kinds.items():
+        if key not in content or not isinstance(content[key], kind):
+            raise InputError(
+                f"{path}: expected {key} in a sidecar, found {content.get(key)!r:.80}; delete it"
+            )
+    return content
+
+
+def present(repository):
+    """Return what the study would be made with now.
+
+    Parameters
+    ----------
+    repository : str or Path
+
+    Returns
+    -------
+    now : dict
+        sha256 (callable of a path, None for one that is gone; each file is read once), code (callable of the
+        file name of a script, None for one that is gone), lock_sha256, python, packages.
+    """
+    workflow = Path(repository) / "workflow"
+
+    @cache
+    def sha256(path):
+        return checksums.of_path(path) if Path(path).exists() else None
+
+    @cache
+    def code(script):
+        path = workflow / "scripts" / script
+        return digest.code_digest(path, workflow / "lib") if path.is_file() else None
+
+    return {"sha256": sha256, "code": code, **environment.found(repository)}
+
+
+def changes(sidecar, now):
+    """Return why a file would come out otherwise now, one reason for each cause, none if it would not.
+
+    Parameters
+    ----------
+    sidecar : dict
+    now : dict
+        Of `present`.
+
+    Returns
+    -------
+    reasons : list of str
+    """
+    there = now["sha256"](sidecar["file"])
+    reasons = []
+    if there != sidecar["sha256"]:
+        reasons.append("is gone" if there is None else "was altered since it was made")
+    for kind in ("inputs", "artefacts"):
+        for path, recorded in sidecar[kind].items():
+            reasons += _of_file(path, recorded, now["sha256"](path))
+    for script, recorded in sidecar["code"].items():
+        found = now["code"](script)
+        # What follows a hyphen is of the lock's packages, which have reasons of their own.
+        if found is None or found != str(recorded).partition("-")[0]:
+            reasons.append(f"code of {script} " + ("is gone" if found is None else "changed"))
+    return reasons + _of_surroundings(sidecar, now)
+
+
+def _of_file(path, recorded, found):
+    if found == recorded:
+        return []
+    return [f"{path} is gone" if found is None else f"{path} changed"]
+
+
+def _of_surroundings(sidecar, now):
+    reasons = []
+    if sidecar["lock_sha256"] != now["lock_sha256"]:
+        reasons.append("environment.lock changed")
+    names = sorted(set(sidecar["packages"]) | set(now["packages"]))
+    for name in names:
+        old, new = sidecar["packages"].get(name, "none"), now["packages"].get(name, "none")
+        if old != new:
+            reasons.append(f"package {name} {old} -> {new}")
+    for key, word in (("python", "Python"), ("platform", "platform")):
+        if sidecar.get(key) != now[key]:
+            reasons.append(f"{word} {sidecar.get(key)} -> {now[key]}")
+    return reasons
+
+
+def unrecorded(root, sidecars):
+    """Return the files in folders named figures below `root` that have no sidecar."""
+    known = {Path(sidecar["file"]).resolve() for sidecar in sidecars}
+    drawn = (p for p in Path(root).glob("**/figures/*") if p.suffix in DRAWN)
+    return sorted(str(path) for path in drawn if path.resolve() not in known)
+
+
+def changed_configuration(run, now):
+    """Return the configuration files that changed since the run of a record, as text."""
+    pairs = run["config_files"].items()
+    return [line for path, sha in pairs for line in _of_file(path, sha, now["sha256"](path))]
+
+
+def planned(run, repository):
+    """Return the files that Snakemake would make anew with the configuration as it is.
+
+    Parameters
+    ----------
+    run : dict
+        The record of a run, whose command is asked again.
+    repository : str or Path
+
+    Returns
+    -------
+    names : set of str
+        As sidecars name them.
+
+    Raises
+    ------
+    InputError
+        If Snakemake refuses the configuration.
+    """
+    words = [sys.executable, "-m", *_words(run), "--summary"]
+    done = subprocess.run(words, cwd=repository, capture_output=True, text=True, check=False)
+    if done.returncode:
+        said = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
+        raise InputError(
+            f"{run['command']}: {said[0] if said else 'Snakemake failed'}; correct this"
+        )
+    rows = [line.split("\t") for line in done.stdout.splitlines() if line.count("\t") == 5]
+    return {row[0] for row in rows if row[5] == "update pending"}
+
+
+def _words(run):
+    """Return the words of a record's command: results travel, and may not name another program."""
+    try:
+        words = shlex.split(run["command"])
+    except ValueError:
+        words = []
+    options = {word for word in words if word.startswith("-")}
+    if words[:1] != ["snakemake"] or not options <= REPEATED:
+        raise InputError(
+            f"provenance.json: expected a command of snakemake with none but {sorted(REPEATED)}, found "
+            f"{run['command']!r}; delete the record and run snakemake in this folder"
+        )
+    return words
+
+
+def report(folder, root, repository):
+    """Return (lines for people, number of files that would come out otherwise or have no record).
+
+    Parameters
+    ----------
+    folder : str or Path
+        Such as results/run.
+    root : str or Path
+        The folder of all results.
+    repository : str or Path
+
+    Returns
+    -------
+    lines : list of str
+    n_faults : int
+    """
+    sidecars, now = read(folder), present(repository)
+    run = _read(Path(folder) / "provenance.json", OF_RUN)
+    changed = changed_configuration(run, now)
+    anew = planned(run, repository) if changed else set()
+    lines, causes = [], Counter()
+    for sidecar in sidecars:
+        reasons = changes(sidecar, now)
+        reasons += ["configuration changed"] * (not reasons and sidecar["file"] in anew)
+        lines += [f"{sidecar['file']}: {'; '.join(reasons)}"] if reasons else []
+        causes.update(reasons)
+    again = [*_words(run), "--force"]
+    lines += [
+        f"{name}: has no record; remake it, or delete it if the study no longer names it: "
+        + command(again, name)
+        for name in unrecorded(root, sidecars)
+    ]
+    n_faults = len(lines)
+    lines += [f"since the last run, {line}" for line in changed]
+    lines += [f"{n} files: {cause}" for cause, n in causes.most_common() if n > 1]
+    verdict = (
+        f"{n_faults} would come out otherwise or have none"
+        if n_faults
+        else "none would come out otherwise"
+    )
+    return [*lines, f"{len(sidecars)} files have a record: {verdict}"], n_faults
