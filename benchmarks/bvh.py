@@ -22,8 +22,8 @@ from scipy.spatial.transform import Rotation
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.devices import bvh
 from courtside.exports import bvh as writer
-from courtside.records import skeleton
-from courtside.records.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.records.keypoints import skeleton
 
 SKELETON = Path(__file__).parents[1] / "config" / "skeletons" / "mocopi27.yaml"
 GROWTH = (1, 2, 4)

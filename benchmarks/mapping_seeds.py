@@ -24,7 +24,7 @@ import map_images
 from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration
-from courtside.records import truth
+from courtside.records.truth import session_truth
 from courtside.study.configuration import yaml_files
 from virtualgym.session import clicks
 
@@ -39,7 +39,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
     court_yaml = ROOT / "config" / "courts" / f"{session['court']}.yaml"
     folder, film = results / name, results / "virtual" / name
-    court, real = courts.read(court_yaml), truth.read(film / "truth.npz")
+    court, real = courts.read(court_yaml), session_truth.read(film / "truth.npz")
     step = config["map_images"]
     with tempfile.TemporaryDirectory() as temporary:
         model = Path(temporary)

@@ -29,7 +29,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, quality, sfm_alignment
-from courtside.records import clicks, image_names, truth
+from courtside.records.cameras import clicks, image_names
+from courtside.records.truth import session_truth
 from courtside.sfm import database, features, grid, mapping, matching, model, registration
 from courtside.study.configuration import yaml_files
 
@@ -142,7 +143,7 @@ def compare(results, session, count, map_minutes=None):
     """Return {side: seconds of each step, images registered, errors in cm} for so many bridging images."""
     root, virtual = results / session, results / "virtual" / session
     court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
-    real = truth.read(virtual / "truth.npz")
+    real = session_truth.read(virtual / "truth.npz")
     names = [camera.name for camera in real.cameras]
     marked = clicks.read(virtual / "court_points.csv", names, list(court.points))
     parameters = yaml_files.read(ROOT / "config" / "config.yaml")

@@ -21,7 +21,9 @@ from courtside.figures.style import (
     stick_figure,
     style,
 )
-from courtside.records import derived, footage, keypoints, skeleton, take_truth  # noqa: E402
+from courtside.records.cameras import footage
+from courtside.records.keypoints import derived_joints, keypoints, skeleton
+from courtside.records.truth import take_truth  # noqa: E402
 from courtside.video import reader  # noqa: E402
 
 SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
@@ -36,7 +38,7 @@ def main(results, png):
     """Read one moment of the take, draw it, and write the picture."""
     take, films = results / SESSION / "takes" / TAKE, results / "virtual" / SESSION / "takes" / TAKE
     joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml")
-    drawn = stick_figure.stick(joints, derived.read(ROOT / "config" / "derived_joints.yaml"))
+    drawn = stick_figure.stick(joints, derived_joints.read(ROOT / "config" / "derived_joints.yaml"))
     points = keypoints.read_3d(take / "pose3d_corrected" / CALIBRATION / FUSION / f"{NETWORK}.npz")
     seen = footage.read(
         results / SESSION / "calibration" / CALIBRATION / "cameras.toml",

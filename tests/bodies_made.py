@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.records.body_motion import BodyMotion
+from courtside.records.keypoints.body_motion import BodyMotion
 
 
 def body(time_s, xyz, joints, *, source="made", unit_m=0.75, tpose_s=(0.0, 1.0), clap_s=(2.0,)):

@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 import performers
 import sync_takes
-from courtside.records.device_motion import DeviceMotion
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
+from courtside.records.devices.device_motion import DeviceMotion
 from virtualgym.body import stance
 
 JOINTS = [

@@ -3,8 +3,8 @@
 import numpy as np
 
 import walker
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints3D
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 CORNERS = np.array([[0.8, 0.9], [5.3, 0.9], [0.7, 5.9], [5.4, 5.8], [0.7, 3.2], [5.4, 3.3]])
 BASE = np.array([3.05, 3.0])
@@ -101,5 +101,5 @@ def record(xyz, time_s, sigma_m, memory_s, rng):
         n_views=np.full(shape, 2),
         reproj_error_px=np.zeros((*shape, 2)),
         accepted=np.ones((*shape, 2), dtype=bool),
-        reason=np.full(shape, reasons.OK, dtype=np.uint8),
+        reason=np.full(shape, missing_reason.OK, dtype=np.uint8),
     )

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from courtside.records.device_motion import DeviceMotion
-from courtside.records.hierarchy import Hierarchy, PosedHierarchy, forward
-from courtside.records.limbs import JOINTS as LIMB_JOINTS
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy, forward
+from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 
 RATE_HZ = 60.0
 UP = np.array([0.0, 1.0, 0.0])

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 
 import walker
-from courtside.records import keypoints, sync
+from courtside.records.devices import clocks
+from courtside.records.keypoints import keypoints
 
 ROGUE = '</script><img src="https://example.invalid/x">"&'
 SUMMARY = """person,measure,value,sigma,sigma_camera,unit,n,definition
@@ -69,8 +70,8 @@ def files_of_take(folder, n_frames=20):
     paths["summary"].write_text(SUMMARY)
     paths["frames"].write_text("\n".join(lines) + "\n")
     keypoints.write_3d(paths["pose3d"], walker.points(n_frames))
-    found = sync.Clock(0.2, 3.0, 0.001, 10.0, "found", "offset adjusted")
-    sync.write(paths["sync"], "c0", {"c0": sync.Clock(status="reference"), "c1": found})
+    found = clocks.Clock(0.2, 3.0, 0.001, 10.0, "found", "offset adjusted")
+    clocks.write(paths["sync"], "c0", {"c0": clocks.Clock(status="reference"), "c1": found})
     paths["shake"].write_text("camera c0: trembles by 0.01 px rms per axis, 0.1 mm at the player\n")
     (folder / "c0.csv").write_text(moved("c0"))
     return {key: str(path) for key, path in paths.items()} | {"movement": [str(folder / "c0.csv")]}

@@ -6,7 +6,7 @@ import numpy as np
 
 import mannequin
 import performers
-from courtside.records.hierarchy import forward
+from courtside.records.devices.hierarchy import forward
 from virtualgym.body import athlete, skinned_body
 from virtualgym.devices import inertial_suit
 from virtualgym.movement import catalogue

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.kinematics import wrist_arcs
-from courtside.records.body_motion import BodyMotion
+from courtside.records.keypoints.body_motion import BodyMotion
 
 HALF_SHOULDERS, ARM = 0.3, 0.7  # units: the wrists of the T-pose are at 1
 CLAP_S = 2.0

@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 import scene
 from courtside.geometry.camera import Camera
-from courtside.records.keypoints import Keypoints2D
+from courtside.records.keypoints.keypoints import Keypoints2D
 
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 JOINTS = [f"{side}_{part}" for part in PARTS for side in ("left", "right")]

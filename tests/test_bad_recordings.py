@@ -19,7 +19,8 @@ import yaml
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
-from courtside.records import clicks, truth
+from courtside.records.cameras import clicks
+from courtside.records.truth import session_truth
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
@@ -118,7 +119,7 @@ def clicked(good):
 
 @pytest.fixture(scope="module")
 def real(good):
-    return truth.read(good.folder.parent / "film" / "truth.npz")
+    return session_truth.read(good.folder.parent / "film" / "truth.npz")
 
 
 @pytest.fixture

@@ -111,7 +111,11 @@ def test_every_module_imports(path):
     assert importlib.import_module(name.removesuffix(".__init__")).__doc__
 
 
-TRUE_MODULES = ("courtside.virtual", "courtside.records.truth", "courtside.records.take_truth")
+TRUE_MODULES = (
+    "courtside.virtual",
+    "courtside.records.truth.session_truth",
+    "courtside.records.truth.take_truth",
+)
 KNOWING = ("simulate_", "evaluate_")  # rules that make truth or measure against it
 # What may rest on an evaluation: measures and drawings of it, never a method.
 SHOWING = ("evaluate_", "draw_", "tabulate_", "compare_", "all")

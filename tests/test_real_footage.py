@@ -18,7 +18,7 @@ from courtside.geometry import camera as cameras
 from courtside.geometry import triangulation
 from courtside.pose import decoders, foreground, tracking
 from courtside.reconstruction import fusion
-from courtside.records import keypoints, skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import yaml_files
 from courtside.video import reader, static_picture
 from real_data import REAL, needs_real

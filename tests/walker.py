@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 import scene
-from courtside.records import reasons, skeleton
-from courtside.records.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints import missing_reason, skeleton
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 
 SKELETON = skeleton.read(Path(__file__).parents[1] / "config" / "skeletons" / "blazepose33.yaml")
 N_JOINTS = len(SKELETON.joints)
@@ -47,7 +47,9 @@ def points(n_frames=20, n_persons=1, n_cameras=3):
         n_views=accepted.sum(axis=-1),
         reproj_error_px=error_px,
         accepted=accepted,
-        reason=np.where(np.isnan(xyz[..., 0]), reasons.REJECTED, reasons.OK).astype(np.uint8),
+        reason=np.where(np.isnan(xyz[..., 0]), missing_reason.REJECTED, missing_reason.OK).astype(
+            np.uint8
+        ),
     )
 
 

@@ -12,7 +12,7 @@ import court_pictures
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
-from courtside.records import clicks
+from courtside.records.cameras import clicks
 
 pytestmark = pytest.mark.browser
 TARGETS = {"court_points.csv": "data/hall/court_points.csv"}

@@ -12,7 +12,8 @@ from courtside.calibration.court import court
 from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import joint_correction
-from courtside.records import clicks, proposals, skeleton
+from courtside.records.cameras import click_proposals, clicks
+from courtside.records.keypoints import skeleton
 from fuzz.format import Format, require
 from fuzz.of_study import CONFIG, copies
 from real_data import REAL
@@ -141,14 +142,14 @@ def read_clicks(path):
 
 def proposed(folder):
     """Write proposals of court points."""
-    head = ",".join(proposals.COLUMNS)
+    head = ",".join(click_proposals.COLUMNS)
     rows = ["left,p01,0,10.5,20.25,0.4,0.9,", "left,p02,0,,,,,hidden", "right,p01,0,1,2,3,0.5,"]
     (folder / "proposals.csv").write_text("\n".join([head, *rows, ""]), encoding="utf-8")
 
 
 def read_proposals(path):
     """Read proposals."""
-    return proposals.read(path, CAMERAS, list(COURT.points))
+    return click_proposals.read(path, CAMERAS, list(COURT.points))
 
 
 def read_offsets(path):

@@ -12,9 +12,9 @@ import depth_recordings_made
 import walker
 from courtside.devices import bvh, mocopi, nuitrack, open_depth, openpose
 from courtside.geometry import camera as cameras
-from courtside.records import skeleton
-from courtside.records.hierarchy import forward
-from courtside.records.keypoints import Keypoints2D
+from courtside.records.devices.hierarchy import forward
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.video import writer
 from fuzz.format import Format, require
 from fuzz.of_cameras import real

@@ -12,17 +12,11 @@ from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
 from courtside.pages.viewer import layers
-from courtside.records import (
-    body_motion,
-    device_motion,
-    frame_table,
-    frame_times,
-    keypoints,
-    people,
-    shake_table,
-    take_truth,
-    truth,  # fmt: skip
-)
+from courtside.records.cameras import frame_table, frame_times, shake_table
+from courtside.records.devices import device_motion
+from courtside.records.keypoints import body_motion, keypoints, people
+from courtside.records.truth import session_truth as truth
+from courtside.records.truth import take_truth
 from courtside.sfm import grid
 from fuzz.format import Format, require
 

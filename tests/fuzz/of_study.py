@@ -9,7 +9,8 @@ from pathlib import Path
 import yaml
 
 from courtside.calibration.court import court
-from courtside.records import derived, skeleton, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import derived_joints, skeleton
 from courtside.study.configuration import (
     configuration,
     plans,
@@ -225,7 +226,7 @@ FORMATS = [
     Format("plan", 600, laughing(copies("config/plans/*.yaml")), plans.read),
     Format("court", 1200, laughing(copies("config/courts/*.yaml")), court.read),
     Format("skeleton", 1000, laughing(copies("config/skeletons/*.yaml")), skeleton.read),
-    Format("derived-joints", 400, copies("config/derived_joints.yaml"), derived.read),
+    Format("derived-joints", 400, copies("config/derived_joints.yaml"), derived_joints.read),
     Format("wheel", 800, wheels, unpack),
     Format("clocks", 700, clocks, read_clocks),
     Format("sidecar", 300, sidecars, read_sidecars),

@@ -14,7 +14,8 @@ import yaml
 from courtside.calibration.records import covariance
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
-from courtside.records import keypoints, limbs, truth
+from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.truth import session_truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
@@ -99,7 +100,7 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     results = study(gym, "walk", session, calibrations=["file"], plans=[]) / "takes/balancing"
     ours = keypoints.read_3d(results / "pose3d/file/all-robust/body25b.npz")
     theirs = keypoints.read_3d(results / "pose3d/imported/trc/body25b.npz")
-    joints = [name for name in limbs.JOINTS if name in ours.joints and name in theirs.joints]
+    joints = [name for name in skeleton.JOINTS if name in ours.joints and name in theirs.joints]
     assert len(joints) == 12
     n_frames = min(len(ours.time_s), len(theirs.time_s))
     assert n_frames >= 99
@@ -134,7 +135,7 @@ def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_stu
     found = {camera.name: camera for camera in cameras.read_toml(path)}
     side, back = found["side"], found["back"]
     assert np.linalg.norm(side.centre_in_world - back.centre_in_world) == pytest.approx(1, abs=1e-6)
-    real = truth.read(data / "truth.npz").cameras
+    real = session_truth.read(data / "truth.npz").cameras
     ours = side.cam_from_world[:, :3] @ back.cam_from_world[:, :3].T
     true = real[0].cam_from_world[:, :3] @ real[1].cam_from_world[:, :3].T
     between = np.degrees(np.arccos((np.trace(ours @ true.T) - 1) / 2))

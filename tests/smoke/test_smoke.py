@@ -10,7 +10,8 @@ import pandas as pd
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.exports import tidy, trc
 from courtside.geometry import camera as cameras
-from courtside.records import keypoints, truth
+from courtside.records.keypoints import keypoints
+from courtside.records.truth import session_truth
 from smoke.snakemake_runs import ROOT, planned
 
 TAKE = "walk-4cams-tiny/takes/balancing"
@@ -104,7 +105,7 @@ def test_the_linear_calibration_of_layout_a_looks_well_and_is_not(tiny_study):
 
 def test_calibrated_cameras_are_the_true_ones(tiny_study):
     found = cameras.read_toml(tiny_study / "plain-tiny/calibration/sfm-n12/cameras.toml")
-    real = truth.read(tiny_study / "virtual/plain-tiny/truth.npz")
+    real = session_truth.read(tiny_study / "virtual/plain-tiny/truth.npz")
     for ours, true in zip(found, real.cameras, strict=True):
         assert ours.name == true.name
         assert np.linalg.norm(ours.centre_in_world - true.centre_in_world) < 0.3

@@ -9,7 +9,7 @@ from courtside.calibration.bundle import selection, walk_parts
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
-from courtside.records import clicks, image_names
+from courtside.records.cameras import clicks, image_names
 from courtside.sfm import model, registration
 from courtside.study.errors import InputError
 from courtside.study.execution import log

@@ -4,7 +4,7 @@ from courtside.calibration.court import court as courts
 from courtside.calibration.court import quality, sfm_alignment
 from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
-from courtside.records import clicks
+from courtside.records.cameras import clicks
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json

@@ -8,7 +8,8 @@ from courtside.calibration.court import court
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import resampling
 from courtside.reconstruction.association import associate
-from courtside.records import keypoints, people, skeleton, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 

@@ -3,7 +3,7 @@
 from courtside.calibration.court import court as courts
 from courtside.pages import page
 from courtside.pages.clicking import page as clicking_page
-from courtside.records import clicks, proposals
+from courtside.records.cameras import click_proposals, clicks
 from courtside.study.execution import log
 
 
@@ -13,7 +13,7 @@ def main(
 ):  # fmt: skip
     court = courts.read(court_yaml)
     clicked = clicks.read(clicks_csv, names, court.points) if clicks_csv else {}
-    proposed = proposals.read(proposals_csv, names, court.points) if proposals_csv else {}
+    proposed = click_proposals.read(proposals_csv, names, court.points) if proposals_csv else {}
     frames = [
         clicking_page.frame(
             name,

@@ -10,7 +10,8 @@ from courtside.geometry import camera
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
-from courtside.records import skeleton, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import skeleton
 from courtside.study.execution import log
 
 

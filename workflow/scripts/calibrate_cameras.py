@@ -6,7 +6,7 @@ from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
 from courtside.geometry import camera_fields
-from courtside.records import clicks
+from courtside.records.cameras import clicks
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json

@@ -2,7 +2,8 @@
 
 from courtside.body_frame import common
 from courtside.events import detect
-from courtside.records import device_motion, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.devices import device_motion
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 

@@ -2,7 +2,8 @@
 
 import pandas as pd
 
-from courtside.records import keypoints, tables
+from courtside.records import tables
+from courtside.records.keypoints import keypoints
 from courtside.statistics import agreement, longitudinal
 from courtside.study.execution import log
 

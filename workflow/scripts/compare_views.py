@@ -1,7 +1,8 @@
 """Compare skeletons from fewer cameras with those from all: 3D keypoints of a take -> distances per joint."""
 
 from courtside.evaluation import camera_sets
-from courtside.records import keypoints, tables
+from courtside.records import tables
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 
 

@@ -1,7 +1,9 @@
 """Convert the network's own metric body in one camera: 2D keypoints -> the motion of one more source."""
 
 from courtside.depth import single_view
-from courtside.records import device_motion, frame_times, keypoints
+from courtside.records.cameras import frame_times
+from courtside.records.devices import device_motion
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 
 

@@ -6,8 +6,10 @@ from math import hypot
 from courtside.devices import mocopi
 from courtside.exports import bvh
 from courtside.inertial import correction
-from courtside.records import device_motion, skeleton, sync
-from courtside.records.hierarchy import forward
+from courtside.records.devices import clocks as sync
+from courtside.records.devices import device_motion
+from courtside.records.devices.hierarchy import forward
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 

@@ -1,7 +1,7 @@
 """Take joint offsets off, keep limbs at their length: filtered 3D keypoints, offsets -> corrected ones."""
 
 from courtside.reconstruction import joint_correction
-from courtside.records import keypoints
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 
 

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from courtside.pose import decoders, foreground, tracklets
-from courtside.records import keypoints, skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.video import reader
 

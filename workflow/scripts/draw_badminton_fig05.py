@@ -5,7 +5,7 @@ import pandas as pd
 from courtside.figures.badminton import fig05
 from courtside.figures.style import style
 from courtside.pose import privacy
-from courtside.records import keypoints, skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.video import reader
 

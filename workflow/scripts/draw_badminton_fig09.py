@@ -8,7 +8,8 @@ from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig09
 from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
-from courtside.records import derived, footage, keypoints, skeleton
+from courtside.records.cameras import footage
+from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution import log
 from courtside.video import reader
 
@@ -17,7 +18,7 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
     files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
     seen = footage.read(*files, wanted=points.cameras)
-    figure = stick_figure.stick(joints, derived.read(paths.derived))
+    figure = stick_figure.stick(joints, derived_joints.read(paths.derived))
     frames = round_trip.span(points, n_frames, start_s).frames
     frame = (frames.start + frames.stop - 1) // 2
     images = {}

@@ -6,7 +6,8 @@ from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig11
 from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
-from courtside.records import derived, footage, keypoints, skeleton
+from courtside.records.cameras import footage
+from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution import log
 from courtside.video import reader
 
@@ -15,7 +16,10 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
     files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
     seen = footage.read(*files, wanted=points.cameras)
-    limbs, figure = joints.groups["limbs"], stick_figure.stick(joints, derived.read(paths.derived))
+    limbs, figure = (
+        joints.groups["limbs"],
+        stick_figure.stick(joints, derived_joints.read(paths.derived)),
+    )
     frames = round_trip.span(points, n_frames, start_s).frames
     cameras = [one.camera for one in seen]
     limit = fig11.disagreements(points, cameras, limbs, limit_torso)

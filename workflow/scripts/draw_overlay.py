@@ -7,7 +7,8 @@ from courtside.figures.take import overlay
 from courtside.geometry import camera as cameras
 from courtside.pose import privacy
 from courtside.reconstruction import resampling
-from courtside.records import keypoints, people, skeleton, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.execution import log
 from courtside.video import reader
 

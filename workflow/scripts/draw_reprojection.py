@@ -2,7 +2,7 @@
 
 from courtside.figures.style import style
 from courtside.figures.take import reprojection
-from courtside.records import keypoints
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 
 

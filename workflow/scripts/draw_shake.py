@@ -8,7 +8,8 @@ from courtside.figures.style import style
 from courtside.figures.take import camera_shake
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import camera_shake as knocks
-from courtside.records import keypoints, shake_table
+from courtside.records.cameras import shake_table
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 from courtside.study.execution.files import atomic
 

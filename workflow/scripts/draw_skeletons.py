@@ -3,7 +3,7 @@
 from courtside.figures.style import style
 from courtside.figures.take import skeletons
 from courtside.geometry import camera
-from courtside.records import keypoints, skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 
 

@@ -3,7 +3,8 @@
 from courtside.figures.style import style
 from courtside.figures.take import visibility
 from courtside.reconstruction import resampling
-from courtside.records import keypoints, people, skeleton, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.execution import log
 
 

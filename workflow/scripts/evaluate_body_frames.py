@@ -5,14 +5,17 @@ import pandas as pd
 
 from courtside.body_frame import common, frame
 from courtside.evaluation import sources
-from courtside.records import body_motion, derived, device_motion, tables, take_truth
+from courtside.records import tables
+from courtside.records.devices import device_motion
+from courtside.records.keypoints import body_motion, derived_joints
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 
 def main(body_npz, frame_json, truth_npz, derived_yaml, errors_csv, *, labels, person, owners):
     truth = take_truth.read(truth_npz)
     true = device_motion.of_truth(truth, person)
-    carried_by = frame.anchors(derived.read(derived_yaml), derived.RIG, true.joints)
+    carried_by = frame.anchors(derived_joints.read(derived_yaml), derived_joints.RIG, true.joints)
     rows = []
     for body, own in zip(map(body_motion.read, body_npz), frame_json, strict=True):
         expected = common.counterpart(true, carried_by, body.tpose_s).body_from_device

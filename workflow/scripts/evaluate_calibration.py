@@ -10,7 +10,9 @@ from courtside.calibration.court import court as courts
 from courtside.calibration.planning import cameras
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration
-from courtside.records import image_names, tables, truth
+from courtside.records import tables
+from courtside.records.cameras import image_names
+from courtside.records.truth import session_truth
 from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
 
@@ -20,7 +22,11 @@ CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there
 def main(
     ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, clicks, sets, **options
 ):
-    court, real, record = courts.read(court_yaml), truth.read(truth_npz), tie_points.read(ties_npz)
+    court, real, record = (
+        courts.read(court_yaml),
+        session_truth.read(truth_npz),
+        tie_points.read(ties_npz),
+    )
     summary = json.loads(Path(summary_json).read_text())
     rows = []
     for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):

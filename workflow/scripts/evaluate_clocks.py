@@ -4,7 +4,9 @@ import numpy as np
 import pandas as pd
 
 from courtside.calibration import point_covariance
-from courtside.records import sync, tables, take_truth
+from courtside.records import tables
+from courtside.records.devices import clocks as sync
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 

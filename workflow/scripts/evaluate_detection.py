@@ -3,18 +3,21 @@
 import pandas as pd
 
 from courtside.evaluation import detection
-from courtside.records import keypoints, skeleton, sync, tables, take_truth, truth
+from courtside.records import tables
+from courtside.records.devices import clocks
+from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.truth import session_truth, take_truth
 from courtside.study.execution import log
 
 
 def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, labels):
-    known = {camera.name: camera for camera in truth.read(truth_npz).cameras}
+    known = {camera.name: camera for camera in session_truth.read(truth_npz).cameras}
     real = take_truth.read(take_truth_npz)
     joints = skeleton.read(skeleton_yaml).groups["limbs"]
     parts = []
     for path in pose2d_npz:
         view = keypoints.read_2d(path)
-        clock = sync.Clock(real.offset_s[view.camera], real.drift_ppm[view.camera])
+        clock = clocks.Clock(real.offset_s[view.camera], real.drift_ppm[view.camera])
         rows = detection.evaluate(known[view.camera], view, clock, real, joints)
         whole = 100 * rows.groupby(["person", "frame_idx"]).placed.all().mean()
         log.logger.info("%s: all %d joints in %.0f %% of frames", view.camera, len(joints), whole)

@@ -4,7 +4,9 @@ import numpy as np
 
 from courtside.evaluation import camera_sets
 from courtside.evaluation import joints as pose_errors
-from courtside.records import keypoints, limbs, tables, take_truth
+from courtside.records import tables
+from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 
@@ -14,7 +16,7 @@ def main(pose3d_npz, truth_npz, gains_csv, *, fusions, pairs, labels):
         points = keypoints.read_3d(path).between(truth.time_s[0], truth.time_s[-1])
         true = pose_errors.true_places(points, truth)
         joints, error, _ = pose_errors.errors(points, truth.joints, true)
-        of = [joints.index(limb) for limb in limbs.JOINTS]
+        of = [joints.index(limb) for limb in skeleton.JOINTS]
         distance_mm[name] = 1000 * np.linalg.norm(error[:, :, of], axis=-1)
     rows = camera_sets.gains(distance_mm, pairs, points.rate_hz)
     tables.write(gains_csv, rows, labels)

@@ -4,7 +4,9 @@ import numpy as np
 
 from courtside.evaluation import joints
 from courtside.reconstruction import joint_correction
-from courtside.records import keypoints, tables, take_truth
+from courtside.records import tables
+from courtside.records.keypoints import keypoints
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 

@@ -5,13 +5,14 @@ import pandas as pd
 from courtside.calibration.court import court as courts
 from courtside.evaluation import calibration
 from courtside.geometry import camera as cameras
-from courtside.records import tables, truth
+from courtside.records import tables
+from courtside.records.truth import session_truth
 from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
 
 
 def main(truth_npz, court_yaml, lens_toml, errors_csv, *, labels, clicks, sets, click_sigma_px):
-    court, real = courts.read(court_yaml), truth.read(truth_npz)
+    court, real = courts.read(court_yaml), session_truth.read(truth_npz)
     lenses = {camera: cameras.read_toml(path)[0] for camera, path in lens_toml.items()}
     rows = []
     for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):

@@ -7,7 +7,8 @@ import pandas as pd
 from courtside.calibration.court import court as courts
 from courtside.calibration.records import tie_points
 from courtside.evaluation import racket
-from courtside.records import tables, truth
+from courtside.records import tables
+from courtside.records.truth import session_truth
 from courtside.study.execution import log
 from virtualgym.session import clicks as clicking
 
@@ -17,7 +18,7 @@ VIEWS = 2  # the paper's: the first two fixed cameras of a layout
 def main(
     ties_npz, truth_npz, court_yaml, lengths_csv, *, labels, clicks, length_m, tips_px, **options
 ):
-    court, real = courts.read(court_yaml), truth.read(truth_npz)
+    court, real = courts.read(court_yaml), session_truth.read(truth_npz)
     views, records = real.cameras[:VIEWS], [tie_points.read(path) for path in ties_npz]
     rows = []
     for run, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):

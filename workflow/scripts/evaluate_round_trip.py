@@ -5,7 +5,11 @@ import pandas as pd
 from courtside.evaluation import joints as joint_errors
 from courtside.evaluation import round_trip
 from courtside.geometry import camera as cameras
-from courtside.records import derived, keypoints, skeleton, sync, tables, take_truth
+from courtside.records import tables
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import derived_joints as derived
+from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 

@@ -1,7 +1,9 @@
 """Measure how deep joints lie behind the skin of development bodies: lifted joints, truth -> depths."""
 
 from courtside.evaluation import skin_depths
-from courtside.records import device_motion, tables, take_truth
+from courtside.records import tables
+from courtside.records.devices import device_motion
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 

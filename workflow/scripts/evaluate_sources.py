@@ -9,15 +9,18 @@ from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
 from courtside.evaluation import sources
 from courtside.kinematics import smoothness, wrist_arcs
-from courtside.records import body_motion, derived, device_motion, tables, take_truth
-from courtside.records.sync import Clock
+from courtside.records import tables
+from courtside.records.devices import device_motion
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import body_motion, derived_joints
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 
 def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_hz):
     true = device_motion.of_truth(take_truth.read(truth_npz), person)
-    table = derived.read(derived_yaml)
-    carried_by = bodyframe.anchors(table, derived.RIG, true.joints)
+    table = derived_joints.read(derived_yaml)
+    carried_by = bodyframe.anchors(table, derived_joints.RIG, true.joints)
     errors, parts, paths, distortion = [], [], [], []
     for body in map(body_motion.read, body_npz):
         frame = common.counterpart(true, carried_by, body.tpose_s)

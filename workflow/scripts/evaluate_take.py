@@ -3,7 +3,9 @@
 import pandas as pd
 
 from courtside.evaluation import joints
-from courtside.records import keypoints, tables, take_truth
+from courtside.records import tables
+from courtside.records.keypoints import keypoints
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 
 

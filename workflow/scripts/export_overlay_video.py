@@ -3,7 +3,8 @@
 from courtside.exports import overlay_video
 from courtside.figures.style import style
 from courtside.geometry import camera as cameras
-from courtside.records import keypoints, people, skeleton, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.execution import log
 from courtside.video import reader, writer
 

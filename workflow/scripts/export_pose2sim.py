@@ -3,7 +3,8 @@
 from courtside.exports import pose2sim
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import resampling
-from courtside.records import keypoints, people, skeleton, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.execution import log
 
 

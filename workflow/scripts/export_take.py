@@ -1,7 +1,7 @@
 """Export one person of one take: 3D keypoints -> TRC, C3D and CSV."""
 
 from courtside.exports import c3d, tidy, trc
-from courtside.records import keypoints
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 
 

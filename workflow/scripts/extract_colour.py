@@ -2,7 +2,7 @@
 
 from courtside.devices import open_depth
 from courtside.geometry import camera
-from courtside.records import frame_times
+from courtside.records.cameras import frame_times
 from courtside.study.execution import log
 from courtside.video import writer
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from courtside.records import frame_table
+from courtside.records.cameras import frame_table
 from courtside.sfm import usable
 from courtside.study.errors import InputError
 from courtside.study.execution import log

@@ -1,7 +1,7 @@
 """Filter one take: raw 3D keypoints -> short gaps filled, noise removed without delay."""
 
 from courtside.kinematics import filtering
-from courtside.records import keypoints, skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 
 

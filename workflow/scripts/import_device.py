@@ -1,7 +1,8 @@
 """Import the skeleton that a device gives by itself: mocopi's BVH, Nuitrack's JSON or CSV -> its motion."""
 
 from courtside.devices import mocopi, nuitrack
-from courtside.records import device_motion, skeleton
+from courtside.records.devices import device_motion
+from courtside.records.keypoints import skeleton
 from courtside.study.execution import log
 
 

@@ -1,7 +1,7 @@
 """Import one camera's 2D keypoints of another program: folder of OpenPose's JSON, video -> 2D keypoints."""
 
 from courtside.devices import openpose
-from courtside.records import keypoints, skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.video import reader
 

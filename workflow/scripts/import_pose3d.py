@@ -1,7 +1,7 @@
 """Import 3D keypoints of another program: a TRC file for each person -> 3D keypoints."""
 
 from courtside.exports import pose2sim
-from courtside.records import keypoints, skeleton
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 
 

@@ -2,7 +2,9 @@
 
 from courtside.depth import lifting, single_view, surfaces
 from courtside.devices import open_depth
-from courtside.records import device_motion, frame_times, keypoints, skeleton
+from courtside.records.cameras import frame_times
+from courtside.records.devices import device_motion
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 
 

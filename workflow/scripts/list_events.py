@@ -1,7 +1,8 @@
 """List what each device shows, by its own clock: device motions -> wrist distance, T-poses, claps."""
 
 from courtside.events import detect
-from courtside.records import device_motion, tables
+from courtside.records import tables
+from courtside.records.devices import device_motion
 from courtside.study.execution import log
 
 

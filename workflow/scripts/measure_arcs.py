@@ -3,7 +3,8 @@
 import pandas as pd
 
 from courtside.kinematics import smoothness, wrist_arcs
-from courtside.records import body_motion, tables
+from courtside.records import tables
+from courtside.records.keypoints import body_motion
 from courtside.study.execution import log
 
 

@@ -3,7 +3,8 @@
 from courtside.exports import measures
 from courtside.kinematics import cutoffs, filtering
 from courtside.kinematics import measures as kinematics
-from courtside.records import derived, keypoints, skeleton, tables
+from courtside.records import tables
+from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution import log
 
 
@@ -14,7 +15,7 @@ def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_
     choices = cutoffs.by_group(points, shape, step["cutoff_hz"], step["order"])
     chosen = {group: choice.cutoff_hz for group, choice in choices.items()}
     how = kinematics.Filter(shape.by_group(chosen), step["order"], step["distance_cutoff_hz"])
-    table = derived.read(derived_yaml)
+    table = derived_joints.read(derived_yaml)
     people = kinematics.measure(points, table, shape.name, how, step["sex_of"])
     tables.write(frames_csv, measures.frames(people))
     tables.write(summary_csv, measures.summary(people))

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from courtside.records import shake_table
+from courtside.records.cameras import shake_table
 from courtside.study.execution import log
 from courtside.video import reader, shake_tracking
 

@@ -5,7 +5,7 @@ import cv2
 from courtside.calibration.click_proposals import proposals as court_proposals
 from courtside.calibration.court import court as courts
 from courtside.geometry import camera as cameras
-from courtside.records import proposals
+from courtside.records.cameras import click_proposals
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 
@@ -25,7 +25,7 @@ def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_sha
         found[name] = court_proposals.propose(known[name], image, court, **reach, **options)
         n = sum(not reason for reason in found[name].reason)
         log.logger.info("%s: %d of %d points proposed", name, n, len(court.points))
-    proposals.write(proposals_csv, found, court.points)
+    click_proposals.write(proposals_csv, found, court.points)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import cv2
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, known_points, quality
 from courtside.geometry import camera as camera_models
-from courtside.records import clicks
+from courtside.records.cameras import clicks
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 

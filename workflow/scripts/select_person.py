@@ -1,6 +1,7 @@
 """Select the person who wears devices among those of the fixed cameras: 3D keypoints -> one more source."""
 
-from courtside.records import device_motion, keypoints
+from courtside.records.devices import device_motion
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 
 

@@ -1,7 +1,8 @@
 """Find the cameras' clocks of one take: 2D keypoints of every camera -> offset and drift of each."""
 
 from courtside.geometry import camera as cameras
-from courtside.records import keypoints, sync
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 from courtside.synchronisation import cameras as camera_sync
 

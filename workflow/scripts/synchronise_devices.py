@@ -1,7 +1,9 @@
 """Find the devices' clocks of one take: device motions -> clocks, wrist distance, T-poses and claps."""
 
 from courtside.events import detect
-from courtside.records import device_motion, sync, tables
+from courtside.records import tables
+from courtside.records.devices import clocks as sync
+from courtside.records.devices import device_motion
 from courtside.study.execution import log
 from courtside.synchronisation import devices as device_sync
 

@@ -8,7 +8,9 @@ from courtside.calibration.records import covariance
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import camera_shake, resampling
 from courtside.reconstruction import fusion as camera_error
-from courtside.records import keypoints, people, shake_table, skeleton, sync
+from courtside.records.cameras import shake_table
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 

@@ -10,13 +10,13 @@ from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
 from courtside.devices import mocopi
 from courtside.events import detect
-from courtside.records import derived, skeleton
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import derived_joints, skeleton
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 
 CONFIG = Path(__file__).parents[3] / "config"
-TABLE = derived.read(CONFIG / "derived_joints.yaml")
+TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")
 CARRIED_BY = bodyframe.anchors(TABLE, "rig", device_takes.JOINTS)
 CLOCKS = {"d415-rgb": Clock(status="reference"), "mocopi": Clock(2.0, 0.0)}
 

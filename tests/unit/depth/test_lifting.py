@@ -8,8 +8,8 @@ import depth_scenes
 from courtside.depth import lifting
 from courtside.depth.surfaces import Sampling
 from courtside.geometry import camera
-from courtside.records import limbs, reasons
-from courtside.records.keypoints import Keypoints2D
+from courtside.records.keypoints import missing_reason, skeleton
+from courtside.records.keypoints.keypoints import Keypoints2D
 from depth_scenes import BONES, RADIUS_M, STANDING
 
 RIG = depth_scenes.rig()
@@ -65,7 +65,7 @@ def test_joints_lie_where_the_limbs_are(still):
     assert error.max() < 0.015
     assert (motion.source, motion.kind) == ("cam-depth", "rgbd")
     assert motion.time_s.tolist() == view(xyz).time_s.tolist()
-    assert (motion.reason == reasons.OK).all()
+    assert (motion.reason == missing_reason.OK).all()
     skin = motion.xyz[..., 2] - 0.05
     assert np.allclose(sigma_m, skin**2 * 0.1 / (RIG.depth.K[0, 0] * 0.055), rtol=0.06)
 
@@ -97,7 +97,7 @@ def test_a_hole_over_a_limb_is_no_depth(still):
     holed = [depth_m.copy() for depth_m in pictures]
     holed[3][v - 12 : v + 13, u - 12 : u + 13] = 0
     motion, sigma_m = lift(view(xyz), holed)
-    assert motion.reason[3, wrist] == reasons.NO_DEPTH
+    assert motion.reason[3, wrist] == missing_reason.NO_DEPTH
     assert np.isnan(motion.xyz[3, wrist]).all()
     assert np.isnan(sigma_m[3, wrist])
     assert np.count_nonzero(motion.reason) == 1
@@ -123,7 +123,7 @@ def test_a_hand_before_the_trunk_is_not_the_hip(still, beside):
     if beside:
         assert np.linalg.norm(motion.xyz[-1, hip] - xyz[0, hip]) < 0.05
     else:
-        assert motion.reason[-1, hip] == reasons.NO_DEPTH
+        assert motion.reason[-1, hip] == missing_reason.NO_DEPTH
 
 
 def test_a_joint_that_another_limb_hides_is_missing(still):
@@ -135,8 +135,8 @@ def test_a_joint_that_another_limb_hides_is_missing(still):
     crossed = joints(**front)
     several = np.concatenate([xyz[:-1], crossed[np.newaxis]])
     motion, _ = lift(view(several), [*pictures[:-1], seen(crossed)])
-    assert motion.reason[-1, wrist] == reasons.NO_DEPTH
-    assert (motion.reason[:-1] == reasons.OK).all()
+    assert motion.reason[-1, wrist] == missing_reason.NO_DEPTH
+    assert (motion.reason[:-1] == missing_reason.OK).all()
 
 
 def test_joints_placed_beyond_their_limbs_are_drawn_back(still):
@@ -145,13 +145,13 @@ def test_joints_placed_beyond_their_limbs_are_drawn_back(still):
     beyond_m = {"elbow": 0.03, "wrist": -0.02}
     placed = xyz.copy()
     for (joint, beyond), side in product(beyond_m.items(), ("left", "right")):
-        ends = f"{side}_{limbs.PARENT[joint]}", f"{side}_{joint}"
+        ends = f"{side}_{skeleton.PARENT[joint]}", f"{side}_{joint}"
         start, stop = (NAMES.index(end) for end in ends)
         along = xyz[0, stop] - xyz[0, start]
         placed[:, stop] += beyond * along / np.linalg.norm(along)
     keypoints = view(placed)
     elbow, wrist = NAMES.index("left_elbow"), NAMES.index("left_wrist")
-    keypoints.reason[0, 3, elbow] = reasons.OUT_OF_IMAGE
+    keypoints.reason[0, 3, elbow] = missing_reason.OUT_OF_IMAGE
     as_placed, _ = lift(keypoints, pictures)
     motion, _ = lift(keypoints, pictures, beyond_m=beyond_m)
     arms = [NAMES.index(f"{side}_{joint}") for side in ("left", "right") for joint in beyond_m]
@@ -165,9 +165,9 @@ def test_joints_placed_beyond_their_limbs_are_drawn_back(still):
 def test_reasons_of_the_picture_stay(still):
     xyz, pictures = still
     keypoints = view(xyz)
-    keypoints.reason[0, 2, 4] = reasons.OUT_OF_IMAGE
+    keypoints.reason[0, 2, 4] = missing_reason.OUT_OF_IMAGE
     motion, _ = lift(keypoints, pictures)
-    assert motion.reason[2, 4] == reasons.OUT_OF_IMAGE
+    assert motion.reason[2, 4] == missing_reason.OUT_OF_IMAGE
     assert np.isnan(motion.xyz[2, 4]).all()
 
 
@@ -179,7 +179,7 @@ def test_a_lost_depth_picture_is_no_depth(still):
     motion, _ = lifting.lift_take(
         "d", keypoints, taken, RIG, bones=BONES, baseline_m=0.055, skin_m=RADIUS_M
     )
-    assert (motion.reason[5] == reasons.NO_DEPTH).all()
+    assert (motion.reason[5] == missing_reason.NO_DEPTH).all()
     assert np.count_nonzero(motion.reason) == len(NAMES)
     assert "91.7%" in lifting.summary(motion, np.ones(3))
 

@@ -1,8 +1,8 @@
 import numpy as np
 
 from courtside.depth import single_view
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints2D
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints2D
 
 
 def view(xy, in_body=None):
@@ -18,7 +18,7 @@ def view(xy, in_body=None):
         time_s=np.arange(xy.shape[1]) / 30,
         xy=xy,
         score=np.where(seen, 0.9, np.nan),
-        reason=np.where(seen, reasons.OK, reasons.UNSEEN).astype(np.uint8),
+        reason=np.where(seen, missing_reason.OK, missing_reason.UNSEEN).astype(np.uint8),
         xyz_in_body=empty if in_body is None else in_body,
     )
 
@@ -34,13 +34,13 @@ def test_the_largest_in_the_picture_is_taken_in_each_frame():
     assert found.xy.shape == (1, 3, 2, 2)
     assert found.xy[0, 0].tolist() == NEAR
     assert found.xy[0, 1].tolist() == FAR
-    assert (found.reason[0, 2] == reasons.UNSEEN).all()
+    assert (found.reason[0, 2] == missing_reason.UNSEEN).all()
 
 
 def test_nobody_is_unseen():
     found = single_view.main_person(view(np.zeros((0, 4, 2, 2))))
     assert found.xy.shape == (1, 4, 2, 2)
-    assert (found.reason == reasons.UNSEEN).all()
+    assert (found.reason == missing_reason.UNSEEN).all()
 
 
 def test_landmarks_become_a_motion():
@@ -49,6 +49,6 @@ def test_landmarks_become_a_motion():
     motion = single_view.landmarks("cam-rgb", view([[NEAR, NEAR]], in_body), [7.0, 7.1])
     assert (motion.source, motion.kind) == ("cam-rgb", "rgb")
     assert np.array_equal(motion.xyz, in_body[0], equal_nan=True)
-    assert motion.reason.tolist() == [[0, 0], [0, reasons.UNSEEN]]
+    assert motion.reason.tolist() == [[0, 0], [0, missing_reason.UNSEEN]]
     assert motion.time_s.tolist() == [7.0, 7.1]
     assert motion.performed.all()

@@ -11,7 +11,7 @@ from bvh_texts import ARM
 from scipy.spatial.transform import Rotation
 
 from courtside.devices import bvh
-from courtside.records.hierarchy import NO_PARENT, forward
+from courtside.records.devices.hierarchy import NO_PARENT, forward
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from courtside.devices.depth_recording import DepthRecording
-from courtside.records.frame_times import FrameTimes
+from courtside.records.cameras.frame_times import FrameTimes
 from depth_recordings_made import COLOUR, DEPTH, PLACED
 
 

@@ -8,8 +8,9 @@ import pytest
 
 from courtside.devices import bvh, mocopi
 from courtside.exports import bvh as writer
-from courtside.records import device_motion, reasons, skeleton
-from courtside.records.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.records.devices import device_motion
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 
@@ -63,7 +64,7 @@ def test_a_real_file_has_the_study_s_joints(name, n_frames, rate_hz):
     assert motion.joints.tolist() == list(posed.hierarchy.joints) == list(MOCOPI.joints)
     assert motion.xyz.shape == (n_frames, 27, 3)
     np.testing.assert_allclose(motion.time_s, np.arange(n_frames) / rate_hz, rtol=0, atol=1e-12)
-    assert (motion.reason == reasons.OK).all()
+    assert (motion.reason == missing_reason.OK).all()
     assert motion.performed.tolist() == [False] + [True] * (n_frames - 1)
     for joint, parent in zip(posed.hierarchy.joints, posed.hierarchy.parents, strict=True):
         assert PARENT.get(joint) == (

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from courtside.devices import nuitrack
-from courtside.records import reasons, skeleton
+from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -76,7 +76,7 @@ def check(motion):
     assert motion.joints.tolist() == list(JOINTS)
     assert np.allclose(motion.xyz, PLACES * [1, -1, 1])  # y down
     assert np.allclose(motion.time_s, TIMES_US * 1e-6, atol=1e-6)
-    assert (motion.reason == reasons.OK).all()
+    assert (motion.reason == missing_reason.OK).all()
     assert (motion.source, motion.kind) == ("n", "rgbd")
 
 
@@ -110,9 +110,9 @@ def test_unsure_and_absent_joints_are_missing_with_their_reason(tmp_path):
     path.write_text(json.dumps(made))
     motion = nuitrack.read(path, JOINTS, "n")
     missing = {
-        (1, "left_wrist"): reasons.LOW_SCORE,
-        (2, "head"): reasons.UNSEEN,
-        (3, "right_knee"): reasons.UNSEEN,
+        (1, "left_wrist"): missing_reason.LOW_SCORE,
+        (2, "head"): missing_reason.UNSEEN,
+        (3, "right_knee"): missing_reason.UNSEEN,
     }
     for (frame, joint), reason in missing.items():
         assert motion.reason[frame, JOINTS.index(joint)] == reason

@@ -11,7 +11,7 @@ from courtside.calibration import file_formats
 from courtside.devices import openpose
 from courtside.exports import markers, trc
 from courtside.geometry.camera import project
-from courtside.records import reasons, skeleton
+from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 
@@ -50,9 +50,13 @@ def test_a_small_folder(tmp_path):
     assert found.time_s == pytest.approx(np.arange(4) / 30)
     assert found.xy[0, 0, 2] == pytest.approx([120, 90])
     assert found.score[0, 0] == pytest.approx([0.8] * 17)
-    assert found.reason[0, 1, :3].tolist() == [reasons.OK, reasons.UNSEEN, reasons.OUT_OF_IMAGE]
+    assert found.reason[0, 1, :3].tolist() == [
+        missing_reason.OK,
+        missing_reason.UNSEEN,
+        missing_reason.OUT_OF_IMAGE,
+    ]
     assert np.isnan(found.xy[0, 1, 1:3]).all()
-    assert (found.reason[0, 2:] == reasons.UNSEEN).all()
+    assert (found.reason[0, 2:] == missing_reason.UNSEEN).all()
     assert np.isnan(found.xyz_in_body).all()
 
 
@@ -62,7 +66,7 @@ def test_the_videos_times_and_a_trim(tmp_path):
     time_s = np.array([0, 0.03, 0.07, 0.1, 0.13, 0.17, 0.2])
     found = read(tmp_path / "j", time_s=time_s)
     assert np.array_equal(found.time_s, time_s)
-    assert (found.reason[0, 5:] == reasons.UNSEEN).all()
+    assert (found.reason[0, 5:] == missing_reason.UNSEEN).all()
     found = read(tmp_path / "j", time_s=time_s, trim_s=(0.03, 0.1))
     assert found.time_s.tolist() == [0.03, 0.07]
     assert found.xy[0, :, 0, 0].tolist() == [101, 102]

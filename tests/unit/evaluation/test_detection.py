@@ -7,8 +7,8 @@ import pytest
 
 import scene
 from courtside.evaluation import detection
-from courtside.records.keypoints import Keypoints2D
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
 LIMBS = [
@@ -24,7 +24,7 @@ WIDTHS_M = [0.2, 0.3, 0.35, 0.12, 0.13, 0.14]
 
 @dataclass
 class Truth:
-    """What `courtside.records.take_truth.TakeTruth` has."""
+    """What `courtside.records.truth.take_truth.TakeTruth` has."""
 
     time_s: np.ndarray
     xyz: np.ndarray

@@ -9,12 +9,12 @@ import pytest
 import scene
 import walker
 from courtside.evaluation import joints as joint_errors
-from courtside.records import derived
-from courtside.records.keypoints import Keypoints2D
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import derived_joints
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
-DERIVED = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+DERIVED = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 
 
 @dataclass(frozen=True)

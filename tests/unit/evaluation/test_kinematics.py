@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from courtside.evaluation import kinematics
-from courtside.records import derived
+from courtside.records.keypoints import derived_joints
 
-TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 LIMBS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 JOINTS = [f"{side}_{name}" for side in ("left", "right") for name in LIMBS]
 JOINTS += ["left_eye", "right_eye", "rig_head"]

@@ -8,10 +8,10 @@ from scipy.spatial.transform import Rotation
 
 from courtside.depth.lifting import SKIN_TO_JOINT_M
 from courtside.evaluation import skin_depths
-from courtside.records import limbs
-from courtside.records.take_truth import DeviceTruth, TakeTruth
+from courtside.records.keypoints import skeleton
+from courtside.records.truth.take_truth import DeviceTruth, TakeTruth
 
-JOINTS = list(limbs.JOINTS)
+JOINTS = list(skeleton.JOINTS)
 TRUE_M = {"shoulder": 0.07, "elbow": 0.03, "wrist": 0.02, "hip": 0.115, "knee": 0.04, "ankle": 0.05}
 SPREAD_M, ASIDE_M = 0.01, 0.03
 
@@ -30,7 +30,7 @@ def clip(n, seed, lifted_with):
     return skin + used * ray, skin + deep * ray + aside
 
 
-@pytest.mark.parametrize("lifted_with", [SKIN_TO_JOINT_M, dict.fromkeys(limbs.LIMBS, 0.0)])
+@pytest.mark.parametrize("lifted_with", [SKIN_TO_JOINT_M, dict.fromkeys(skeleton.LIMBS, 0.0)])
 def test_depths_are_found_whatever_the_joints_were_lifted_with(lifted_with):
     pairs = [clip(400, seed, lifted_with) for seed in (1, 2)]
     pairs[0][0][:40, 3] = np.nan
@@ -51,7 +51,7 @@ def test_how_far_joints_are_placed_beyond_their_limbs_is_found():
     true, found = (np.zeros((300, len(JOINTS), 3)) for _ in range(2))
     beyond_m = {"elbow": 0.02, "wrist": 0.012, "knee": -0.015, "ankle": 0.03}
     for side, (chain, start) in product(
-        ("left", "right"), zip(limbs.CHAINS, (0.0, 0.4), strict=True)
+        ("left", "right"), zip(skeleton.CHAINS, (0.0, 0.4), strict=True)
     ):
         places = np.cumsum([[0, start, 3], [0.3, 0.0, 0], [0.25, 0.1, 0]], axis=0)
         for at, joint in enumerate(chain):

@@ -5,7 +5,7 @@ import pytest
 
 import device_takes
 from courtside.events import detect
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import devices as device_sync
 
 CLOCK = Clock(2.0, 50.0)

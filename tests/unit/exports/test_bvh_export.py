@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.devices import bvh as reader
 from courtside.exports import bvh
-from courtside.records.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 

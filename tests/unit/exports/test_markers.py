@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from courtside.exports import markers
-from courtside.records import skeleton
+from courtside.records.keypoints import skeleton
 
 FILES = sorted((Path(__file__).parents[3] / "config" / "skeletons").glob("*.yaml"))
 # Of Pose2Sim 0.10.49: the points of HALPE_26 that it triangulates, as skeletons.py lists them.

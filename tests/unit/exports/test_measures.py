@@ -11,9 +11,10 @@ import walker
 from courtside.exports import measures
 from courtside.kinematics import cutoffs, joint_angles
 from courtside.kinematics import measures as kinematics
-from courtside.records import derived, reasons, tables
+from courtside.records import tables
+from courtside.records.keypoints import derived_joints, missing_reason
 
-TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +22,7 @@ def people():
     time_s, neck = footwork.neck(30, 6, seed=1)
     xyz, _ = footwork.body(neck, time_s)
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
-    record.xyz[0, 50:80, 11], record.reason[0, 50:80, 11] = np.nan, reasons.REJECTED
+    record.xyz[0, 50:80, 11], record.reason[0, 50:80, 11] = np.nan, missing_reason.REJECTED
     record.covariance_2d[0, 50:80, 11] = np.nan
     how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
     return kinematics.measure(record, TABLE, "blazepose33", how, {"p1": "f"})
@@ -103,7 +104,7 @@ def test_nobody_seen_is_a_table_of_missing_values():
     time_s, neck = footwork.neck(30, 2)
     xyz, _ = footwork.body(neck, time_s)
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
-    record.xyz[:], record.covariance_2d[:], record.reason[:] = np.nan, np.nan, reasons.UNSEEN
+    record.xyz[:], record.covariance_2d[:], record.reason[:] = np.nan, np.nan, missing_reason.UNSEEN
     how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
     people = kinematics.measure(record, TABLE, "blazepose33", how)
     rows = measures.summary(people).set_index("measure")

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from courtside.exports import markers, opensim
-from courtside.records import skeleton
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
 SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"

@@ -9,7 +9,7 @@ import scene
 import walker
 from courtside.exports import overlay_video
 from courtside.figures.style import style
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 from courtside.video import reader, writer
 

@@ -16,7 +16,7 @@ import scene
 import walker
 from courtside.exports import markers, pose2sim, trc
 from courtside.geometry import camera as cameras
-from courtside.records import keypoints, reasons, skeleton
+from courtside.records.keypoints import keypoints, missing_reason, skeleton
 from courtside.study.errors import InputError
 from real_data import REAL, needs_real
 
@@ -75,7 +75,7 @@ def test_3d_keypoints_come_back_from_the_folder(project):
     assert found.joints.tolist() == points.joints.tolist()
     np.testing.assert_allclose(found.xyz, points.xyz, atol=1e-6)
     assert found.time_s == pytest.approx(points.time_s)
-    assert found.reason[0, 3, 4] == reasons.UNSEEN
+    assert found.reason[0, 3, 4] == missing_reason.UNSEEN
     assert found.n_views[0, 3, 3:5].tolist() == [2, 0]
     keypoints.write_3d(folder / "x.npz", found)  # a record as any other
     assert keypoints.read_3d(folder / "x.npz").model == "theirs"

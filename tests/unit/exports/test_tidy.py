@@ -10,7 +10,7 @@ import pytest
 
 import walker
 from courtside.exports import tidy
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 
 
 def test_columns_and_values_are_the_records(tmp_path):
@@ -41,7 +41,10 @@ def test_missing_points_are_empty_and_say_why(tmp_path):
     record = walker.points()
     tidy.write(tmp_path / "p.csv", record, 0)
     line = (tmp_path / "p.csv").read_text().splitlines()[1 + 3 * 33 + 4]
-    assert line == f"3,0.06,p1,{record.joints[4]},,,,,,,0,,{reasons.WORDS[reasons.REJECTED]}"
+    assert (
+        line
+        == f"3,0.06,p1,{record.joints[4]},,,,,,,0,,{missing_reason.WORDS[missing_reason.REJECTED]}"
+    )
 
 
 def test_every_column_is_explained_in_the_documentation():
@@ -80,7 +83,7 @@ def test_the_same_record_gives_the_same_bytes(tmp_path):
 def test_every_reason_has_a_word():
     record = walker.points()
     reason = np.zeros_like(record.reason)
-    reason[0, 0, : len(reasons.WORDS)] = list(reasons.WORDS)
+    reason[0, 0, : len(missing_reason.WORDS)] = list(missing_reason.WORDS)
     rows = tidy.table(replace(record, reason=reason), 0)
-    assert rows.reason[: len(reasons.WORDS)].tolist() == list(reasons.WORDS.values())
+    assert rows.reason[: len(missing_reason.WORDS)].tolist() == list(missing_reason.WORDS.values())
     assert rows.reason.notna().all()

@@ -8,11 +8,11 @@ import numpy as np
 import scene
 import walker
 from courtside.figures.style import stick_figure
-from courtside.records import derived
-from courtside.records.footage import Footage
-from courtside.records.sync import Clock
+from courtside.records.cameras.footage import Footage
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import derived_joints
 
-DERIVED = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+DERIVED = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 STICK = stick_figure.stick(walker.SKELETON, DERIVED)
 CAMERAS = scene.ring(3)
 LIMBS = walker.SKELETON.groups["limbs"]

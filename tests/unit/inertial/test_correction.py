@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 import moved_bodies
 from courtside.inertial import correction
-from courtside.records.hierarchy import PosedHierarchy, forward
-from courtside.records.limbs import JOINTS as LIMB_JOINTS
+from courtside.records.devices.hierarchy import PosedHierarchy, forward
+from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
 
 SECONDS = 15.0

@@ -7,7 +7,7 @@ import pytest
 
 import moved_bodies
 from courtside.inertial import fit
-from courtside.records.limbs import JOINTS as LIMB_JOINTS
+from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
 
 BODY = moved_bodies.moving(0, seconds=3.0)

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 import moved_bodies
 from courtside.inertial import heading as heading_drift
-from courtside.records.limbs import JOINTS as LIMB_JOINTS
+from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 
 TRUE = moved_bodies.moving(2, seconds=20.0)
 TIME_S = TRUE.time_s[::2]

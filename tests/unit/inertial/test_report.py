@@ -8,7 +8,7 @@ import pytest
 
 import moved_bodies
 from courtside.inertial import correction
-from courtside.records.hierarchy import forward
+from courtside.records.devices.hierarchy import forward
 
 
 @cache

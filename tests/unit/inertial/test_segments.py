@@ -6,12 +6,12 @@ import pytest
 import moved_bodies
 from courtside.geometry import rotations
 from courtside.inertial import segments
-from courtside.records import limbs
-from courtside.records.hierarchy import forward
+from courtside.records.devices.hierarchy import forward
+from courtside.records.keypoints import skeleton
 
 POSED = moved_bodies.moving(1, seconds=0.1)
 N = len(POSED.time_s)
-OBSERVED = [POSED.hierarchy.joints.index(joint) for joint in limbs.JOINTS]
+OBSERVED = [POSED.hierarchy.joints.index(joint) for joint in skeleton.JOINTS]
 MODEL = segments.Model(
     POSED.hierarchy, segments.segments_of(POSED.hierarchy), OBSERVED, moved_bodies.UP
 )
@@ -52,7 +52,7 @@ def test_a_segment_turns_alone():
     at = MODEL.segments.names.index("left_upper_arm")
     slow[:, 3 * at : 3 * at + 3] = [0.1, -0.2, 0.3]
     moved = MODEL.places(frames(), slow, fixed) - XYZ[:, OBSERVED]
-    elbow, wrist = (limbs.JOINTS.index(f"left_{p}") for p in ("elbow", "wrist"))
+    elbow, wrist = (skeleton.JOINTS.index(f"left_{p}") for p in ("elbow", "wrist"))
     assert np.linalg.norm(moved[:, elbow], axis=1).min() > 0.01
     assert moved[:, wrist] == pytest.approx(moved[:, elbow], abs=1e-12)
     rest = np.delete(moved, [elbow, wrist], axis=1)

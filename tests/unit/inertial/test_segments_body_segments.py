@@ -7,7 +7,7 @@ import pytest
 
 import moved_bodies
 from courtside.inertial import segments
-from courtside.records.hierarchy import Hierarchy
+from courtside.records.devices.hierarchy import Hierarchy
 from courtside.study.errors import InputError
 
 BODY = moved_bodies.hierarchy()

@@ -8,10 +8,10 @@ import pytest
 import footwork
 import walker
 from courtside.kinematics import centre_of_mass
-from courtside.records import derived
+from courtside.records.keypoints import derived_joints
 from courtside.study.errors import InputError
 
-TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 # de Leva 1996, table 4: lengths in mm and the place of the centre in %, for men and women, where the same
 # segment is given between other points; what both say of the distance to their common end must agree.
 TRUNK_FROM_SUPRASTERNALE = {"m": (531.9, 44.86), "f": (529.3, 41.51)}

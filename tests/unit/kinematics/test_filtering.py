@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from courtside.kinematics import filtering
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints3D
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError
 
 RATE_HZ = 60.0
@@ -29,7 +29,9 @@ def record(xyz):
         n_views=np.full(shape, 2),
         reproj_error_px=np.zeros((*shape, 2)),
         accepted=np.ones((*shape, 2), dtype=bool),
-        reason=np.where(np.isnan(xyz[None, ..., 0]), reasons.REJECTED, reasons.OK).astype(np.uint8),
+        reason=np.where(
+            np.isnan(xyz[None, ..., 0]), missing_reason.REJECTED, missing_reason.OK
+        ).astype(np.uint8),
     )
 
 
@@ -73,7 +75,7 @@ def test_short_gaps_are_filled_and_marked_long_ones_left():
     holed[100:106], holed[200:230], holed[:4] = np.nan, np.nan, np.nan
     filled = filtering.fill_gaps(record(holed), max_gap_s=0.1)
     np.testing.assert_allclose(filled.xyz[0, 100:106], xyz[100:106], atol=0.03)
-    assert (filled.reason[0, 100:106] == reasons.INTERPOLATED).all()
+    assert (filled.reason[0, 100:106] == missing_reason.INTERPOLATED).all()
     assert np.isnan(filled.xyz[0, 200:230]).all()
     assert np.isnan(filled.xyz[0, :4]).all()
     np.testing.assert_array_equal(filled.xyz[0, 6:100], xyz[6:100])
@@ -111,7 +113,7 @@ def test_frames_that_are_known_far_worse_than_the_rest_are_left_out():
     found = filtering.leave_out_uncertain(points)
     assert np.isnan(found.xyz[0, :5]).all()
     assert np.isfinite(found.xyz[0, 5:]).all()
-    assert (found.reason[0, :2] == reasons.UNCERTAIN).all()
+    assert (found.reason[0, :2] == missing_reason.UNCERTAIN).all()
     assert found.reason[0, 2, 1] == points.reason[0, 2, 1]  # missing for a reason of its own
     unknown = replace(points, covariance_2d=np.full_like(points.covariance_2d, np.nan))
     np.testing.assert_array_equal(filtering.leave_out_uncertain(unknown).xyz, points.xyz)

@@ -10,9 +10,9 @@ import footwork
 import walker
 from courtside.kinematics import filtering, measures
 from courtside.kinematics.noise_propagation import Noise
-from courtside.records import derived, reasons
+from courtside.records.keypoints import derived_joints, missing_reason
 
-TABLE = derived.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 CUTOFFS_HZ = np.array(walker.SKELETON.by_group({"head": 6, "trunk": 6, "arms": 10, "legs": 8}))
 TINY_M = 1e-7
 
@@ -120,14 +120,17 @@ def test_gaps_are_missing_with_their_reason_and_not_differentiated_across():
     time_s, xyz = circling(seconds=4)
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
     at = walker.SKELETON.index("left_shoulder")
-    for frames, reason in ((slice(100, 130), reasons.ONE_VIEW), (slice(200, 203), reasons.UNSEEN)):
+    for frames, reason in (
+        (slice(100, 130), missing_reason.ONE_VIEW),
+        (slice(200, 203), missing_reason.UNSEEN),
+    ):
         record.xyz[0, frames, at], record.reason[0, frames, at] = np.nan, reason
         record.covariance_2d[0, frames, at] = np.nan
     person = measured(filtering.fill_gaps(record, 0.1))
     neck = person.points["neck"]
     assert np.isnan(neck.position[100:130]).all()
-    assert (neck.reason[100:130] == reasons.ONE_VIEW).all()
-    assert (neck.reason[200:203] == reasons.INTERPOLATED).all()
+    assert (neck.reason[100:130] == missing_reason.ONE_VIEW).all()
+    assert (neck.reason[200:203] == missing_reason.INTERPOLATED).all()
     others = np.delete(np.arange(len(time_s)), np.arange(100, 130))
     for values in (neck.position, neck.velocity, neck.acceleration, *neck.covariance):
         assert np.isfinite(values[others]).all()
@@ -157,11 +160,11 @@ def test_a_take_of_a_few_frames_and_one_without_anybody():
         record,
         xyz=np.full_like(record.xyz, np.nan),
         covariance_2d=np.full_like(record.covariance_2d, np.nan),
-        reason=np.full_like(record.reason, reasons.UNSEEN),
+        reason=np.full_like(record.reason, missing_reason.UNSEEN),
     )
     person = measured(empty)
     assert np.isnan(person.points["mass"].velocity).all()
-    assert (person.points["mass"].reason == reasons.UNSEEN).all()
+    assert (person.points["mass"].reason == missing_reason.UNSEEN).all()
     assert person.points["mass"].distance.seconds == 0
 
 

@@ -14,9 +14,9 @@ import mannequin
 import moved_bodies
 import performers
 from courtside.inertial import correction
-from courtside.records import skeleton
-from courtside.records.device_motion import DeviceMotion
-from courtside.records.limbs import JOINTS as LIMB_JOINTS
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.devices import inertial_errors, inertial_suit
 from virtualgym.movement import catalogue

@@ -8,7 +8,7 @@ import pytest
 
 from courtside.pose import heatmaps, tflite_onnx
 from courtside.pose.detector import Region
-from courtside.records import skeleton
+from courtside.records.keypoints import skeleton
 from real_data import REAL, needs_real
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from courtside.pose import foreground, tracking
 from courtside.pose.detector import Pose, Region
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 
 EMPTY = np.zeros((240, 320, 3), np.uint8)
 
@@ -69,7 +69,7 @@ def test_the_detector_is_asked_once_while_the_track_holds():
 def test_a_lost_person_is_searched_again():
     track, asked = follow([20, 30, 200, 210, None, None, 100])
     assert asked == 3
-    assert (track.reason[4:6] == reasons.UNSEEN).all()
+    assert (track.reason[4:6] == missing_reason.UNSEEN).all()
     assert np.isnan(track.xy[4:6]).all()
     np.testing.assert_allclose(track.xy[[2, 3, 6], 0, 0], [219.5, 229.5, 119.5])
 
@@ -81,7 +81,11 @@ def test_redetection_asks_in_every_frame():
 
 def test_joints_outside_the_picture_say_so():
     track, _ = follow([20])
-    assert track.reason[0].tolist() == [reasons.OK, reasons.OK, reasons.OUT_OF_IMAGE]
+    assert track.reason[0].tolist() == [
+        missing_reason.OK,
+        missing_reason.OK,
+        missing_reason.OUT_OF_IMAGE,
+    ]
     assert np.isnan(track.xy[0, 2]).all()
     assert np.isnan(track.score[0, 2])
 

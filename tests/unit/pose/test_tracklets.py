@@ -10,7 +10,7 @@ import pytest
 import networks
 from courtside.pose import blazepose, foreground, tracking, tracklets
 from courtside.pose.detector import Pose, Region
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 from real_data import REAL, needs_real
 
 EMPTY = np.zeros((240, 640, 3), np.uint8)
@@ -145,7 +145,7 @@ def test_a_person_who_comes_late_is_found_and_one_who_leaves_is_gone():
     }
     np.testing.assert_array_equal(np.flatnonzero(by_place[50]), np.arange(21))
     np.testing.assert_array_equal(np.flatnonzero(by_place[400]), np.arange(15, 31))
-    assert (track.reason[~seen] == reasons.UNSEEN).all()
+    assert (track.reason[~seen] == missing_reason.UNSEEN).all()
 
 
 def test_nobody_at_all_is_one_empty_row():

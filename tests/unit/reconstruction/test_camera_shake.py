@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import camera_shake
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints2D
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
 SIZE = np.array([1920, 1080])
@@ -68,7 +68,7 @@ def view(vectors, seed=1, joints=12):
         time_s=np.arange(len(vectors)) / RATE_HZ,
         xy=projected(shaken.reshape(-1, 3)).reshape(*shape, 2),
         score=np.ones(shape),
-        reason=np.full(shape, reasons.OK, np.uint8),
+        reason=np.full(shape, missing_reason.OK, np.uint8),
         xyz_in_body=shaken,
     )
     return made, still, xyz
@@ -93,7 +93,11 @@ def test_keypoints_return_to_the_still_picture():
     vectors = turns(40)
     made, still, xyz = view(vectors)
     assert np.abs(made.xy - still).max() > 10
-    made.xy[0, 3, 4], made.score[0, 3, 4], made.reason[0, 3, 4] = np.nan, np.nan, reasons.UNSEEN
+    made.xy[0, 3, 4], made.score[0, 3, 4], made.reason[0, 3, 4] = (
+        np.nan,
+        np.nan,
+        missing_reason.UNSEEN,
+    )
     found = camera_shake.steady(made, CAMERA, shake(vectors))
     assert np.isnan(found.xy[0, 3, 4]).all()
     assert np.nanmax(np.abs(found.xy - still)) < 0.02

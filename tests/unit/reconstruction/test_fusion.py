@@ -7,9 +7,9 @@ import pytest
 
 import scene
 from courtside.reconstruction import fusion, resampling
-from courtside.records import reasons, skeleton
-from courtside.records.keypoints import Keypoints2D
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import missing_reason, skeleton
+from courtside.records.keypoints.keypoints import Keypoints2D
 
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
 OPTIONS = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True}
@@ -82,11 +82,11 @@ def test_every_missing_point_says_why():
     xyz[4] = 1.0
     codes = fusion.why_missing(score, xyz, 0.3, 2).tolist()
     assert codes == [
-        reasons.UNSEEN,
-        reasons.LOW_SCORE,
-        reasons.ONE_VIEW,
-        reasons.REJECTED,
-        reasons.OK,
+        missing_reason.UNSEEN,
+        missing_reason.LOW_SCORE,
+        missing_reason.ONE_VIEW,
+        missing_reason.REJECTED,
+        missing_reason.OK,
     ]
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import walker
 from courtside.reconstruction import fusion
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 
 CAMERAS = ["centre", "left", "right"]
 UP = np.array([0, 0, 1.0])
@@ -54,12 +54,12 @@ def test_views_are_those_of_the_half():
 def test_a_joint_of_the_middle_that_one_half_lacks_is_that_of_the_other():
     left, right = halves()
     nose = list(left.joints).index("nose")
-    left.xyz[0, 2, nose], left.reason[0, 2, nose] = np.nan, reasons.REJECTED
+    left.xyz[0, 2, nose], left.reason[0, 2, nose] = np.nan, missing_reason.REJECTED
     left.accepted[0, 2, nose] = False
     merged = fusion.merge(left, right, CAMERAS)
     np.testing.assert_array_equal(merged.xyz[0, 2, nose], right.xyz[0, 2, nose])
-    assert merged.reason[0, 2, nose] == reasons.OK
-    assert (merged.reason[:, 3, 4], merged.n_views[0, 3, 4]) == (reasons.REJECTED, 0)
+    assert merged.reason[0, 2, nose] == missing_reason.OK
+    assert (merged.reason[:, 3, 4], merged.n_views[0, 3, 4]) == (missing_reason.REJECTED, 0)
     assert np.isnan(merged.xyz[0, 3, 4]).all()
 
 

@@ -8,10 +8,10 @@ from scipy.spatial.transform import Rotation
 
 import walker
 from courtside.reconstruction import joint_correction
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-JOINTS = list(limbs.JOINTS)
+JOINTS = list(skeleton.JOINTS)
 SHARES = {"up": 0.05, "out": -0.03, "forward": 0.02}
 ALONG_THIGH = 0.1
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.reconstruction import joint_correction
-from courtside.records import keypoints
+from courtside.records.keypoints import keypoints
 
 ARM = ("left_shoulder", "left_elbow", "left_wrist")
 UPPER_M, FOREARM_M = 0.30, 0.26

@@ -5,7 +5,7 @@ import pytest
 
 import sync_takes
 from courtside.reconstruction import resampling
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 
 CAMERA = sync_takes.rig(1)[0]
 PERSON = sync_takes.athlete(np.random.default_rng(0), 20.0)

@@ -5,7 +5,7 @@ from itertools import pairwise
 import pandas as pd
 import pytest
 
-from courtside.records import frame_table
+from courtside.records.cameras import frame_table
 from courtside.sfm import grid
 from courtside.study.errors import InputError
 

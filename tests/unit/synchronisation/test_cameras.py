@@ -10,9 +10,9 @@ import scene
 import sync_takes
 from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
-from courtside.records import sync
-from courtside.records.keypoints import Keypoints2D
-from courtside.records.sync import Clock
+from courtside.records.devices import clocks as sync
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from courtside.synchronisation import cameras as camera_sync
 from real_data import REAL, needs_real

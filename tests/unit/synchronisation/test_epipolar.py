@@ -5,7 +5,7 @@ import pytest
 
 import sync_takes
 from courtside.geometry import epipolar
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import smooth_tracks
 from courtside.synchronisation.epipolar import Epipolar
 

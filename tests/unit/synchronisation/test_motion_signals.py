@@ -5,7 +5,7 @@ import pytest
 
 import device_takes
 from courtside.events import tpose
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import motion_signals
 from courtside.synchronisation.motion_signals import Signals
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import sync_takes
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import smooth_tracks
 from courtside.synchronisation.speed import Speeds
 

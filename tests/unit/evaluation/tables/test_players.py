@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from courtside.evaluation.tables import players
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 
 MODEL = {"calibration": "sfm-n40", "model": "net"}
 
@@ -21,7 +21,7 @@ def errors(fusion="all-robust", stage="pose3d", median=20.0, p95=50.0, persons=(
             about["identity_percent"] = np.nan
         whole = {"joint": "limbs", "median_mm": median, "coverage_90_percent": 85.0}
         rows.append({**about, **whole, "coverage_50_percent": 45.0, "coverage_95_percent": 93.0})
-        for at, joint in enumerate((*limbs.JOINTS, "nose")):
+        for at, joint in enumerate((*skeleton.JOINTS, "nose")):
             level = 70.0 + 2 * at if joint != "nose" else 5.0
             own = {"joint": joint, "median_mm": median + at, "coverage_90_percent": level}
             rows.append({**about, **own, "coverage_50_percent": 1.0, "coverage_95_percent": 1.0})

@@ -9,10 +9,10 @@ import pytest
 import swung_arms
 from courtside.figures.devices import skeleton_plates
 from courtside.figures.style import joint_map, source_styles
-from courtside.records import derived, skeleton
+from courtside.records.keypoints import derived_joints, skeleton
 
 CONFIG = Path(__file__).parents[4] / "config"
-TABLE = derived.read(CONFIG / "derived_joints.yaml")
+TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")
 SKELETONS = [
     skeleton.read(CONFIG / "skeletons" / f"{name}.yaml") for name in ("mocopi27", "nuitrack19")
 ]

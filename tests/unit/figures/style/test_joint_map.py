@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from courtside.figures.style import joint_map
-from courtside.records import derived, skeleton
+from courtside.records.keypoints import derived_joints, skeleton
 
 CONFIG = Path(__file__).parents[4] / "config"
-TABLE = derived.read(CONFIG / "derived_joints.yaml")
+TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")
 NAMES = ("mocopi27", "blazepose33", "nuitrack19", "cpm14")
 SKELETONS = [skeleton.read(CONFIG / "skeletons" / f"{name}.yaml") for name in NAMES]
 ROWS = joint_map.rows(SKELETONS, TABLE)
@@ -48,7 +48,7 @@ def test_a_definition_that_differs_is_told():
 
 
 def test_a_derived_joint_that_a_skeleton_lacks_is_left_out():
-    lacking = derived.DerivedJoints(TABLE.definitions, {"neck": {"cpm14": "trained-neck"}})
+    lacking = derived_joints.DerivedJoints(TABLE.definitions, {"neck": {"cpm14": "trained-neck"}})
     assert "neck" not in set(joint_map.rows(SKELETONS, lacking)["common"])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.figures.style import schematic_pose
-from courtside.records import skeleton
+from courtside.records.keypoints import skeleton
 
 FILES = sorted((Path(__file__).parents[4] / "config" / "skeletons").glob("*.yaml"))
 

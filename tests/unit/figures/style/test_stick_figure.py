@@ -6,9 +6,9 @@ import numpy as np
 
 import walker
 from courtside.figures.style import stick_figure
-from courtside.records import derived
+from courtside.records.keypoints import derived_joints
 
-TABLE = derived.read(Path(__file__).parents[4] / "config" / "derived_joints.yaml")
+TABLE = derived_joints.read(Path(__file__).parents[4] / "config" / "derived_joints.yaml")
 STICK = stick_figure.stick(walker.SKELETON, TABLE)
 
 

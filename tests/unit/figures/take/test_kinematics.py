@@ -12,7 +12,7 @@ from courtside.calibration.court import court
 from courtside.exports import measures
 from courtside.figures.take import kinematics as speeds
 from courtside.kinematics import measures as kinematics
-from courtside.records import derived
+from courtside.records.keypoints import derived_joints
 
 CONFIG = Path(__file__).parents[4] / "config"
 
@@ -23,7 +23,7 @@ def tables():
     xyz, _ = footwork.body(neck, time_s)
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
     how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
-    table = derived.read(CONFIG / "derived_joints.yaml")
+    table = derived_joints.read(CONFIG / "derived_joints.yaml")
     people = kinematics.measure(record, table, "blazepose33", how)
     return measures.frames(people), measures.summary(people)
 

@@ -8,7 +8,7 @@ import pytest
 import report_made
 import walker
 from courtside.pages.report import facts as report_facts
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError
 
 
@@ -36,7 +36,10 @@ def test_joints_lost_are_counted_by_reason():
     made = walker.points(n_frames=10, n_cameras=3)
     wrist = list(made.joints).index("left_wrist")
     made.xyz[:, :4, wrist] = np.nan
-    made.reason[:, :3, wrist], made.reason[:, 3, wrist] = reasons.UNSEEN, reasons.REJECTED
+    made.reason[:, :3, wrist], made.reason[:, 3, wrist] = (
+        missing_reason.UNSEEN,
+        missing_reason.REJECTED,
+    )
     made.n_views[:, 4:, wrist] = 2
     facts = report_facts.of_skeleton(made)
     assert facts["joints"]["left_wrist"] == {

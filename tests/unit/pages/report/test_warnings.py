@@ -5,7 +5,7 @@ import math
 import pytest
 
 from courtside.pages.report import warnings as warned
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 
 STILL = {
     "camera": "left",

@@ -9,8 +9,9 @@ from unpacking import size_of, unpacked
 
 import walker
 from courtside.pages.viewer import layers
-from courtside.records import device_motion, keypoints
-from courtside.records.sync import Clock
+from courtside.records.devices import device_motion
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints
 from courtside.study.errors import InputError
 
 

@@ -6,7 +6,7 @@ import pytest
 import suits
 from courtside.devices import bvh as bvh_file
 from courtside.exports import bvh
-from courtside.records.hierarchy import forward
+from courtside.records.devices.hierarchy import forward
 from virtualgym.devices import inertial_suit, mocopi_skeleton
 from virtualgym.devices.inertial_errors import STRENGTHS, Errors
 

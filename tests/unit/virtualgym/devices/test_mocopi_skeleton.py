@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import mannequin
-from courtside.records import skeleton
-from courtside.records.hierarchy import PosedHierarchy, forward
+from courtside.records.devices.hierarchy import PosedHierarchy, forward
+from courtside.records.keypoints import skeleton
 from virtualgym.body import pose_bones, skinned_body
 from virtualgym.devices import mocopi_skeleton
 

@@ -10,7 +10,8 @@ import pytest
 import scene
 from courtside.calibration.court import court as courts
 from courtside.geometry.camera import Camera
-from courtside.records import clicks, truth
+from courtside.records.cameras import clicks
+from courtside.records.truth import session_truth
 from courtside.video import reader
 from virtualgym.cameras import layouts
 from virtualgym.session import session
@@ -47,7 +48,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def known(folder):
-    return truth.read(folder / "truth.npz")
+    return session_truth.read(folder / "truth.npz")
 
 
 def files(folder):
@@ -133,7 +134,7 @@ def test_another_walk_leaves_hall_and_fixed_cameras_as_they_are(folder, known, h
     one, two = files(folder), files(tmp_path)
     same = {name for name in one if one[name] == two[name]}
     assert same == one.keys() - {"walk.mp4", "truth.npz"}
-    moved = truth.read(tmp_path / "truth.npz").walks["walk"]
+    moved = session_truth.read(tmp_path / "truth.npz").walks["walk"]
     assert np.abs(moved.cam_from_world[0] - known.walks["walk"].cam_from_world[0]).max() > 1e-3
     assert (moved.K != known.walks["walk"].K).any()
 

@@ -11,7 +11,7 @@ import balls
 import mannequin
 import scene
 from courtside.calibration.court import court as courts
-from courtside.records import take_truth
+from courtside.records.truth import take_truth
 from courtside.video import reader
 from virtualgym.body import skinned_body
 from virtualgym.session import session

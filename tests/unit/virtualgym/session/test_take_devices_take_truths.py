@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.records.take_truth import DeviceTruth
+from courtside.records.truth.take_truth import DeviceTruth
 from virtualgym.body import skinned_body
 from virtualgym.session import take as takes
 from virtualgym.session import take_devices

@@ -4,7 +4,7 @@ import numpy as np
 
 from courtside.body_frame import frame as bodyframe
 from courtside.events import tpose as tposes
-from courtside.records.body_motion import BodyMotion
+from courtside.records.keypoints.body_motion import BodyMotion
 from courtside.study.errors import InputError
 
 SAME_S = 0.3  # two devices' spells that overlap by that are one T-pose
@@ -17,9 +17,9 @@ def common(happened, clocks, motions=None):
     ----------
     happened : dict of str to courtside.events.detect.Events
         Of each source; the first is the reference.
-    clocks : dict of str to courtside.records.sync.Clock
+    clocks : dict of str to courtside.records.devices.clocks.Clock
         Against the reference.
-    motions : dict of str to courtside.records.device_motion.DeviceMotion, optional
+    motions : dict of str to courtside.records.devices.device_motion.DeviceMotion, optional
         Where nobody performs a T-pose, the rest poses that these bring along, if all do.
 
     Returns
@@ -69,7 +69,7 @@ def claps_of(source, happened, clocks):
     ----------
     source : str
     happened : dict of str to courtside.events.detect.Events
-    clocks : dict of str to courtside.records.sync.Clock
+    clocks : dict of str to courtside.records.devices.clocks.Clock
         Against the reference.
 
     Returns
@@ -91,16 +91,16 @@ def aligned(motion, frame, clock, clap_s=()):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
     frame : courtside.body_frame.frame.BodyFrame
-    clock : courtside.records.sync.Clock
+    clock : courtside.records.devices.clocks.Clock
         Of the source against the reference.
     clap_s : (C,) float
         Claps, on the reference clock.
 
     Returns
     -------
-    body : courtside.records.body_motion.BodyMotion
+    body : courtside.records.keypoints.body_motion.BodyMotion
         Frames that nobody performed are left out.
     """
     kept = motion.performed
@@ -123,7 +123,7 @@ def counterpart(motion, carried_by, tpose_s):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
         On the reference clock.
     carried_by : courtside.body_frame.frame.Anchors
         Of this motion's joints.

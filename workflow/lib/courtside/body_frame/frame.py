@@ -90,7 +90,7 @@ def anchors(table, skeleton, joints, *, top=TOP):
 
     Parameters
     ----------
-    table : courtside.records.derived.DerivedJoints
+    table : courtside.records.keypoints.derived_joints.DerivedJoints
     skeleton : str
         As the table names it.
     joints : sequence of str
@@ -133,7 +133,7 @@ def at_tpose(motion, carried_by, tpose):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
     carried_by : Anchors
     tpose : courtside.events.tpose.TPose
         Of this motion.
@@ -185,7 +185,7 @@ def following(motion, frame):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
     frame : BodyFrame
         Of a T-pose of this motion.
 

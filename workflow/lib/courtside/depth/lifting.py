@@ -6,8 +6,8 @@ import numpy as np
 
 from courtside.depth.surfaces import TRUNK, Sampler, Sampling
 from courtside.geometry import camera, rotations
-from courtside.records import limbs, reasons
-from courtside.records.device_motion import DeviceMotion
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.keypoints import missing_reason, skeleton
 
 # How deep a joint lies behind the skin that a camera sees, metres, from any side; the radius of the limb
 # there. ASSUME: limbs are round: half of circumference / pi of adults' medians in ANSUR II (Gordon et al.
@@ -62,7 +62,7 @@ def lift_take(
         How deep each joint lies behind the skin, by its name or its name without side; `SKIN_TO_JOINT_M`
         where absent.
     beyond_m : dict of str to float, optional
-        How far the network places a joint beyond the end of its limb (`limbs.PARENT`), by the joint's name
+        How far the network places a joint beyond the end of its limb (`skeleton.PARENT`), by the joint's name
         without side, which is taken off; 0 where absent.
     sampling : Sampling, optional
 
@@ -93,7 +93,7 @@ def lift_take(
     is_trunk = np.isin(names, TRUNK)
     radius_m = np.maximum(skin, LEAST_RADIUS_M)
     sampler = Sampler(rig, radius_m, is_trunk, baseline_m, sampling)
-    xy = np.where((view.reason[0] == reasons.OK)[..., np.newaxis], view.xy[0], np.nan)
+    xy = np.where((view.reason[0] == missing_reason.OK)[..., np.newaxis], view.xy[0], np.nan)
     z, z_body = _sampled(sampler, xy, view.time_s, depth_frames)
     joints_at = _behind_skin(rig.colour, xy, z, skin)
     chain = _chain(names, bones, is_trunk)
@@ -107,14 +107,14 @@ def lift_take(
         for joint, surface in chosen.items():
             xyz[t, joint], depth[t, joint] = joints_at[t, joint, surface], z[t, joint, surface]
     xyz = _drawn_back(xyz, names, beyond_m or {})
-    missing = np.isnan(xyz[..., 0]) & (view.reason[0] == reasons.OK)
+    missing = np.isnan(xyz[..., 0]) & (view.reason[0] == missing_reason.OK)
     motion = DeviceMotion(
         source=source,
         kind="rgbd",
         joints=np.array(names),
         time_s=np.asarray(view.time_s, dtype=float),
         xyz=xyz,
-        reason=np.where(missing, reasons.NO_DEPTH, view.reason[0]).astype(np.uint8),
+        reason=np.where(missing, missing_reason.NO_DEPTH, view.reason[0]).astype(np.uint8),
         performed=np.ones(len(xy), dtype=bool),
     )
     return motion, sampler.sigma_z(depth)
@@ -186,7 +186,7 @@ def _drawn_back(xyz, names, beyond_m):
     """Return joints (T, J, 3) moved towards their parents; those without a parent in the frame stay."""
     moved = xyz.copy()
     for (joint, beyond), side in product(beyond_m.items(), ("left", "right")):
-        ends = f"{side}_{limbs.PARENT[joint]}", f"{side}_{joint}"
+        ends = f"{side}_{skeleton.PARENT[joint]}", f"{side}_{joint}"
         if set(ends) <= set(names):
             start, stop = (names.index(end) for end in ends)
             back = beyond * rotations.unit(xyz[:, stop] - xyz[:, start])
@@ -266,8 +266,8 @@ def _uncover(chosen, xy, z, radius_px, chain, is_trunk):
 
 def summary(motion, sigma_m):
     """Return a line for the log: how many joints have depth, and how exact it is."""
-    seen = np.isin(motion.reason, (reasons.OK, reasons.NO_DEPTH))
-    lifted = np.count_nonzero(motion.reason == reasons.OK) / max(np.count_nonzero(seen), 1)
+    seen = np.isin(motion.reason, (missing_reason.OK, missing_reason.NO_DEPTH))
+    lifted = np.count_nonzero(motion.reason == missing_reason.OK) / max(np.count_nonzero(seen), 1)
     known = sigma_m[np.isfinite(sigma_m)]
     sigma_mm = 1000 * np.median(known) if len(known) else np.nan
     return f"{motion.source}: {lifted:.1%} of the joints seen have depth, noise {sigma_mm:.1f} mm"

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from courtside.records import reasons
-from courtside.records.device_motion import DeviceMotion
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.keypoints import missing_reason
 
 
 def main_person(view):
@@ -28,7 +28,7 @@ def main_person(view):
     n_people, n_frames, n_joints = view.score.shape
     if n_people == 0:
         empty = np.full((1, n_frames, n_joints), np.nan)
-        unseen = np.full(empty.shape, reasons.UNSEEN, dtype=view.reason.dtype)
+        unseen = np.full(empty.shape, missing_reason.UNSEEN, dtype=view.reason.dtype)
         return replace(
             view,
             xy=np.repeat(empty[..., np.newaxis], 2, axis=-1),
@@ -72,8 +72,8 @@ def landmarks(source, view, time_s=None):
         joints=np.asarray(person.joints),
         time_s=np.asarray(person.time_s if time_s is None else time_s, dtype=float),
         xyz=np.where(seen[..., np.newaxis], xyz, np.nan),
-        reason=np.where(seen, reasons.OK, np.where(reason == 0, reasons.UNSEEN, reason)).astype(
-            np.uint8
-        ),
+        reason=np.where(
+            seen, missing_reason.OK, np.where(reason == 0, missing_reason.UNSEEN, reason)
+        ).astype(np.uint8),
         performed=np.ones(len(xyz), dtype=bool),
     )

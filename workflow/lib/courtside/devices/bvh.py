@@ -9,7 +9,7 @@ from urllib.parse import quote, unquote
 import bvhio
 import numpy as np
 
-from courtside.records.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
 from courtside.study.errors import InputError
 
 CENTIMETRES_M = 0.01

@@ -39,7 +39,7 @@ import pandas as pd
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.geometry import camera as cameras
 from courtside.geometry import camera_fields, rotations
-from courtside.records.frame_times import FrameTimes
+from courtside.records.cameras.frame_times import FrameTimes
 from courtside.study.errors import InputError, reading
 from courtside.video import images, reader
 

@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from courtside.devices import bvh
-from courtside.records import hierarchy, reasons
-from courtside.records.device_motion import DeviceMotion
+from courtside.records.devices import hierarchy
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError
 
 KIND = "inertial"
@@ -65,7 +66,7 @@ def read(path, skeleton, *, source="mocopi"):
         joints=np.array(skeleton.joints),
         time_s=posed.time_s,
         xyz=xyz[:, order],
-        reason=np.full(xyz.shape[:2], reasons.OK, dtype=np.uint8),
+        reason=np.full(xyz.shape[:2], missing_reason.OK, dtype=np.uint8),
         performed=~_rest_rows(posed),
     )
     return motion, posed

@@ -25,8 +25,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from courtside.records import reasons
-from courtside.records.device_motion import DeviceMotion
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError, reading
 from courtside.study.execution import log
 
@@ -87,7 +87,9 @@ def read(path, joints, source, *, min_confidence=0.5, user=None, unit_m=None):
     unsure = confidence < min_confidence
     xyz[unseen | unsure] = np.nan
     _check_size(path, xyz, list(joints))
-    reason = np.where(unseen, reasons.UNSEEN, np.where(unsure, reasons.LOW_SCORE, reasons.OK))
+    reason = np.where(
+        unseen, missing_reason.UNSEEN, np.where(unsure, missing_reason.LOW_SCORE, missing_reason.OK)
+    )
     return DeviceMotion(
         source=source,
         kind="rgbd",

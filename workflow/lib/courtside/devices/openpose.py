@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints2D
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError, reading
 
 # BODY_25 and BODY_25B have 25 points each, in another order: the 9th is the middle of the hips, or an elbow.
@@ -24,7 +24,7 @@ def read(folder, skeleton, *, camera, model, size, time_s=None, rate_hz=None, tr
     ----------
     folder : str or Path
         Files `*.json`; the last number in a name counts the frames, and the lowest is that of the first.
-    skeleton : courtside.records.skeleton.Skeleton
+    skeleton : courtside.records.keypoints.skeleton.Skeleton
         Joints in the order of the files.
     camera, model : str
         What the result is called.
@@ -133,11 +133,11 @@ def _check_order(folder, skeleton, people):
 
 def _keypoints(tracks, skeleton, camera, model, size, times):
     xy, score = tracks[..., :2], np.clip(tracks[..., 2], 0, 1)
-    reason = np.where(np.isfinite(score), reasons.OK, reasons.UNSEEN)
+    reason = np.where(np.isfinite(score), missing_reason.OK, missing_reason.UNSEEN)
     with np.errstate(invalid="ignore"):
         outside = ((xy < -0.5) | (xy > np.array(size) - 0.5)).any(axis=-1)
-    reason = np.where(outside, reasons.OUT_OF_IMAGE, reason)
-    kept = reason == reasons.OK
+    reason = np.where(outside, missing_reason.OUT_OF_IMAGE, reason)
+    kept = reason == missing_reason.OK
     return Keypoints2D(
         camera=camera,
         model=model,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from courtside.calibration import file_formats
 from courtside.drafting.guess import Recording
-from courtside.records import clicks
+from courtside.records.cameras import clicks
 from courtside.study.errors import InputError
 from courtside.video import reader as video
 from courtside.video import walk_frames

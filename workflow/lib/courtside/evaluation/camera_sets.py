@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.evaluation import joints
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 
 SHARED = ("time_s", "joints", "person_id")
 SETS = ("limbs", "right half", "left half")  # in the table's order, as in `pose_errors`
@@ -130,7 +130,7 @@ def _groups(names):
     groups = {}
     for label in SETS:
         sides = joints.SETS[label]
-        of = [name for name in limbs.JOINTS if name.startswith(sides)]
+        of = [name for name in skeleton.JOINTS if name.startswith(sides)]
         groups[label] = [names.index(name) for name in of if name in names]
     groups |= {name: [at] for at, name in enumerate(names)}
     return {label: of for label, of in groups.items() if of}

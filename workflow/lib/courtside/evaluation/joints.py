@@ -10,7 +10,8 @@ from scipy.stats import chi2
 
 from courtside.geometry import camera as camera_models
 from courtside.reconstruction import resampling
-from courtside.records import derived, limbs
+from courtside.records.keypoints import derived_joints
+from courtside.records.keypoints import skeleton as limbs
 from courtside.study.errors import InputError
 
 LEVELS = (0.5, 0.9, 0.95)  # of the ellipsoids whose coverage is counted
@@ -196,7 +197,7 @@ def derive_truth(truth, table, skeleton, names):
     ----------
     truth
         A dataclass as for `true`.
-    table : courtside.records.derived.DerivedJoints
+    table : courtside.records.keypoints.derived_joints.DerivedJoints
     skeleton : str
         Of the network: a joint that it defines otherwise is left out, and has no true error then.
     names : sequence of str
@@ -205,10 +206,10 @@ def derive_truth(truth, table, skeleton, names):
     -------
     truth
     """
-    alike = [name for name in names if table.comparable(skeleton, derived.RIG, name)]
+    alike = [name for name in names if table.comparable(skeleton, derived_joints.RIG, name)]
     if not alike:
         return truth
-    weights = np.stack([table.weights(derived.RIG, name, truth.joints) for name in alike])
+    weights = np.stack([table.weights(derived_joints.RIG, name, truth.joints) for name in alike])
     more = np.einsum("nj,ptjk->ptnk", weights, truth.xyz)
     joints = np.array([*map(str, truth.joints), *alike])
     return replace(truth, joints=joints, xyz=np.concatenate([truth.xyz, more], axis=2))

@@ -6,7 +6,7 @@ from scipy.interpolate import CubicSpline
 
 from courtside.calibration import point_covariance
 from courtside.kinematics import measures
-from courtside.records import derived as derived_joints
+from courtside.records.keypoints import derived_joints
 
 FINE = 10  # true points per frame, for the length of the true path
 COLUMNS = [
@@ -31,7 +31,7 @@ def table(frames, truth, derived, sex_of):
         As `courtside.exports.measures.frames` writes them.
     truth
         Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3) m.
-    derived : courtside.records.derived.DerivedJoints
+    derived : courtside.records.keypoints.derived_joints.DerivedJoints
     sex_of : dict of str to {"m", "f", None}
 
     Returns

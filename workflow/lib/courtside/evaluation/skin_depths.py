@@ -13,7 +13,8 @@ import pandas as pd
 from courtside.depth.lifting import SKIN_TO_JOINT_M, by_joint
 from courtside.evaluation.joints import at_times
 from courtside.geometry import rotations
-from courtside.records import limbs, sync
+from courtside.records.devices import clocks
+from courtside.records.keypoints import skeleton
 
 COLUMNS = ["joint", "skin_m", "sd_m", "n", "beyond_m", "beyond_sd_m"]
 NORMAL_SPREAD = 1.4826  # standard deviation over median distance from the median, of normal errors
@@ -24,7 +25,7 @@ def in_camera(truth, device, person, time_s):
 
     Parameters
     ----------
-    truth : courtside.records.take_truth.TakeTruth
+    truth : courtside.records.truth.take_truth.TakeTruth
     device, person : str
     time_s : (T,) float
         On the device's own clock.
@@ -35,7 +36,7 @@ def in_camera(truth, device, person, time_s):
         Metres, in the axes of the colour camera; NaN outside the truth's span.
     """
     real = truth.devices[device]
-    clock = sync.Clock(real.offset_s, real.drift_ppm)
+    clock = clocks.Clock(real.offset_s, real.drift_ppm)
     when_s = clock.to_reference(np.asarray(time_s) - real.latency_s)
     at = list(map(str, truth.person_id)).index(person)
     world = at_times(truth.time_s, truth.xyz[at : at + 1], when_s)[0]
@@ -61,24 +62,24 @@ def estimate(pairs, joints, true_joints, skin_m=None, beyond_m=None):
     table : pandas.DataFrame
         `COLUMNS`: for each joint, both sides together, the median of its depth behind the skin along the
         viewing ray and its robust standard deviation, metres; n, how many it rests on; and of how far it is
-        placed beyond the end of its limb (`limbs.PARENT`), NaN for shoulder and hip.
+        placed beyond the end of its limb (`skeleton.PARENT`), NaN for shoulder and hip.
 
     Raises
     ------
     ValueError
         If a joint is never seen.
     """
-    used_m = by_joint(limbs.LIMBS, SKIN_TO_JOINT_M if skin_m is None else skin_m)
+    used_m = by_joint(skeleton.LIMBS, SKIN_TO_JOINT_M if skin_m is None else skin_m)
     rows = []
-    for joint, used in zip(limbs.LIMBS, used_m, strict=True):
+    for joint, used in zip(skeleton.LIMBS, used_m, strict=True):
         deep, beyond = [], []
         for (found, true), side in product(pairs, ("left", "right")):
             place = dict(zip(joints, np.moveaxis(found, 1, 0), strict=True))
             at = place[f"{side}_{joint}"]
             off = at - true[:, list(true_joints).index(f"{side}_{joint}")]
             deep.append(used - (off * rotations.unit(at)).sum(axis=-1))
-            if joint in limbs.PARENT:
-                limb = rotations.unit(at - place[f"{side}_{limbs.PARENT[joint]}"])
+            if joint in skeleton.PARENT:
+                limb = rotations.unit(at - place[f"{side}_{skeleton.PARENT[joint]}"])
                 beyond.append((beyond_m or {}).get(joint, 0.0) + (off * limb).sum(axis=-1))
         depth, deep_sd, count = _spread(deep)
         if not count:

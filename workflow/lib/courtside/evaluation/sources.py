@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.geometry import similarity
 from courtside.geometry.similarity import Sim3
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import reading
 
 ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
@@ -68,7 +68,7 @@ def shared(source, reference):
 
     Others, like eyes, are left out: not every source has them, and means over joints must be of the same.
     """
-    known = set(map(str, reference.joints)) & set(limbs.JOINTS)
+    known = set(map(str, reference.joints)) & set(skeleton.JOINTS)
     return [str(name) for name in source.joints if str(name) in known]
 
 
@@ -77,7 +77,7 @@ def matched(source, reference, *, form="fixed", shift_s=0.0):
 
     Parameters
     ----------
-    source, reference : courtside.records.body_motion.BodyMotion
+    source, reference : courtside.records.keypoints.body_motion.BodyMotion
     form : str
         `fixed` or `following`.
     shift_s : float
@@ -102,7 +102,7 @@ def errors(source, reference):
 
     Parameters
     ----------
-    source, reference : courtside.records.body_motion.BodyMotion
+    source, reference : courtside.records.keypoints.body_motion.BodyMotion
 
     Returns
     -------
@@ -188,7 +188,7 @@ def split(source, reference, *, form="fixed"):
 
     Parameters
     ----------
-    source, reference : courtside.records.body_motion.BodyMotion
+    source, reference : courtside.records.keypoints.body_motion.BodyMotion
     form : str
         `fixed` or `following`.
 

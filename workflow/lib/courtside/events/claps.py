@@ -93,7 +93,7 @@ def find(motion, spells):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
     spells : list of courtside.events.tpose.TPose
         Of this motion, in order of time.
 
@@ -127,7 +127,7 @@ def candidates(motion, spells):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
     spells : list of courtside.events.tpose.TPose
     """
     after, taken = [], []

@@ -7,7 +7,7 @@ import pandas as pd
 
 from courtside.events import claps as clapping
 from courtside.events import tpose as tposes
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 
 

@@ -78,7 +78,7 @@ def find(motion, *, least_s=LEAST_S, limits=None):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
         Frames that nobody performed are passed over.
     least_s : float
         Of stillness.
@@ -117,7 +117,7 @@ def rest(motion, *, limits=None):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
         One run of frames at its beginning that nobody performed.
     limits : dict of str to float, optional
         In place of some of `LIMITS`.
@@ -155,7 +155,7 @@ def measure(motion):
 
     Parameters
     ----------
-    motion : courtside.records.device_motion.DeviceMotion
+    motion : courtside.records.devices.device_motion.DeviceMotion
 
     Returns
     -------

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from courtside.records.hierarchy import NO_PARENT
+from courtside.records.devices.hierarchy import NO_PARENT
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
 

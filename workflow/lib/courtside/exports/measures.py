@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.kinematics import measures, path_length
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 
 LEAST_EXTENT_M = 1.0
 # column: (unit, meaning, meaning of an empty cell); POINT is neck, centre or mass, ANGLE one of joint_angles
@@ -24,7 +24,7 @@ FRAME_DICTIONARY = {
     "POINT_ground_speed_sd_m_s": ("m/s", "its standard deviation", "missing or unknown"),
     "POINT_acceleration_m_s2": ("m/s2", "length of the acceleration, without gravity", "missing"),
     "POINT_acceleration_sd_m_s2": ("m/s2", "its standard deviation", "missing or unknown"),
-    "POINT_reason": ("", f"one of {', '.join(reasons.WORDS.values())}", "never empty"),
+    "POINT_reason": ("", f"one of {', '.join(missing_reason.WORDS.values())}", "never empty"),
     "ANGLE_deg": ("degrees", "see courtside.kinematics.joint_angles", "a joint is missing"),
     "ANGLE_sd_deg": ("degrees", "its standard deviation", "missing or unknown"),
 }
@@ -87,7 +87,7 @@ def _columns(point):
         "ground_speed_sd_m_s": ground_sd.round(4),
         "acceleration_m_s2": change.round(3),
         "acceleration_sd_m_s2": change_sd.round(3),
-        "reason": pd.Series(point.reason).map(reasons.WORDS).to_numpy(),
+        "reason": pd.Series(point.reason).map(missing_reason.WORDS).to_numpy(),
     }
 
 

@@ -54,7 +54,7 @@ def track(camera, view, assigned, clock, points, skeleton):
         All tracklets: faces of bystanders are hidden as well.
     assigned : Keypoints2D
         The same frames by person, in the order of `points.person_id`.
-    clock : courtside.records.sync.Clock
+    clock : courtside.records.devices.clocks.Clock
     points : Keypoints3D
     skeleton : Skeleton
 

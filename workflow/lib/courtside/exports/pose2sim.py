@@ -14,8 +14,8 @@ import tomli_w
 
 from courtside.exports import markers, opensim, trc
 from courtside.geometry import camera as camera_files
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints3D
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic_folder
 
@@ -121,7 +121,7 @@ def read_takes(files, skeleton, *, model):
     ----------
     files : dict of str to path
         By person.
-    skeleton : courtside.records.skeleton.Skeleton
+    skeleton : courtside.records.keypoints.skeleton.Skeleton
         Its joints are looked for among the markers, under Pose2Sim's names or their own.
     model : str
         What the keypoints are called.
@@ -166,5 +166,5 @@ def _points(xyz, persons, time_s, skeleton, model):
         n_views=np.where(there, LEAST_VIEWS, 0),
         reproj_error_px=np.empty((*there.shape, 0)),
         accepted=np.empty((*there.shape, 0), dtype=bool),
-        reason=np.where(there, reasons.OK, reasons.UNSEEN).astype(np.uint8),
+        reason=np.where(there, missing_reason.OK, missing_reason.UNSEEN).astype(np.uint8),
     )

@@ -3,7 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from courtside.records import reasons, tables
+from courtside.records import tables
+from courtside.records.keypoints import missing_reason
 
 # column: (unit, meaning, meaning of an empty cell)
 DICTIONARY = {
@@ -27,7 +28,7 @@ DICTIONARY = {
     "sd_z_mm": ("mm", "standard deviation of z from the keypoints' own noise", "unknown"),
     "n_views": ("", "cameras that the point rests on", "never empty; 0 where missing"),
     "reproj_error_px": ("px", "mean distance to the keypoints of these cameras", "missing"),
-    "reason": ("", f"one of {', '.join(reasons.WORDS.values())}", "never empty"),
+    "reason": ("", f"one of {', '.join(missing_reason.WORDS.values())}", "never empty"),
 }
 
 
@@ -58,7 +59,7 @@ def table(keypoints, person):
         **{f"sd_{axis}_mm": deviation_mm[:, at].round(2) for at, axis in enumerate("xyz")},
         "n_views": keypoints.n_views[person].ravel(),
         "reproj_error_px": _mean_error(keypoints, person).round(2),
-        "reason": pd.Series(keypoints.reason[person].ravel()).map(reasons.WORDS),
+        "reason": pd.Series(keypoints.reason[person].ravel()).map(missing_reason.WORDS),
     }
     return pd.DataFrame(columns)
 

@@ -15,7 +15,7 @@ from courtside.inertial import fit as vision_joints
 from courtside.inertial import report
 from courtside.inertial.fit import Fit
 from courtside.inertial.segments import Frames
-from courtside.records.hierarchy import PosedHierarchy, forward
+from courtside.records.devices.hierarchy import PosedHierarchy, forward
 
 FLOOR_PERCENTILE = 5  # of the lower ankle's height: where the floor is
 

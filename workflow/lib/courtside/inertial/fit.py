@@ -9,8 +9,8 @@ from courtside.geometry import rotations as rotation_vectors
 from courtside.inertial import heading as heading_drift
 from courtside.inertial import splines
 from courtside.inertial.segments import Frames, Model, segments_of
-from courtside.records import limbs
-from courtside.records.hierarchy import forward
+from courtside.records.devices.hierarchy import forward
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
 CHUNK = 500  # frames whose derivatives are held at once
@@ -286,7 +286,7 @@ def observe(posed, vision, sigma_m):
             "hips (kind rgb); correct by a depth camera or by several cameras"
         )
     names = list(posed.hierarchy.joints)
-    joints = [name for name in limbs.JOINTS if name in names and name in vision.joints]
+    joints = [name for name in skeleton.JOINTS if name in names and name in vision.joints]
     columns = [list(vision.joints).index(name) for name in joints]
     inside = (vision.time_s >= posed.time_s[0]) & (vision.time_s <= posed.time_s[-1])
     inside &= vision.performed

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from courtside.geometry import rotations
-from courtside.records.hierarchy import forward
+from courtside.records.devices.hierarchy import forward
 from courtside.study.execution.files import write_json
 
 

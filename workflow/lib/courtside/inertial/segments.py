@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from courtside.geometry import rotations as rotation_vectors
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
 
@@ -36,7 +36,7 @@ class Model:
 
     Parameters
     ----------
-    hierarchy : courtside.records.hierarchy.Hierarchy
+    hierarchy : courtside.records.devices.hierarchy.Hierarchy
     segments : courtside.inertial.segments.Segments
     observed : sequence of int, length D
         Indices of the joints that vision sees.
@@ -267,7 +267,7 @@ def segments_of(hierarchy, where="skeleton"):
 
     Parameters
     ----------
-    hierarchy : courtside.records.hierarchy.Hierarchy
+    hierarchy : courtside.records.devices.hierarchy.Hierarchy
         Holds `left_shoulder`, `left_elbow`, `left_wrist`, `left_hip`, `left_knee`, `left_ankle` and the
         right ones; between the root and the shoulders any number of joints of the spine and clavicles.
     where : str
@@ -284,13 +284,13 @@ def segments_of(hierarchy, where="skeleton"):
         If a joint is missing or is not below the one it should hang from.
     """
     joints = list(hierarchy.joints)
-    missing = [name for name in limbs.JOINTS if name not in joints]
+    missing = [name for name in skeleton.JOINTS if name not in joints]
     if missing:
         raise InputError(
             f"{where}: expected a joint {missing[0]}, found {', '.join(joints[:8])}, ...; "
             "name its joints by a map of config/skeletons"
         )
-    paths = {name: path(hierarchy, joints.index(name)) for name in limbs.JOINTS}
+    paths = {name: path(hierarchy, joints.index(name)) for name in skeleton.JOINTS}
     parts = _trunk(paths) | _limbs(paths, joints, where)
     share = np.zeros((len(joints), len(parts)))
     for column, members in enumerate(parts.values()):

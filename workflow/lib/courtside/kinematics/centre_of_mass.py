@@ -100,7 +100,7 @@ def weights(table, skeleton, joints, sex):
 
     Parameters
     ----------
-    table : courtside.records.derived.DerivedJoints
+    table : courtside.records.keypoints.derived_joints.DerivedJoints
     skeleton : str
     joints : sequence of str, length J
     sex : {"m", "f"} or None

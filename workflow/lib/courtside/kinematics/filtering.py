@@ -9,7 +9,7 @@ import numpy as np
 from scipy import signal
 from scipy.interpolate import PchipInterpolator
 
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError
 
 UNCERTAIN_TIMES = 4.0  # the usual standard deviation
@@ -43,7 +43,7 @@ def fill_gaps(points, max_gap_s):
         holes = _short_gaps(~np.isfinite(line).all(axis=1), most)
         if holes.any():
             line[holes] = _pchip(points.time_s, line, holes)
-            reason[person, holes, joint] = reasons.INTERPOLATED
+            reason[person, holes, joint] = missing_reason.INTERPOLATED
     return replace(points, xyz=xyz, reason=reason)
 
 
@@ -69,7 +69,9 @@ def leave_out_uncertain(points, times=UNCERTAIN_TIMES):
     return replace(
         points,
         xyz=np.where(dropped[..., None], np.nan, points.xyz),
-        reason=np.where(dropped, reasons.UNCERTAIN, points.reason).astype(points.reason.dtype),
+        reason=np.where(dropped, missing_reason.UNCERTAIN, points.reason).astype(
+            points.reason.dtype
+        ),
     )
 
 

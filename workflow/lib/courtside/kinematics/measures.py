@@ -11,7 +11,8 @@ from courtside.kinematics import (
     noise_propagation,
     path_length,
 )
-from courtside.records import derived, limbs
+from courtside.records.keypoints import derived_joints
+from courtside.records.keypoints import skeleton as limbs
 
 CENTRE = (
     "head_centre",
@@ -63,7 +64,7 @@ class Point:
         all frames, which changes slowly over the hall and so hardly touches speeds.
     noise : courtside.kinematics.noise_propagation.Noise
     reason : (T,) uint8
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     distance, ground_distance : Distance
         In space, and of the path's projection on the floor.
     """
@@ -137,7 +138,7 @@ def definitions(table, skeleton, joints, sex):
 
     Parameters
     ----------
-    table : courtside.records.derived.DerivedJoints
+    table : courtside.records.keypoints.derived_joints.DerivedJoints
     skeleton : str
         Name of the joints' skeleton.
     joints : sequence of str, length J
@@ -170,7 +171,7 @@ def measure(points, table, skeleton, how, sex_of=None):
     ----------
     points : Keypoints3D
         Raw, short gaps filled (`filtering.fill_gaps`), not filtered.
-    table : courtside.records.derived.DerivedJoints
+    table : courtside.records.keypoints.derived_joints.DerivedJoints
     skeleton : str
         Name of the skeleton of `points`.
     how : Filter
@@ -200,7 +201,7 @@ def measure(points, table, skeleton, how, sex_of=None):
 
 def _point(take, weights, words):
     raw, how, used = take.raw, take.how, np.flatnonzero(weights)
-    xyz, covariance, reason = derived.combine(
+    xyz, covariance, reason = derived_joints.combine(
         raw.xyz[take.person], raw.covariance_2d[take.person], raw.reason[take.person], weights
     )
     noise = _noise(xyz, covariance, take)

@@ -83,7 +83,7 @@ def of_arcs(body, arcs, rate_hz):
 
     Parameters
     ----------
-    body : courtside.records.body_motion.BodyMotion
+    body : courtside.records.keypoints.body_motion.BodyMotion
     arcs : list of courtside.kinematics.wrist_arcs.Arc
         Of that body.
     rate_hz : float

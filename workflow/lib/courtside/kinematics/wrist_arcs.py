@@ -60,7 +60,7 @@ def arcs(body):
 
     Parameters
     ----------
-    body : courtside.records.body_motion.BodyMotion
+    body : courtside.records.keypoints.body_motion.BodyMotion
 
     Returns
     -------

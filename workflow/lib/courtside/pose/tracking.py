@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.pose.detector import Region
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 
 SEARCH_MARGIN = 1.3  # the detector looks at the foreground box times this
 STRAY = 0.25  # a track whose middle leaves every foreground box by this share of the box is lost
@@ -22,7 +22,7 @@ class Track:
         Pixels; NaN where nobody was found.
     score : (T, J) float
     reason : (T, J) uint8
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     xyz_in_body : (T, J, 3) float
         Metres, see `courtside.pose.detector.Pose`.
     """
@@ -163,9 +163,14 @@ def as_row(pose, n_joints, shape):
     """
     if pose is None:
         xy, xyz = np.full((n_joints, 2), np.nan), np.full((n_joints, 3), np.nan)
-        return xy, np.full(n_joints, np.nan), np.full(n_joints, reasons.UNSEEN, np.uint8), xyz
+        return (
+            xy,
+            np.full(n_joints, np.nan),
+            np.full(n_joints, missing_reason.UNSEEN, np.uint8),
+            xyz,
+        )
     size = np.array([shape[1], shape[0]])
     inside = ((pose.xy > -0.5) & (pose.xy < size - 0.5)).all(axis=1)
     xy = np.where(inside[:, None], pose.xy, np.nan)
-    reason = np.where(inside, reasons.OK, reasons.OUT_OF_IMAGE).astype(np.uint8)
+    reason = np.where(inside, missing_reason.OK, missing_reason.OUT_OF_IMAGE).astype(np.uint8)
     return xy, np.where(inside, pose.score, np.nan), reason, pose.xyz_in_body

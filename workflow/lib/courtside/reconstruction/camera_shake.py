@@ -25,7 +25,7 @@ def camera_turns(camera, table):
     camera : courtside.geometry.camera.Camera
         As calibrated, standing as in its static picture.
     table : DataFrame
-        Of `courtside.records.shake_table`.
+        Of `courtside.records.cameras.shake_table`.
 
     Returns
     -------
@@ -54,15 +54,15 @@ def steady(view, camera, table):
 
     Parameters
     ----------
-    view : courtside.records.keypoints.Keypoints2D
+    view : courtside.records.keypoints.keypoints.Keypoints2D
     camera : courtside.geometry.camera.Camera
         As calibrated.
     table : DataFrame
-        Of `courtside.records.shake_table`, with a row for each frame of the view.
+        Of `courtside.records.cameras.shake_table`, with a row for each frame of the view.
 
     Returns
     -------
-    steadied : courtside.records.keypoints.Keypoints2D
+    steadied : courtside.records.keypoints.keypoints.Keypoints2D
         With `xy` and `xyz_in_body` turned back. Frames whose shake is unknown for longer than 0.2 s are left
         as they are, which the log says. Keypoints that the lens model cannot have seen stay, too.
 
@@ -197,7 +197,7 @@ def find(camera, table):
     ----------
     camera : courtside.geometry.camera.Camera
     table : DataFrame
-        Of `courtside.records.shake_table`.
+        Of `courtside.records.cameras.shake_table`.
 
     Returns
     -------
@@ -241,7 +241,7 @@ def tremor_px(table, knocks=()):
     Parameters
     ----------
     table : DataFrame
-        Of `courtside.records.shake_table`.
+        Of `courtside.records.cameras.shake_table`.
     knocks : list of Knock
     """
     parts = _parts(table, knocks)
@@ -258,7 +258,7 @@ def mm_at(camera, xyz, table):
     xyz : (3,) float
         Where the player is, m, in the world.
     table : DataFrame
-        Of `courtside.records.shake_table`. The shift is that of the picture's centre.
+        Of `courtside.records.cameras.shake_table`. The shift is that of the picture's centre.
     """
     shift_px = np.hypot(table.shift_x_px, table.shift_y_px).to_numpy(float)
     return mm_per_px(camera, xyz) * shift_px
@@ -277,7 +277,7 @@ def say(camera, table, xyz):
     ----------
     camera : courtside.geometry.camera.Camera
     table : DataFrame
-        Of `courtside.records.shake_table`.
+        Of `courtside.records.cameras.shake_table`.
     xyz : (3,) float
         Where the player is, m, in the world; NaN where unknown.
 

@@ -8,9 +8,9 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.geometry import triangulation as plain_dlt
 from courtside.reconstruction import left_right, resampling
-from courtside.records import reasons
-from courtside.records.keypoints import Keypoints3D
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 
 def triangulate_take(
@@ -135,11 +135,11 @@ def why_missing(score, xyz, min_score, min_views):
     """
     n_seen = np.isfinite(score).sum(axis=0)
     n_usable = (np.nan_to_num(score, nan=-1.0) >= max(min_score, 1e-12)).sum(axis=0)
-    reason = np.full(len(xyz), reasons.REJECTED, dtype=np.uint8)
-    reason[np.isfinite(xyz).all(axis=-1)] = reasons.OK
-    reason[n_usable < min_views] = reasons.LOW_SCORE
-    reason[n_seen < min_views] = reasons.ONE_VIEW
-    reason[n_seen == 0] = reasons.UNSEEN
+    reason = np.full(len(xyz), missing_reason.REJECTED, dtype=np.uint8)
+    reason[np.isfinite(xyz).all(axis=-1)] = missing_reason.OK
+    reason[n_usable < min_views] = missing_reason.LOW_SCORE
+    reason[n_seen < min_views] = missing_reason.ONE_VIEW
+    reason[n_seen == 0] = missing_reason.UNSEEN
     return reason
 
 

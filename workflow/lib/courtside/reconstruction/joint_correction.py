@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.geometry import rotations
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError, reading
 
 BONES = {  # lines that may tell where a joint is put, of the joint's own side: (from, to)
@@ -47,7 +47,7 @@ def vectors(xyz, joints, side, joint, sex=None):
     side : str
         "left" or "right"
     joint : str
-        One of `limbs.LIMBS`.
+        One of `skeleton.LIMBS`.
     sex : {"m", "f"} or None
 
     Returns
@@ -105,7 +105,7 @@ def estimate(clips, joints, true_joints):
         If a joint is never seen.
     """
     joints, true_joints, rows = list(joints), list(true_joints), []
-    for joint in limbs.LIMBS:
+    for joint in skeleton.LIMBS:
         design, offset = [], []
         for (found, true, sex), side in product(clips, ("left", "right")):
             name = f"{side}_{joint}"
@@ -174,7 +174,7 @@ def read(path):
     with reading(path, "a table of joint offsets", REMAKE):
         table = pd.read_csv(path, comment="#")
         found = list(table.columns)
-        known = {(joint, vector) for joint in limbs.LIMBS for vector in _vector_names(joint)}
+        known = {(joint, vector) for joint in skeleton.LIMBS for vector in _vector_names(joint)}
         rows = table.reindex(columns=COLUMNS)
         pairs = set(zip(rows["joint"], rows["vector"], strict=True))
         numbers = rows[["share", "sigma_m"]].to_numpy(dtype=float)
@@ -182,7 +182,7 @@ def read(path):
     if found != COLUMNS or not pairs <= known or not np.isfinite(numbers).all():
         joints = sorted({str(joint) for joint, _ in pairs})
         raise InputError(
-            f"{path}: expected columns {COLUMNS} with joints of {limbs.LIMBS} and numbers, found columns "
+            f"{path}: expected columns {COLUMNS} with joints of {skeleton.LIMBS} and numbers, found columns "
             f"{found} and joints {joints}; {REMAKE}"
         )
     return table
@@ -236,7 +236,7 @@ def lengths(xyz, joints):
     """
     place = dict(zip(joints, np.moveaxis(xyz, 1, 0), strict=True))
     found = {}
-    for start, stop in (pair for chain in limbs.CHAINS for pair in pairwise(chain)):
+    for start, stop in (pair for chain in skeleton.CHAINS for pair in pairwise(chain)):
         ends = [(f"{side}_{start}", f"{side}_{stop}") for side in SIDES]
         apart = [place[b] - place[a] for a, b in ends if a in place and b in place]
         apart = np.linalg.norm(np.concatenate(apart or [np.zeros((0, 3))]), axis=1)
@@ -268,7 +268,7 @@ def keep(points):
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)
-    for person, (side, chain) in product(range(len(xyz)), product(SIDES, limbs.CHAINS)):
+    for person, (side, chain) in product(range(len(xyz)), product(SIDES, skeleton.CHAINS)):
         known = lengths(points.xyz[person], joints)
         names = [f"{side}_{joint}" for joint in chain]
         wanted = [known.get(pair) for pair in pairwise(chain)]

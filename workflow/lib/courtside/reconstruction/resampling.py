@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 
 RATE_TOLERANCE = 1e-3  # frame times closer than this share of a frame are the same moment
 # frames further apart than this many frame intervals have a dropped frame between

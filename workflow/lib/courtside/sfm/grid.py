@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from courtside.records import frame_table, image_names
+from courtside.records.cameras import frame_table, image_names
 from courtside.sfm import bridging, pairs
 
 

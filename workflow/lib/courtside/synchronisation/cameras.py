@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.geometry import epipolar
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.statistics import autocorrelation
 from courtside.study.errors import InputError
 from courtside.synchronisation import clock_adjustment, smooth_tracks

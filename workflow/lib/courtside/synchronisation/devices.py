@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from courtside.records.sync import Clock
+from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 from courtside.synchronisation import clock_adjustment, motion_signals
 from courtside.synchronisation.motion_signals import Signals

@@ -43,7 +43,7 @@ class Signals:
 
     Parameters
     ----------
-    first, second : courtside.records.device_motion.DeviceMotion
+    first, second : courtside.records.devices.device_motion.DeviceMotion
     axes : (2, 3, 3) float, optional
         Rows are the same three directions in the frame of each. Without them only distances are compared.
     """

@@ -204,7 +204,7 @@ def measure_take(static, frames, first=0):
     Returns
     -------
     table : DataFrame
-        One row per frame, as `courtside.records.shake_table` describes it.
+        One row per frame, as `courtside.records.cameras.shake_table` describes it.
     """
     tracker, rows = Tracker(static), []
     for frame_idx, (time_s, image) in enumerate(frames, start=first):

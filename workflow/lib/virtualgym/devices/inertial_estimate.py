@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from courtside.records.hierarchy import Hierarchy, PosedHierarchy, forward
+from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy, forward
 from virtualgym.devices import inertial_errors
 from virtualgym.devices.mocopi_skeleton import TORSO
 
@@ -23,7 +23,7 @@ class Turns:
 
     Attributes
     ----------
-    hierarchy : courtside.records.hierarchy.Hierarchy
+    hierarchy : courtside.records.devices.hierarchy.Hierarchy
     world : (T, J, 3, 3) float
     root : (T, 3) float
         Metres.

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from courtside.records.hierarchy import Hierarchy, PosedHierarchy
+from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy
 from virtualgym.body import pose_bones
 from virtualgym.devices import inertial_errors, inertial_estimate, mocopi_skeleton
 from virtualgym.devices.inertial_estimate import Turns
@@ -67,7 +67,7 @@ class Recording:
 
     Attributes
     ----------
-    posed : courtside.records.hierarchy.PosedHierarchy
+    posed : courtside.records.devices.hierarchy.PosedHierarchy
         By mocopi's names, metres; by the suit's own clock, from 0. The first row is the rest pose.
     device_from_world : (3, 4) float
         As it is when the recording starts: later the suit's heading and place drift.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.geometry import rotations
-from courtside.records.hierarchy import NO_PARENT, Hierarchy
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy
 from virtualgym.body import pose_bones
 from virtualgym.body.stance import SIDES
 
@@ -65,7 +65,7 @@ class Rig:
 
     Attributes
     ----------
-    hierarchy : courtside.records.hierarchy.Hierarchy
+    hierarchy : courtside.records.devices.hierarchy.Hierarchy
         At rest, metres; the root's offset is its height when standing.
     bones : tuple of str
         For each joint the bone of `pose_bones.BONES` that carries it.

@@ -6,8 +6,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from courtside.records import clicks as click_records
-from courtside.records import truth
+from courtside.records.cameras import clicks as click_records
+from courtside.records.truth import session_truth
 from courtside.study.execution import log
 from courtside.video import writer
 from virtualgym.cameras import layouts, walk_path
@@ -203,7 +203,7 @@ def simulate(settings, court, folder, *, backdrops_npz=None, threads=1):
     )
     click_records.write(folder / "court_points.csv", marked, court.points)
     walks = {WALK: _true_walk(walked, settings.walk_frames)} if settings.walk_frames else {}
-    truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz)
+    session_truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz)
 
 
 def backdrops(settings, court, margins, *, kept_npz=None, threads=1):
@@ -273,7 +273,7 @@ def _trembled(picture, noise, rng):
 
 def _true_walk(walked, n_frames):
     time_s = walked.grid(n_frames)
-    return truth.Walk(
+    return session_truth.Walk(
         time_s=time_s,
         K=walked.K,
         dist=walked.dist,

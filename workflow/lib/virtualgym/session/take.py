@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from courtside.records import take_truth
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 from courtside.video import writer
 from virtualgym.body import athlete, shapes, skinned_body
@@ -229,7 +229,7 @@ def simulate_take(settings, take, court, body_folder, folder, *, backdrops_npz=N
 
     Returns
     -------
-    inertial : dict of str to courtside.records.hierarchy.PosedHierarchy
+    inertial : dict of str to courtside.records.devices.hierarchy.PosedHierarchy
         What inertial devices recorded, which the caller writes.
 
     Raises

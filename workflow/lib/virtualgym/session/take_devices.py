@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from courtside.devices.realsense import writer
-from courtside.records import take_truth
+from courtside.records.truth import take_truth
 from courtside.study.execution import log
 from virtualgym.body import skinned_body
 from virtualgym.devices import depth_camera, inertial_suit
@@ -23,7 +23,7 @@ class Recorded:
 
     Attributes
     ----------
-    inertial : dict of str to courtside.records.hierarchy.PosedHierarchy
+    inertial : dict of str to courtside.records.devices.hierarchy.PosedHierarchy
         By device: what is still to be written.
     truth : dict of str to take_truth.DeviceTruth
     """

@@ -18,7 +18,7 @@ from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.devices.realsense import lens, rosbag, text
 from courtside.geometry import camera_fields, rotations
 from courtside.geometry.camera import Camera
-from courtside.records.frame_times import FrameTimes
+from courtside.records.cameras.frame_times import FrameTimes
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 

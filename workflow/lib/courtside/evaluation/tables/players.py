@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 
 TAKE = ["session", "take", "calibration", "model"]
 KEY = [*TAKE, "fusion"]
@@ -83,7 +83,7 @@ def table(errors, kinematics, clocks, gains):
     names = ["n", "missing_percent", "median_mm", "p95_mm", "sigma_mm"]
     covered = [f"coverage_{level}_percent" for level in LEVELS]
     found = in_one.reindex(columns=[*names, *covered, "identity_percent"])
-    found = found.join(_over_joints(rows[rows["joint"].isin(limbs.JOINTS)])).reset_index()
+    found = found.join(_over_joints(rows[rows["joint"].isin(skeleton.JOINTS)])).reset_index()
     found = _gains(found, gains)
     raw = found["stage"] == "pose3d"
     for part, on in ((_kinematics(kinematics), KEY), (_clocks(clocks), TAKE)):

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.figures.style import court_plan, style
-from courtside.records import image_names
+from courtside.records.cameras import image_names
 
 COLUMNS = 4
 FAR_M = 60.0  # from the court's centre: what lies beyond does not widen the panels

@@ -37,7 +37,7 @@ def table(points, footage, frame, stick):
     Parameters
     ----------
     points : Keypoints3D
-    footage : list of courtside.records.footage.Footage
+    footage : list of courtside.records.cameras.footage.Footage
         Of the cameras of `points`.
     frame : int
         Of `points`.

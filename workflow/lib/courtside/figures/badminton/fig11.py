@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from courtside.evaluation import detection
 from courtside.figures.style import picture_crops, style
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 
 WIDEST_MM = 62  # of a panel
 ASPECT = 0.75  # width over height of a panel
@@ -58,7 +58,7 @@ def table(points, footage, joints, mirror, frame, limit):
     Parameters
     ----------
     points : Keypoints3D
-    footage : list of courtside.records.footage.Footage
+    footage : list of courtside.records.cameras.footage.Footage
         Of the cameras of `points`, in its order.
     joints : sequence of str
         Which joints.
@@ -101,7 +101,7 @@ def table(points, footage, joints, mirror, frame, limit):
                 "limit_px": limit_px[person, camera],
                 "accepted": points.accepted[person, frame, at, camera],
                 "disagrees": disagrees[person, frame, :, camera],
-                "reason": [reasons.WORDS[int(c)] for c in points.reason[person, frame, at]],
+                "reason": [missing_reason.WORDS[int(c)] for c in points.reason[person, frame, at]],
                 "take_frames": known[person, :, :, camera].sum(axis=0),
                 "take_disagree_percent": _percent(disagrees, known, person, camera),
             }

@@ -6,11 +6,11 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 
 from courtside.evaluation.tables import players
 from courtside.figures.style import bars, style
-from courtside.records import limbs
+from courtside.records.keypoints import skeleton
 
 BLOCK = ["session", "take", "calibration", "model"]  # what has panels of its own
 SETS = {"limbs": "12 limb joints", "right half": "right half", "left half": "left half"}
-JOINTS = (*limbs.JOINTS[6:], *limbs.JOINTS[:6])  # the half that the paper speaks of first
+JOINTS = (*skeleton.JOINTS[6:], *skeleton.JOINTS[:6])  # the half that the paper speaks of first
 POINTS = {"neck": "neck", "centre": "centre of gravity"}
 ROWS = (*SETS, *JOINTS, *POINTS)
 # What the paper calls stable, or fairly so, with the two cameras that see the right half.

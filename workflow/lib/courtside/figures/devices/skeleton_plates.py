@@ -31,7 +31,7 @@ class Plate:
     ----------
     source : str
         Empty for a skeleton of which there is no recording.
-    skeleton : courtside.records.skeleton.Skeleton
+    skeleton : courtside.records.keypoints.skeleton.Skeleton
     xyz : (J, 3) float
         Body axes and units; NaN where missing.
     kind : str
@@ -49,8 +49,8 @@ def plates(bodies, skeletons, skeleton_of, kinds=None):
 
     Parameters
     ----------
-    bodies : list of courtside.records.body_motion.BodyMotion
-    skeletons : list of courtside.records.skeleton.Skeleton
+    bodies : list of courtside.records.keypoints.body_motion.BodyMotion
+    skeletons : list of courtside.records.keypoints.skeleton.Skeleton
     skeleton_of : dict of str to str
         Skeleton of each source.
     kinds : dict of str to str, optional

@@ -23,8 +23,8 @@ def rows(skeletons, table):
 
     Parameters
     ----------
-    skeletons : list of courtside.records.skeleton.Skeleton
-    table : courtside.records.derived.DerivedJoints
+    skeletons : list of courtside.records.keypoints.skeleton.Skeleton
+    table : courtside.records.keypoints.derived_joints.DerivedJoints
         Derived joints without a definition for each of the skeletons are left out.
 
     Returns

@@ -48,7 +48,7 @@ def stick(skeleton, table):
     Parameters
     ----------
     skeleton : Skeleton
-    table : courtside.records.derived.DerivedJoints
+    table : courtside.records.keypoints.derived_joints.DerivedJoints
         Has a neck and a head_centre for it.
     """
     joints = (*skeleton.groups["limbs"], *HEAD)

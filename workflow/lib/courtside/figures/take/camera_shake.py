@@ -19,7 +19,7 @@ def table(cameras, shakes, xyz):
     ----------
     cameras : dict of str to courtside.geometry.camera.Camera
     shakes : dict of str to DataFrame
-        Of `courtside.records.shake_table`, for each camera to draw.
+        Of `courtside.records.cameras.shake_table`, for each camera to draw.
     xyz : (3,) float
         Where the player is, m, in the world; NaN where unknown.
 

@@ -6,7 +6,7 @@ import pandas as pd
 
 from courtside.figures.style import style
 from courtside.geometry import camera as camera_models
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 
 MARGIN = 1.25  # of the person's extent, around it
 PANEL_PX = 520  # longest side of a panel
@@ -73,7 +73,9 @@ def table(cameras, views, points, times_s):
                 "reprojected_y_px": reprojected[:, 1],
                 "distance_px": np.linalg.norm(detected - reprojected, axis=1),
                 "accepted": points.accepted[:, frame, :, at].ravel(),
-                "reason": [reasons.WORDS[int(code)] for code in points.reason[:, frame].ravel()],
+                "reason": [
+                    missing_reason.WORDS[int(code)] for code in points.reason[:, frame].ravel()
+                ],
             }
             parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)

@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from courtside.records import keypoints, limbs, reasons, sync, tables
+from courtside.records import tables
+from courtside.records.devices import clocks
+from courtside.records.keypoints import keypoints, missing_reason, skeleton
 from courtside.study.execution.files import read_json
 
 NINE_IN_TEN = 1.645  # standard deviations that hold 90 % of normal errors
@@ -43,7 +45,7 @@ def of_take(files):
         facts["seconds"] = float(np.ptp(frames["time_s"])) if len(frames) else None
     if files.get("pose3d"):
         facts |= of_skeleton(keypoints.read_3d(files["pose3d"]))
-    facts["clocks"] = sync.read(files["sync"])[1] if files.get("sync") else {}
+    facts["clocks"] = clocks.read(files["sync"])[1] if files.get("sync") else {}
     facts["movement"] = [_row(path) for path in files.get("movement", ())]
     facts["shake"] = _lines(files["shake"]) if files.get("shake") else []
     facts["devices"] = _rows(files, "checks", ("source", "status"))
@@ -78,7 +80,7 @@ def of_skeleton(found):
 
     Parameters
     ----------
-    found : courtside.records.keypoints.Keypoints3D
+    found : courtside.records.keypoints.keypoints.Keypoints3D
 
     Returns
     -------
@@ -88,14 +90,15 @@ def of_skeleton(found):
         on, `median_px`: of those}}; `views`: {number of views: share}.
     """
     names = [str(name) for name in found.joints]
-    at = [names.index(joint) for joint in limbs.JOINTS if joint in names]
+    at = [names.index(joint) for joint in skeleton.JOINTS if joint in names]
     reason, views = found.reason[:, :, at], found.n_views[:, :, at]
     joints = {}
     for number, index in enumerate(at):
         codes, lost = reason[:, :, number], np.isnan(found.xyz[:, :, index, 0])
         placed = views[:, :, number][~lost]
         words = {
-            reasons.WORDS[code]: float(np.mean(lost & (codes == code))) for code in set(codes[lost])
+            missing_reason.WORDS[code]: float(np.mean(lost & (codes == code)))
+            for code in set(codes[lost])
         }
         few = float(np.mean(placed <= 2)) if placed.size else None
         joints[names[index]] = {"missing": float(lost.mean()), "reasons": words, "few": few}

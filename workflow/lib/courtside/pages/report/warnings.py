@@ -122,7 +122,7 @@ def clock(camera, found):
     Parameters
     ----------
     camera : str
-    found : courtside.records.sync.Clock
+    found : courtside.records.devices.clocks.Clock
     """
     if found.status == "reference":
         return None

@@ -6,8 +6,9 @@ import numpy as np
 
 from courtside.geometry import similarity
 from courtside.pages.viewer import packing
-from courtside.records import device_motion, keypoints, reasons
-from courtside.records.sync import Clock
+from courtside.records.devices import device_motion
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints, missing_reason
 from courtside.study.errors import DAMAGED, InputError
 
 PX = 0.01  # so that the logarithmic scale runs from 0.001 to 1000 px
@@ -36,7 +37,7 @@ class Layer:
     error_px : (P, T, J) float or None
         Reprojection error: root of the mean square over the views that the joint rests on.
     reason : (P, T, J) int or None
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     n_views : (P, T, J) int or None
     covers : str
         What the covariance covers, in words, for the legend.
@@ -160,7 +161,7 @@ def read(path, name, skeleton, *, person="", clock=None, shown=True):
         Whose bones are drawn.
     person : str
         Of a device: who wears or faces it.
-    clock : courtside.records.sync.Clock, optional
+    clock : courtside.records.devices.clocks.Clock, optional
         Of a device; it shows the reference time where none is given.
     shown : bool
 
@@ -262,7 +263,7 @@ def packed(layer, middle, every=1):
     """
     text, known = packing.positions(layer.xyz[:, ::every], middle)
     reason = np.zeros(known.shape, int) if layer.reason is None else layer.reason[:, ::every]
-    absent = np.where(reason == reasons.OK, NOT_FINITE, reason)
+    absent = np.where(reason == missing_reason.OK, NOT_FINITE, reason)
     content = {
         "name": layer.name,
         "joints": list(layer.joints),

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.records import frame_table
+from courtside.records.cameras import frame_table
 from courtside.study.errors import InputError
 
 HEADER = "frame_idx,time_s,name,sharpness,kept,reason\n"

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from courtside.records import skeleton
+from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-FILES = sorted((Path(__file__).parents[3] / "config" / "skeletons").glob("*.yaml"))
+FILES = sorted((Path(__file__).parents[4] / "config" / "skeletons").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)

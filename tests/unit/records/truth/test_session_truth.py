@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import scene
-from courtside.records import truth
+from courtside.records.truth import session_truth
 from courtside.study.errors import InputError
 
 POINTS = ["p01", "p02"]
@@ -16,14 +16,16 @@ def walk(n_frames, seed=0):
     poses = np.array([camera.cam_from_world for camera in scene.ring(n_frames)])
     matrix = np.array([[1000.0, 0, 640], [0, 1000, 360], [0, 0, 1]])
     points = matrix[:2, 2] + rng.normal(0, 3, (n_frames, 2))
-    return truth.Walk(np.arange(n_frames) / 3, matrix, rng.normal(0, 0.01, 5), poses, points)
+    return session_truth.Walk(
+        np.arange(n_frames) / 3, matrix, rng.normal(0, 0.01, 5), poses, points
+    )
 
 
 def test_what_was_written_comes_back(tmp_path):
     cameras = scene.ring(3, dist=(-0.1, 0.02, 1e-3, 1e-4, 0))
     walks = {"walk1": walk(4), "walk2": walk(7, seed=1)}
-    truth.write(tmp_path / "truth.npz", cameras, walks, POINTS, XYZ)
-    found = truth.read(tmp_path / "truth.npz")
+    session_truth.write(tmp_path / "truth.npz", cameras, walks, POINTS, XYZ)
+    found = session_truth.read(tmp_path / "truth.npz")
     for camera, same in zip(cameras, found.cameras, strict=True):
         assert (camera.name, camera.size) == (same.name, same.size)
         for field in ("K", "dist", "cam_from_world"):
@@ -37,7 +39,7 @@ def test_what_was_written_comes_back(tmp_path):
 
 
 def test_the_keys_are_those_of_the_contract(tmp_path):
-    truth.write(tmp_path / "truth.npz", scene.ring(2), {"w": walk(5)}, POINTS, XYZ)
+    session_truth.write(tmp_path / "truth.npz", scene.ring(2), {"w": walk(5)}, POINTS, XYZ)
     with np.load(tmp_path / "truth.npz", allow_pickle=False) as stored:
         shapes = {key: stored[key].shape for key in stored.files}
     assert shapes == {
@@ -59,11 +61,11 @@ def test_the_keys_are_those_of_the_contract(tmp_path):
 
 def test_arrays_that_disagree_are_refused(tmp_path):
     broken = walk(5)
-    broken = truth.Walk(broken.time_s[:4], *list(vars(broken).values())[1:])
+    broken = session_truth.Walk(broken.time_s[:4], *list(vars(broken).values())[1:])
     with pytest.raises(ValueError, match=r"w/cam_from_world: expected shape"):
-        truth.write(tmp_path / "truth.npz", scene.ring(2), {"w": broken}, POINTS, XYZ)
+        session_truth.write(tmp_path / "truth.npz", scene.ring(2), {"w": broken}, POINTS, XYZ)
     with pytest.raises(ValueError, match="court_xyz: expected shape"):
-        truth.write(tmp_path / "truth.npz", scene.ring(2), {}, POINTS, XYZ[:1])
+        session_truth.write(tmp_path / "truth.npz", scene.ring(2), {}, POINTS, XYZ[:1])
     assert list(tmp_path.iterdir()) == []
 
 
@@ -73,11 +75,11 @@ def test_other_files_are_refused_in_one_line(tmp_path, content):
     if content is not None:
         path.write_bytes(content)
     with pytest.raises(InputError, match="expected an npz file") as caught:
-        truth.read(path)
+        session_truth.read(path)
     assert "\n" not in str(caught.value) and str(path) in str(caught.value)
 
 
 def test_another_npz_file_is_refused(tmp_path):
     np.savez(tmp_path / "a.npz", format=np.array("courtside keypoints2d 1"), **{"w/x": np.zeros(3)})
     with pytest.raises(InputError, match="expected format 'courtside truth 1'"):
-        truth.read(tmp_path / "a.npz")
+        session_truth.read(tmp_path / "a.npz")

@@ -1,6 +1,7 @@
-"""Ordered joints and the bones between them, read from `config/skeletons/`."""
+"""Skeletons: ordered joints and bones, the limbs that all skeletons share, and symmetric pairs."""
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 from courtside.study.configuration import yaml_files
@@ -154,3 +155,9 @@ def _check(path, skeleton):
                 f"{path}: names: expected a name for each joint that no other joint has, found {name!r}; "
                 "correct it"
             )
+
+
+CHAINS = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
+LIMBS = tuple(limb for chain in CHAINS for limb in chain)
+PARENT = {stop: start for chain in CHAINS for start, stop in pairwise(chain)}
+JOINTS = tuple(f"{side}_{limb}" for side in ("left", "right") for limb in LIMBS)

@@ -37,7 +37,7 @@ class BodyMotion:
     following : (T, J, 3) float
         The same in a frame that goes with the trunk.
     reason : (T, J) uint8
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     unit_m : float
         Metres in a unit, by this source.
     tpose_s : (2,) float

@@ -6,18 +6,18 @@ import math
 import numpy as np
 import pytest
 
-from courtside.records import sync
+from courtside.records.devices import clocks
 from courtside.study.errors import InputError
 
 CLOCKS = {
-    "a": sync.Clock(status="reference"),
-    "b": sync.Clock(1.25, -80.0, 0.002, 30.0, "found", "adjusted"),
-    "c": sync.Clock(-0.5, 0.0, math.nan, 100.0, "ambiguous", "periodic", (0.5, 1.5)),
+    "a": clocks.Clock(status="reference"),
+    "b": clocks.Clock(1.25, -80.0, 0.002, 30.0, "found", "adjusted"),
+    "c": clocks.Clock(-0.5, 0.0, math.nan, 100.0, "ambiguous", "periodic", (0.5, 1.5)),
 }
 
 
 def test_a_clock_that_is_ahead_and_fast():
-    clock = sync.Clock(offset_s=2.0, drift_ppm=100.0)
+    clock = clocks.Clock(offset_s=2.0, drift_ppm=100.0)
     # 1000 s later a clock that runs 100 ppm fast has gained 0.1 s on its lead of 2 s.
     np.testing.assert_allclose(clock.from_reference([0.0, 1000.0]), [2.0, 1002.1], atol=1e-9)
     np.testing.assert_allclose(clock.to_reference([2.0, 1002.1]), [0.0, 1000.0], atol=1e-9)
@@ -25,13 +25,13 @@ def test_a_clock_that_is_ahead_and_fast():
 
 def test_a_clock_that_agrees_changes_no_digit():
     time_s = np.arange(1000) / 29.97
-    np.testing.assert_array_equal(sync.Clock().from_reference(time_s), time_s)
-    np.testing.assert_array_equal(sync.Clock().to_reference(time_s), time_s)
+    np.testing.assert_array_equal(clocks.Clock().from_reference(time_s), time_s)
+    np.testing.assert_array_equal(clocks.Clock().to_reference(time_s), time_s)
 
 
 def test_the_file_gives_back_what_was_written(tmp_path):
-    sync.write(tmp_path / "cameras.json", "a", CLOCKS)
-    reference, found = sync.read(tmp_path / "cameras.json")
+    clocks.write(tmp_path / "cameras.json", "a", CLOCKS)
+    reference, found = clocks.read(tmp_path / "cameras.json")
     assert reference == "a"
     assert found["a"] == CLOCKS["a"]
     assert found["b"] == CLOCKS["b"]
@@ -54,39 +54,39 @@ def test_the_file_gives_back_what_was_written(tmp_path):
 def test_other_files_are_refused_in_one_line(tmp_path, text):
     (tmp_path / "x.json").write_text(text)
     with pytest.raises(InputError, match=r"x\.json: expected") as caught:
-        sync.read(tmp_path / "x.json")
+        clocks.read(tmp_path / "x.json")
     assert "\n" not in str(caught.value)
 
 
 def test_an_impossible_status_in_a_file_is_refused(tmp_path):
-    sync.write(tmp_path / "x.json", "a", CLOCKS)
+    clocks.write(tmp_path / "x.json", "a", CLOCKS)
     text = (tmp_path / "x.json").read_text().replace('"found"', '"perhaps"')
     (tmp_path / "x.json").write_text(text)
     with pytest.raises(InputError, match="perhaps"):
-        sync.read(tmp_path / "x.json")
+        clocks.read(tmp_path / "x.json")
 
 
 def test_the_reference_must_be_a_camera(tmp_path):
     with pytest.raises(ValueError, match="reference"):
-        sync.write(tmp_path / "x.json", "z", CLOCKS)
+        clocks.write(tmp_path / "x.json", "z", CLOCKS)
 
 
 def test_a_doubtful_clock_is_named_with_its_offsets():
-    assert not sync.usable(CLOCKS)
-    line = sync.fault_line("take rally", CLOCKS)
+    assert not clocks.usable(CLOCKS)
+    line = clocks.fault_line("take rally", CLOCKS)
     assert line.startswith("take rally: camera c: expected")
     assert "ambiguous (periodic), possible offsets 0.500, 1.500 s" in line
     sure = {name: CLOCKS[name] for name in "ab"}
-    assert sync.usable(sure)
-    assert sync.fault_line("take rally", sure) == ""
+    assert clocks.usable(sure)
+    assert clocks.fault_line("take rally", sure) == ""
 
 
 def test_what_8_ms_are_worth_at_a_smash():
-    assert sync.wrist_error_mm(0.008, 12.0) == pytest.approx(96.0)
+    assert clocks.wrist_error_mm(0.008, 12.0) == pytest.approx(96.0)
 
 
 def test_clocks_that_somebody_states_are_used():
-    found = sync.stated({"left": {"offset_s": 1.5, "uncertainty_s": 0.02}})
+    found = clocks.stated({"left": {"offset_s": 1.5, "uncertainty_s": 0.02}})
     assert found["left"].usable
     assert found["left"].to_reference(2.5) == pytest.approx(1.0)
     assert found["left"].uncertainty_s == 0.02

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from courtside.records import clicks, proposals
+from courtside.records.cameras import click_proposals, clicks
 from courtside.study.errors import InputError
 
 POINTS = ("p01", "p02", "p03")
@@ -23,8 +23,8 @@ def some():
 
 def test_what_is_written_is_read(tmp_path):
     path = tmp_path / "new" / "proposals.csv"
-    proposals.write(path, some(), POINTS)
-    read = proposals.read(path, ["left", "right", "third"], POINTS)
+    click_proposals.write(path, some(), POINTS)
+    read = click_proposals.read(path, ["left", "right", "third"], POINTS)
     assert read["third"] == {}
     assert read["left"] == read["right"]
     assert set(read["left"]) == {"p01", "p03"}
@@ -34,7 +34,7 @@ def test_what_is_written_is_read(tmp_path):
 
 def test_proposals_are_not_clicks(tmp_path):
     path = tmp_path / "proposals.csv"
-    proposals.write(path, some(), POINTS)
+    click_proposals.write(path, some(), POINTS)
     with pytest.raises(InputError, match="expected the columns"):
         clicks.read(path, ["left", "right"], POINTS)
 
@@ -48,9 +48,9 @@ def test_proposals_are_not_clicks(tmp_path):
 )
 def test_other_cameras_and_points_are_named(tmp_path, cameras, points, words):
     path = tmp_path / "proposals.csv"
-    proposals.write(path, some(), POINTS)
+    click_proposals.write(path, some(), POINTS)
     with pytest.raises(InputError, match=words) as fault:
-        proposals.read(path, cameras, points)
+        click_proposals.read(path, cameras, points)
     assert str(path) in str(fault.value) and "\n" not in str(fault.value)
 
 
@@ -60,12 +60,12 @@ def test_no_table_is_said(tmp_path):
     with pytest.raises(
         InputError, match="expected a table of proposed court points, found the columns a, b"
     ):
-        proposals.read(path, ["left"], POINTS)
+        click_proposals.read(path, ["left"], POINTS)
 
 
 def test_a_place_that_is_no_number_is_one_line(tmp_path):
     path = tmp_path / "odd.csv"
-    proposals.write(path, some(), POINTS)
+    click_proposals.write(path, some(), POINTS)
     first, row, *rest = path.read_text().splitlines()
     cells = row.split(",")
     cells[3] = "far"
@@ -73,4 +73,4 @@ def test_a_place_that_is_no_number_is_one_line(tmp_path):
     with pytest.raises(
         InputError, match=r"odd\.csv: expected a table of proposed court points.*far"
     ):
-        proposals.read(path, ["left", "right"], POINTS)
+        click_proposals.read(path, ["left", "right"], POINTS)

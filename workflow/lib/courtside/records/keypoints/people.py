@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from courtside.records import npz, reasons
+from courtside.records import npz
+from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError
 
 FORM = "courtside people 1"
@@ -112,6 +113,6 @@ def assigned(view, index):
         view,
         xy=pick(view.xy, np.nan),
         score=pick(view.score, np.nan),
-        reason=pick(view.reason, np.uint8(reasons.UNSEEN)),
+        reason=pick(view.reason, np.uint8(missing_reason.UNSEEN)),
         xyz_in_body=pick(view.xyz_in_body, np.nan),
     )

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import walker
-from courtside.records import derived, reasons, skeleton
+from courtside.records.keypoints import derived_joints, missing_reason, skeleton
 from courtside.study.errors import InputError
 
-CONFIG = Path(__file__).parents[3] / "config"
-TABLE = derived.read(CONFIG / "derived_joints.yaml")
+CONFIG = Path(__file__).parents[4] / "config"
+TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")
 
 
 @pytest.mark.parametrize(
@@ -33,25 +33,25 @@ def test_joints_of_one_definition_are_comparable_and_others_are_not():
 
 def test_the_neck_lies_halfway_between_the_shoulders():
     record = walker.points(n_persons=2)
-    xyz, _, _, reason = derived.of(record, TABLE, "blazepose33", "neck")
+    xyz, _, _, reason = derived_joints.of(record, TABLE, "blazepose33", "neck")
     left, right = (
         record.xyz[:, :, list(record.joints).index(f"{s}_shoulder")] for s in ("left", "right")
     )
     np.testing.assert_allclose(xyz, (left + right) / 2)
-    assert (reason == reasons.OK).all()
+    assert (reason == missing_reason.OK).all()
 
 
 def test_a_missing_part_is_missing_with_its_reason():
     record = walker.points()
     at = list(record.joints).index("left_hip")
-    record.xyz[0, 7, at], record.reason[0, 7, at] = np.nan, reasons.ONE_VIEW
+    record.xyz[0, 7, at], record.reason[0, 7, at] = np.nan, missing_reason.ONE_VIEW
     other = list(record.joints).index("right_hip")
-    record.reason[0, [7, 8], other] = reasons.INTERPOLATED
-    xyz, _, _, reason = derived.of(record, TABLE, "blazepose33", "pelvis_thorax")
+    record.reason[0, [7, 8], other] = missing_reason.INTERPOLATED
+    xyz, _, _, reason = derived_joints.of(record, TABLE, "blazepose33", "pelvis_thorax")
     assert np.isnan(xyz[0, 7]).all()
     assert np.isfinite(np.delete(xyz[0], 7, axis=0)).all()
-    assert reason[0, 7] == reasons.ONE_VIEW
-    assert reason[0, 8] == reasons.INTERPOLATED
+    assert reason[0, 7] == missing_reason.ONE_VIEW
+    assert reason[0, 8] == missing_reason.INTERPOLATED
 
 
 def test_the_covariance_is_the_spread_of_the_weighted_mean():
@@ -61,7 +61,7 @@ def test_the_covariance_is_the_spread_of_the_weighted_mean():
     weights = np.array([0.2, 0.0, 0.8])
     draws = np.einsum("jkl,njl->njk", roots, rng.normal(size=(200_000, 3, 3)))
     ok = np.zeros((len(draws), 3), dtype=np.uint8)
-    mean, stated, _ = derived.combine(
+    mean, stated, _ = derived_joints.combine(
         draws, np.broadcast_to(covariance, (len(draws), 3, 3, 3)), ok, weights
     )
     scale = np.trace(stated[0])
@@ -72,13 +72,13 @@ def test_an_error_common_to_all_joints_does_not_average_out():
     record = walker.points()
     common = np.diag([4e-4, 1e-4, 9e-4])
     record.covariance_camera[:] = common
-    camera = derived.of(record, TABLE, "blazepose33", "neck")[2]
+    camera = derived_joints.of(record, TABLE, "blazepose33", "neck")[2]
     np.testing.assert_allclose(camera[0, 0], common)
 
 
 def test_appending_keeps_what_was_there():
     record = walker.points()
-    longer = derived.append(record, TABLE, "blazepose33", ["neck", "mid_hip", "left_knee"])
+    longer = derived_joints.append(record, TABLE, "blazepose33", ["neck", "mid_hip", "left_knee"])
     assert longer.joints.tolist() == [*record.joints.tolist(), "neck", "mid_hip"]
     np.testing.assert_array_equal(longer.xyz[:, :, :33], record.xyz)
     shoulder = [list(record.joints).index(f"{side}_shoulder") for side in ("left", "right")]
@@ -99,10 +99,10 @@ def test_faults_are_one_line(tmp_path):
     with pytest.raises(
         InputError, match=r"definitions.a: expected weights that sum to 1, found 0.5"
     ):
-        derived.read(path)
+        derived_joints.read(path)
     path.write_text("definitions: {a: {means: x, weights: {b: 1}}}\njoints: {neck: {rig: c}}\n")
     with pytest.raises(InputError, match=r"joints.neck.rig: expected one of \['a'\], found 'c'"):
-        derived.read(path)
+        derived_joints.read(path)
     path.write_text("definitions: [1]\njoints: {}\n")
     with pytest.raises(InputError, match="expected `definitions`"):
-        derived.read(path)
+        derived_joints.read(path)

@@ -1,6 +1,6 @@
 """Names of images: what extraction writes is what the models are asked for."""
 
-from courtside.records import image_names
+from courtside.records.cameras import image_names
 
 
 def test_static_pictures_are_told_from_frames_of_any_walk():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from courtside.records import people, reasons
-from courtside.records.keypoints import Keypoints2D
+from courtside.records.keypoints import missing_reason, people
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
 
@@ -18,7 +18,7 @@ def view(rows=3, frames=5, joints=2):
         time_s=np.arange(frames) / 30,
         xy=np.stack([at, -at], axis=-1),
         score=at / 100,
-        reason=np.full((rows, frames, joints), reasons.OUT_OF_IMAGE, np.uint8),
+        reason=np.full((rows, frames, joints), missing_reason.OUT_OF_IMAGE, np.uint8),
         xyz_in_body=np.stack([at, at, at], axis=-1),
     )
 
@@ -58,8 +58,8 @@ def test_each_person_gets_the_row_of_each_frame():
     for person, frame in ((0, 4), (1, 1)):
         assert np.isnan(found.xy[person, frame]).all()
         assert np.isnan(found.score[person, frame]).all()
-        assert (found.reason[person, frame] == reasons.UNSEEN).all()
-    assert (found.reason[0, :4] == reasons.OUT_OF_IMAGE).all()
+        assert (found.reason[person, frame] == missing_reason.UNSEEN).all()
+    assert (found.reason[0, :4] == missing_reason.OUT_OF_IMAGE).all()
 
 
 def test_row_0_throughout_changes_nothing():

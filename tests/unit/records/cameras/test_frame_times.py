@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
-from courtside.records import frame_times, keypoints
-from courtside.records.frame_times import FrameTimes
+from courtside.records.cameras import frame_times
+from courtside.records.cameras.frame_times import FrameTimes
+from courtside.records.keypoints import keypoints
 from courtside.study.errors import InputError
 
 TIMES = FrameTimes(np.array([12.0, 12.033333, 12.1, 12.133333]), np.array([5, 6, 8, 9]))

@@ -8,7 +8,9 @@ import pytest
 import scene
 import walker
 from courtside.geometry import camera as camera_models
-from courtside.records import footage, keypoints, people, sync
+from courtside.records.cameras import footage
+from courtside.records.devices import clocks as sync
+from courtside.records.keypoints import keypoints, people
 from courtside.study.errors import InputError
 
 CAMERAS = scene.ring(3)

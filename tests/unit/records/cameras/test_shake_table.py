@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.records import shake_table
+from courtside.records.cameras import shake_table
 from courtside.study.errors import InputError
 
 

@@ -55,7 +55,7 @@ class Keypoints2D:
     score : (P, T, J) float
         Confidence, 0 to 1; NaN where missing.
     reason : (P, T, J) uint8
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     xyz_in_body : (P, T, J, 3) float
         The network's own metric guess about the hip centre, metres, axes as in cam (x right, y down,
         z forward); NaN for networks without one.
@@ -97,7 +97,7 @@ class Keypoints3D:
     accepted : (P, T, J, C) bool
         Whether the point rests on that camera's keypoint.
     reason : (P, T, J) uint8
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     """
 
     cameras: np.ndarray

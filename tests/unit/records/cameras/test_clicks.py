@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.records import clicks
+from courtside.records.cameras import clicks
 from courtside.study.errors import InputError
 
 HEADER = "camera,point,frame_idx,x_px,y_px\n"

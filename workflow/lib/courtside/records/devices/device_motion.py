@@ -36,7 +36,7 @@ class DeviceMotion:
     xyz : (T, J, 3) float
         Metres, in the device's own axes; NaN where missing.
     reason : (T, J) uint8
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     performed : (T,) bool
         False for frames that nobody performed, like the rest pose in the first row of a mocopi file.
     """
@@ -74,7 +74,7 @@ def of_person(points, person, source="cameras"):
 
     Parameters
     ----------
-    points : courtside.records.keypoints.Keypoints3D
+    points : courtside.records.keypoints.keypoints.Keypoints3D
     person : str
     source : str
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from courtside.records import reasons
+from courtside.records.keypoints import missing_reason
 from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading
 
@@ -150,7 +150,7 @@ def combine(xyz, covariance, reason, weights):
     covariance : (..., J, 3, 3) float
         Square metres; the errors of the joints are taken to be independent of one another.
     reason : (..., J) uint8
-        `courtside.records.reasons`.
+        `courtside.records.keypoints.missing_reason`.
     weights : (J,) float
 
     Returns
@@ -164,8 +164,8 @@ def combine(xyz, covariance, reason, weights):
     total = np.einsum("j,...jk->...k", kept, xyz[..., used, :])
     spread = np.einsum("j,...jkl->...kl", kept**2, covariance[..., used, :, :])
     codes = reason[..., used]
-    missing = (codes != reasons.OK) & (codes != reasons.INTERPOLATED)
-    first = np.argmax(np.where(missing, 2, codes != reasons.OK), axis=-1)
+    missing = (codes != missing_reason.OK) & (codes != missing_reason.INTERPOLATED)
+    first = np.argmax(np.where(missing, 2, codes != missing_reason.OK), axis=-1)
     return total, spread, np.take_along_axis(codes, first[..., None], axis=-1)[..., 0]
 
 

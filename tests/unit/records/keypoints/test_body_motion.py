@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bodies_made import body
-from courtside.records import body_motion
+from courtside.records.keypoints import body_motion
 from courtside.study.errors import InputError
 
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from courtside.records import device_motion, keypoints, reasons
+from courtside.records.devices import device_motion
+from courtside.records.keypoints import keypoints, missing_reason
 from courtside.study.errors import InputError
 
 
@@ -11,7 +12,7 @@ def motion():
     xyz = np.arange(24.0).reshape(4, 2, 3)
     xyz[1, 0] = np.nan
     reason = np.zeros((4, 2), dtype=np.uint8)
-    reason[1, 0] = reasons.NO_DEPTH
+    reason[1, 0] = missing_reason.NO_DEPTH
     return device_motion.DeviceMotion(
         source="d415-depth",
         kind="rgbd",
@@ -58,7 +59,7 @@ def test_one_person_of_the_cameras_is_a_source():
         n_views=np.full(shape, 2),
         reproj_error_px=np.zeros((*shape, 2)),
         accepted=np.ones((*shape, 2), dtype=bool),
-        reason=np.full(shape, reasons.OK, dtype=np.uint8),
+        reason=np.full(shape, missing_reason.OK, dtype=np.uint8),
     )
     found = device_motion.of_person(points, "p2")
     np.testing.assert_array_equal(found.xyz, points.xyz[1])

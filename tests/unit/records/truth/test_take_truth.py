@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from courtside.records import take_truth
+from courtside.records.truth import take_truth
 from courtside.study.errors import InputError
 
 RNG = np.random.default_rng(0)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from courtside.geometry import camera as camera_models
-from courtside.records import keypoints, people, sync
-from courtside.records.keypoints import Keypoints2D
-from courtside.records.sync import Clock
+from courtside.records.devices import clocks as sync
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints import keypoints, people
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
 

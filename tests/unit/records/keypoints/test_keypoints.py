@@ -7,7 +7,7 @@ import pytest
 
 import scene
 import walker
-from courtside.records import keypoints
+from courtside.records.keypoints import keypoints
 from courtside.study.errors import InputError
 
 
