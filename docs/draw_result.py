@@ -13,8 +13,8 @@ from matplotlib.patches import Ellipse
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.calibration.court import court as courts  # noqa: E402
-from courtside.evaluation import joints as pose_errors  # noqa: E402
+from courtside.calibration.court import court as courts
+from courtside.evaluation import joints as pose_errors
 from courtside.figures.style import (
     oblique_view,
     picture_crops,
@@ -23,8 +23,8 @@ from courtside.figures.style import (
 )
 from courtside.records.cameras import footage
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
-from courtside.records.truth import take_truth  # noqa: E402
-from courtside.video import reader  # noqa: E402
+from courtside.records.truth import take_truth
+from courtside.video import reader
 
 SESSION, TAKE, TIME_S = "players-b", "shot", 2.37
 CALIBRATION, FUSION, NETWORK = "sfm-n40", "all-robust", "blazepose-full"

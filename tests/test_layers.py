@@ -13,20 +13,31 @@ from courtside.study.execution import digest
 
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "workflow" / "lib"
-MODULES = sorted((LIBRARY / "courtside").rglob("*.py"))
+MODULES = sorted(LIBRARY.rglob("*.py"))
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
-LEVELS = {
-    "study": 0,
-    "geometry": 1,
-    "records": 1.5,  # records may use geometry
-    "sfm": 2,
-    "pose": 2,
-    "devices": 2,
-    "motion": 2,
-    "exports": 3,
-    "virtual": 3,
-    "figures": 3,
-    "pages": 3,
+LEVELS = {  # a room imports rooms of lower levels only
+    "study": 1,
+    "statistics": 2,
+    "video": 2,
+    "geometry": 2,
+    "records": 3,
+    "kinematics": 4,
+    "inertial": 4,
+    "devices": 4,
+    "depth": 4,
+    "pose": 4,
+    "calibration": 4,
+    "reconstruction": 5,
+    "events": 5,
+    "sfm": 5,
+    "exports": 5,
+    "drafting": 5,
+    "pages": 5,
+    "evaluation": 6,
+    "body_frame": 6,
+    "synchronisation": 7,
+    "figures": 7,
+    "virtualgym": 8,
 }
 OWNERS = {
     "matplotlib": "figures",
@@ -34,13 +45,13 @@ OWNERS = {
     "onnx": "pose",
     "tflite": "pose",
     "pycolmap": "sfm",
-    "av": "devices",
+    "av": "video",
     "bvhio": "devices",
     "ezc3d": "exports",
-    "embreex": "virtual",
+    "embreex": "virtualgym",
 }
 TRUTH = ("truth.npz", "TRUE_TAKE", "true_take_file", "backdrops")  # how rules name files of truth
-FOR_SCRIPTS = {"courtside", "numpy", "pandas", "cv2", *sys.stdlib_module_names}
+FOR_SCRIPTS = {"courtside", "virtualgym", "numpy", "pandas", "cv2", *sys.stdlib_module_names}
 
 
 def imports(source):
@@ -54,14 +65,20 @@ def imports(source):
     return names
 
 
+def room_of(parts):
+    """Return the room of a module, by the parts of its name or path: the simulation is one."""
+    return parts[0] if parts[0] == "virtualgym" else parts[1]
+
+
 def faults(room, source):
     """Return what a module of a room may not import, as lines."""
     lines = []
     for name in imports(source):
-        first, _, rest = name.partition(".")
-        other = rest.split(".")[0]
-        if first == "courtside" and other != room and LEVELS.get(other, 99) >= LEVELS[room]:
-            lines.append(f"{room} may not import {name}")
+        first = name.split(".")[0]
+        if first in ("courtside", "virtualgym"):
+            other = room_of(name.split("."))
+            if other != room and LEVELS.get(other, 99) >= LEVELS[room]:
+                lines.append(f"{room} may not import {name}")
         if first == "snakemake" or OWNERS.get(first, room) != room:
             lines.append(f"{room} may not import {name}")
     if "results/" in source and room != "study":
@@ -71,18 +88,24 @@ def faults(room, source):
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda p: "/".join(p.parts[-2:]))
 def test_rooms_import_downwards_only(path):
-    room = path.relative_to(LIBRARY / "courtside").parts[0]
+    room = room_of(path.relative_to(LIBRARY).parts)
     assert room == "__init__.py" or faults(room, path.read_text()) == []
+
+
+def test_every_room_has_a_level():
+    rooms = {room_of(path.relative_to(LIBRARY).parts) for path in MODULES} - {"__init__.py"}
+    assert rooms == set(LEVELS)
 
 
 @pytest.mark.parametrize(
     ("room", "source"),
     [
-        ("pose", "from courtside.devices import video"),
-        ("geometry", "from courtside.records import keypoints"),
+        ("pose", "from courtside.devices import bvh"),
+        ("geometry", "from courtside.records.keypoints import keypoints"),
         ("study", "import courtside.geometry.camera"),
-        ("motion", "from courtside.figures import style"),
-        ("motion", "import matplotlib.pyplot"),
+        ("calibration", "from courtside.evaluation import calibration"),
+        ("figures", "from virtualgym.hall import hall"),
+        ("kinematics", "import matplotlib.pyplot"),
         ("exports", "import snakemake"),
         ("figures", "PATH = 'results/walk'"),
     ],
@@ -111,11 +134,7 @@ def test_every_module_imports(path):
     assert importlib.import_module(name.removesuffix(".__init__")).__doc__
 
 
-TRUE_MODULES = (
-    "courtside.virtual",
-    "courtside.records.truth.session_truth",
-    "courtside.records.truth.take_truth",
-)
+TRUE_MODULES = ("virtualgym", "courtside.records.truth")
 KNOWING = ("simulate_", "evaluate_")  # rules that make truth or measure against it
 # What may rest on an evaluation: measures and drawings of it, never a method.
 SHOWING = ("evaluate_", "draw_", "tabulate_", "compare_", "all")
@@ -142,12 +161,10 @@ def test_methods_reach_neither_simulation_nor_truth(path):
 
 
 def test_only_the_records_of_truth_and_the_simulation_name_its_file():
-    rooms = {path.relative_to(LIBRARY / "courtside").parts[0] for path in MODULES}
-    assert "virtual" in rooms
     naming = [path for path in MODULES if "truth.npz" in path.read_text()]
-    assert [
-        path for path in naming if "virtual" not in path.parts and "truth" not in path.stem
-    ] == []
+    assert any("virtualgym" in path.parts for path in naming)
+    others = [path for path in naming if not {"virtualgym", "truth"}.intersection(path.parts)]
+    assert [path for path in others if "truth" not in path.stem] == []
 
 
 def rule_blocks():

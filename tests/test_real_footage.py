@@ -11,7 +11,6 @@ import cv2
 import numpy as np
 import pytest
 
-import networks
 from courtside.calibration import file_formats
 from courtside.exports import trc
 from courtside.geometry import camera as cameras
@@ -21,7 +20,8 @@ from courtside.reconstruction import fusion
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import yaml_files
 from courtside.video import reader, static_picture
-from real_data import REAL, needs_real
+from fixtures.recordings import networks
+from fixtures.recordings.real_data import REAL, needs_real
 
 pytestmark = needs_real
 ROOT = Path(__file__).parents[1]

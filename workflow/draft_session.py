@@ -12,9 +12,9 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.drafting import draft, survey  # noqa: E402
-from courtside.drafting import guess as file_names  # noqa: E402
-from courtside.study.errors import InputError  # noqa: E402
+from courtside.drafting import draft, survey
+from courtside.drafting import guess as file_names
+from courtside.study.errors import InputError
 
 
 def main(folder, name, court, sessions):

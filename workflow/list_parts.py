@@ -12,9 +12,9 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.study.errors import InputError  # noqa: E402
+from courtside.study.errors import InputError
 from courtside.study.execution import artefacts, files
-from courtside.study.provenance import sbom  # noqa: E402
+from courtside.study.provenance import sbom
 
 
 def main(repository):

@@ -2,7 +2,7 @@
 
 It computes again the checksums of raw inputs, artefacts, networks, lock and code, and compares them with what
 the sidecars in results/run say. With `--against OTHER/results` it compares two results trees file by file
-instead: bit-equal, equal within the tolerances that courtside/study/provenance/comparison.py states, or different. The
+instead: bit-equal, equal within the tolerances of courtside/study/provenance/comparison.py, or different. The
 exit status is 1 if anything is otherwise.
 
 Two machines that cannot reach each other's files compare checksums: `--write-checksums TABLE.csv` on one of
@@ -18,7 +18,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.study.errors import InputError  # noqa: E402
+from courtside.study.errors import InputError
 from courtside.study.provenance import (
     comparison,
     stage_checksums,

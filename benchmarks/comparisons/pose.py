@@ -10,7 +10,7 @@ import onnx
 import peers
 import rows
 
-from courtside.pose import tflite_onnx
+from courtside.pose.conversion import tflite_onnx
 
 NAME = "pose"
 LIMIT = "additions and multiplications of the networks, over the core's"

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "workflow" / "lib"))
-from courtside.pose import blazepose, tflite_onnx
+from courtside.pose import blazepose
+from courtside.pose.conversion import tflite_onnx
 
 MIN_PRESENCE = 0.5
 LANDMARK_OUTPUTS = ["Identity", "Identity_1", "Identity_3", "Identity_4"]

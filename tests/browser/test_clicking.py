@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 import pytest
 
-import court_pictures
 from courtside.geometry import camera as projection
 from courtside.pages import page as pages
 from courtside.pages.clicking import page as clicking_page
 from courtside.records.cameras import clicks
+from fixtures.cameras import court_pictures
 
 pytestmark = pytest.mark.browser
 TARGETS = {"court_points.csv": "data/hall/court_points.csv"}

@@ -2,9 +2,9 @@
 
 import pytest
 
-import report_made
 from courtside.pages import page as pages
 from courtside.pages.report import report
+from fixtures.study import report_made
 
 pytestmark = pytest.mark.browser
 

@@ -8,12 +8,12 @@ import cv2
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.calibration.court import court
 from courtside.pages import page as pages
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 pytestmark = pytest.mark.browser
 COURT = Path(__file__).parents[2] / "config" / "courts" / "badminton.yaml"

@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 import tomli_w
 
-import walker
 from courtside.calibration import file_formats
 from courtside.calibration.court import court
 from courtside.exports import pose2sim, trc
@@ -14,9 +13,10 @@ from courtside.geometry import camera as cameras
 from courtside.reconstruction import joint_correction
 from courtside.records.cameras import click_proposals, clicks
 from courtside.records.keypoints import skeleton
+from fixtures.people import walker
+from fixtures.recordings.real_data import REAL
 from fuzz.format import Format, require
 from fuzz.of_study import CONFIG, copies
-from real_data import REAL
 
 ROTATION = cv2.Rodrigues(np.array([1.2, -0.7, 0.4]))[0]
 TRANSLATION = np.array([0.3, -0.5, 6.0])

@@ -6,16 +6,16 @@ import warnings
 
 import cv2
 import numpy as np
-from bvh_texts import ARM
 
-import depth_recordings_made
-import walker
 from courtside.devices import bvh, mocopi, nuitrack, open_depth, openpose
 from courtside.geometry import camera as cameras
 from courtside.records.devices.hierarchy import forward
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.video import writer
+from fixtures.people import walker
+from fixtures.recordings import depth_recordings_made
+from fixtures.recordings.bvh_texts import ARM
 from fuzz.format import Format, require
 from fuzz.of_cameras import real
 from fuzz.of_study import CONFIG

@@ -5,18 +5,18 @@ import shutil
 
 import cv2
 import numpy as np
-import sfm_made
-import video_files
 
 from courtside.calibration import chessboard
 from courtside.drafting import draft as session_advice
 from courtside.drafting import guess as session_guess
 from courtside.drafting import survey
 from courtside.pages.clicking import page
-from courtside.pose import tflite_onnx
+from courtside.pose.conversion import tflite_onnx
 from courtside.sfm import database, model
 from courtside.study.configuration import yaml_files
 from courtside.video import reader, walk_frames
+from fixtures.cameras import sfm_made
+from fixtures.recordings import video_files
 from fuzz.format import Format, require
 from fuzz.of_cameras import clicked, own_toml, real
 from fuzz.of_devices import bags, bvhs
@@ -102,7 +102,7 @@ def read_video(path):
 
 def networks(folder):
     """Write small networks: convolution, sums, sparse and short constants."""
-    from tflite_files import Network, sparse_rows
+    from fixtures.recordings.tflite_files import Network, sparse_rows
 
     rng = np.random.default_rng(0)
     kernel = rng.normal(size=(4, 3, 3, 3)).astype(np.float32)

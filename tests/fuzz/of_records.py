@@ -3,10 +3,6 @@
 import numpy as np
 import pandas as pd
 
-import networks_made
-import scene
-import walker
-from bodies_made import body
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance as camera_covariance
@@ -18,6 +14,9 @@ from courtside.records.keypoints import body_motion, keypoints, people
 from courtside.records.truth import session_truth as truth
 from courtside.records.truth import take_truth
 from courtside.sfm import grid
+from fixtures.cameras import networks_made, scene
+from fixtures.people import walker
+from fixtures.people.bodies_made import body
 from fuzz.format import Format, require
 
 RNG = np.random.default_rng(0)

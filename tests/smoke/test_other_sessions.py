@@ -18,7 +18,7 @@ from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import session_truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 from smoke.snakemake_runs import ROOT
 
 DOOR = REAL / "sfm-door"

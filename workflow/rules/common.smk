@@ -20,12 +20,13 @@ PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
 os.environ.update(OPENBLAS_NUM_THREADS="1")  # sums do not depend on the number of cores
 
-from courtside.study import configuration, dates, digest, files, plans, shortage
+from courtside.study.configuration import configuration, plans
 from courtside.study.errors import InputError
+from courtside.study.execution import digest, files, future_dates, machine_resources
 
 try:
     for folder in filter(Path.exists, [Path.cwd(), Path("results")]):
-        shortage.check(folder)
+        machine_resources.check(folder)
 except InputError as error:
     sys.exit(f"Error: {error}")
 
@@ -41,7 +42,7 @@ FORMATS = ["pdf", "png", "csv"]
 try:
     STUDY = configuration.load(config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd())
     PLANS = {name: plans.read(CONFIG / "plans" / f"{name}.yaml") for name in config["plans"]}
-    dates.check([CONFIG, "results/external", *(f"data/{name}" for name in STUDY.sessions)])
+    future_dates.check([CONFIG, "results/external", *(f"data/{name}" for name in STUDY.sessions)])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 

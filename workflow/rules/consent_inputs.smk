@@ -3,7 +3,7 @@
 Inputs: the checked configuration. Outputs: none. Steps: which files may be made; the words that say what is left out.
 """
 
-from courtside.study import consent
+from courtside.study.configuration import consent
 
 PICTURED = (
     "overlay",

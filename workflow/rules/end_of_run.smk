@@ -5,7 +5,7 @@ Inputs: the jobs of the run. Outputs: none. Steps: what was made, or what failed
 
 import time
 
-from courtside.study import summary
+from courtside.study.execution import summary
 
 STARTED_S = time.monotonic()
 LOOK_AT = [

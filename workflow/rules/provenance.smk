@@ -7,7 +7,7 @@ Steps: record_provenance, called in `onsuccess` and `onerror` of the Snakefile.
 
 import json
 
-from courtside.study import provenance, surroundings
+from courtside.study.provenance import environment, provenance
 
 PINNED = ("results/external/", "results/networks/")
 
@@ -18,7 +18,7 @@ def record_provenance():
     targets = {str(name) for name in workflow.dag.derived_targetfiles}
     run = {
         "command": repeating_command(),
-        "surroundings": surroundings.found(REPOSITORY),
+        "surroundings": environment.found(REPOSITORY),
         "config": config,
         "config_files": configuration_files(),
     }

@@ -19,7 +19,7 @@ def main(
     if record.outcome or record.fault:
         raise InputError(record.outcome or record.fault)
     names = list(record.ties.cameras)
-    found, checked = solve(record.ties, clicks_csv, court_yaml, **options)
+    found, checked = solve(record, clicks_csv, court_yaml, **options)
     report = {
         "calibration": name,
         "tie_residual_px": round(record.residual_px, 4),
@@ -29,12 +29,6 @@ def main(
         "n_points_seen": dict(zip(names, map(int, record.n_points_seen), strict=True)),
         **checked,
     }
-    if not court_yaml and record.n_maps[0] == 1 < record.n_maps[1]:
-        report["warnings"].append(
-            f"walk: expected maps of its images to agree, found {record.n_maps[1]} that all differ by more "
-            "than 1 % of their extent: angles and proportions are that uncertain; take more bridging images, "
-            "or name a court"
-        )
     log.logger.info("warnings: %s", report["warnings"] or "none")
     unit = "m" if court_yaml else camera_fields.UNSCALED
     camera_models.write_toml(cameras_toml, found.cameras, source=name, unit=unit)
@@ -43,14 +37,12 @@ def main(
     write_json(quality_json, report)
 
 
-def solve(found, clicks_csv, court_yaml, **options):
+def solve(record, clicks_csv, court_yaml, **options):
     if not court_yaml:
-        return joint_adjustment.free(found), {
-            "warnings": ["no court: scale and frame are arbitrary"]
-        }
+        return joint_adjustment.free(record.ties), quality.without_court(*record.n_maps)
     court = courts.read(court_yaml)
-    marked = clicks.read(clicks_csv, list(found.cameras), list(court.points))
-    return quality.of_ties(court, found, marked, **options)
+    marked = clicks.read(clicks_csv, list(record.ties.cameras), list(court.points))
+    return quality.of_ties(court, record.ties, marked, **options)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Convert one network: TFLite -> ONNX."""
 
-from courtside.pose import tflite_onnx
+from courtside.pose.conversion import tflite_onnx
 from courtside.study.execution import log
 
 

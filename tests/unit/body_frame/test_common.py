@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import device_takes
 from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
 from courtside.devices import mocopi
@@ -13,7 +12,8 @@ from courtside.events import detect
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints, skeleton
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings import device_takes
+from fixtures.recordings.real_data import REAL, needs_real
 
 CONFIG = Path(__file__).parents[3] / "config"
 TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")

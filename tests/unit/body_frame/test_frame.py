@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import device_takes
 from courtside.body_frame import frame as bodyframe
 from courtside.events import tpose
 from courtside.records.keypoints import derived_joints
 from courtside.study.errors import InputError
+from fixtures.recordings import device_takes
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 CARRIED_BY = bodyframe.anchors(TABLE, "rig", device_takes.JOINTS)

@@ -9,7 +9,7 @@ import pytest
 from courtside.calibration import chessboard, file_formats
 from courtside.geometry import rotations
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 SIZE = (640, 480)
 K = np.array([[600.0, 0, 330], [0, 600, 233], [0, 0, 1]])

@@ -9,7 +9,7 @@ import pytest
 from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 WALK = REAL / "walk-4cams" / "calibration"
 CHARUCO = REAL / "charuco-4cams"

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-import networks_made
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import sfm_alignment
-from scene import opencv_projection
+from fixtures.cameras import networks_made
+from fixtures.cameras.scene import opencv_projection
 
 XYZ = np.array([[3.0, 6.7, 1.0], [0.5, 2.0, 0.0], [5.0, 12.0, 2.5]])
 SMALL = np.array([1e-4] * 3 + [1e-3] * 3 + [0.0] * 5)  # of an image's columns

@@ -4,13 +4,13 @@ from itertools import product
 import numpy as np
 import pytest
 
-import depth_scenes
 from courtside.depth import lifting
 from courtside.depth.surfaces import Sampling
 from courtside.geometry import camera
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
-from depth_scenes import BONES, RADIUS_M, STANDING
+from fixtures.recordings import depth_scenes
+from fixtures.recordings.depth_scenes import BONES, RADIUS_M, STANDING
 
 RIG = depth_scenes.rig()
 NAMES = list(STANDING)

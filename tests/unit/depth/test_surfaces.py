@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-import depth_scenes
 from courtside.depth.surfaces import Sampler, Sampling, modes_of, plane_at_origin
 from courtside.geometry import camera
+from fixtures.recordings import depth_scenes
 
 RNG = np.random.default_rng(4)
 RIG = depth_scenes.rig()

@@ -7,13 +7,13 @@ import time
 import bvhio
 import numpy as np
 import pytest
-from bvh_texts import ARM
 from scipy.spatial.transform import Rotation
 
 from courtside.devices import bvh
 from courtside.records.devices.hierarchy import NO_PARENT, forward
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.bvh_texts import ARM
+from fixtures.recordings.real_data import REAL, needs_real
 
 MOCOPI = REAL / "mocopi"
 CENTIMETRE = {"unit_m": 1.0}  # keep the file's unit

@@ -8,7 +8,7 @@ from courtside.devices import depth_folder
 from courtside.geometry import camera
 from courtside.study.errors import InputError
 from courtside.video import writer
-from depth_recordings_made import PLACED
+from fixtures.recordings.depth_recordings_made import PLACED
 
 RNG = np.random.default_rng(2)
 N = 5

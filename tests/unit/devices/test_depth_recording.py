@@ -3,7 +3,7 @@ import pytest
 
 from courtside.devices.depth_recording import DepthRecording
 from courtside.records.cameras.frame_times import FrameTimes
-from depth_recordings_made import COLOUR, DEPTH, PLACED
+from fixtures.recordings.depth_recordings_made import COLOUR, DEPTH, PLACED
 
 
 def recording(**changed):

@@ -12,7 +12,7 @@ from courtside.records.devices import device_motion
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 ROOT = Path(__file__).parents[3]
 YAML = ROOT / "config" / "skeletons" / "mocopi27.yaml"

@@ -5,7 +5,7 @@ import pytest
 
 from courtside.devices import open_depth
 from courtside.study.errors import InputError
-from depth_recordings_made import BASELINE_M, write_bag
+from fixtures.recordings.depth_recordings_made import BASELINE_M, write_bag
 
 
 def test_a_file_is_a_recording_of_the_camera_s_program(tmp_path):

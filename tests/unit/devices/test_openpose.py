@@ -13,7 +13,7 @@ from courtside.exports import markers, trc
 from courtside.geometry.camera import project
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
 COCO = skeleton.read(SKELETONS / "coco17.yaml")

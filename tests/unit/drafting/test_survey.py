@@ -7,13 +7,13 @@ from pathlib import Path
 
 import cv2
 import pytest
-import video_files
 import yaml
 
 from courtside.drafting import survey
 from courtside.study.configuration import configuration
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings import video_files
+from fixtures.recordings.real_data import REAL, needs_real
 
 PROGRAM = configuration.SCHEMAS.parents[1] / "workflow" / "draft_session.py"
 

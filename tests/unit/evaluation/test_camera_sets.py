@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import walker
 from courtside.evaluation import camera_sets, joints
+from fixtures.people import walker
 
 
 def record(n_frames=40, n_persons=1):

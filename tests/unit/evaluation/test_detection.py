@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-import scene
 from courtside.evaluation import detection
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
 
 LIMBS = [
     f"{s}_{j}"

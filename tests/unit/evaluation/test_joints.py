@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import walker
 from courtside.evaluation import joints as pose_errors
+from fixtures.people import walker
 
 
 def record(n_frames=40, n_persons=1, **changes):

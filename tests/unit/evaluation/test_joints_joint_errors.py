@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.evaluation import joints as joint_errors
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 DERIVED = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 

@@ -6,14 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import networks_made
-import scene
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court, joint_adjustment, sfm_alignment
 from courtside.calibration.records import tie_points
 from courtside.evaluation import racket as racket_trials
 from courtside.geometry import similarity, triangulation
-from scene import look_at, opencv_projection
+from fixtures.cameras import networks_made, scene
+from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[3] / "config" / "courts" / "badminton.yaml")
 SETTINGS = {"click_sigma_px": 0.9, "click_bias_px": 0.5, "click_loss": 4.0}

@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import scene
-import walker
 from courtside.evaluation import round_trip
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 PUBLISHED = Path(__file__).parents[3] / "config" / "published" / "badminton_tab01.csv"
 DIST = (-0.12, 0.05, 0.001, -0.0005, 0.0)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from bodies_made import body
 from courtside.evaluation import sources
+from fixtures.people.bodies_made import body
 
 JOINTS = ["left_hip", "right_hip", "left_wrist", "right_wrist", "right_ankle", "left_ankle"]
 UNIT_M = 0.75

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import device_takes
 from courtside.events import claps, tpose
 from courtside.study.errors import InputError
+from fixtures.recordings import device_takes
 
 
 def found_at(motion):

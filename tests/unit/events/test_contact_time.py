@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import sync_takes
 from courtside.events import contact_time
+from fixtures.cameras import sync_takes
 
 
 def hinge(time_s, corner_s, *, floor=0.1, slope=2.6, bend=3.0, rise=0.0, sigma_s=0.0):

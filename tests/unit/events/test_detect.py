@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import device_takes
 from courtside.events import detect
 from courtside.study.errors import InputError
+from fixtures.recordings import device_takes
 
 DEVICES = {"d415-rgb": "d415", "mocopi": "mocopi", "d415-depth": "d415"}
 

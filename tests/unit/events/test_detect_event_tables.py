@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import device_takes
 from courtside.events import detect
 from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import devices as device_sync
+from fixtures.recordings import device_takes
 
 CLOCK = Clock(2.0, 50.0)
 

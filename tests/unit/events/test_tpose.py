@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import device_takes
 from courtside.events import tpose
 from courtside.study.errors import InputError
+from fixtures.recordings import device_takes
 
 DEVICES = {
     "exact": device_takes.device,

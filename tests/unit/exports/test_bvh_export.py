@@ -11,7 +11,7 @@ from courtside.devices import bvh as reader
 from courtside.exports import bvh
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy, forward
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 PARENTS = [NO_PARENT, 0, 1, 1, 0]
 NAMES = ("root", "chest", "left_arm", "right_arm", "leg")

@@ -7,10 +7,10 @@ import ezc3d
 import numpy as np
 import pytest
 
-import walker
 from courtside.exports import c3d
 from courtside.study.errors import InputError
-from small_disk import limited_to
+from fixtures.people import walker
+from fixtures.study.small_disk import limited_to
 
 
 @pytest.fixture

@@ -6,13 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import footwork
-import walker
 from courtside.exports import measures
 from courtside.kinematics import cutoffs, joint_angles
 from courtside.kinematics import measures as kinematics
 from courtside.records import tables
 from courtside.records.keypoints import derived_joints, missing_reason
+from fixtures.people import footwork, walker
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 

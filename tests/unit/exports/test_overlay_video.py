@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.exports import overlay_video
 from courtside.figures.style import style
 from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 from courtside.video import reader, writer
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
 N = 12

@@ -12,13 +12,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.exports import markers, pose2sim, trc
 from courtside.geometry import camera as cameras
 from courtside.records.keypoints import keypoints, missing_reason, skeleton
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.cameras import scene
+from fixtures.people import walker
+from fixtures.recordings.real_data import REAL, needs_real
 
 SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
 

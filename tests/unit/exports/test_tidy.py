@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import walker
 from courtside.exports import tidy
 from courtside.records.keypoints import missing_reason
+from fixtures.people import walker
 
 
 def test_columns_and_values_are_the_records(tmp_path):

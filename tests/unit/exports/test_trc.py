@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import walker
 from courtside.exports import trc
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.people import walker
+from fixtures.recordings.real_data import REAL, needs_real
 
 
 def by_pandas(path):

@@ -11,7 +11,7 @@ import pytest
 from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 ROTATION_VECTOR = np.array([1.2, -0.7, 0.4])
 TRANSLATION = np.array([0.3, -0.5, 6.0])

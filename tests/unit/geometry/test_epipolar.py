@@ -3,9 +3,9 @@
 import cv2
 import numpy as np
 
-import scene
 from courtside.geometry import camera as camera_models
 from courtside.geometry import epipolar
+from fixtures.cameras import scene
 
 CAMERAS = scene.ring(3, dist=(-0.1, 0.02, 1e-3, -5e-4, 0.0))
 XYZ = scene.points(200)

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.geometry import similarity
 from courtside.study.errors import InputError
-from scene import opencv_projection, points, ring
+from fixtures.cameras.scene import opencv_projection, points, ring
 
 TRUE = similarity.Sim3(
     2.5, Rotation.from_rotvec([0.4, -1.1, 2.0]).as_matrix(), np.array([3.0, -7, 1])

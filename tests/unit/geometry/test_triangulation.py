@@ -5,10 +5,10 @@ import pandas as pd
 import pytest
 from scipy.optimize import least_squares
 
-import scene
 from courtside.calibration import file_formats
 from courtside.geometry import camera, triangulation
-from real_data import REAL, needs_real
+from fixtures.cameras import scene
+from fixtures.recordings.real_data import REAL, needs_real
 
 LENS = (-0.25, 0.08, 1e-3, -5e-4, -0.01)
 LIMITS = {"max_error_px": 15, "min_views": 2}

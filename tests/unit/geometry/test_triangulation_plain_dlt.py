@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-import scene
 from courtside.geometry import triangulation
+from fixtures.cameras import scene
 
 XYZ = scene.points(50)
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-import scene
 from courtside.geometry import triangulation
+from fixtures.cameras import scene
 
 CAMERAS = scene.ring(3)  # without distortion, pixels are the plane
 XYZ = scene.points(20)

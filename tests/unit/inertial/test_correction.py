@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import moved_bodies
 from courtside.inertial import correction
 from courtside.records.devices.hierarchy import PosedHierarchy, forward
 from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
+from fixtures.people import moved_bodies
 
 SECONDS = 15.0
 SIGMA_M = 0.03

@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-import moved_bodies
 from courtside.inertial import correction
 from courtside.inertial import fit as correction_fit
+from fixtures.people import moved_bodies
 
 TRUE = moved_bodies.moving(4, seconds=12.0)
 

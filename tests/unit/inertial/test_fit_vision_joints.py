@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import moved_bodies
 from courtside.inertial import fit
 from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
 from courtside.study.errors import InputError
+from fixtures.people import moved_bodies
 
 BODY = moved_bodies.moving(0, seconds=3.0)
 VISION = moved_bodies.seen(BODY, missing=0.1)

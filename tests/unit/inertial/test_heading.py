@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import moved_bodies
 from courtside.inertial import heading as heading_drift
 from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
+from fixtures.people import moved_bodies
 
 TRUE = moved_bodies.moving(2, seconds=20.0)
 TIME_S = TRUE.time_s[::2]

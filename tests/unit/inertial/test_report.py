@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-import moved_bodies
 from courtside.inertial import correction
 from courtside.records.devices.hierarchy import forward
+from fixtures.people import moved_bodies
 
 
 @cache

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import moved_bodies
 from courtside.geometry import rotations
 from courtside.inertial import segments
 from courtside.records.devices.hierarchy import forward
 from courtside.records.keypoints import skeleton
+from fixtures.people import moved_bodies
 
 POSED = moved_bodies.moving(1, seconds=0.1)
 N = len(POSED.time_s)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import moved_bodies
 from courtside.inertial import segments
 from courtside.records.devices.hierarchy import Hierarchy
 from courtside.study.errors import InputError
+from fixtures.people import moved_bodies
 
 BODY = moved_bodies.hierarchy()
 SEGMENTS = segments.segments_of(BODY)

@@ -5,11 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import footwork
-import walker
 from courtside.kinematics import centre_of_mass
 from courtside.records.keypoints import derived_joints
 from courtside.study.errors import InputError
+from fixtures.people import footwork, walker
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 # de Leva 1996, table 4: lengths in mm and the place of the centre in %, for men and women, where the same

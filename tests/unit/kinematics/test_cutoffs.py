@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import footwork
-import walker
 from courtside.kinematics import cutoffs, filtering
 from courtside.study.errors import InputError
+from fixtures.people import footwork, walker
 
 
 def player(rate_hz, sigma_m, seed=1):

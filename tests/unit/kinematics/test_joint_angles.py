@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-import footwork
-import walker
 from courtside.kinematics import joint_angles
+from fixtures.people import footwork, walker
 
 NONE = np.zeros((1, 3, 3))
 

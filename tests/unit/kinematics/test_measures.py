@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import footwork
-import walker
 from courtside.kinematics import filtering, measures
 from courtside.kinematics.noise_propagation import Noise
 from courtside.records.keypoints import derived_joints, missing_reason
+from fixtures.people import footwork, walker
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 CUTOFFS_HZ = np.array(walker.SKELETON.by_group({"head": 6, "trunk": 6, "arms": 10, "legs": 8}))

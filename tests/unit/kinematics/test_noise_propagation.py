@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import footwork
 from courtside.kinematics import filtering, noise_propagation
 from courtside.kinematics.noise_propagation import Noise
+from fixtures.people import footwork
 
 WHITE = Noise(0.0)
 N_LINES = 400

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import footwork
 from courtside.kinematics import filtering, noise_propagation, path_length
 from courtside.kinematics.noise_propagation import Noise
+from fixtures.people import footwork
 
 SECONDS = 24
 

@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bodies_made import body
 from courtside.kinematics import wrist_arcs
 from courtside.study.errors import InputError
+from fixtures.people.bodies_made import body
 
 JOINTS = ["left_shoulder", "right_shoulder", "left_wrist", "right_wrist"]
 ASIDE, ARM, BACK = 0.25, 0.75, -0.05

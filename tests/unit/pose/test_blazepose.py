@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import networks
 from courtside.pose import blazepose, detector
-from real_data import REAL, needs_real
+from fixtures.recordings import networks
+from fixtures.recordings.real_data import REAL, needs_real
 
 RECORDED = Path(__file__).with_name("mediapipe_landmarks.csv")
 

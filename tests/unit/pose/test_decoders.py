@@ -2,10 +2,11 @@
 
 import pytest
 
-import networks
-from courtside.pose import blazepose, decoders, heatmaps, tflite_onnx
+from courtside.pose import blazepose, decoders, heatmaps
+from courtside.pose.conversion import tflite_onnx
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings import networks
+from fixtures.recordings.real_data import REAL, needs_real
 
 
 def test_blazepose_is_built():

@@ -6,10 +6,11 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.pose import heatmaps, tflite_onnx
+from courtside.pose import heatmaps
+from courtside.pose.conversion import tflite_onnx
 from courtside.pose.detector import Region
 from courtside.records.keypoints import skeleton
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 
 @pytest.mark.parametrize(("x", "y"), [(40.0, 20.0), (40.3, 20.4), (10.5, 60.25)])

@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 import pytest
 
-import networks
 from courtside.pose import blazepose, foreground, tracking, tracklets
 from courtside.pose.detector import Pose, Region
 from courtside.records.keypoints import missing_reason
-from real_data import REAL, needs_real
+from fixtures.recordings import networks
+from fixtures.recordings.real_data import REAL, needs_real
 
 EMPTY = np.zeros((240, 640, 3), np.uint8)
 SIDE = 40

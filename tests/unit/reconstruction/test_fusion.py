@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import scene
 from courtside.reconstruction import fusion, resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
+from fixtures.cameras import scene
 
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
 OPTIONS = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True}

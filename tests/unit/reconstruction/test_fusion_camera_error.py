@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import scene
-import walker
 from courtside.calibration.bundle import selection
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.reconstruction import fusion
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 CAMERAS = scene.ring(2, radius_m=8)
 N = len(camera_covariance.PARAMETERS)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import walker
 from courtside.reconstruction import fusion
 from courtside.records.keypoints import missing_reason
+from fixtures.people import walker
 
 CAMERAS = ["centre", "left", "right"]
 UP = np.array([0, 0, 1.0])

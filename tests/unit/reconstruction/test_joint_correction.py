@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import walker
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
+from fixtures.people import walker
 
 JOINTS = list(skeleton.JOINTS)
 SHARES = {"up": 0.05, "out": -0.03, "forward": 0.02}

@@ -5,10 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
-import scene
-import stick_figures
-import sync_takes
 from courtside.reconstruction import left_right
+from fixtures.cameras import scene, sync_takes
+from fixtures.people import stick_figures
 
 MIRROR = np.arange(12) ^ 1
 UPPER, LEGS = list(range(6)), list(range(6, 12))

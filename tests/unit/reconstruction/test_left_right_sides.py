@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import scene
 from courtside.geometry import epipolar
 from courtside.reconstruction import left_right
+from fixtures.cameras import scene
 
 LIMIT_PX = 15.0
 PAIRS = np.array([[0, 1], [2, 3]])

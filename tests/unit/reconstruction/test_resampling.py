@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import sync_takes
 from courtside.reconstruction import resampling
 from courtside.records.devices.clocks import Clock
+from fixtures.cameras import sync_takes
 
 CAMERA = sync_takes.rig(1)[0]
 PERSON = sync_takes.athlete(np.random.default_rng(0), 20.0)

@@ -6,9 +6,9 @@ from contextlib import closing
 
 import pycolmap
 import pytest
-import sfm_made
 
 from courtside.sfm import database
+from fixtures.cameras import sfm_made
 
 
 def camera():

@@ -5,12 +5,12 @@ from contextlib import closing
 import numpy as np
 import pycolmap
 import pytest
-import sfm_made
 from scipy.spatial import cKDTree
 
 from courtside.sfm import database, features
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.cameras import sfm_made
+from fixtures.recordings.real_data import REAL, needs_real
 
 DOOR = REAL / "sfm-door" / "images"
 

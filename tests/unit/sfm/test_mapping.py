@@ -6,13 +6,13 @@ import numpy as np
 import pycolmap
 import pytest
 import scipy.io
-import sfm_made
 
 from courtside.geometry import similarity
 from courtside.sfm import features, mapping, matching, model
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
-from small_disk import limited_to
+from fixtures.cameras import sfm_made
+from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.study.small_disk import limited_to
 
 DOOR = REAL / "sfm-door"
 both_mappers = pytest.mark.parametrize("mapper", ["global", "incremental"])

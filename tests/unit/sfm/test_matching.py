@@ -6,9 +6,9 @@ from contextlib import closing
 import numpy as np
 import pycolmap
 import pytest
-import sfm_made
 
 from courtside.sfm import database, features, matching
+from fixtures.cameras import sfm_made
 
 
 @pytest.fixture(scope="module")

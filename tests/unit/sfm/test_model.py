@@ -3,10 +3,10 @@
 import numpy as np
 import pycolmap
 import pytest
-import sfm_made
 
 from courtside.calibration.bundle import problem as networks
 from courtside.sfm import model
+from fixtures.cameras import sfm_made
 
 
 @pytest.fixture(scope="module")

@@ -3,10 +3,10 @@
 import struct
 
 import pytest
-import sfm_made
 
 from courtside.sfm import model, model_files
 from courtside.study.errors import InputError
+from fixtures.cameras import sfm_made
 
 NAMES = [f"{name}.bin" for name in model_files.RECORDS]
 

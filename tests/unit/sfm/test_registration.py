@@ -1,8 +1,8 @@
 """Which fixed cameras structure from motion placed: counted on networks whose views are known."""
 
-import networks_made
 from courtside.calibration.bundle import selection
 from courtside.sfm import registration
+from fixtures.cameras import networks_made
 
 FIXED = {"side": "static/side.png", "back": "static/back.png"}
 IMAGES = [*FIXED.values(), "frames/walk/000000.png", "frames/walk/000001.png"]

@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import walker
 from courtside.statistics import longitudinal
 from courtside.study.errors import InputError
+from fixtures.people import walker
 
 LABEL = {"session": "s", "take": "t1", "model": "net", "calibration": "file"}
 

@@ -6,8 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import scene
-import sync_takes
 from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
 from courtside.records.devices import clocks as sync
@@ -15,7 +13,8 @@ from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from courtside.synchronisation import cameras as camera_sync
-from real_data import REAL, needs_real
+from fixtures.cameras import scene, sync_takes
+from fixtures.recordings.real_data import REAL, needs_real
 
 CAMERAS = sync_takes.rig(3)
 CLOCKS = [Clock(), Clock(2.31, -120.0), Clock(-3.07, 90.0)]

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import device_takes
 from courtside.events import detect
 from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 from courtside.synchronisation import devices as device_sync
+from fixtures.recordings import device_takes
 
 LONG = {"between_s": 46.0, "fine_hz": 120.0}
 CAMERAS = {"source": "cameras", "kind": "cameras", "noise_m": (0.004,) * 3, "axes": np.eye(3)}

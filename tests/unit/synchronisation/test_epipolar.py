@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import sync_takes
 from courtside.geometry import epipolar
 from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import smooth_tracks
 from courtside.synchronisation.epipolar import Epipolar
+from fixtures.cameras import sync_takes
 
 CAMERAS = sync_takes.rig(3)
 OWN_S = np.arange(300) / 30

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import device_takes
 from courtside.events import tpose
 from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import motion_signals
 from courtside.synchronisation.motion_signals import Signals
+from fixtures.recordings import device_takes
 
 
 def pair():

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import sync_takes
 from courtside.records.devices.clocks import Clock
 from courtside.synchronisation import smooth_tracks
 from courtside.synchronisation.speed import Speeds
+from fixtures.cameras import sync_takes
 
 CAMERAS = sync_takes.rig(2)
 OWN_S = np.arange(600) / 30

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from still_pictures import moved, texture
 
 from courtside.video import camera_movement, reader
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings.still_pictures import moved, texture
 
 LATER = 60  # frames: a second, in which the person moves
 CASES = [

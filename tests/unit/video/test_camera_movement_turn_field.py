@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from turned_pictures import CENTRE, DIST, SIZE, K, true_movement, undistorted
 
 from courtside.video import camera_movement
+from fixtures.recordings.turned_pictures import CENTRE, DIST, SIZE, K, true_movement, undistorted
 
 HALF = SIZE[0] / 2
 VECTORS = np.array([[0.001, -0.0012, 0.0005], [0.006, 0.007, -0.004], [0, 0, 0.02]])

@@ -7,11 +7,19 @@ import av
 import cv2
 import numpy as np
 import pytest
-from video_files import H264, draw, good_frames, number_in, numbers, packets, write
 
 from courtside.study.errors import InputError
 from courtside.video import decoder, reader
 from courtside.video.packets import list_packets
+from fixtures.recordings.video_files import (
+    H264,
+    draw,
+    good_frames,
+    number_in,
+    numbers,
+    packets,
+    write,
+)
 
 OPEN_GOP = {
     "g": "12",

@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 import pytest
 from av.stream import Disposition
-from video_files import draw, good_frames, number_in, numbers, packets, write
 
 from courtside.study.errors import InputError
 from courtside.video import reader
 from courtside.video.packets import list_packets
+from fixtures.recordings.video_files import draw, good_frames, number_in, numbers, packets, write
 
 FAST = {"movflags": "faststart"}
 FRAGMENTED = {"movflags": "frag_keyframe+empty_moov"}

@@ -9,11 +9,11 @@ import cv2
 import numpy as np
 import pytest
 import scipy.ndimage
-from video_files import draw, number_in, numbers, write
 
 from courtside.study.errors import InputError
 from courtside.video import reader
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings.video_files import draw, number_in, numbers, write
 
 
 @pytest.fixture(scope="module")

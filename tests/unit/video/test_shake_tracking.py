@@ -3,11 +3,11 @@
 import cv2
 import numpy as np
 import pytest
-from still_pictures import moved, texture
-from turned_pictures import SIZE, Grain, K, Turning, true_movement, wall
 
 from courtside.video import reader, shake_tracking, writer
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings.still_pictures import moved, texture
+from fixtures.recordings.turned_pictures import SIZE, Grain, K, Turning, true_movement, wall
 
 N_FRAMES, KNOCK = 16, 10
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from still_pictures import moved, texture
 
 from courtside.study.errors import InputError
 from courtside.video import static_picture
+from fixtures.recordings.still_pictures import moved, texture
 
 LIMITS = {"max_shift_px": 1.0, "max_zoom_percent": 0.2}
 

@@ -5,11 +5,11 @@ import shutil
 import cv2
 import numpy as np
 import pytest
-import video_files
 
 from courtside.study.errors import InputError
 from courtside.video import walk_frames
-from real_data import REAL, needs_real
+from fixtures.recordings import video_files
+from fixtures.recordings.real_data import REAL, needs_real
 
 SIZE = (160, 120)
 

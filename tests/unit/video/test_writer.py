@@ -4,9 +4,9 @@ import av
 import cv2
 import numpy as np
 import pytest
-from video_files import draw, number_in
 
 from courtside.video import reader, writer
+from fixtures.recordings.video_files import draw, number_in
 
 
 def write(path, n=40, rate_hz=30.0, crf=18, size=(160, 120)):

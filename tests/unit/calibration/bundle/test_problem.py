@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-import networks_made
 from courtside.calibration.bundle import problem as networks
+from fixtures.cameras import networks_made
 
 
 def test_observations_are_opencvs():

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import networks_made
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import problem as networks
 from courtside.calibration.bundle import selection, solver
 from courtside.geometry import similarity
-from scene import opencv_projection
+from fixtures.cameras import networks_made
+from fixtures.cameras.scene import opencv_projection
 
 KNOWN = np.array(
     [[0, 0, 0], [6.1, 0, 0], [0, 13.4, 0], [6.1, 13.4, 0], [0, 6.7, 1.55], [6.1, 6.7, 1.55]]

@@ -7,9 +7,9 @@ import pycolmap
 import pytest
 from scipy import optimize
 
-import networks_made
 from courtside.calibration.bundle import problem as networks
 from courtside.calibration.bundle import solver
+from fixtures.cameras import networks_made
 
 FREE_LENS = (np.inf, 0.0, 0.0, 0.0, np.inf, 0.0, 0.0, 0.0)
 

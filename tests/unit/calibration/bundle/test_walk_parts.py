@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import networks_made
 from courtside.calibration.bundle import problem as networks
 from courtside.calibration.bundle import selection, walk_parts
+from fixtures.cameras import networks_made
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-import court_pictures
 from courtside.calibration.click_proposals import line_profiles
 from courtside.calibration.court import line_edges
 from courtside.geometry import camera as cameras
+from fixtures.cameras import court_pictures
 
 BLUR_PX = 0.6
 

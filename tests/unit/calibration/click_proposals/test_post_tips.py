@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import court_pictures
 from courtside.calibration.click_proposals import post_tips
 from courtside.calibration.click_proposals.view import View
 from courtside.geometry import camera as cameras
+from fixtures.cameras import court_pictures
 
 SIZE = (1280, 720)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import court_pictures
 from courtside.calibration.click_proposals import proposals, refine_pose
 from courtside.geometry import camera as cameras
+from fixtures.cameras import court_pictures
 
 SIZE, F = (1280, 720), 1150.0
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import court_pictures
 from courtside.calibration.click_proposals import line_profiles, refine_pose
 from courtside.calibration.court import line_edges
 from courtside.geometry import camera as cameras
+from fixtures.cameras import court_pictures
 
 
 def offsets(start, true, court):

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import court_pictures
 from courtside.calibration.click_proposals import line_profiles, refine_pose
 from courtside.calibration.click_proposals.view import View
 from courtside.calibration.court import line_edges
 from courtside.geometry import camera
+from fixtures.cameras import court_pictures
 
 
 def test_the_shift_is_how_far_the_camera_is_off():

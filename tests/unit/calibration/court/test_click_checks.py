@@ -8,7 +8,7 @@ import pytest
 from courtside.calibration.court import click_checks, court, sfm_alignment
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
-from scene import look_at, opencv_projection
+from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SIGMA_PX = 0.23

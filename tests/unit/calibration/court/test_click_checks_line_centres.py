@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import networks_made
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import click_checks, court, joint_adjustment
-from scene import opencv_projection
+from fixtures.cameras import networks_made
+from fixtures.cameras.scene import opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SIZES = (networks_made.SIZE, networks_made.SIZE)

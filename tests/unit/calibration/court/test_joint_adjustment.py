@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import networks_made
 from courtside.calibration.bundle import selection, solver, walk_parts
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, sfm_alignment
 from courtside.study.errors import InputError
-from scene import opencv_projection
+from fixtures.cameras import networks_made
+from fixtures.cameras.scene import opencv_projection
 
 COURT = courts.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 FIXED = {"side": 0, "back": 1}

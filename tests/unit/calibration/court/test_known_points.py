@@ -8,7 +8,7 @@ import pytest
 from courtside.calibration.court import court, known_points, resection
 from courtside.geometry import camera as camera_models
 from courtside.study.errors import InputError
-from scene import look_at, opencv_projection
+from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SIZE = (1280, 720)

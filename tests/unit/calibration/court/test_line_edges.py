@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import court_pictures
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import line_edges
 from courtside.geometry import camera as cameras
+from fixtures.cameras import court_pictures
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
 COURTS = sorted(FOLDER.glob("*.yaml"))

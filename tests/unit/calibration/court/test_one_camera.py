@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import one_camera
-from scene import FOCAL_PX, SIZE, look_at, opencv_projection, points, ring
+from fixtures.cameras.scene import FOCAL_PX, SIZE, look_at, opencv_projection, points, ring
 
 XYZ = points(7)
 

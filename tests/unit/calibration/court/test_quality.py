@@ -9,7 +9,7 @@ import pytest
 from courtside.calibration.court import court, quality
 from courtside.geometry import camera as camera_models
 from courtside.study.errors import InputError
-from scene import look_at, opencv_projection
+from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 
@@ -96,3 +96,10 @@ def test_line_centres_are_said_where_the_shift_is_certain(inwards, n_warnings):
     found = of_court(clicks_of(), inwards=inwards)["warnings"]
     assert len(found) == n_warnings
     assert all("inwards of the edges by 22 mm (+-3), half a line width" in line for line in found)
+
+
+def test_without_a_court_maps_that_disagree_are_a_warning():
+    assert len(quality.without_court(2, 3)["warnings"]) == 1
+    assert len(quality.without_court(1, 1)["warnings"]) == 1
+    _, warning = quality.without_court(1, 6)["warnings"]
+    assert "found 6 that all differ" in warning and "\n" not in warning

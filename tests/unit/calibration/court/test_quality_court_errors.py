@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 from scipy.spatial.transform import Rotation
 
-import scene
 from courtside.calibration.court import court, quality
+from fixtures.cameras import scene
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 CAMERAS = scene.ring(3, dist=(-0.05, 0.01, 1e-3, 0, 0))

@@ -10,7 +10,7 @@ from courtside.calibration.court import court, resection
 from courtside.geometry import camera as cameras
 from courtside.geometry import triangulation
 from courtside.study.errors import InputError
-from scene import look_at, opencv_projection
+from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 EIGHT = COURT.indices("eight")

@@ -11,7 +11,7 @@ from courtside.calibration.court import court, sfm_alignment
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.study.errors import InputError
-from scene import look_at, opencv_projection
+from fixtures.cameras.scene import look_at, opencv_projection
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
 COURT = court.read(FOLDER / "badminton.yaml")

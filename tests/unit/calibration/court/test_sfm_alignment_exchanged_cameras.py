@@ -9,7 +9,7 @@ from courtside.calibration.court import click_checks, court, sfm_alignment
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.study.errors import InputError
-from scene import look_at, opencv_projection
+from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SFM_FROM_WORLD = similarity.Sim3(0.4, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))

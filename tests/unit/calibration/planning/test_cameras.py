@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-import hall_plan
-import scene
 from courtside.calibration.planning import cameras
 from courtside.study.errors import InputError
+from fixtures.cameras import hall_plan, scene
 
 
 def test_the_aim_is_in_the_middle_of_an_upright_picture():

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import hall_plan
 from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment, quality, sfm_alignment
 from courtside.calibration.planning import prediction, tie_points
 from courtside.calibration.planning.prediction import Prediction
 from courtside.geometry.camera import project
+from fixtures.cameras import hall_plan
 
 PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
 # Median of volume_rms_cm over draws and offsets in results/plain-a/evaluation/global-n*.csv: all 18 points,

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import hall_plan
-import scene
 from courtside.calibration.bundle import problem, selection
 from courtside.calibration.planning import tie_points
 from courtside.calibration.planning.tie_points import Texture
+from fixtures.cameras import hall_plan, scene
 
 PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
 

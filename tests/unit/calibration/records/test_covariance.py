@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import networks_made
 from courtside.calibration.bundle import problem as networks
 from courtside.calibration.bundle import selection
 from courtside.calibration.records import covariance
 from courtside.study.errors import InputError
+from fixtures.cameras import networks_made
 
 N = len(covariance.PARAMETERS)
 

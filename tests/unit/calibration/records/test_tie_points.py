@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import networks_made
 from courtside.calibration.bundle import problem as networks
 from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance, tie_points
 from courtside.study.errors import InputError
-from scene import opencv_projection
+from fixtures.cameras import networks_made
+from fixtures.cameras.scene import opencv_projection
 
 NAMES = ("side", "back")
 SIZES = [(1280, 720), (960, 540)]

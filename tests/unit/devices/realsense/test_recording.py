@@ -7,7 +7,7 @@ import pytest
 
 from courtside.devices.realsense import recording as realsense
 from courtside.study.errors import InputError
-from depth_recordings_made import (
+from fixtures.recordings.depth_recordings_made import (
     BASELINE_M,
     COLOUR,
     DEPTH,
@@ -18,7 +18,7 @@ from depth_recordings_made import (
     write_bag,
     write_db3,
 )
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
 
 TEXT = "std_msgs/msg/String"
 

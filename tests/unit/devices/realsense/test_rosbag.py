@@ -4,7 +4,7 @@ import pytest
 
 from courtside.devices.realsense import rosbag
 from courtside.study.errors import InputError
-from depth_recordings_made import write_bag, write_db3
+from fixtures.recordings.depth_recordings_made import write_bag, write_db3
 
 TEXT = "std_msgs/msg/String"
 

@@ -6,8 +6,16 @@ from rosbags.rosbag1 import Reader
 from courtside.devices.realsense import recording, writer
 from courtside.geometry import depth_registration
 from courtside.geometry.camera import Camera
-from depth_recordings_made import BASELINE_M, COLOUR, DEPTH, PLACED, UNIT_M, frames, write_bag
-from real_data import REAL, needs_real
+from fixtures.recordings.depth_recordings_made import (
+    BASELINE_M,
+    COLOUR,
+    DEPTH,
+    PLACED,
+    UNIT_M,
+    frames,
+    write_bag,
+)
+from fixtures.recordings.real_data import REAL, needs_real
 
 IMAGES = ("/device_0/sensor_0/Depth_0/image/data", "/device_0/sensor_1/Color_0/image/data")
 

@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-import trials_made
 from courtside.evaluation.tables import calibration
+from fixtures.cameras import trials_made
 
 SFM, PAPER = ("sfm", 18, True), ("paper", 3, True)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import trials_made
 from courtside.evaluation.tables import calibration
+from fixtures.cameras import trials_made
 
 SFM, OUT, PAPER = ("sfm", 18, True), ("sfm", 18, False), ("paper", 3, True)
 KNOWN, KNOWN_OUT, KNOWN8 = ("known", 18, True), ("known", 18, False), ("known", 8, True)

@@ -3,8 +3,8 @@
 import pandas as pd
 import pytest
 
-import racket_runs
 from courtside.evaluation.tables import calibration, racket
+from fixtures.cameras import racket_runs
 
 FLAT = [(10.0, 10.0, 10.0)] * 4
 # Minus FLAT: the published signs are -, +, -; its sizes 0.83, 0.06 and 3.83 mm.

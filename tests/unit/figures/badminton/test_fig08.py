@@ -5,9 +5,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import trials_made
 from courtside.evaluation.tables import calibration
 from courtside.figures.badminton import fig08
+from fixtures.cameras import trials_made
 
 SFM, OUT, FEW, PAPER = ("sfm", 18, True), ("sfm", 18, False), ("sfm", 3, True), ("paper", 3, True)
 

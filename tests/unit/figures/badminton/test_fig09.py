@@ -2,10 +2,10 @@
 
 import numpy as np
 import pandas as pd
-import takes_made
 
-import scene
 from courtside.figures.badminton import fig09
+from fixtures.cameras import scene
+from fixtures.people import takes_made
 
 FRAME = 8
 

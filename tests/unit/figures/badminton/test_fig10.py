@@ -1,11 +1,10 @@
 """Trails hold the points of the frames up to each instant, and pictures what was detected then."""
 
 import numpy as np
-import takes_made
 
-import walker
 from courtside.figures.badminton import fig10
 from courtside.figures.style import oblique_view
+from fixtures.people import takes_made, walker
 
 FRAMES = slice(2, 19)
 

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import takes_made
 
-import walker
 from courtside.evaluation import detection
 from courtside.figures.badminton import fig11
 from courtside.figures.style import picture_crops
+from fixtures.people import takes_made, walker
 
 LIMIT = 0.1
 FRAME = 9

@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
-import racket_runs
 from courtside.evaluation.tables import racket
 from courtside.figures.badminton import fig12
+from fixtures.cameras import racket_runs
 
 ERRORS = {way: [(10.0 + at, 12.0, 9.0 + at)] * 3 for at, way in enumerate(racket_runs.WAYS)}
 

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import walker
 from courtside.evaluation import joints
 from courtside.figures.badminton import three_cameras
+from fixtures.people import walker
 
 OFFSET_M = {"two-robust": 0.06, "halfbody": 0.04, "three-robust": 0.02, "all-robust": 0.01}
 CAMERAS = {way: [f"c{at}" for at in range(2)] for way in three_cameras.WAYS}

@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
-import trials_made
 from courtside.evaluation.tables import calibration
 from courtside.figures.calibration import conditions
+from fixtures.cameras import trials_made
 
 OUT, SFM, PAPER = ("sfm", 18, False), ("sfm", 18, True), ("paper", 3, True)
 

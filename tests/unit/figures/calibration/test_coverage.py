@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
-import trials_made
 from courtside.evaluation.tables import calibration
 from courtside.figures.calibration import coverage
+from fixtures.cameras import trials_made
 
 SFM, FEW = ("sfm", 18, True), ("sfm", 8, True)
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-import scene
 from courtside.calibration.court import court
 from courtside.calibration.records.covariance import PARAMETERS, CameraCovariance
 from courtside.figures.calibration import error_map
 from courtside.geometry.camera import Camera
+from fixtures.cameras import scene
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 K = np.array([[1100.0, 0, 640], [0, 1000, 360], [0, 0, 1]])

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import swung_arms
 from courtside.figures.devices import skeleton_plates
 from courtside.figures.style import joint_map, source_styles
 from courtside.records.keypoints import derived_joints, skeleton
+from fixtures.people import swung_arms
 
 CONFIG = Path(__file__).parents[4] / "config"
 TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")

@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import swung_arms
 from courtside.figures.devices import smoothness_accuracy
 from courtside.figures.style import source_styles
+from fixtures.people import swung_arms
 
 LABELS = {"session": "gym", "take": "1"}
 _, DISTORTION = swung_arms.tables(

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import swung_arms
 from courtside.figures.devices import thesis_fig3
 from courtside.figures.style import source_styles
+from fixtures.people import swung_arms
 
 FLAT = "d415-rgb"
 BODIES = [swung_arms.body(), swung_arms.body(FLAT, "rgb", depth=0.6, rate_hz=30)]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-import scene
 from courtside.calibration.court import court
 from courtside.figures.style import oblique_view
+from fixtures.cameras import scene
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-import walker
 from courtside.figures.style import stick_figure
 from courtside.records.keypoints import derived_joints
+from fixtures.people import walker
 
 TABLE = derived_joints.read(Path(__file__).parents[4] / "config" / "derived_joints.yaml")
 STICK = stick_figure.stick(walker.SKELETON, TABLE)

@@ -6,13 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import footwork
-import walker
 from courtside.calibration.court import court
 from courtside.exports import measures
 from courtside.figures.take import kinematics as speeds
 from courtside.kinematics import measures as kinematics
 from courtside.records.keypoints import derived_joints
+from fixtures.people import footwork, walker
 
 CONFIG = Path(__file__).parents[4] / "config"
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.figures.style import style
 from courtside.figures.take import overlay
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 CAMERAS = scene.ring(3)
 

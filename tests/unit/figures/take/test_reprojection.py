@@ -2,8 +2,8 @@
 
 import numpy as np
 
-import walker
 from courtside.figures.take import reprojection
+from fixtures.people import walker
 
 
 def test_the_table_is_numpys():

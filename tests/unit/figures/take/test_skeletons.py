@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-import scene
-import walker
 from courtside.figures.style import style
 from courtside.figures.take import skeletons
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 
 def test_the_table_is_the_record():

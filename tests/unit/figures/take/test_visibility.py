@@ -2,9 +2,9 @@
 
 import numpy as np
 
-import scene
-import walker
 from courtside.figures.take import visibility
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 
 def test_the_table_is_the_record():

@@ -6,7 +6,7 @@ import pytest
 
 from courtside.pages.report import coach
 from courtside.pages.report.warnings import DOUBT, GOOD, LOOK, Warned
-from report_made import ROGUE
+from fixtures.study.report_made import ROGUE
 
 FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_paths": []}
 

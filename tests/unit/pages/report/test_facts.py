@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
-import report_made
-import walker
 from courtside.pages.report import facts as report_facts
 from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError
+from fixtures.people import walker
+from fixtures.study import report_made
 
 
 def test_measures_come_with_nine_in_ten(tmp_path):

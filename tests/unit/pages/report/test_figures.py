@@ -2,9 +2,9 @@
 
 import pytest
 
-import report_made
 from courtside.pages.report import figures as report_figures
 from courtside.study.errors import InputError
+from fixtures.study import report_made
 
 
 @pytest.mark.parametrize(

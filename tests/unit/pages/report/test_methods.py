@@ -4,8 +4,8 @@ import copy
 
 import pytest
 
-import report_made
 from courtside.pages.report import methods
+from fixtures.study import report_made
 
 
 @pytest.fixture

@@ -3,9 +3,9 @@
 import math
 import re
 
-import report_made
 from courtside.pages.report import facts as report_facts
 from courtside.pages.report import quality, warnings
+from fixtures.study import report_made
 
 
 def page(tmp_path, **changes):

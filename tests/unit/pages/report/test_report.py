@@ -4,8 +4,8 @@ from html.parser import HTMLParser
 
 import pytest
 
-import report_made
 from courtside.pages.report import report
+from fixtures.study import report_made
 
 
 class Read(HTMLParser):

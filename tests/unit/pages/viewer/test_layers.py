@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from unpacking import size_of, unpacked
 
-import walker
 from courtside.pages.viewer import layers
 from courtside.records.devices import device_motion
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints
 from courtside.study.errors import InputError
+from fixtures.people import walker
+from fixtures.study.unpacking import size_of, unpacked
 
 
 @pytest.fixture

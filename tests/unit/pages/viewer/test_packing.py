@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from unpacking import covariance_of, size_of, unpacked
 
 from courtside.pages.viewer import packing
+from fixtures.study.unpacking import covariance_of, size_of, unpacked
 
 
 def path(n_frames=300):

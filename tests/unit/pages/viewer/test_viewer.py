@@ -9,13 +9,13 @@ import cv2
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.calibration.court import court as courts
 from courtside.figures.style import style
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
 from courtside.pages.viewer import viewer
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 CONFIG = Path(__file__).parents[4] / "config"
 ROGUE = '</script><img src="https://example.invalid/x">"&'

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import scene
-import stick_figures
 from courtside.reconstruction.association import associate as association
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
+from fixtures.people import stick_figures
 
 MIRROR = [1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10]
 COURT = SimpleNamespace(size_m=np.array([6.1, 13.4]), net={"y_m": 6.7})

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import scene
-import stick_figures
 from courtside.reconstruction.association import associate, candidates
+from fixtures.cameras import scene
+from fixtures.people import stick_figures
 
 TIMES = np.arange(6) / 30
 

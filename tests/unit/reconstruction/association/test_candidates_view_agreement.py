@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-import scene
-import stick_figures
 from courtside.geometry import camera as camera_models
 from courtside.reconstruction.association import candidates
+from fixtures.cameras import scene
+from fixtures.people import stick_figures
 
 MIRROR = [1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10]
 

@@ -4,9 +4,9 @@ import itertools
 
 import numpy as np
 
-import scene
-import stick_figures
 from courtside.reconstruction.association import associate, linking
+from fixtures.cameras import scene
+from fixtures.people import stick_figures
 
 
 def test_a_path_is_sure_at_its_instants_and_silent_far_from_them():

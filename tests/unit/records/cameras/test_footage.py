@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.geometry import camera as camera_models
 from courtside.records.cameras import footage
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 CAMERAS = scene.ring(3)
 

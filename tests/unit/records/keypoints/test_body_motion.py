@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bodies_made import body
 from courtside.records.keypoints import body_motion
 from courtside.study.errors import InputError
+from fixtures.people.bodies_made import body
 
 
 def test_a_body_motion_survives_the_file(tmp_path):

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import walker
 from courtside.records.keypoints import derived_joints, missing_reason, skeleton
 from courtside.study.errors import InputError
+from fixtures.people import walker
 
 CONFIG = Path(__file__).parents[4] / "config"
 TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")

@@ -5,10 +5,10 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-import scene
-import walker
 from courtside.records.keypoints import keypoints
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
+from fixtures.people import walker
 
 
 def equal(one, other):

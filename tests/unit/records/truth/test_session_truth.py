@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import scene
 from courtside.records.truth import session_truth
 from courtside.study.errors import InputError
+from fixtures.cameras import scene
 
 POINTS = ["p01", "p02"]
 XYZ = np.array([[0.001, 0.002, 0], [6.1, 0, 0]])

@@ -3,9 +3,9 @@
 import pytest
 import yaml
 
-import hall_plan
 from courtside.study.configuration import plans
 from courtside.study.errors import InputError
+from fixtures.cameras import hall_plan
 
 
 @pytest.fixture

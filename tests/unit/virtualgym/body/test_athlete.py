@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-import mannequin
+from fixtures.people import mannequin
 from virtualgym.body import athlete, racket, skinned_body
 from virtualgym.body.stance import Stance
 

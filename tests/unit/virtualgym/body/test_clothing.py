@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
-import mannequin
+from fixtures.people import mannequin
 from virtualgym.body import clothing, makehuman, mesh, shapes, skinned_body
 
 NAMES = sorted(shapes.BODIES)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import mannequin
 from courtside.study.errors import InputError
 from courtside.study.execution import artefacts
+from fixtures.people import mannequin
 from virtualgym.body import makehuman, pose_bones, shapes
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import mannequin
 from courtside.geometry import rotations
+from fixtures.people import mannequin
 from virtualgym.body import pose_bones, stance
 from virtualgym.body.stance import SIDES
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import mannequin
+from fixtures.people import mannequin
 from virtualgym.body import pose_bones, racket
 from virtualgym.body.stance import SIDES
 

@@ -6,8 +6,8 @@ import itertools
 import numpy as np
 import pytest
 
-import mannequin
 from courtside.study.errors import InputError
+from fixtures.people import mannequin
 from virtualgym.body import makehuman, shapes
 
 NAMES = sorted(shapes.BODIES)

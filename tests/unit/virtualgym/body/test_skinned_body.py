@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import mannequin
+from fixtures.people import mannequin
 from virtualgym.body import pose_bones, shapes, skinned_body, stance
 from virtualgym.body.stance import SIDES
 

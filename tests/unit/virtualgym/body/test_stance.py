@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from performers import BODY
+from fixtures.people.performers import BODY
 from virtualgym.body import stance
 from virtualgym.body.stance import SEGMENTS, SIDES, Proportions, Stance
 

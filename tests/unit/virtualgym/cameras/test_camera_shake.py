@@ -6,8 +6,7 @@ import pytest
 from scipy import ndimage
 from scipy.spatial.transform import Rotation
 
-import scene
-import small_hall
+from fixtures.cameras import scene, small_hall
 from virtualgym.cameras import camera_shake
 from virtualgym.rendering import background
 from virtualgym.rendering.hall_renderer import Renderer

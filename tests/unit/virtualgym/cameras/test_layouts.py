@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import scene
 from courtside.calibration.court import court as courts
+from fixtures.cameras import scene
 from virtualgym.cameras import layouts
 from virtualgym.session import presets
 

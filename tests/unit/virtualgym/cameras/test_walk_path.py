@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import scene
 from courtside.calibration.court import court
+from fixtures.cameras import scene
 from virtualgym.cameras import layouts, walk_path
 from virtualgym.session import presets
 

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-import balls
-import small_hall
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
+from fixtures.cameras import balls, small_hall
 from virtualgym.devices import depth_camera
 from virtualgym.devices.depth_camera import DepthCamera
 from virtualgym.rendering.hall_renderer import Renderer

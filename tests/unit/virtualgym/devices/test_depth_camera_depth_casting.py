@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import balls
-import small_hall
 from courtside.geometry import camera as cameras
+from fixtures.cameras import balls, small_hall
 from virtualgym.devices import depth_camera
 from virtualgym.hall import painted_lines
 from virtualgym.rendering.hall_renderer import Renderer

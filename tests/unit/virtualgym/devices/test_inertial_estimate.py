@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import mannequin
+from fixtures.people import mannequin
 from virtualgym.body import pose_bones
 from virtualgym.devices import inertial_estimate, mocopi_skeleton
 from virtualgym.devices.inertial_errors import Errors

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-import suits
 from courtside.devices import bvh as bvh_file
 from courtside.exports import bvh
 from courtside.records.devices.hierarchy import forward
+from fixtures.people import suits
 from virtualgym.devices import inertial_suit, mocopi_skeleton
 from virtualgym.devices.inertial_errors import STRENGTHS, Errors
 

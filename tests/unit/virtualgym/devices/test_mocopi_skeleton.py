@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import mannequin
 from courtside.records.devices.hierarchy import PosedHierarchy, forward
 from courtside.records.keypoints import skeleton
+from fixtures.people import mannequin
 from virtualgym.body import pose_bones, skinned_body
 from virtualgym.devices import mocopi_skeleton
 

@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 import pytest
 
-import scene as projection
 from courtside.calibration.court import court as courts
 from courtside.geometry.camera import Camera
+from fixtures.cameras import scene as projection
 from virtualgym.cameras import layouts
 from virtualgym.hall import hall
 from virtualgym.rendering.hall_renderer import Renderer

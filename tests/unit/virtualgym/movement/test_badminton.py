@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from performers import COURT, filmed, perform, performed, speed
+from fixtures.people.performers import COURT, filmed, perform, performed, speed
 
 SEEDS = range(2)
 

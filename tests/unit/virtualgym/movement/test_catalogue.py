@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from performers import BODY, COURT, perform, performed
+from fixtures.people.performers import BODY, COURT, perform, performed
 from virtualgym.body import stance
 from virtualgym.movement import catalogue
 

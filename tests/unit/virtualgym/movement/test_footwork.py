@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from performers import BODY
+from fixtures.people.performers import BODY
 from virtualgym.movement import footwork, two_bone_ik
 from virtualgym.movement.footwork import Lap, Route, Station
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from performers import BODY
+from fixtures.people.performers import BODY
 from virtualgym.movement import footwork
 from virtualgym.movement.footwork import Plant
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from performers import BODY, COURT, RATE_HZ, angles, filmed, performed, speed
+from fixtures.people.performers import BODY, COURT, RATE_HZ, angles, filmed, performed, speed
 from virtualgym.body.stance import SEGMENTS, SIDES
 from virtualgym.movement import catalogue, player
 

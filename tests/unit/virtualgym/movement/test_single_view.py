@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import performers
+from fixtures.people import performers
 from virtualgym.body import stance
 from virtualgym.movement import single_view
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from performers import BODY, angles, filmed, performed, speed
+from fixtures.people.performers import BODY, angles, filmed, performed, speed
 from virtualgym.movement import tpose_clap
 
 SEEDS = range(2)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from performers import BODY, COURT, filmed, perform, performed, speed
+from fixtures.people.performers import BODY, COURT, filmed, perform, performed, speed
 
 
 def places(motion, times):

@@ -5,9 +5,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-import small_hall
 from courtside.geometry import camera as cameras
 from courtside.study.errors import InputError
+from fixtures.cameras import small_hall
 from virtualgym.hall import painted_lines, quads
 from virtualgym.rendering import background
 from virtualgym.rendering.hall_renderer import Renderer

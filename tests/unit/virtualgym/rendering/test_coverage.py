@@ -4,9 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-import balls
-import scene
-import small_hall
+from fixtures.cameras import balls, scene, small_hall
 from virtualgym.rendering import coverage, rolling_shutter, shading
 
 CAMERA = small_hall.camera(size=(320, 180))

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import scene as projection
-import small_hall
+from fixtures.cameras import scene as projection
+from fixtures.cameras import small_hall
 from virtualgym.hall import quads
 from virtualgym.rendering import hall_renderer
 

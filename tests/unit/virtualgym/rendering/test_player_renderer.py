@@ -5,9 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import balls
-import scene
-import small_hall
+from fixtures.cameras import balls, scene, small_hall
 from virtualgym.cameras import camera_shake
 from virtualgym.hall import quads
 from virtualgym.rendering import background, player_renderer, rolling_shutter

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import scene
-import small_hall
 from courtside.geometry.camera import Camera
+from fixtures.cameras import scene, small_hall
 from virtualgym.rendering import rays
 
 TWIST = np.array([0.4, -0.3, 0.2]), np.array([1.0, 2.0, -0.5])

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-import balls
-import scene
-import small_hall
 from courtside.geometry import camera
+from fixtures.cameras import balls, scene, small_hall
 from virtualgym.rendering import rolling_shutter
 
 CAMERA = small_hall.camera(size=(1920, 1080))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-import scene as projection
-import small_hall
+from fixtures.cameras import scene as projection
+from fixtures.cameras import small_hall
 from virtualgym.hall import quads
 from virtualgym.hall.painted_lines import NET_DEPTH_M, TAPE_M, Net
 from virtualgym.rendering import rays, shading, textured_quads

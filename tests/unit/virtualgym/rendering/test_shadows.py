@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import balls
+from fixtures.cameras import balls
 from virtualgym.rendering import shadows
 
 LEFT = 1 - shadows.LAMPS[:, 2].sum()  # the light that no lamp gives

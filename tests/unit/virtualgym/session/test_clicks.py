@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import scene
+from fixtures.cameras import scene
 from virtualgym.session import clicks, presets
 
 POINTS = scene.points(500)

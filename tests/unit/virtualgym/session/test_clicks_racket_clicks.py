@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-import scene
+from fixtures.cameras import scene
 from virtualgym.session import clicks as racket_clicks
 from virtualgym.session import presets
 

@@ -7,12 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
-import scene
 from courtside.calibration.court import court as courts
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
 from courtside.video import reader
+from fixtures.cameras import scene
 from virtualgym.cameras import layouts
 from virtualgym.session import session
 

@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import balls
-import mannequin
-import scene
 from courtside.calibration.court import court as courts
 from courtside.records.truth import take_truth
 from courtside.video import reader
+from fixtures.cameras import balls, scene
+from fixtures.people import mannequin
 from virtualgym.body import skinned_body
 from virtualgym.session import session
 from virtualgym.session import take as takes

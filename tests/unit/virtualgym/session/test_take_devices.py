@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-import mannequin
 from courtside.calibration.court import court
 from courtside.devices.realsense import recording
 from courtside.geometry import camera
 from courtside.records.devices.hierarchy import forward
 from courtside.records.truth import take_truth
+from fixtures.people import mannequin
 from virtualgym.body import skinned_body
 from virtualgym.devices import depth_camera, inertial_suit
 from virtualgym.session import session, take, take_devices

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Joints of one colour picture lifted into 3D by a depth camera."""

@@ -1,1 +1,1 @@
-"""Files of recording devices into records."""
+"""Files of devices and of other programs, read into records: BVH, mocopi, Nuitrack, OpenPose, depth."""

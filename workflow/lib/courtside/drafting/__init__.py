@@ -1,1 +1,1 @@
-"""TODO."""
+"""A session's YAML file drafted from a folder of recordings."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Comparison with truth: joints, detection, kinematics, sources, calibration, racket."""

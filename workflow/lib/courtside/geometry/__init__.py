@@ -1,1 +1,1 @@
-"""Cameras and points: projection, triangulation, uncertainty."""
+"""Geometry of cameras: projection, rotations, similarity, epipolar lines, triangulation."""

@@ -179,7 +179,8 @@ def crop(camera, crop_px):
     if min(x, y) < 0 or min(width, height) <= 0 or outside:
         raise InputError(
             f"camera {camera.name}: expected crop_px [x, y, width, height] inside the calibrated "
-            f"{camera_fields.times(camera.size)} px, found {list(crop_px)}; correct crop_px in the session file"
+            f"{camera_fields.times(camera.size)} px, found {list(crop_px)}; correct crop_px in the session "
+            "file"
         )
     shift = np.zeros((3, 3))
     shift[:2, 2] = x, y
@@ -198,10 +199,10 @@ def check_size(camera, video_size, video_path):
     """
     if tuple(video_size) != camera.size:
         raise InputError(
-            f"{video_path}: expected {camera_fields.times(camera.size)} px, the size that camera {camera.name} was "
-            f"calibrated at, found {camera_fields.times(video_size)}; declare `crop_px: [x, y, width, height]` for "
-            "this camera in the session file if the video is a cut-out of the calibrated picture, "
-            "else calibrate at the video's size"
+            f"{video_path}: expected {camera_fields.times(camera.size)} px, the size that camera "
+            f"{camera.name} was calibrated at, found {camera_fields.times(video_size)}; declare "
+            "`crop_px: [x, y, width, height]` for this camera in the session file if the video is a cut-out "
+            "of the calibrated picture, else calibrate at the video's size"
         )
 
 

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Statistics of measures: agreement of two ways, change over sessions, dependent samples."""

@@ -259,8 +259,8 @@ def fit_turn(places, moved_px, shape, n_corners):
     Returns
     -------
     found : Fit
-        Unknown where fewer than `camera_movement.MIN_MATCHES` points or a quarter of those looked for agree, or
-        those do not spread over the picture.
+        Unknown where fewer than `MIN_MATCHES` points or a quarter of those looked for agree, or those do not
+        spread over the picture.
 
     Notes
     -----

@@ -1,1 +1,1 @@
-"""TODO."""
+"""The player's body: MakeHuman's mesh, shapes, clothes, pose, racket."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Fixed layouts, the walked camera's path, camera shake."""

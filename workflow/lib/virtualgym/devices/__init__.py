@@ -1,1 +1,1 @@
-"""TODO."""
+"""Simulated devices: depth camera, chessboard, inertial suit and its errors."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""The hall: walls, furniture, textures, painted lines, bystanders."""

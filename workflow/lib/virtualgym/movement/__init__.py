@@ -1,1 +1,1 @@
-"""TODO."""
+"""What players do: footwork, strokes, walking, T-pose and clap."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Ray casting: textured quads, shading, shadows, rolling shutter, sensor."""

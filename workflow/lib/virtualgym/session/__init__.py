@@ -1,1 +1,1 @@
-"""TODO."""
+"""A virtual session and its takes: videos, clicks, devices, truth."""

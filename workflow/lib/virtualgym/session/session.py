@@ -71,7 +71,7 @@ class Settings:
     static_frames: int = 9
     baseline_deg: float | None = None
     zoom: float = 1.0
-    chessboard: bool = False
+    boards: bool = False
     people: int | None = None
 
     def __post_init__(self):

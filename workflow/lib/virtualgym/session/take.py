@@ -128,7 +128,7 @@ class TakeSettings:
         return (own_s - clock["offset_s"]) / (1 + clock["drift_ppm"] * 1e-6)
 
     def shaking(self, camera, at):
-        """Return the `camera_shake.Shaking` of a camera, the `at`-th of its layout; None where it stands still."""
+        """Return the `camera_shake.Shaking` of a camera, the `at`-th of its layout; None if it is still."""
         if camera.name not in self.shake:
             return None
         shake = camera_shake.Shake(**self.shake[camera.name])

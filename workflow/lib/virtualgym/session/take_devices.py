@@ -28,7 +28,7 @@ class Recorded:
     truth : dict of str to take_truth.DeviceTruth
     """
 
-    inertial_suit: dict
+    inertial: dict
     truth: dict
 
 

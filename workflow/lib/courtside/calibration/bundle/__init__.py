@@ -1,1 +1,1 @@
-"""TODO."""
+"""Bundle adjustment: the problem, its solver, choice of tie points, parts of a walk."""

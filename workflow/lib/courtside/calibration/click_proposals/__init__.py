@@ -1,1 +1,1 @@
-"""TODO."""
+"""Court points proposed from the lines and posts in a picture."""

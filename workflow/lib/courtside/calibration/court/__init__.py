@@ -1,1 +1,1 @@
-"""TODO."""
+"""Calibration by a known court: clicks, alignment, joint adjustment, resection, checks."""

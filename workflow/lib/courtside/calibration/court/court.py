@@ -184,8 +184,8 @@ def _check(path, court):
     corners = court.lines_m.reshape(-1, 2)
     if (corners < -ON_EDGE_M).any() or (corners > court.size_m + ON_EDGE_M).any():
         raise InputError(
-            f"{path}: expected lines_m inside the court of {camera_fields.times(court.size_m)} m, found a line "
-            "beyond it; correct it"
+            f"{path}: expected lines_m inside the court of {camera_fields.times(court.size_m)} m, found a "
+            "line beyond it; correct it"
         )
 
 

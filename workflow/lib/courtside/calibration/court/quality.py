@@ -98,8 +98,26 @@ def of_ties(court, ties, clicks, **weights):
     return solved, of_court(court, solved.cameras, clicks, **known)
 
 
+def without_court(n_agreeing, n_maps):
+    """Return the quality of cameras that no court scales: how many maps of the same images agree."""
+    warnings = ["no court: scale and frame are arbitrary"]
+    if n_agreeing == 1 < n_maps:
+        warnings.append(
+            f"walk: expected maps of its images to agree, found {n_maps} that all differ by more than 1 % of "
+            "their extent: angles and proportions are that uncertain; take more bridging images, or name a "
+            "court"
+        )
+    return {"warnings": warnings}
+
+
 def left_out(court, cameras, clicks):
-    """Return `left_out` of `of_court` alone: how well cameras put court points where they belong."""
+    """Return `left_out` of `of_court` alone: how well cameras put court points where they belong.
+
+    Parameters
+    ----------
+    court, cameras, clicks
+        As of `of_court`.
+    """
     return _leave_one_out(court, cameras, clicks)[1]
 
 

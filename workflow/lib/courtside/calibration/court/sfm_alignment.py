@@ -1,4 +1,7 @@
-"""From the frame of structure from motion to the court's: the published frame, a robust similarity, and exchanged cameras."""
+"""From the frame of structure from motion to the court's, by the published frame or a robust similarity.
+
+Camera files under each other's names are told here too: the clicks of each fit where the other one stands.
+"""
 
 from dataclasses import dataclass
 from itertools import combinations

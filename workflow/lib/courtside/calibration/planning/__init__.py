@@ -1,1 +1,1 @@
-"""TODO."""
+"""What a planned session lets expect: cameras, walk, tie points, predicted error."""

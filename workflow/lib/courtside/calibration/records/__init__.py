@@ -1,1 +1,1 @@
-"""TODO."""
+"""Files between rules of the calibration: tie-point constraints, joint covariance."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Recordings of RealSense cameras: rosbag files, their text and lenses; written for tests."""

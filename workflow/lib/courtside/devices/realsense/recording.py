@@ -195,8 +195,8 @@ def _decoded(where, message, camera, decode):
     size = picture.shape[1], picture.shape[0]
     if size != camera.size:
         raise InputError(
-            f"{where}: expected {camera_fields.times(camera.size)} px as its lens, found {camera_fields.times(size)}; "
-            f"{rosbag.HOW}"
+            f"{where}: expected {camera_fields.times(camera.size)} px as its lens, found "
+            f"{camera_fields.times(size)}; {rosbag.HOW}"
         )
     return picture
 

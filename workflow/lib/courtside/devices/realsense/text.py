@@ -96,7 +96,8 @@ def place(where, message):
             raise ValueError(f"rotation {off:.2g} off, translation {moved.tolist()} m")
     except (KeyError, ValueError, AttributeError, np.linalg.LinAlgError) as error:
         raise InputError(
-            f"{where}: expected its place as a rotation and less than 1 m, found {camera_fields.short(error)}; {HOW}"
+            f"{where}: expected its place as a rotation and less than 1 m, found "
+            f"{camera_fields.short(error)}; {HOW}"
         ) from error
     return np.column_stack([rotation, moved])
 

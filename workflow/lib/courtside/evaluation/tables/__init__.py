@@ -1,1 +1,1 @@
-"""TODO."""
+"""Tables of the study: calibration, players, racket."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures and table of Shishido & Kitahara 2020, reproduced."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of calibrations: court points, error map, coverage, conditions, growth, plan."""

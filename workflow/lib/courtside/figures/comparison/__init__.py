@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of agreement between networks, and of measures over sessions."""

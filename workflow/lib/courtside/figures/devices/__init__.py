@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of devices, those of Homma 2023 among them."""

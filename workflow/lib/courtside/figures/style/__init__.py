@@ -1,1 +1,1 @@
-"""TODO."""
+"""What figures share: style, bars, oblique views, stick figures, looks of sources."""

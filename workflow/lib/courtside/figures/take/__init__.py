@@ -1,1 +1,1 @@
-"""TODO."""
+"""Figures of one take: overlay, skeletons, reprojection, visibility, kinematics, clocks."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""The page on which court points are clicked."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""The report: facts of the study in plain words, warnings, figures with captions."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""The 3D viewer of a take, one HTML file."""

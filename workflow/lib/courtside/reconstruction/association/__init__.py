@@ -1,1 +1,1 @@
-"""TODO."""
+"""Who is who across cameras and over time."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Clicks, frames and footage of cameras."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Motion of devices, hierarchies of joints, clocks."""

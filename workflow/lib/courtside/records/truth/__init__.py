@@ -1,1 +1,1 @@
-"""TODO."""
+"""The truth of simulated sessions and takes: read by evaluation only."""

@@ -19,7 +19,7 @@ from courtside.study.configuration import (
 from courtside.study.errors import InputError
 from courtside.study.execution import artefacts
 
-SCHEMAS = Path(__file__).parents[3] / "schemas"
+SCHEMAS = Path(__file__).parents[4] / "schemas"
 RESERVED = (
     "external",
     "networks",

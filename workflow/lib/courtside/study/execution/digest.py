@@ -14,7 +14,7 @@ from pathlib import Path
 from courtside.study.errors import InputError
 from courtside.study.execution import files
 
-PACKAGE = "courtside"
+PACKAGES = {"courtside", "virtualgym"}
 # Fields that differ between Python versions, or say where a node stands, not what it does.
 IGNORED = {"ctx", "kind", "type_comment", "type_ignores", "type_params"}
 
@@ -84,7 +84,7 @@ def code_digest(script, library):
     ----------
     script : str or Path
     library : str or Path
-        The folder that holds the package `courtside`.
+        The folder that holds the packages of the library.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def modules_of(script, library):
     ----------
     script : str or Path
     library : str or Path
-        The folder that holds the package `courtside`.
+        The folder that holds the packages of the library.
 
     Returns
     -------
@@ -222,7 +222,7 @@ def _file(name, library):
 
 @cache
 def _parsed(path):
-    """Return (tree as text, names imported from the package, other packages imported) of a file."""
+    """Return (tree as text, names imported from the library, other packages imported) of a file."""
     try:
         tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
     except SyntaxError as error:
@@ -230,8 +230,8 @@ def _parsed(path):
             f"{path}: expected Python, found a syntax error in line {error.lineno}: {error.msg}"
         ) from None
     names = list(_imports(tree))
-    inner = tuple(name for name in names if name.split(".")[0] == PACKAGE)
-    return _text(tree), inner, frozenset(name.split(".")[0] for name in names) - {PACKAGE}
+    inner = tuple(name for name in names if name.split(".")[0] in PACKAGES)
+    return _text(tree), inner, frozenset(name.split(".")[0] for name in names) - PACKAGES
 
 
 def _imports(tree):

@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-import mannequin
-import moved_bodies
-import performers
 from courtside.inertial import correction
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.skeleton import JOINTS as LIMB_JOINTS
+from fixtures.people import mannequin, moved_bodies, performers
 from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.devices import inertial_errors, inertial_suit
 from virtualgym.movement import catalogue

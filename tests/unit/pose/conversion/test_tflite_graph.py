@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import scipy.sparse
 from ai_edge_litert.interpreter import Interpreter
-from tflite_files import NETWORKS, Network, find, sparse_rows
 
-from courtside.pose import tflite_graph, tflite_tensors
+from courtside.pose.conversion import tflite_graph, tflite_tensors
 from courtside.study.errors import InputError
+from fixtures.recordings.tflite_files import NETWORKS, Network, find, sparse_rows
 
 
 @pytest.mark.parametrize("density", [0.0, 0.05, 0.5, 1.0])

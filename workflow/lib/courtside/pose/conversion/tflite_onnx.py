@@ -4,8 +4,8 @@ import numpy as np
 import onnx
 from onnx import helper
 
-from courtside.pose import tflite_graph, tflite_operators
-from courtside.pose.onnx_writer import Writer
+from courtside.pose.conversion import tflite_graph, tflite_operators
+from courtside.pose.conversion.onnx_writer import Writer
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic, sha256
 

@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from courtside.pose.onnx_writer import IMAGE_RANK, TO_FIRST
-from courtside.pose.tflite_graph import MAX_INPUTS
+from courtside.pose.conversion.onnx_writer import IMAGE_RANK, TO_FIRST
+from courtside.pose.conversion.tflite_graph import MAX_INPUTS
 
 MAX_STEP = 1 << 16  # of strides, windows, blocks: beyond any image, within ONNX's integers
 CONVERTERS = {}  # operator kind: fewest inputs, most inputs, function

@@ -5,11 +5,11 @@ import numpy as np
 import onnxruntime
 import pytest
 import tflite
-from tflite_files import NETWORKS, Network, find, interpret, sparse_rows
 
-from courtside.pose import tflite_onnx, tflite_operators
+from courtside.pose.conversion import tflite_onnx, tflite_operators
 from courtside.study.errors import InputError
-from real_data import REAL, needs_real
+from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings.tflite_files import NETWORKS, Network, find, interpret, sparse_rows
 
 # Of the largest magnitude in an output: float32 keeps 6e-8, and the networks add in other orders
 # through a hundred layers. The interpreter's own kernels (reference, optimised, XNNPACK) differ

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import tflite
 
-from courtside.pose.tflite_tensors import (
+from courtside.pose.conversion.tflite_tensors import (
     DAMAGED,
     MAX_NAME_BYTES,
     entries,

@@ -4,10 +4,10 @@ import time
 
 import numpy as np
 import pytest
-from bvh_texts import ARM
 
 from courtside.devices import bvh
 from courtside.study.errors import InputError
+from fixtures.recordings.bvh_texts import ARM
 
 
 def read(tmp_path, text, **how):

@@ -1,1 +1,0 @@
-"""Skeletons over time: resampling, gaps, filters."""

@@ -1,0 +1,1 @@
+"""Networks converted from TFLite to ONNX."""

@@ -1,1 +1,0 @@
-"""Simulation: a ray-cast gymnasium with exact truth; nothing but its own scripts imports it."""
