@@ -26,6 +26,7 @@ def record(outcome="", fault=""):
         centres=CENTRES,
         xyz=np.random.default_rng(0).uniform(-5, 25, (50, 3)),
         residual_px=0.5,
+        n_maps=(2, 2),
     )
 
 
