@@ -71,7 +71,7 @@ def test_derivatives_are_differences():
     slow, fixed = parameters(4, 0.2)
     xyz, by_slow, by_fixed = MODEL.linear(frames(), slow, fixed)
     assert xyz == pytest.approx(MODEL.places(frames(), slow, fixed), abs=1e-12)
-    step = 1e-5  # the differences are off by 1e-8 there, on three instruction sets; at 1e-6 by 1e-7
+    step = 1e-5  # the differences are off by 1e-8 there, with and without AVX2; at 1e-6 by 1e-7
     for at in range(MODEL.n_slow):
         ends = [
             MODEL.places(frames(), slow + s * step * np.eye(MODEL.n_slow)[at], fixed)
