@@ -43,7 +43,7 @@ def test_two_exchanged_cameras_are_named(names, pair):
     clicks = clicks_of(fixed)
     one, other = pair
     clicks[one], clicks[other] = clicks[other], clicks[one]
-    for refuse in (sfm_alignment.refuse, click_checks.find):
+    for refuse in (sfm_alignment.refuse_exchanged_cameras, click_checks.find):
         with pytest.raises(InputError, match="the camera files may be exchanged") as caught:
             refuse(COURT, fixed, clicks)
         message = str(caught.value)
@@ -74,13 +74,13 @@ def few(clicks):
 @pytest.mark.parametrize("tamper", [dict, mirrored, wrong_click, shuffled, few])
 def test_no_other_fault_is_taken_for_an_exchange(tamper):
     fixed = in_sfm(["side", "back", "corner"])
-    sfm_alignment.refuse(COURT, fixed, tamper(clicks_of(fixed)))
+    sfm_alignment.refuse_exchanged_cameras(COURT, fixed, tamper(clicks_of(fixed)))
 
 
 def test_another_court_is_not_taken_for_an_exchange():
     tennis = court.read(Path(__file__).parents[4] / "config" / "courts" / "tennis.yaml")
     fixed = in_sfm(["side", "back"])
-    sfm_alignment.refuse(tennis, fixed, clicks_of(fixed))
+    sfm_alignment.refuse_exchanged_cameras(tennis, fixed, clicks_of(fixed))
     with pytest.raises(
         InputError, match=r"tennis \(10.97 m by 23.77 m\).* give the right court file"
     ):

@@ -233,7 +233,7 @@ def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None, table=None):
     InputError
         If the points cannot be this court: see `sfm_alignment.check`.
     """
-    sfm_alignment.refuse(court, cameras, clicks)
+    sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks)
     xyz = sfm_alignment.reconstruct(cameras, clicks)
     warnings = sfm_alignment.check(court, xyz, cameras)
     try:

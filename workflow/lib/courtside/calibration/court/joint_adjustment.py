@@ -117,12 +117,15 @@ def condense(
     cameras = selection.fixed_cameras(network, fixed, sizes)
     sigma_px = [click_sigma(click_sigma_px, sizes[name]) for name in fixed]
 
-    def adjusted(clicks):
-        world_from_sfm, _ = sfm_alignment.align(court, sfm_alignment.reconstruct(cameras, clicks))
-        in_world = selection.transform(network, world_from_sfm)
+    def adjusted(clicks, straightened):
+        in_world = selection.transform(network, _alignment(court, cameras, clicks))
         for part in walk_parts.split(in_world, list(fixed.values()), images_per_part):
             tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
             at = part.fixed.tolist()
+            if straightened:  # from a bent start the clicks may pull it into another minimum
+                tied = _adjusted_freely(tied, at)
+                straight = selection.fixed_cameras(tied, dict(zip(fixed, at, strict=True)), sizes)
+                tied = selection.transform(tied, _alignment(court, straight, clicks))
             marked = {
                 "clicks": dict(zip(at, [clicks[name] for name in fixed], strict=True)),
                 "sigma_px": dict(zip(at, sigma_px, strict=True)),
@@ -131,13 +134,23 @@ def condense(
             yield replace(part, network=_adjusted(tied, court, **marked))
 
     def adjusted_cameras(clicks):
-        part = next(adjusted(clicks))
+        part = next(adjusted(clicks, straightened=True))
         at = dict(zip(fixed, part.fixed.tolist(), strict=True))
         return selection.fixed_cameras(part.network, at, sizes)
 
-    sfm_alignment.refuse(court, cameras, clicks, adjusted_cameras)
-    parts = list(adjusted(clicks))
+    sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjusted_cameras)
+    parts = list(adjusted(clicks, sfm_alignment.is_bent(court, cameras, clicks)))
     return _condensed(parts, tuple(fixed), sizes), parts
+
+
+def _alignment(court, cameras, clicks):
+    return sfm_alignment.align(court, sfm_alignment.reconstruct(cameras, clicks))[0]
+
+
+def _adjusted_freely(network, fixed):
+    """Return a network adjusted without clicks, in its free frame."""
+    network, _ = solver.adjust(_in_free_frame(network, fixed), **ENOUGH)
+    return _in_free_frame(network, fixed)  # which nothing held in place
 
 
 def _adjusted(network, court, **marked):
@@ -174,9 +187,7 @@ def condense_free(network, fixed, sizes, *, images_per_part, tie_sigma_px, tie_l
     network = _in_free_frame(network, list(fixed.values()))
     for part in walk_parts.split(network, list(fixed.values()), images_per_part):
         tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
-        tied, _ = solver.adjust(tied, **ENOUGH)
-        tied = _in_free_frame(tied, part.fixed)  # which nothing held in place
-        parts.append(replace(part, network=tied))
+        parts.append(replace(part, network=_adjusted_freely(tied, part.fixed)))
     return _condensed(parts, names, sizes), parts
 
 

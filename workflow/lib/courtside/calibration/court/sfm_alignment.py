@@ -14,6 +14,9 @@ from courtside.study.errors import InputError
 HOPELESS = 0.03  # a court that most points miss by this part of its length is no fit
 STRETCHED = 0.01  # of the ratio of the sides: less can be the clicks' own bias
 FLAT = 0.01  # relative to the longest extent: points lower than this all lie on the floor
+OFF = 0.01  # of the court's length: points nearer than that fit
+BENT = 0.1  # of the court's length: structure from motion of 12 small pictures was bent by up to half of that
+NEARER = 5.0  # so many times nearer must they be with the clicks of two cameras exchanged
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,12 +277,7 @@ def _affine_agree(design, places):
     return distance[best] <= max(4 * middle[best], 1e-9 * np.abs(places).max())
 
 
-OFF = 0.01  # of the court's length: points nearer than that fit
-BENT = 0.1  # of the court's length: structure from motion of 12 small pictures was bent by up to half of that
-NEARER = 5.0  # so many times nearer must they be with the clicks of two cameras exchanged
-
-
-def refuse(court, cameras, clicks, adjust=None):
+def refuse_exchanged_cameras(court, cameras, clicks, adjust=None):
     """Raise where the clicks fit the court only after those of two cameras are exchanged.
 
     Parameters
@@ -299,7 +297,7 @@ def refuse(court, cameras, clicks, adjust=None):
         If so: the files of these cameras may be exchanged. Any other fault of the clicks is not looked for.
     """
     near_m = OFF * np.max(court.size_m)
-    if _off_m(court, cameras, clicks) < near_m:
+    if not is_bent(court, cameras, clicks):
         return
     off_m = _off_m(court, cameras, clicks, adjust)
     if off_m < near_m:
@@ -314,6 +312,17 @@ def refuse(court, cameras, clicks, adjust=None):
                 f"{found}, but {100 * better_m:.0f} cm off with the clicks of the two exchanged: the camera "
                 "files may be exchanged; correct their names in the session, or in the court points"
             )
+
+
+def is_bent(court, cameras, clicks):
+    """Say whether most court points miss the court by more than clicks do: by the model, or wrong clicks.
+
+    Parameters
+    ----------
+    court, cameras, clicks
+        As of `refuse_exchanged_cameras`.
+    """
+    return _off_m(court, cameras, clicks) >= OFF * np.max(court.size_m)
 
 
 def _off_m(court, cameras, clicks, adjust=None):
