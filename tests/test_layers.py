@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import itertools
 import re
 import subprocess
 import sys
@@ -260,3 +261,35 @@ rule evaluate_take:
     output: results/a/errors.csv
 """
     assert knowing_methods(planned_jobs(text)) == ["filter_motion", "simulate_a_u", "triangulate"]
+
+
+ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+
+
+def test_the_architecture_page_names_every_room_with_its_level_and_what_it_holds():
+    rows = re.findall(r"^\| (\d) \| `(\w+)` \| (.*) \|$", ARCHITECTURE, flags=re.M)
+    assert {room: int(level) for level, room, _ in rows} == LEVELS
+    packages = {"virtualgym": "virtualgym"}
+    for _, room, holds in rows:
+        name = packages.get(room, f"courtside.{room}")
+        assert importlib.import_module(name).__doc__.strip() == holds
+
+
+def test_the_files_of_the_architecture_page_exist():
+    named = re.findall(r"`(\w+(?:/\w+)+\.py)`", ARCHITECTURE.replace("tests/test_layers.py", ""))
+    assert len(named) >= 10
+    assert [name for name in named if not (LIBRARY / "courtside" / name).is_file()] == []
+
+
+def drawn_arrows():
+    """Return the (from, to) pairs of rules of the architecture page's drawing."""
+    drawing = re.search(r"```mermaid\n(.*?)```", ARCHITECTURE, flags=re.S).group(1)
+    chains = [line.split(" --> ") for line in map(str.strip, drawing.splitlines())]
+    return {pair for chain in chains for pair in itertools.pairwise(chain)}
+
+
+def test_every_arrow_of_the_architecture_page_is_a_file_that_one_rule_hands_to_another(jobs):
+    made_by = {name: rule for rule, _, outputs in jobs for name in outputs}
+    handed = {(made_by.get(name), rule) for rule, inputs, _ in jobs for name in inputs}
+    assert len(drawn_arrows()) >= 30
+    assert sorted(drawn_arrows() - handed) == []

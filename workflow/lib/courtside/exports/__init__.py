@@ -1,1 +1,1 @@
-"""Files that other programs open."""
+"""Files for other programs: TRC, C3D, BVH, CSV, Pose2Sim and OpenSim, videos."""

@@ -1,1 +1,1 @@
-"""Drawings; the only room that uses matplotlib."""
+"""Figures: the only room that uses matplotlib."""

@@ -1,1 +1,1 @@
-"""Web pages of one file each that ask for nothing outside themselves."""
+"""Pages in one HTML file each: clicking, viewer, report."""

@@ -1,1 +1,1 @@
-"""2D pose networks in onnxruntime."""
+"""2D pose networks in onnxruntime: detection, tracking, decoding, privacy."""

@@ -1,1 +1,1 @@
-"""What rules hand to each other: skeletons, keypoints, tables."""
+"""What rules hand to each other: files with their units, checked when read."""

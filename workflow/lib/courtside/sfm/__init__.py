@@ -1,1 +1,1 @@
-"""Structure from motion: which images, features, matches, maps, adjustment."""
+"""Structure from motion: the only room that uses pycolmap."""

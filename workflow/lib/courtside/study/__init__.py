@@ -1,1 +1,1 @@
-"""The study itself: configuration, artefacts, logs, files."""
+"""The study itself: its configuration, its execution, where results come from."""
