@@ -17,7 +17,7 @@ CALLS = {
     *("yaml.unsafe_load", "yaml.full_load", "yaml.load_all", "tempfile.mktemp", "pd.read_pickle", "pd.eval"),
 }  # fmt: skip
 METHODS = {"extractall", "extract", "to_pickle", "unpack_archive", "getoutput", "getstatusoutput"}
-OURS = {"features.extract", "walks.extract"}  # no archives
+OURS = {"features.extract", "walk_frames.extract"}  # no archives
 SAFE_LOADERS = {"_StrictLoader", "yaml.SafeLoader", "yaml.CSafeLoader"}
 
 

@@ -3,8 +3,7 @@
 import cv2
 import numpy as np
 
-from courtside.geometry import camera as camera_models
-from courtside.geometry import epipolar
+from courtside.geometry import epipolar, rotations
 from fixtures.cameras import scene
 
 CAMERAS = scene.ring(3, dist=(-0.1, 0.02, 1e-3, -5e-4, 0.0))
@@ -54,7 +53,7 @@ def test_the_distance_of_noise_has_the_noises_deviation():
 def test_a_line_is_where_the_ray_of_a_pixel_goes():
     matrix = epipolar.fundamental(CAMERAS[0], CAMERAS[1])
     line = epipolar.lines(matrix, straight(CAMERAS[0])[:1])[0]
-    centre = camera_models.transforms.invert(CAMERAS[0].cam_from_world)[:, 3]
+    centre = rotations.invert(CAMERAS[0].cam_from_world)[:, 3]
     along = centre + np.linspace(0.7, 1.3, 5)[:, None] * (XYZ[0] - centre)
     xy = epipolar.straight_px(CAMERAS[1], scene.opencv_projection(CAMERAS[1], along))
     np.testing.assert_allclose(xy @ line[:2] + line[2], 0, atol=1e-6)

@@ -19,7 +19,7 @@ import sys
 sys.path.insert(0, {library!r})
 import numpy as np
 import pandas as pd
-from courtside.figures import style
+from courtside.figures.style import style
 drawing = style.figure(120)
 axes = drawing.subplots(2, 3)
 x = np.linspace(0, 6, 50)

@@ -13,7 +13,7 @@ LIBRARY = Path(__file__).parents[4] / "workflow" / "lib"
 FULL = f"""
 import sys
 sys.path.insert(0, {str(LIBRARY)!r})
-from courtside.study import log
+from courtside.study.execution import log
 log.to_file({{log!r}})
 log.logger.info("three of nine")
 with open("/dev/full", "w") as stream:
@@ -26,7 +26,7 @@ def run(tmp_path, statement):
     script.write_text(
         "import sys\n"
         f"sys.path.insert(0, {str(LIBRARY)!r})\n"
-        "from courtside.study import log\n"
+        "from courtside.study.execution import log\n"
         "from courtside.study.errors import InputError\n"
         f"log.to_file({str(tmp_path / 'logs' / 'job.log')!r})\n{statement}\n"
     )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court
+from courtside.geometry import rotations
 from fixtures.cameras import scene
 from virtualgym.cameras import layouts, walk_path
 from virtualgym.session import presets
@@ -102,9 +103,7 @@ def test_a_stabiliser_damps_the_hands_rotations_to_a_fifth():
 
     def shake_rad(path):
         pairs = [(path.pose(t), still.pose(t)) for t in path.grid(300)]
-        turns = [
-            layouts.transforms.rodrigues_from_rotation(a[:, :3] @ b[:, :3].T) for a, b in pairs
-        ]
+        turns = [rotations.rodrigues_from_rotation(a[:, :3] @ b[:, :3].T) for a, b in pairs]
         return np.sqrt(np.mean(np.square(turns)))
 
     assert shake_rad(shaken) / shake_rad(damped) == pytest.approx(5, rel=1e-6)

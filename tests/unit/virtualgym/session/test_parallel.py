@@ -3,17 +3,8 @@
 import numpy as np
 import pytest
 
+from fixtures.study.workers import Worker
 from virtualgym.session import parallel
-
-
-class Worker:
-    def __init__(self, base):
-        self.base = base
-
-    def add(self, value, more=0):
-        if value < 0:
-            raise ValueError("expected no negative number")
-        return self.base + value + more
 
 
 @pytest.mark.parametrize("threads", [1, 2])

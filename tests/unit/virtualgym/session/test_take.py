@@ -108,13 +108,13 @@ def test_a_hall_kept_by_the_session_gives_the_same_films(runner, monkeypatch, tm
     session.simulate(LARGE, COURT, tmp_path / "session", backdrops_npz=kept)
     take = replace(TAKE, racket=False)  # `side` shakes, and sees more than the session's camera
     takes.simulate_take(LARGE, take, COURT, None, one)
-    looked, look = [], session.backdrop.look
+    looked, look = [], session.background.look
 
     def counted(renderer, camera, margin_px=0):
         looked.append((camera.name, margin_px > 0))
         return look(renderer, camera, margin_px)
 
-    monkeypatch.setattr(session.backdrop, "look", counted)
+    monkeypatch.setattr(session.background, "look", counted)
     takes.simulate_take(LARGE, take, COURT, None, two, backdrops_npz=kept)
     assert looked == [("side", True)]
     assert files(one) == files(two)

@@ -124,7 +124,7 @@ def condense(
             at = part.fixed.tolist()
             if straightened:  # from a bent start the clicks may pull it into another minimum
                 tied = _adjusted_freely(tied, at)
-                straight = selection.fixed_cameras(tied, dict(zip(fixed, at, strict=True)), sizes)
+                straight = _fixed_cameras(tied, fixed, at, sizes)
                 tied = selection.transform(tied, _alignment(court, straight, clicks))
             marked = {
                 "clicks": dict(zip(at, [clicks[name] for name in fixed], strict=True)),
@@ -135,12 +135,15 @@ def condense(
 
     def adjusted_cameras(clicks):
         part = next(adjusted(clicks, straightened=True))
-        at = dict(zip(fixed, part.fixed.tolist(), strict=True))
-        return selection.fixed_cameras(part.network, at, sizes)
+        return _fixed_cameras(part.network, fixed, part.fixed, sizes)
 
     sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjusted_cameras)
     parts = list(adjusted(clicks, sfm_alignment.is_bent(court, cameras, clicks)))
     return _condensed(parts, tuple(fixed), sizes), parts
+
+
+def _fixed_cameras(network, names, at, sizes):
+    return selection.fixed_cameras(network, dict(zip(names, map(int, at), strict=True)), sizes)
 
 
 def _alignment(court, cameras, clicks):
