@@ -24,10 +24,7 @@ import yaml
 ROOT = Path(__file__).parents[1]
 sys.path += [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
 
-from courtside.records.keypoints import (
-    keypoints,
-    skeleton,
-)
+from courtside.records.keypoints import keypoints, skeleton
 
 MIB_PER_KIB = 1 / 1024
 LINE = "{step:<22}{minutes:>8g} min{n_frames:>8}{ms_per_frame:>9.3f} ms{peak_mib:>8.0f} MiB"

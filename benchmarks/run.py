@@ -23,15 +23,7 @@ import panels
 import peers
 import rows
 import run_log
-from comparisons import (
-    decoding,
-    filtering,
-    hierarchy,
-    pose,
-    structure,
-    study,
-    triangulation,
-)
+from comparisons import decoding, filtering, hierarchy, pose, structure, study, triangulation
 
 ROOT = Path(__file__).resolve().parents[1]
 ALL = [triangulation, filtering, pose, hierarchy, decoding, study, structure]

@@ -15,12 +15,7 @@ sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.calibration.court import court as courts
 from courtside.evaluation import joints as pose_errors
-from courtside.figures.style import (
-    oblique_view,
-    picture_crops,
-    stick_figure,
-    style,
-)
+from courtside.figures.style import oblique_view, picture_crops, stick_figure, style
 from courtside.records.cameras import footage
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.records.truth import take_truth

@@ -19,11 +19,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
 from courtside.study.errors import InputError
-from courtside.study.provenance import (
-    comparison,
-    stage_checksums,
-    verification,
-)
+from courtside.study.provenance import comparison, stage_checksums, verification
 
 RESULTS = Path("results")
 

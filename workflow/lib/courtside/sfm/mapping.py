@@ -66,9 +66,8 @@ def map_images(matches_db, images, folder, *, mapper, seed, options=None, attemp
         if confirmed and _is_whole(found, images):
             break
     agreeing = [1 + sum(_confirms(each, found, images) for each in tried) for found in tried]
-    best = max(
-        range(len(tried)), key=lambda at: _rank(tried[at], agreeing[at])
-    )  # the first of equals
+    # The first of equals.
+    best = max(range(len(tried)), key=lambda at: _rank(tried[at], agreeing[at]))
     n_agreeing, best = agreeing[best], tried[best]
     Path(folder).mkdir(parents=True, exist_ok=True)
     best.model.write_binary(str(folder))
