@@ -16,6 +16,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+
 import peers
 
 LINE = "{:<20}{:<10}{:>11.1f}{:>9.1f}{:>9.2f}{:>10}{:>16.2f}{:>12.2f}"

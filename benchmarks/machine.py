@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+
 import peers
 
 SIDE = 1024  # of the matrices that are multiplied

@@ -2,8 +2,8 @@
 
 import matplotlib.ticker
 import numpy as np
-import rows
 
+import rows
 from courtside.figures.style import style
 from courtside.study.execution.files import atomic
 

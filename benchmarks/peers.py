@@ -22,6 +22,7 @@ import venv
 from pathlib import Path
 
 import numpy as np
+
 import rows
 
 HERE = Path(__file__).parent

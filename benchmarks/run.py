@@ -17,8 +17,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "workflow" / "lib"))
 
 import cv2
-import machine
 import pandas as pd
+
+import machine
 import panels
 import peers
 import rows

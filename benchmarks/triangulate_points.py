@@ -15,8 +15,8 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import peers
 
+import peers
 from fixtures.cameras import scene
 
 POINTS_OF_POSE2SIM = {"spoiled": 26000, "bad": 260}

@@ -141,8 +141,8 @@ def test_a_folder_holds_one_subject():
 @pytest.mark.parametrize(
     "command",
     [
-        ("-m", "ruff", "check", "."),
-        ("-m", "ruff", "format", "--check", "."),
+        ("-m", "ruff", "check", "--no-cache", "."),
+        ("-m", "ruff", "format", "--no-cache", "--check", "."),
         ("-m", "snakefmt", "--check", "Snakefile", "workflow/rules"),
         (
             "-m",

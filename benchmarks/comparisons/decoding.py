@@ -4,9 +4,10 @@ import os
 import subprocess
 from itertools import islice
 
+import numpy as np
+
 import decode_video
 import machine
-import numpy as np
 import peers
 import rows
 

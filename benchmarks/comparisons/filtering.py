@@ -1,10 +1,10 @@
 """Zero-lag Butterworth filter of 26 joints at 60 Hz: 6 Hz, order 4, with gaps."""
 
-import machine
 import numpy as np
+
+import machine
 import peers
 import rows
-
 import scene
 
 NAME = "filtering"

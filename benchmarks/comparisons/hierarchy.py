@@ -3,9 +3,10 @@
 import tempfile
 from pathlib import Path
 
+import numpy as np
+
 import bvh
 import machine
-import numpy as np
 import rows
 
 NAME = "bvh"

@@ -3,13 +3,13 @@
 import tempfile
 from pathlib import Path
 
-import detect_pose
-import machine
 import numpy as np
 import onnx
+
+import detect_pose
+import machine
 import peers
 import rows
-
 from courtside.pose.conversion import tflite_onnx
 
 NAME = "pose"

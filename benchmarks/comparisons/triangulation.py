@@ -1,10 +1,10 @@
 """Triangulation of 4 cameras x 26 joints, with outliers and gaps."""
 
-import machine
 import numpy as np
+
+import machine
 import peers
 import rows
-
 import scene
 
 NAME = "triangulation"
