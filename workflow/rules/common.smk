@@ -1,7 +1,6 @@
 """What all rules share: the checked configuration, the library on the path, names of files.
 
-Inputs: config/. Outputs: none. Steps: check every YAML file, then offer the functions below. Input functions of the
-calibration are in inputs.smk, lists of what the study makes in targets.smk.
+Inputs: config/. Outputs: none. Steps: check every YAML file, then offer the functions below.
 """
 
 import os

@@ -1,9 +1,10 @@
-"""Where the fixed cameras are.
+"""Where the fixed cameras are, and the court points clicked for that.
 
 Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points, or these alone.
-Outputs: results/{session}/calibration/{calibration}/.
+Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
 Steps: import_cameras (`file`), calibrate_cameras (`sfm-n40`, the default), align_cameras (`paper-n40`,
-`paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`).
+`paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`);
+propose_court_points (where the points probably are), build_clicking_page.
 """
 
 FOUND = "results/{session}/calibration/{calibration}"
@@ -102,3 +103,38 @@ rule resect_cameras:
         cameras=lambda w: list(session_of(w).cameras),
     script:
         "../scripts/resect_cameras.py"
+
+
+rule propose_court_points:
+    input:
+        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        pictures=each_fixed("results/{session}/static/{camera}.png"),
+        court=lambda w: court_file(session_of(w)),
+    output:
+        proposals="results/{session}/calibration/{calibration}/proposals.csv",
+    log:
+        "results/{session}/logs/propose_court_points/{calibration}.log",
+    params:
+        code=code("propose_court_points.py"),
+        cameras=lambda w: list(session_of(w).cameras),
+        step=step("propose_court_points"),
+    script:
+        "../scripts/propose_court_points.py"
+
+
+rule build_clicking_page:
+    input:
+        pictures=each_fixed("results/{session}/static/{camera}.png"),
+        court=lambda w: court_file(session_of(w)),
+        clicks=lambda w: session_of(w).court_points or [],
+        proposals=proposals_file,
+        assets=sorted(ASSETS.glob("[cp]*")),
+    output:
+        page="results/{session}/pages/clicking.html",
+    log:
+        "results/{session}/logs/build_clicking_page/all.log",
+    params:
+        code=code("build_clicking_page.py"),
+        settings=clicking_settings,
+    script:
+        "../scripts/build_clicking_page.py"

@@ -1,8 +1,7 @@
-"""Figures and tables of the calibration study.
+"""Figures of the calibration study that the paper does not have.
 
 Inputs: ties, errors against the truth, courts, cameras. Outputs: results/figures/, results/{session}/figures/.
-Steps: draw_court_points, draw_badminton_fig06, draw_badminton_fig08, draw_coverage, draw_growth, draw_error_map,
-draw_capture, tabulate_calibration.
+Steps: draw_court_points, draw_coverage, draw_growth, draw_error_map, draw_capture.
 """
 
 
@@ -22,40 +21,6 @@ rule draw_court_points:
         code=code("draw_court_points.py"),
     script:
         "../scripts/draw_court_points.py"
-
-
-rule draw_badminton_fig06:
-    input:
-        ties=first_of_each_count("results/{session}/sfm/{variant}/ties.npz"),
-        summaries=first_of_each_count("results/{session}/sfm/{variant}/summary.json"),
-        court=lambda w: court_file(session_of(w)),
-    output:
-        **drawn(
-            "results/{session}/figures/badminton_fig06.{mapper}",
-            "badminton_fig06",
-            ("calibration", "{session}"),
-            {"figure": "badminton_fig06", "mapper": "{mapper}"},
-        ),
-    log:
-        "results/{session}/logs/draw_badminton_fig06/{mapper}.log",
-    params:
-        code=code("draw_badminton_fig06.py"),
-        n_images=lambda w: session_of(w).parameters["sweep"]["n_images"],
-    script:
-        "../scripts/draw_badminton_fig06.py"
-
-
-rule draw_badminton_fig08:
-    input:
-        errors=lambda w: every_error([session_of(w)]),
-    output:
-        **session_figure("badminton_fig08"),
-    log:
-        "results/{session}/logs/draw_badminton_fig08/all.log",
-    params:
-        code=code("draw_badminton_fig08.py"),
-    script:
-        "../scripts/draw_badminton_fig08.py"
 
 
 rule draw_coverage:
@@ -124,17 +89,3 @@ rule draw_capture:
         axes=lambda w: varied_axes(drawn_conditions()[w.condition]),
     script:
         "../scripts/draw_capture.py"
-
-
-rule tabulate_calibration:
-    input:
-        errors=every_error(tabulated()),
-    output:
-        table="results/figures/calibration.csv",
-    log:
-        "results/figures/logs/tabulate_calibration/all.log",
-    params:
-        code=code("tabulate_calibration.py"),
-        n_reference=40,
-    script:
-        "../scripts/tabulate_calibration.py"

@@ -1,12 +1,14 @@
-"""What each file of the study rests on, written by the main process when a run ends, well or not.
+"""What happens when a run ends, well or not: provenance is written, and what was made or what failed is said.
 
 Inputs: all jobs that the run asked for. Outputs: results/run/: provenance.json of the run, checksums.json of the
 inputs, provenance/<file>.json beside each figure, table and exported file.
-Steps: record_provenance, called in `onsuccess` and `onerror` of the Snakefile.
+Steps: record_provenance and end_of_run, called in `onsuccess` and `onerror` of the Snakefile.
 """
 
 import json
+import time
 
+from courtside.study.execution import summary
 from courtside.study.provenance import environment, provenance
 
 PINNED = ("results/external/", "results/networks/")
@@ -68,3 +70,24 @@ def configuration_files():
     sessions = [f"sessions/{name}.yaml" for name in config["sessions"]]
     shared = [CONFIG / name for name in ("external.yaml", "models.yaml", *sessions)]
     return [os.path.relpath(path) for path in workflow.configfiles] + [str(p) for p in shared]
+
+
+STARTED_S = time.monotonic()
+LOOK_AT = [
+    "results/report.html",
+    "results/figures/players.csv",
+    "results/figures/calibration.csv",
+]
+
+
+def end_of_run():
+    """Return the words at the end of a run, for the handlers of the Snakefile."""
+    wanted = [job for job in workflow.dag.needrun_jobs(exclude_finished=False) if job.output]
+    seconds = time.monotonic() - STARTED_S
+    done = [job for job in wanted if workflow.dag.finished(job)]
+    failed = workflow.scheduler.failed if workflow.scheduler else ()
+    if not failed and len(done) == len(wanted):
+        made = [str(path) for job in done for path in job.output]
+        return summary.finished(made, seconds, LOOK_AT + every_viewer()[:1])
+    faults = [(job.name, [str(path) for path in job.log]) for job in failed]
+    return summary.failed(faults, len(done), len(wanted), seconds)

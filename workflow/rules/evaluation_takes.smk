@@ -1,9 +1,20 @@
-"""Takes of virtual sessions against their truth: with evaluation.smk and racket.smk, the only rules that read it.
+"""Takes of virtual sessions against their truth. Only this file and evaluation_calibration.smk read truth.
 
-Inputs: 3D keypoints, clocks, truth of takes. Outputs: results/{session}/evaluation/takes/.
-Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_body_frames; of
-development sessions, asked for by name: evaluate_joint_offsets, evaluate_skin_depths.
+Inputs: 2D and 3D keypoints, clocks, truth of takes.
+Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
+Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_body_frames, evaluate_detection,
+evaluate_round_trip (table 1), evaluate_fusions (paired differences with intervals); of development sessions, asked
+for by name: evaluate_joint_offsets, evaluate_skin_depths.
 """
+
+PAIRS = [  # ours first
+    ("two-robust", "two-dlt"),
+    ("three-robust", "three-dlt"),
+    ("three-robust", "halfbody"),
+    ("all-robust", "all-dlt"),
+    ("all-robust", "all-unsteady"),
+    ("two-robust", "two-unsteady"),
+]
 
 
 rule evaluate_take:
@@ -129,3 +140,65 @@ rule evaluate_skin_depths:
         step=step("lift_depth"),
     script:
         "../scripts/evaluate_skin_depths.py"
+
+
+rule evaluate_detection:
+    input:
+        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        take_truth=TRUE_TAKE,
+        truth="results/virtual/{session}/truth.npz",
+        skeleton=skeleton_file,
+    output:
+        errors="results/{session}/evaluation/takes/{take}/detection/{model}.csv",
+    log:
+        "results/{session}/logs/evaluate_detection/{take}.{model}.log",
+    params:
+        code=code("evaluate_detection.py"),
+        labels=lambda w: dict(w.items()),
+    script:
+        "../scripts/evaluate_detection.py"
+
+
+rule evaluate_round_trip:
+    input:
+        pose3d=lambda w: [
+            f"results/{w.session}/takes/{w.take}/pose3d/{w.calibration}/{fusion}/{w.model}.npz"
+            for fusion in round_trip_fusions(w)
+        ],
+        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+        skeleton=skeleton_file,
+        derived=CONFIG / "derived_joints.yaml",
+        truth=true_take_file,
+    output:
+        rows="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
+    log:
+        "results/{session}/logs/evaluate_round_trip/{take}.{calibration}.{model}.log",
+    params:
+        code=code("evaluate_round_trip.py"),
+        step=round_trip_parameters,
+    script:
+        "../scripts/evaluate_round_trip.py"
+
+
+rule evaluate_fusions:
+    input:
+        pose3d=lambda w: [
+            f"results/{w.session}/takes/{w.take}/{w.stage}/{w.calibration}/{fusion}/{w.model}.npz"
+            for fusion in every_fusion(w)
+        ],
+        truth=TRUE_TAKE,
+    output:
+        gains="results/{session}/evaluation/takes/{take}/gains/{stage}.{calibration}.{model}.csv",
+    log:
+        "results/{session}/logs/evaluate_fusions/{take}.{stage}.{calibration}.{model}.log",
+    params:
+        code=code("evaluate_fusions.py"),
+        fusions=every_fusion,
+        pairs=lambda w: [pair for pair in PAIRS if set(pair) <= set(every_fusion(w))],
+        labels=lambda w: {
+            key: w[key] for key in ("session", "take", "stage", "calibration", "model")
+        },
+    script:
+        "../scripts/evaluate_fusions.py"

@@ -1,52 +1,64 @@
-"""What takes say together: table 1, networks side by side, a subject over sessions.
+"""What takes say together: sets of cameras, networks side by side, clocks, a subject over sessions.
 
-Inputs: 3D keypoints, kinematics, truth of virtual takes. Outputs: results/{session}/takes/{take}/table1/,
-results/figures/.
-Steps: evaluate_round_trip, draw_badminton_tab01, compare_networks, draw_agreement, compare_sessions.
+Inputs: 3D keypoints, kinematics, errors. Outputs: results/{session}/takes/{take}/views/, results/figures/.
+Steps: compare_views (real takes), tabulate_players, draw_clock_errors, compare_networks, draw_agreement,
+compare_sessions.
 """
 
 
-rule evaluate_round_trip:
+rule compare_views:
     input:
         pose3d=lambda w: [
             f"results/{w.session}/takes/{w.take}/pose3d/{w.calibration}/{fusion}/{w.model}.npz"
-            for fusion in round_trip_fusions(w)
+            for fusion in every_fusion(w)[::-1]
         ],
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        skeleton=skeleton_file,
-        derived=CONFIG / "derived_joints.yaml",
-        truth=true_take_file,
     output:
-        rows="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
+        distances=f"{TAKE}/views/{{calibration}}.{{model}}.csv",
     log:
-        "results/{session}/logs/evaluate_round_trip/{take}.{calibration}.{model}.log",
+        "results/{session}/logs/compare_views/{take}.{calibration}.{model}.log",
     params:
-        code=code("evaluate_round_trip.py"),
-        step=round_trip_parameters,
+        code=code("compare_views.py"),
+        fusions=lambda w: every_fusion(w)[::-1],
+        labels=lambda w: {
+            **{key: w[key] for key in ("session", "take", "calibration", "model")},
+            "stage": "pose3d",
+        },
     script:
-        "../scripts/evaluate_round_trip.py"
+        "../scripts/compare_views.py"
 
 
-rule draw_badminton_tab01:
+rule tabulate_players:
     input:
-        rows="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
-        published=CONFIG / "published" / "badminton_tab01.csv",
+        errors=lambda w: evaluations_of_takes("errors"),
+        kinematics=lambda w: evaluations_of_takes("kinematics"),
+        clocks=lambda w: evaluations_of_takes("clocks"),
+        gains=lambda w: evaluations_of_takes("gains"),
+    output:
+        table="results/figures/players.csv",
+    log:
+        "results/figures/logs/tabulate_players/all.log",
+    params:
+        code=code("tabulate_players.py"),
+    script:
+        "../scripts/tabulate_players.py"
+
+
+rule draw_clock_errors:
+    input:
+        errors=lambda w: evaluations_of_takes("clocks"),
     output:
         **drawn(
-            f"{TAKE}/figures/badminton_tab01.{{calibration}}.{{model}}",
-            "badminton_tab01",
-            ("{session}", "{take}"),
-            {"figure": "badminton_tab01", "calibration": "{calibration}", "network": "{model}"},
+            "results/figures/clock_errors",
+            "clock_errors",
+            ("players", "clocks"),
+            {"figure": "clocks"},
         ),
     log:
-        "results/{session}/logs/draw_badminton_tab01/{take}.{calibration}.{model}.log",
+        "results/figures/logs/draw_clock_errors/all.log",
     params:
-        code=code("draw_badminton_tab01.py"),
-        title=lambda w: f"{w.session}, {w.take}",
+        code=code("draw_clock_errors.py"),
     script:
-        "../scripts/draw_badminton_tab01.py"
+        "../scripts/draw_clock_errors.py"
 
 
 rule compare_networks:
