@@ -84,7 +84,7 @@ def steps(folder, given):
         {"synchronised": False, "stated": {}, **parameters["synchronise_cameras"]},
     )
     yield "associate_people", (paths, made["people"]), {"persons": given.persons}
-    fusion = {"persons": given.persons, "used": names, "rule": "robust"}
+    fusion = {"persons": given.persons, "fusion": {"used": names, "rule": "robust"}}
     yield "triangulate", (paths, made["raw"]), {**fusion, **parameters["triangulate"]}
     yield "filter_motion", (made["raw"], shape, made["filtered"]), parameters["filter_motion"]
     offsets = ROOT / "config" / "joint_offsets" / f"{given.model}.csv"

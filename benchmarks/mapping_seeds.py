@@ -47,9 +47,9 @@ def errors(results, name, mapper, seed, n_images, n_draws):
         walks = {walk: folder / "frames" / f"{walk}.csv" for walk in session["walks"]}
         map_images.main(
             *files,
-            walks,
-            model,
+            list(walks.values()),
             model / "summary.json",
+            walks=list(walks),
             mapper=mapper,
             n_images=n_images,
             offset=0,

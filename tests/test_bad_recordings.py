@@ -64,21 +64,25 @@ class Session:
     def extract(self, **changes):
         options = {**CONFIG["extract_features"], "first_octave": -1, **changes}
         database, table = self.folder / "sfm" / "features.db", self.folder / "sfm" / "features.csv"
-        run("extract_features", self.static, self.frames, database, table, threads=1, **options)
+        pictures = list(self.static.values()), list(self.frames.values())
+        names = {"cameras": list(self.static), "walks": list(self.frames)}
+        run("extract_features", *pictures, database, table, **names, threads=1, **options)
 
     def match(self):
         sfm = self.folder / "sfm"
         features = sfm / "features.db", sfm / "features.csv"
         found = sfm / "matches.db", sfm / "matches.csv"
-        run("match_images", *features, self.frames, *found, **CONFIG["match_images"])
+        files = *features, list(self.frames.values()), *found
+        run("match_images", *files, walks=list(self.frames), **CONFIG["match_images"])
 
     def map(self, mapper="global", n_images=N_IMAGES):
         sfm = self.folder / "sfm"
         options = {key: CONFIG["map_images"][key] for key in ("rule", "seed")}
         options["attempts"] = CONFIG["map_images"]["attempts"][mapper]
         made = {"mapper": mapper, "n_images": n_images, "offset": 0, **options}
-        files = sfm / "matches.db", sfm / "features.csv", self.frames, sfm, self.summary
-        run("map_images", *files, **made)
+        frames = list(self.frames.values())
+        files = sfm / "matches.db", sfm / "features.csv", frames, self.summary
+        run("map_images", *files, walks=list(self.frames), **made)
 
     def adjust(self, points, court=BADMINTON, out=None):
         out = out or self.ties
@@ -141,8 +145,9 @@ def calibrated(good, tmp_path, marked, court=BADMINTON):
     points = written(tmp_path, marked, courts.read(court))
     good.adjust(points, court, tmp_path / "ties.npz")
     out = [tmp_path / name for name in ("cameras.toml", "covariance.npz", "quality.json")]
+    files = tmp_path / "ties.npz", points, court, *out
     try:
-        run("calibrate_cameras", tmp_path / "ties.npz", points, court, *out, name="sfm", **CLICKING)
+        run("calibrate_cameras", *files, calibration="sfm", **CLICKING)
     except InputError as error:
         return SimpleNamespace(error=str(error), warnings=[], is_written=out[0].exists())
     quality = json.loads(out[2].read_text())
@@ -154,7 +159,7 @@ def aligned(good, tmp_path, marked, name):
     if not record.is_file():
         good.adjust(good.folder.parent / "film" / "court_points.csv", out=record)
     out = tmp_path / "aligned.toml", tmp_path / "aligned.json"
-    run("align_cameras", record, points, BADMINTON, *out, name=name, **CLICKING)
+    run("align_cameras", record, points, BADMINTON, *out, calibration=name, **CLICKING)
     return json.loads(out[1].read_text())["warnings"]
 
 
@@ -162,7 +167,9 @@ def resected(good, tmp_path, marked, name="known18", court=BADMINTON):
     points = written(tmp_path, marked, courts.read(court))
     out = tmp_path / "known.toml", tmp_path / "known.json"
     sigma = {"click_sigma_px": CLICKING["click_sigma_px"]}
-    run("resect_cameras", points, court, good.static, {}, *out, name=name, **sigma)
+    files = points, court, list(good.static.values()), []
+    names = {"cameras": list(good.static), "calibration": name}
+    run("resect_cameras", *files, *out, **names, step=sigma)
     return json.loads(out[1].read_text())["warnings"]
 
 
@@ -283,7 +290,8 @@ def outcome_of(session, good, mappers=("global",)):
         record = session.adjust(points)
         with pytest.raises(InputError) as caught:
             out = [session.folder / name for name in ("c.toml", "c.npz", "q.json")]
-            run("calibrate_cameras", session.ties, points, BADMINTON, *out, name="sfm", **CLICKING)
+            files = session.ties, points, BADMINTON, *out
+            run("calibrate_cameras", *files, calibration="sfm", **CLICKING)
         assert str(caught.value) == record.outcome
         yield record.outcome
 

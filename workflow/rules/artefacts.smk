@@ -10,7 +10,9 @@ for artefact in STUDY.artefacts.values():
         name:
             f"fetch_{artefact.name.replace('-', '_')}"
         output:
-            [f"results/external/{artefact.name}/{member}" for member in artefact.members],
+            member_paths=[
+                f"results/external/{artefact.name}/{member}" for member in artefact.members
+            ],
         log:
             f"results/external/logs/fetch_artefact/{artefact.name}.log",
         retries: 2
@@ -19,7 +21,7 @@ for artefact in STUDY.artefacts.values():
             code=code("fetch_artefact.py"),
             artefact=artefact.name,
             pin=[artefact.sha256, *artefact.members.values()],  # another one is fetched anew
-            external=str(CONFIG / "external.yaml"),
+            external_yaml=str(CONFIG / "external.yaml"),
             mirror_folder=STUDY.parameters["mirror_folder"],
         script:
             "../scripts/fetch_artefact.py"
@@ -27,9 +29,9 @@ for artefact in STUDY.artefacts.values():
 
 rule convert_network:
     input:
-        tflite=tflite_file,
+        tflite_path=tflite_file,
     output:
-        onnx="results/networks/{model}/{part}.onnx",
+        onnx_path="results/networks/{model}/{part}.onnx",
     log:
         "results/networks/logs/convert_network/{model}.{part}.log",
     wildcard_constraints:

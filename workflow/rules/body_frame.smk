@@ -7,14 +7,14 @@ Steps: correct_inertial, choose_tpose (for all sources of a take), align_bodies,
 
 rule correct_inertial:
     input:
-        bvh=lambda w: device_of(w).file,
-        skeleton=CONFIG / "skeletons" / "mocopi27.yaml",
-        vision=lambda w: sources_of(w, corrected=False)[vision_of(w)][0],
-        sync=f"{TAKE}/sync/devices.{{model}}.json",
+        bvh_file=lambda w: device_of(w).file,
+        skeleton_yaml=CONFIG / "skeletons" / "mocopi27.yaml",
+        vision_npz=lambda w: sources_of(w, corrected=False)[vision_of(w)][0],
+        sync_json=f"{TAKE}/sync/devices.{{model}}.json",
     output:
-        bvh=f"{TAKE}/devices/{{device}}-corrected.{{model}}.bvh",
-        motion=f"{TAKE}/devices/{{device}}-corrected.{{model}}.npz",
-        report=f"{TAKE}/devices/{{device}}-corrected.{{model}}.json",
+        corrected_bvh=f"{TAKE}/devices/{{device}}-corrected.{{model}}.bvh",
+        motion_npz=f"{TAKE}/devices/{{device}}-corrected.{{model}}.npz",
+        report_json=f"{TAKE}/devices/{{device}}-corrected.{{model}}.json",
     log:
         "results/{session}/logs/correct_inertial/{take}.{device}.{model}.log",
     benchmark:
@@ -28,10 +28,10 @@ rule correct_inertial:
 
 rule choose_tpose:
     input:
-        devices=source_files,
-        sync=f"{TAKE}/sync/devices.{{model}}.json",
+        device_npz=source_files,
+        sync_json=f"{TAKE}/sync/devices.{{model}}.json",
     output:
-        chosen=f"{TAKE}/sync/tpose.{{model}}.json",
+        chosen_json=f"{TAKE}/sync/tpose.{{model}}.json",
     log:
         "results/{session}/logs/choose_tpose/{take}.{model}.log",
     params:
@@ -43,13 +43,13 @@ rule choose_tpose:
 
 rule align_bodies:
     input:
-        device=lambda w: sources_of(w)[w.source][0],
-        sync=f"{TAKE}/sync/devices.{{model}}.json",
-        chosen=f"{TAKE}/sync/tpose.{{model}}.json",
-        derived=CONFIG / "derived_joints.yaml",
+        device_npz=lambda w: sources_of(w)[w.source][0],
+        sync_json=f"{TAKE}/sync/devices.{{model}}.json",
+        chosen_json=f"{TAKE}/sync/tpose.{{model}}.json",
+        derived_yaml=CONFIG / "derived_joints.yaml",
     output:
-        body=f"{TAKE}/body/{{source}}.{{model}}.npz",
-        frame=f"{TAKE}/body/{{source}}.{{model}}.json",
+        body_npz=f"{TAKE}/body/{{source}}.{{model}}.npz",
+        frame_json=f"{TAKE}/body/{{source}}.{{model}}.json",
     log:
         "results/{session}/logs/align_bodies/{take}.{source}.{model}.log",
     params:
@@ -61,10 +61,10 @@ rule align_bodies:
 
 rule measure_arcs:
     input:
-        bodies=body_files_of,
+        body_npz=body_files_of,
     output:
-        paths=f"{TAKE}/body/arcs.{{model}}.paths.csv",
-        distortion=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
+        paths_csv=f"{TAKE}/body/arcs.{{model}}.paths.csv",
+        distortion_csv=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
     log:
         "results/{session}/logs/measure_arcs/{take}.{model}.log",
     params:

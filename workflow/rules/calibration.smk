@@ -12,10 +12,10 @@ FOUND = "results/{session}/calibration/{calibration}"
 
 rule import_cameras:
     input:
-        calibration=lambda w: session_of(w).calibration_file,
+        calibration_path=lambda w: session_of(w).calibration_file,
     output:
-        cameras="results/{session}/calibration/file/cameras.toml",
-        quality="results/{session}/calibration/file/quality.json",
+        cameras_toml="results/{session}/calibration/file/cameras.toml",
+        quality_json="results/{session}/calibration/file/quality.json",
     log:
         "results/{session}/logs/import_cameras/file.log",
     params:
@@ -32,13 +32,13 @@ rule import_cameras:
 
 rule calibrate_cameras:
     input:
-        ties=ties_file,
-        clicks=lambda w: session_of(w).court_points or [],
-        court=lambda w: court_file(session_of(w)) or [],
+        ties_npz=ties_file,
+        clicks_csv=lambda w: session_of(w).court_points or [],
+        court_yaml=lambda w: court_file(session_of(w)) or [],
     output:
-        cameras=f"{FOUND}/cameras.toml",
-        covariance=f"{FOUND}/covariance.npz",
-        quality=f"{FOUND}/quality.json",
+        cameras_toml=f"{FOUND}/cameras.toml",
+        covariance_npz=f"{FOUND}/covariance.npz",
+        quality_json=f"{FOUND}/quality.json",
     log:
         "results/{session}/logs/calibrate_cameras/{calibration}.log",
     wildcard_constraints:
@@ -52,12 +52,12 @@ rule calibrate_cameras:
 
 rule align_cameras:
     input:
-        ties=ties_file,
-        clicks=lambda w: session_of(w).court_points,
-        court=lambda w: court_file(session_of(w)),
+        ties_npz=ties_file,
+        clicks_csv=lambda w: session_of(w).court_points,
+        court_yaml=lambda w: court_file(session_of(w)),
     output:
-        cameras=f"{FOUND}/cameras.toml",
-        quality=f"{FOUND}/quality.json",
+        cameras_toml=f"{FOUND}/cameras.toml",
+        quality_json=f"{FOUND}/quality.json",
     log:
         "results/{session}/logs/align_cameras/{calibration}.log",
     wildcard_constraints:
@@ -71,9 +71,9 @@ rule align_cameras:
 
 rule calibrate_lens:
     input:
-        images=board_source,
+        files=board_source,
     output:
-        lens="results/{session}/calibration/lens/{camera}.toml",
+        lens_toml="results/{session}/calibration/lens/{camera}.toml",
     log:
         "results/{session}/logs/calibrate_lens/{camera}.log",
     params:
@@ -86,13 +86,13 @@ rule calibrate_lens:
 
 rule resect_cameras:
     input:
-        clicks=lambda w: session_of(w).court_points,
-        court=lambda w: court_file(session_of(w)),
-        static=each_fixed("results/{session}/static/{camera}.png"),
-        lenses=lens_files,
+        clicks_csv=lambda w: session_of(w).court_points,
+        court_yaml=lambda w: court_file(session_of(w)),
+        static_png=each_fixed("results/{session}/static/{camera}.png"),
+        lens_toml=lens_files,
     output:
-        cameras=f"{FOUND}/cameras.toml",
-        quality=f"{FOUND}/quality.json",
+        cameras_toml=f"{FOUND}/cameras.toml",
+        quality_json=f"{FOUND}/quality.json",
     log:
         "results/{session}/logs/resect_cameras/{calibration}.log",
     wildcard_constraints:
@@ -107,16 +107,16 @@ rule resect_cameras:
 
 rule propose_court_points:
     input:
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        cameras_toml="results/{session}/calibration/{calibration}/cameras.toml",
         pictures=each_fixed("results/{session}/static/{camera}.png"),
-        court=lambda w: court_file(session_of(w)),
+        court_yaml=lambda w: court_file(session_of(w)),
     output:
-        proposals="results/{session}/calibration/{calibration}/proposals.csv",
+        proposals_csv="results/{session}/calibration/{calibration}/proposals.csv",
     log:
         "results/{session}/logs/propose_court_points/{calibration}.log",
     params:
         code=code("propose_court_points.py"),
-        cameras=lambda w: list(session_of(w).cameras),
+        names=lambda w: list(session_of(w).cameras),
         step=step("propose_court_points"),
     script:
         "../scripts/propose_court_points.py"
@@ -125,16 +125,16 @@ rule propose_court_points:
 rule build_clicking_page:
     input:
         pictures=each_fixed("results/{session}/static/{camera}.png"),
-        court=lambda w: court_file(session_of(w)),
-        clicks=lambda w: session_of(w).court_points or [],
-        proposals=proposals_file,
+        court_yaml=lambda w: court_file(session_of(w)),
+        clicks_csv=lambda w: session_of(w).court_points or [],
+        proposals_csv=proposals_file,
         assets=sorted(ASSETS.glob("[cp]*")),
     output:
-        page="results/{session}/pages/clicking.html",
+        page_html="results/{session}/pages/clicking.html",
     log:
         "results/{session}/logs/build_clicking_page/all.log",
     params:
         code=code("build_clicking_page.py"),
-        settings=clicking_settings,
+        step=clicking_settings,
     script:
         "../scripts/build_clicking_page.py"

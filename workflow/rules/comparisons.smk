@@ -8,12 +8,12 @@ compare_sessions.
 
 rule compare_views:
     input:
-        pose3d=lambda w: [
+        pose3d_npz=lambda w: [
             f"results/{w.session}/takes/{w.take}/pose3d/{w.calibration}/{fusion}/{w.model}.npz"
             for fusion in every_fusion(w)[::-1]
         ],
     output:
-        distances=f"{TAKE}/views/{{calibration}}.{{model}}.csv",
+        distances_csv=f"{TAKE}/views/{{calibration}}.{{model}}.csv",
     log:
         "results/{session}/logs/compare_views/{take}.{calibration}.{model}.log",
     params:
@@ -34,7 +34,7 @@ rule tabulate_players:
         clocks=lambda w: evaluations_of_takes("clocks"),
         gains=lambda w: evaluations_of_takes("gains"),
     output:
-        table="results/figures/players.csv",
+        table_csv="results/figures/players.csv",
     log:
         "results/figures/logs/tabulate_players/all.log",
     params:
@@ -45,7 +45,7 @@ rule tabulate_players:
 
 rule draw_clock_errors:
     input:
-        errors=lambda w: evaluations_of_takes("clocks"),
+        errors_csv=lambda w: evaluations_of_takes("clocks"),
     output:
         **drawn(
             "results/figures/clock_errors",
@@ -63,11 +63,11 @@ rule draw_clock_errors:
 
 rule compare_networks:
     input:
-        measures=[row["summary"] for row in compared_takes()],
-        pose3d=[row["pose3d"] for row in compared_takes()],
+        measures_csv=[row["summary"] for row in compared_takes()],
+        pose3d_npz=[row["pose3d"] for row in compared_takes()],
     output:
-        pairs="results/figures/agreement.pairs.csv",
-        table="results/figures/agreement.table.csv",
+        pairs_csv="results/figures/agreement.pairs.csv",
+        table_csv="results/figures/agreement.table.csv",
     log:
         "results/figures/logs/compare_networks/all.log",
     params:
@@ -85,8 +85,8 @@ rule compare_networks:
 
 rule draw_agreement:
     input:
-        pairs="results/figures/agreement.pairs.csv",
-        table="results/figures/agreement.table.csv",
+        pairs_csv="results/figures/agreement.pairs.csv",
+        table_csv="results/figures/agreement.table.csv",
     output:
         **drawn(
             "results/figures/agreement",
@@ -105,8 +105,8 @@ rule draw_agreement:
 
 rule compare_sessions:
     input:
-        measures=[row["summary"] for row in archived_takes()],
-        agreement="results/figures/agreement.table.csv" if compared_takes() else [],
+        measures_csv=[row["summary"] for row in archived_takes()],
+        agreement_csv="results/figures/agreement.table.csv" if compared_takes() else [],
     output:
         **drawn(
             "results/figures/archive", "archive", ("players", "sessions"), {"figure": "archive"}
@@ -115,7 +115,7 @@ rule compare_sessions:
         "results/figures/logs/compare_sessions/all.log",
     params:
         code=code("compare_sessions.py"),
-        settings=lambda w: {
+        step=lambda w: {
             "labels": [row["labels"] for row in archived_takes()],
             **{
                 key: STUDY.parameters["compare_sessions"][key]

@@ -10,9 +10,9 @@ rule import_device:
     input:
         recording=lambda w: whole(device_of(w).file),
         files=lambda w: inside(device_of(w).file),
-        skeleton=device_skeleton,
+        skeleton_yaml=device_skeleton,
     output:
-        motion=f"{TAKE}/devices/{{device}}.npz",
+        motion_npz=f"{TAKE}/devices/{{device}}.npz",
     log:
         "results/{session}/logs/import_device/{take}.{device}.log",
     params:
@@ -28,8 +28,8 @@ rule extract_colour:
         files=lambda w: inside(device_of(w).file),
     output:
         video=f"{TAKE}/devices/{{device}}.mp4",
-        frames=f"{TAKE}/devices/{{device}}.frames.csv",
-        camera=f"{TAKE}/devices/{{device}}.toml",
+        frames_csv=f"{TAKE}/devices/{{device}}.frames.csv",
+        camera_toml=f"{TAKE}/devices/{{device}}.toml",
     log:
         "results/{session}/logs/extract_colour/{take}.{device}.log",
     benchmark:
@@ -43,10 +43,10 @@ rule extract_colour:
 
 rule convert_landmarks:
     input:
-        pose2d=f"{TAKE}/pose2d/{{model}}/{{device}}.npz",
-        frames=lambda w: colour_file(w, "frames.csv"),
+        pose2d_npz=f"{TAKE}/pose2d/{{model}}/{{device}}.npz",
+        frames_csv=lambda w: colour_file(w, "frames.csv"),
     output:
-        device=f"{TAKE}/devices/{{device}}-rgb.{{model}}.npz",
+        device_npz=f"{TAKE}/devices/{{device}}-rgb.{{model}}.npz",
     log:
         "results/{session}/logs/convert_landmarks/{take}.{device}.{model}.log",
     params:
@@ -64,7 +64,7 @@ rule lift_depth:
         frames=lambda w: colour_file(w, "frames.csv"),
         skeleton=skeleton_file,
     output:
-        device=f"{TAKE}/devices/{{device}}-depth.{{model}}.npz",
+        device_npz=f"{TAKE}/devices/{{device}}-depth.{{model}}.npz",
     log:
         "results/{session}/logs/lift_depth/{take}.{device}.{model}.log",
     benchmark:
@@ -79,9 +79,9 @@ rule lift_depth:
 
 rule select_person:
     input:
-        pose3d=fused_file,
+        pose3d_npz=fused_file,
     output:
-        device=f"{TAKE}/devices/cameras.{{model}}.npz",
+        device_npz=f"{TAKE}/devices/cameras.{{model}}.npz",
     log:
         "results/{session}/logs/select_person/{take}.{model}.log",
     params:
@@ -93,12 +93,12 @@ rule select_person:
 
 rule synchronise_devices:
     input:
-        devices=lambda w: source_files(w, corrected=False),
+        device_npz=lambda w: source_files(w, corrected=False),
     output:
-        sync=f"{TAKE}/sync/devices.{{model}}.json",
-        wrists=f"{TAKE}/sync/devices.{{model}}.wrists.csv",
-        events=f"{TAKE}/sync/devices.{{model}}.events.csv",
-        checks=f"{TAKE}/sync/devices.{{model}}.checks.csv",
+        sync_json=f"{TAKE}/sync/devices.{{model}}.json",
+        wrists_csv=f"{TAKE}/sync/devices.{{model}}.wrists.csv",
+        events_csv=f"{TAKE}/sync/devices.{{model}}.events.csv",
+        checks_csv=f"{TAKE}/sync/devices.{{model}}.checks.csv",
     log:
         "results/{session}/logs/synchronise_devices/{take}.{model}.log",
     params:
@@ -112,10 +112,10 @@ rule synchronise_devices:
 
 rule list_events:
     input:
-        devices=lambda w: source_files(w, corrected=False),
+        device_npz=lambda w: source_files(w, corrected=False),
     output:
-        wrists=f"{TAKE}/sync/events.{{model}}.wrists.csv",
-        events=f"{TAKE}/sync/events.{{model}}.csv",
+        wrists_csv=f"{TAKE}/sync/events.{{model}}.wrists.csv",
+        events_csv=f"{TAKE}/sync/events.{{model}}.csv",
     log:
         "results/{session}/logs/list_events/{take}.{model}.log",
     params:

@@ -8,19 +8,19 @@ evaluate_racket (the length of a racket), tabulate_calibration.
 
 rule evaluate_calibration:
     input:
-        ties=f"{VARIANT}/ties.npz",
-        summary=f"{VARIANT}/summary.json",
-        truth="results/virtual/{session}/truth.npz",
-        court=lambda w: court_file(session_of(w)),
+        ties_npz=f"{VARIANT}/ties.npz",
+        summary_json=f"{VARIANT}/summary.json",
+        truth_npz="results/virtual/{session}/truth.npz",
+        court_yaml=lambda w: court_file(session_of(w)),
     output:
-        errors="results/{session}/evaluation/{mapper}-n{n_images}-o{offset}.csv",
+        errors_csv="results/{session}/evaluation/{mapper}-n{n_images}-o{offset}.csv",
     log:
         "results/{session}/logs/evaluate_calibration/{mapper}-n{n_images}-o{offset}.log",
     benchmark:
         "results/{session}/benchmarks/evaluate_calibration/{mapper}-n{n_images}-o{offset}.tsv"
     params:
         code=code("evaluate_calibration.py"),
-        settings=lambda w: evaluation_parameters(
+        step=lambda w: evaluation_parameters(
             w,
             labels={"mapper": w.mapper, "n_bridging": w.n_images, "offset": w.offset},
             keys=["click_sigma_px", "click_bias_px", "click_loss"],
@@ -31,16 +31,16 @@ rule evaluate_calibration:
 
 rule evaluate_known:
     input:
-        truth="results/virtual/{session}/truth.npz",
-        court=lambda w: court_file(session_of(w)),
-        lenses=every_lens_file,
+        truth_npz="results/virtual/{session}/truth.npz",
+        court_yaml=lambda w: court_file(session_of(w)),
+        lens_toml=every_lens_file,
     output:
-        errors="results/{session}/evaluation/known.csv",
+        errors_csv="results/{session}/evaluation/known.csv",
     log:
         "results/{session}/logs/evaluate_known/all.log",
     params:
         code=code("evaluate_known.py"),
-        settings=lambda w: evaluation_parameters(w, labels={}, keys=["click_sigma_px"]),
+        step=lambda w: evaluation_parameters(w, labels={}, keys=["click_sigma_px"]),
         cameras=lambda w: list(session_of(w).cameras),
     script:
         "../scripts/evaluate_known.py"
@@ -48,29 +48,29 @@ rule evaluate_known:
 
 rule evaluate_racket:
     input:
-        ties=lambda w: [
+        ties_npz=lambda w: [
             f"results/{w.session}/sfm/{variant}/ties.npz" for variant in racket_models(w.session)
         ],
-        truth="results/virtual/{session}/truth.npz",
-        court=lambda w: court_file(session_of(w)),
+        truth_npz="results/virtual/{session}/truth.npz",
+        court_yaml=lambda w: court_file(session_of(w)),
     output:
-        lengths="results/{session}/evaluation/racket.csv",
+        lengths_csv="results/{session}/evaluation/racket.csv",
     log:
         "results/{session}/logs/evaluate_racket/all.log",
     benchmark:
         "results/{session}/benchmarks/evaluate_racket/all.tsv"
     params:
         code=code("evaluate_racket.py"),
-        settings=racket_parameters,
+        step=racket_parameters,
     script:
         "../scripts/evaluate_racket.py"
 
 
 rule tabulate_calibration:
     input:
-        errors=every_error(tabulated()),
+        errors_csv=every_error(tabulated()),
     output:
-        table="results/figures/calibration.csv",
+        table_csv="results/figures/calibration.csv",
     log:
         "results/figures/logs/tabulate_calibration/all.log",
     params:

@@ -19,13 +19,13 @@ PAIRS = [  # ours first
 
 rule evaluate_take:
     input:
-        pose3d=lambda w: [
+        pose3d_npz=lambda w: [
             f"results/{w.session}/takes/{w.take}/{stage}/{w.calibration}/{fusion}/{w.model}.npz"
             for stage, fusion in evaluated(w)
         ],
-        truth=TRUE_TAKE,
+        truth_npz=TRUE_TAKE,
     output:
-        errors="results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv",
+        errors_csv="results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv",
     log:
         "results/{session}/logs/evaluate_take/{take}.{calibration}.{model}.log",
     params:
@@ -39,10 +39,10 @@ rule evaluate_take:
 
 rule evaluate_clocks:
     input:
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        truth=TRUE_TAKE,
+        sync_json=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+        truth_npz=TRUE_TAKE,
     output:
-        errors="results/{session}/evaluation/takes/{take}/clocks/{calibration}.{model}.csv",
+        errors_csv="results/{session}/evaluation/takes/{take}/clocks/{calibration}.{model}.csv",
     log:
         "results/{session}/logs/evaluate_clocks/{take}.{calibration}.{model}.log",
     params:
@@ -59,7 +59,7 @@ rule evaluate_kinematics:
         derived=CONFIG / "derived_joints.yaml",
         truth=TRUE_TAKE,
     output:
-        errors=f"results/{{session}}/evaluation/takes/{{take}}/kinematics/{FUSED}.csv",
+        errors_csv=f"results/{{session}}/evaluation/takes/{{take}}/kinematics/{FUSED}.csv",
     log:
         "results/{session}/logs/evaluate_kinematics/{take}.{calibration}.{fusion}.{model}.log",
     params:
@@ -72,14 +72,14 @@ rule evaluate_kinematics:
 
 rule evaluate_sources:
     input:
-        bodies=body_files_of,
-        truth=TRUE_TAKE,
-        derived=CONFIG / "derived_joints.yaml",
+        body_npz=body_files_of,
+        truth_npz=TRUE_TAKE,
+        derived_yaml=CONFIG / "derived_joints.yaml",
     output:
-        errors="results/{session}/evaluation/takes/{take}/sources/{model}.errors.csv",
-        parts="results/{session}/evaluation/takes/{take}/sources/{model}.parts.csv",
-        paths="results/{session}/evaluation/takes/{take}/sources/{model}.true_paths.csv",
-        distortion="results/{session}/evaluation/takes/{take}/sources/{model}.true_distortion.csv",
+        errors_csv="results/{session}/evaluation/takes/{take}/sources/{model}.errors.csv",
+        parts_csv="results/{session}/evaluation/takes/{take}/sources/{model}.parts.csv",
+        paths_csv="results/{session}/evaluation/takes/{take}/sources/{model}.true_paths.csv",
+        distortion_csv="results/{session}/evaluation/takes/{take}/sources/{model}.true_distortion.csv",
     log:
         "results/{session}/logs/evaluate_sources/{take}.{model}.log",
     params:
@@ -93,12 +93,12 @@ rule evaluate_sources:
 
 rule evaluate_body_frames:
     input:
-        bodies=lambda w: body_files_of(w, corrected=False),
-        frames=lambda w: body_files_of(w, "json", corrected=False),
-        truth=TRUE_TAKE,
-        derived=CONFIG / "derived_joints.yaml",
+        body_npz=lambda w: body_files_of(w, corrected=False),
+        frame_json=lambda w: body_files_of(w, "json", corrected=False),
+        truth_npz=TRUE_TAKE,
+        derived_yaml=CONFIG / "derived_joints.yaml",
     output:
-        errors="results/{session}/evaluation/takes/{take}/body_frames/{model}.csv",
+        errors_csv="results/{session}/evaluation/takes/{take}/body_frames/{model}.csv",
     log:
         "results/{session}/logs/evaluate_body_frames/{take}.{model}.log",
     params:
@@ -112,10 +112,10 @@ rule evaluate_body_frames:
 
 rule evaluate_joint_offsets:
     input:
-        pose3d=lambda w: every_take_file(w, "pose3d_filtered/known18/all-robust/{model}.npz"),
-        truth=true_takes,
+        pose3d_npz=lambda w: every_take_file(w, "pose3d_filtered/known18/all-robust/{model}.npz"),
+        truth_npz=true_takes,
     output:
-        offsets="results/{session}/evaluation/joint_offsets.{model}.csv",
+        offsets_csv="results/{session}/evaluation/joint_offsets.{model}.csv",
     log:
         "results/{session}/logs/evaluate_joint_offsets/{model}.log",
     params:
@@ -128,10 +128,10 @@ rule evaluate_joint_offsets:
 
 rule evaluate_skin_depths:
     input:
-        lifted=lambda w: every_take_file(w, "devices/{device}-depth.{model}.npz"),
-        truth=true_takes,
+        lifted_npz=lambda w: every_take_file(w, "devices/{device}-depth.{model}.npz"),
+        truth_npz=true_takes,
     output:
-        depths="results/{session}/evaluation/skin_depths.{device}.{model}.csv",
+        depths_csv="results/{session}/evaluation/skin_depths.{device}.{model}.csv",
     log:
         "results/{session}/logs/evaluate_skin_depths/{device}.{model}.log",
     params:
@@ -144,12 +144,12 @@ rule evaluate_skin_depths:
 
 rule evaluate_detection:
     input:
-        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
-        take_truth=TRUE_TAKE,
-        truth="results/virtual/{session}/truth.npz",
-        skeleton=skeleton_file,
+        pose2d_npz=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        take_truth_npz=TRUE_TAKE,
+        truth_npz="results/virtual/{session}/truth.npz",
+        skeleton_yaml=skeleton_file,
     output:
-        errors="results/{session}/evaluation/takes/{take}/detection/{model}.csv",
+        errors_csv="results/{session}/evaluation/takes/{take}/detection/{model}.csv",
     log:
         "results/{session}/logs/evaluate_detection/{take}.{model}.log",
     params:
@@ -161,18 +161,18 @@ rule evaluate_detection:
 
 rule evaluate_round_trip:
     input:
-        pose3d=lambda w: [
+        pose3d_npz=lambda w: [
             f"results/{w.session}/takes/{w.take}/pose3d/{w.calibration}/{fusion}/{w.model}.npz"
             for fusion in round_trip_fusions(w)
         ],
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        skeleton=skeleton_file,
-        derived=CONFIG / "derived_joints.yaml",
-        truth=true_take_file,
+        cameras_toml="results/{session}/calibration/{calibration}/cameras.toml",
+        pose2d_npz=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        sync_json=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+        skeleton_yaml=skeleton_file,
+        derived_yaml=CONFIG / "derived_joints.yaml",
+        truth_npz=true_take_file,
     output:
-        rows="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
+        rows_csv="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
     log:
         "results/{session}/logs/evaluate_round_trip/{take}.{calibration}.{model}.log",
     params:
@@ -184,13 +184,13 @@ rule evaluate_round_trip:
 
 rule evaluate_fusions:
     input:
-        pose3d=lambda w: [
+        pose3d_npz=lambda w: [
             f"results/{w.session}/takes/{w.take}/{w.stage}/{w.calibration}/{fusion}/{w.model}.npz"
             for fusion in every_fusion(w)
         ],
-        truth=TRUE_TAKE,
+        truth_npz=TRUE_TAKE,
     output:
-        gains="results/{session}/evaluation/takes/{take}/gains/{stage}.{calibration}.{model}.csv",
+        gains_csv="results/{session}/evaluation/takes/{take}/gains/{stage}.{calibration}.{model}.csv",
     log:
         "results/{session}/logs/evaluate_fusions/{take}.{stage}.{calibration}.{model}.log",
     params:

@@ -34,9 +34,9 @@ rule draw_badminton_fig05:
 
 rule draw_badminton_fig06:
     input:
-        ties=first_of_each_count("results/{session}/sfm/{variant}/ties.npz"),
-        summaries=first_of_each_count("results/{session}/sfm/{variant}/summary.json"),
-        court=lambda w: court_file(session_of(w)),
+        ties_npz=first_of_each_count("results/{session}/sfm/{variant}/ties.npz"),
+        summary_json=first_of_each_count("results/{session}/sfm/{variant}/summary.json"),
+        court_yaml=lambda w: court_file(session_of(w)),
     output:
         **drawn(
             "results/{session}/figures/badminton_fig06.{mapper}",
@@ -55,7 +55,7 @@ rule draw_badminton_fig06:
 
 rule draw_badminton_fig08:
     input:
-        errors=lambda w: every_error([session_of(w)]),
+        errors_csv=lambda w: every_error([session_of(w)]),
     output:
         **session_figure("badminton_fig08"),
     log:
@@ -116,7 +116,7 @@ rule draw_badminton_fig11:
 
 rule draw_badminton_fig12:
     input:
-        lengths=[f"results/{name}/evaluation/racket.csv" for name in racket_sessions()],
+        lengths_csv=[f"results/{name}/evaluation/racket.csv" for name in racket_sessions()],
     output:
         **drawn(
             "results/figures/badminton_fig12",
@@ -134,8 +134,8 @@ rule draw_badminton_fig12:
 
 rule draw_badminton_tab01:
     input:
-        rows="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
-        published=CONFIG / "published" / "badminton_tab01.csv",
+        rows_csv="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
+        published_csv=CONFIG / "published" / "badminton_tab01.csv",
     output:
         **drawn(
             f"{TAKE}/figures/badminton_tab01.{{calibration}}.{{model}}",
@@ -154,8 +154,8 @@ rule draw_badminton_tab01:
 
 rule draw_three_cameras:
     input:
-        errors=["results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv"],
-        kinematics=lambda w: [
+        errors_csv=["results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv"],
+        kinematics_csv=lambda w: [
             f"results/{w.session}/evaluation/takes/{w.take}/kinematics/{w.calibration}/{fusion}/{w.model}.csv"
             for fusion in every_fusion(w)
         ],

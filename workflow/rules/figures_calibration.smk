@@ -7,7 +7,7 @@ Steps: draw_court_points, draw_coverage, draw_growth, draw_error_map, draw_captu
 
 rule draw_court_points:
     input:
-        court=CONFIG / "courts" / "{court}.yaml",
+        court_yaml=CONFIG / "courts" / "{court}.yaml",
     output:
         **drawn(
             "results/figures/court_points.{court}",
@@ -25,7 +25,7 @@ rule draw_court_points:
 
 rule draw_coverage:
     input:
-        errors=lambda w: every_error([session_of(w)]),
+        errors_csv=lambda w: every_error([session_of(w)]),
     output:
         **session_figure("coverage"),
     log:
@@ -38,7 +38,7 @@ rule draw_coverage:
 
 rule draw_growth:
     input:
-        benchmarks=lambda w: timings(session_of(w)),
+        benchmarks_tsv=lambda w: timings(session_of(w)),
     output:
         **session_figure("growth"),
     log:
@@ -51,9 +51,9 @@ rule draw_growth:
 
 rule draw_error_map:
     input:
-        cameras=f"{FOUND}/cameras.toml",
-        covariance=f"{FOUND}/covariance.npz",
-        court=lambda w: court_file(session_of(w)),
+        cameras_toml=f"{FOUND}/cameras.toml",
+        covariance_npz=f"{FOUND}/covariance.npz",
+        court_yaml=lambda w: court_file(session_of(w)),
     output:
         **drawn(
             "results/{session}/figures/error_map.{calibration}",
@@ -72,7 +72,7 @@ rule draw_error_map:
 
 rule draw_capture:
     input:
-        errors=lambda w: every_error(varied(drawn_conditions()[w.condition])),
+        errors_csv=lambda w: every_error(varied(drawn_conditions()[w.condition])),
     output:
         **drawn(
             "results/figures/{condition}",
@@ -86,6 +86,6 @@ rule draw_capture:
         condition="|".join(drawn_conditions()) or "(?!)",  # without conditions, no figure
     params:
         code=code("draw_capture.py"),
-        axes=lambda w: varied_axes(drawn_conditions()[w.condition]),
+        step=lambda w: varied_axes(drawn_conditions()[w.condition]),
     script:
         "../scripts/draw_capture.py"

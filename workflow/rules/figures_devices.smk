@@ -8,8 +8,8 @@ draw_source_errors, draw_thesis_fig3, draw_smoothness.
 
 rule draw_wrist_distance:
     input:
-        wrists=f"{TAKE}/sync/{{clocks}}.{{model}}.wrists.csv",
-        events=events_file,
+        wrists_csv=f"{TAKE}/sync/{{clocks}}.{{model}}.wrists.csv",
+        events_csv=events_file,
     output:
         **device_figure("wrist_distance.{clocks}", "wrist_distance"),
     log:
@@ -26,9 +26,9 @@ rule draw_wrist_distance:
 
 rule draw_wrist_arcs:
     input:
-        paths=f"{TAKE}/body/arcs.{{model}}.paths.csv",
-        distortion=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
-        truth=lambda w: true_arcs(w, "paths"),
+        paths_csv=f"{TAKE}/body/arcs.{{model}}.paths.csv",
+        distortion_csv=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
+        truth_csv=lambda w: true_arcs(w, "paths"),
     output:
         **device_figure("wrist_arcs", "wrist_arcs"),
     log:
@@ -42,9 +42,9 @@ rule draw_wrist_arcs:
 
 rule draw_skeleton_plates:
     input:
-        bodies=body_files_of,
-        skeletons=plate_skeletons,
-        derived=CONFIG / "derived_joints.yaml",
+        body_npz=body_files_of,
+        skeleton_yaml=plate_skeletons,
+        derived_yaml=CONFIG / "derived_joints.yaml",
     output:
         **device_figure("skeleton_plates", "skeleton_plates"),
     log:
@@ -59,8 +59,8 @@ rule draw_skeleton_plates:
 
 rule draw_source_errors:
     input:
-        errors="results/{session}/evaluation/takes/{take}/sources/{model}.errors.csv",
-        parts="results/{session}/evaluation/takes/{take}/sources/{model}.parts.csv",
+        errors_csv="results/{session}/evaluation/takes/{take}/sources/{model}.errors.csv",
+        parts_csv="results/{session}/evaluation/takes/{take}/sources/{model}.parts.csv",
     output:
         **device_figure("source_errors", "source_errors"),
     log:
@@ -74,9 +74,9 @@ rule draw_source_errors:
 
 rule draw_thesis_fig3:
     input:
-        paths=lambda w: thesis_file(w, "paths"),
-        distortion=lambda w: thesis_file(w, "distortion"),
-        truth=thesis_truth,
+        paths_csv=lambda w: thesis_file(w, "paths"),
+        distortion_csv=lambda w: thesis_file(w, "distortion"),
+        truth_csv=thesis_truth,
     output:
         **drawn(
             "results/figures/thesis_fig3_{number}",
@@ -98,9 +98,9 @@ rule draw_thesis_fig3:
 
 rule draw_smoothness:
     input:
-        distortion=[row["distortion"] for row in smoothed_takes()],
-        errors=[row["errors"] for row in smoothed_takes() if row["errors"]],
-        truth=[row["truth"] for row in smoothed_takes() if row["truth"]],
+        distortion_csv=[row["distortion"] for row in smoothed_takes()],
+        errors_csv=[row["errors"] for row in smoothed_takes() if row["errors"]],
+        truth_csv=[row["truth"] for row in smoothed_takes() if row["truth"]],
     output:
         **drawn(
             "results/figures/smoothness",

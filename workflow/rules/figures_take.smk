@@ -28,9 +28,9 @@ rule draw_overlay:
 
 rule draw_skeletons:
     input:
-        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        skeleton=skeleton_file,
+        pose3d_npz="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        cameras_toml="results/{session}/calibration/{calibration}/cameras.toml",
+        skeleton_yaml=skeleton_file,
     output:
         **figure("skeletons"),
     log:
@@ -43,7 +43,7 @@ rule draw_skeletons:
 
 rule draw_reprojection:
     input:
-        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        pose3d_npz="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
     output:
         **figure("reprojection"),
     log:
@@ -73,9 +73,9 @@ rule draw_visibility:
 
 rule draw_kinematics:
     input:
-        frames=f"{TAKE}/kinematics/{FUSED}.frames.csv",
-        summary=f"{TAKE}/kinematics/{FUSED}.summary.csv",
-        court=lambda w: court_file(session_of(w)) or [],
+        frames_csv=f"{TAKE}/kinematics/{FUSED}.frames.csv",
+        summary_csv=f"{TAKE}/kinematics/{FUSED}.summary.csv",
+        court_yaml=lambda w: court_file(session_of(w)) or [],
     output:
         **figure("kinematics"),
     log:
@@ -93,7 +93,7 @@ rule draw_shake:
         pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
     output:
         **figure("shake"),
-        text=f"{TAKE}/figures/shake.{{calibration}}.{{fusion}}.{{model}}.txt",
+        text_path=f"{TAKE}/figures/shake.{{calibration}}.{{fusion}}.{{model}}.txt",
     log:
         f"results/{{session}}/logs/draw_shake/{OF_FUSED}.log",
     params:

@@ -62,7 +62,7 @@ rule export_pose2sim:
         cameras="results/{session}/calibration/{calibration}/cameras.toml",
         skeleton=skeleton_file,
     output:
-        project=directory(f"{TAKE}/pose2sim/{FUSED}"),
+        folder=directory(f"{TAKE}/pose2sim/{FUSED}"),
     log:
         f"results/{{session}}/logs/export_pose2sim/{OF_FUSED}.log",
     params:

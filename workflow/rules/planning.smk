@@ -7,8 +7,8 @@ Steps: plan_session.
 
 rule plan_session:
     input:
-        plan=CONFIG / "plans" / "{plan}.yaml",
-        court=planned_court,
+        plan_yaml=CONFIG / "plans" / "{plan}.yaml",
+        court_yaml=planned_court,
     output:
         **plan_figure("growth"),
         **plan_figure("map"),

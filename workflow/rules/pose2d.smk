@@ -13,7 +13,7 @@ rule detect_pose:
         landmarks="results/networks/{model}/landmarks.onnx",
         skeleton=skeleton_file,
     output:
-        pose2d="results/{session}/takes/{take}/pose2d/{model}/{camera}.npz",
+        pose2d_npz="results/{session}/takes/{take}/pose2d/{model}/{camera}.npz",
     log:
         "results/{session}/logs/detect_pose/{take}.{model}.{camera}.log",
     benchmark:
@@ -38,7 +38,7 @@ rule import_pose2d:
         video=lambda w: take_of(w).videos[w.camera],
         skeleton=skeleton_file,
     output:
-        pose2d="results/{session}/takes/{take}/pose2d/{model}/{camera}.npz",
+        pose2d_npz="results/{session}/takes/{take}/pose2d/{model}/{camera}.npz",
     log:
         "results/{session}/logs/import_pose2d/{take}.{model}.{camera}.log",
     wildcard_constraints:
@@ -52,10 +52,10 @@ rule import_pose2d:
 
 rule import_pose3d:
     input:
-        trc=lambda w: list(take_of(w).pose3d[w.model].values()),
-        skeleton=skeleton_file,
+        trc_files=lambda w: list(take_of(w).pose3d[w.model].values()),
+        skeleton_yaml=skeleton_file,
     output:
-        pose3d="results/{session}/takes/{take}/pose3d/imported/trc/{model}.npz",
+        pose3d_npz="results/{session}/takes/{take}/pose3d/imported/trc/{model}.npz",
     log:
         "results/{session}/logs/import_pose3d/{take}.{model}.log",
     params:

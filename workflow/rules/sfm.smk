@@ -10,12 +10,12 @@ VARIANT = "results/{session}/sfm/{mapper}-n{n_images}-o{offset}"
 
 rule extract_features:
     input:
-        static=each_fixed("results/{session}/static/{camera}.png"),
-        frames=each_walk("results/{session}/frames/{walk}.csv"),
+        static_png=each_fixed("results/{session}/static/{camera}.png"),
+        frames_csv=each_walk("results/{session}/frames/{walk}.csv"),
         folders=each_walk("results/{session}/frames/{walk}"),
     output:
-        database="results/{session}/sfm/features.db",
-        table="results/{session}/sfm/features.csv",
+        features_db="results/{session}/sfm/features.db",
+        table_csv="results/{session}/sfm/features.csv",
     log:
         "results/{session}/logs/extract_features/all.log",
     benchmark:
@@ -34,12 +34,12 @@ rule extract_features:
 
 rule match_images:
     input:
-        features="results/{session}/sfm/features.db",
-        table="results/{session}/sfm/features.csv",
-        frames=each_walk("results/{session}/frames/{walk}.csv"),
+        features_db="results/{session}/sfm/features.db",
+        features_csv="results/{session}/sfm/features.csv",
+        frames_csv=each_walk("results/{session}/frames/{walk}.csv"),
     output:
-        database="results/{session}/sfm/matches.db",
-        table="results/{session}/sfm/matches.csv",
+        matches_db="results/{session}/sfm/matches.db",
+        table_csv="results/{session}/sfm/matches.csv",
     log:
         "results/{session}/logs/match_images/all.log",
     benchmark:
@@ -56,12 +56,12 @@ rule match_images:
 
 rule map_images:
     input:
-        matches="results/{session}/sfm/matches.db",
-        table="results/{session}/sfm/features.csv",
-        frames=each_walk("results/{session}/frames/{walk}.csv"),
+        matches_db="results/{session}/sfm/matches.db",
+        features_csv="results/{session}/sfm/features.csv",
+        frames_csv=each_walk("results/{session}/frames/{walk}.csv"),
     output:
         model=expand(f"{VARIANT}/{{part}}.bin", part=MODEL_PARTS, allow_missing=True),
-        summary=f"{VARIANT}/summary.json",
+        summary_json=f"{VARIANT}/summary.json",
     log:
         "results/{session}/logs/map_images/{mapper}-n{n_images}-o{offset}.log",
     benchmark:
@@ -81,11 +81,11 @@ rule map_images:
 rule adjust_network:
     input:
         model=expand(f"{VARIANT}/{{part}}.bin", part=MODEL_PARTS, allow_missing=True),
-        summary=f"{VARIANT}/summary.json",
-        clicks=lambda w: session_of(w).court_points or [],
-        court=lambda w: court_file(session_of(w)) or [],
+        summary_json=f"{VARIANT}/summary.json",
+        clicks_csv=lambda w: session_of(w).court_points or [],
+        court_yaml=lambda w: court_file(session_of(w)) or [],
     output:
-        ties=f"{VARIANT}/ties.npz",
+        ties_npz=f"{VARIANT}/ties.npz",
     log:
         "results/{session}/logs/adjust_network/{mapper}-n{n_images}-o{offset}.log",
     benchmark:

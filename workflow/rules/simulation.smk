@@ -18,7 +18,7 @@ for session in STUDY.sessions.values():
             name:
                 f"simulate_{session.name.replace('-', '_')}"
             input:
-                court=court_file(session),
+                court_yaml=court_file(session),
             output:
                 videos=[f"results/virtual/{session.name}/{name}.mp4" for name in session.filmed()],
                 boards=(
@@ -26,9 +26,9 @@ for session in STUDY.sessions.values():
                     if session.films_boards()
                     else []
                 ),
-                backdrops=backdrops,
+                backdrops_npz=backdrops,
                 clicks=f"results/virtual/{session.name}/court_points.csv",
-                truth=f"results/virtual/{session.name}/truth.npz",
+                truth_npz=f"results/virtual/{session.name}/truth.npz",
             log:
                 f"results/virtual/logs/simulate_session/{session.name}.log",
             benchmark:
@@ -50,14 +50,14 @@ for session in STUDY.sessions.values():
             name:
                 f"simulate_{session.name}_{take.name}".replace("-", "_")
             input:
-                court=court_file(session),
-                body=body_files,
-                backdrops=backdrops if take.videos else [],
+                court_yaml=court_file(session),
+                body_files=body_files,
+                backdrops_npz=backdrops if take.videos else [],
             output:
                 videos=list(take.videos.values()),
                 devices=[device.file for device in take.devices.values()],
                 racket=f"results/virtual/{session.name}/takes/{take.name}/racket.csv",
-                truth=f"results/virtual/{session.name}/takes/{take.name}/truth.npz",
+                truth_npz=f"results/virtual/{session.name}/takes/{take.name}/truth.npz",
             log:
                 f"results/virtual/logs/simulate_take/{session.name}.{take.name}.log",
             benchmark:

@@ -13,10 +13,10 @@ OF_FUSED = "{take}.{calibration}.{fusion}.{model}"
 
 rule synchronise_cameras:
     input:
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        cameras_toml="results/{session}/calibration/{calibration}/cameras.toml",
+        pose2d_npz=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
     output:
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+        sync_json=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
     log:
         "results/{session}/logs/synchronise_cameras/{take}.{calibration}.{model}.log",
     benchmark:
@@ -38,7 +38,7 @@ rule associate_people:
         skeleton=skeleton_file,
         court=lambda w: court_file(session_of(w)) or [],
     output:
-        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
+        people_npz=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
     log:
         "results/{session}/logs/associate_people/{take}.{calibration}.{model}.log",
     benchmark:
@@ -60,7 +60,7 @@ rule triangulate:
         shake=shake_files,
         skeleton=skeleton_file,
     output:
-        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
+        pose3d_npz=f"{TAKE}/pose3d/{FUSED}.npz",
     log:
         f"results/{{session}}/logs/triangulate/{OF_FUSED}.log",
     benchmark:
@@ -78,10 +78,10 @@ rule triangulate:
 
 rule filter_motion:
     input:
-        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
-        skeleton=skeleton_file,
+        raw_npz=f"{TAKE}/pose3d/{FUSED}.npz",
+        skeleton_yaml=skeleton_file,
     output:
-        pose3d=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
+        filtered_npz=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
     log:
         f"results/{{session}}/logs/filter_motion/{OF_FUSED}.log",
     params:
@@ -93,10 +93,10 @@ rule filter_motion:
 
 rule correct_joints:
     input:
-        pose3d=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
-        offsets=lambda w: CONFIG / "joint_offsets" / f"{w.model}.csv",
+        filtered_npz=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
+        offsets_csv=lambda w: CONFIG / "joint_offsets" / f"{w.model}.csv",
     output:
-        pose3d=f"{TAKE}/pose3d_corrected/{FUSED}.npz",
+        corrected_npz=f"{TAKE}/pose3d_corrected/{FUSED}.npz",
     log:
         f"results/{{session}}/logs/correct_joints/{OF_FUSED}.log",
     params:
@@ -108,11 +108,11 @@ rule correct_joints:
 
 rule export_take:
     input:
-        pose3d=exported,
+        pose3d_npz=exported,
     output:
-        trc=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.trc",
-        c3d=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.c3d",
-        csv=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.csv",
+        trc_path=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.trc",
+        c3d_path=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.c3d",
+        csv_path=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.csv",
     log:
         "results/{session}/logs/export_take/{take}.{stage}.{calibration}.{fusion}.{model}.{person}.log",
     params:
@@ -123,13 +123,13 @@ rule export_take:
 
 rule measure_kinematics:
     input:
-        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
-        skeleton=skeleton_file,
-        derived=CONFIG / "derived_joints.yaml",
+        raw_npz=f"{TAKE}/pose3d/{FUSED}.npz",
+        skeleton_yaml=skeleton_file,
+        derived_yaml=CONFIG / "derived_joints.yaml",
     output:
-        frames=f"{TAKE}/kinematics/{FUSED}.frames.csv",
-        summary=f"{TAKE}/kinematics/{FUSED}.summary.csv",
-        cutoffs=f"{TAKE}/kinematics/{FUSED}.cutoffs.csv",
+        frames_csv=f"{TAKE}/kinematics/{FUSED}.frames.csv",
+        summary_csv=f"{TAKE}/kinematics/{FUSED}.summary.csv",
+        cutoffs_csv=f"{TAKE}/kinematics/{FUSED}.cutoffs.csv",
     log:
         f"results/{{session}}/logs/measure_kinematics/{OF_FUSED}.log",
     benchmark:

@@ -8,10 +8,10 @@ its static recording and a take), estimate_background (of a take whose camera ha
 
 rule extract_static:
     input:
-        video=lambda w: session_of(w).cameras[w.camera].static,
+        video_path=lambda w: session_of(w).cameras[w.camera].static,
     output:
-        png="results/{session}/static/{camera}.png",
-        csv="results/{session}/static/{camera}.csv",
+        out_png="results/{session}/static/{camera}.png",
+        out_csv="results/{session}/static/{camera}.csv",
     log:
         "results/{session}/logs/extract_static/{camera}.log",
     params:
@@ -23,11 +23,11 @@ rule extract_static:
 
 rule extract_frames:
     input:
-        video=lambda w: whole(session_of(w).walks[w.walk]),
+        video_path=lambda w: whole(session_of(w).walks[w.walk]),
         photos=lambda w: inside(session_of(w).walks[w.walk]),
     output:
         folder=directory("results/{session}/frames/{walk}"),
-        table="results/{session}/frames/{walk}.csv",
+        table_csv="results/{session}/frames/{walk}.csv",
     log:
         "results/{session}/logs/extract_frames/{walk}.log",
     benchmark:
@@ -42,10 +42,10 @@ rule extract_frames:
 
 rule check_movement:
     input:
-        static="results/{session}/static/{camera}.png",
-        video=lambda w: take_of(w).videos[w.camera],
+        static_png="results/{session}/static/{camera}.png",
+        video_path=lambda w: take_of(w).videos[w.camera],
     output:
-        movement="results/{session}/takes/{take}/movement/{camera}.csv",
+        movement_csv="results/{session}/takes/{take}/movement/{camera}.csv",
     log:
         "results/{session}/logs/check_movement/{take}.{camera}.log",
     params:
@@ -57,10 +57,10 @@ rule check_movement:
 
 rule measure_shake:
     input:
-        static="results/{session}/static/{camera}.png",
-        video=lambda w: take_of(w).videos[w.camera],
+        static_png="results/{session}/static/{camera}.png",
+        video_path=lambda w: take_of(w).videos[w.camera],
     output:
-        shake="results/{session}/takes/{take}/shake/{camera}.csv",
+        shake_csv="results/{session}/takes/{take}/shake/{camera}.csv",
     log:
         "results/{session}/logs/measure_shake/{take}.{camera}.log",
     benchmark:
@@ -76,7 +76,7 @@ rule estimate_background:
     input:
         source=lambda w: take_of(w).videos[w.camera],
     output:
-        png="results/{session}/takes/{take}/background/{camera}.png",
+        background_png="results/{session}/takes/{take}/background/{camera}.png",
     log:
         "results/{session}/logs/estimate_background/{take}.{camera}.log",
     benchmark:

@@ -1,4 +1,4 @@
-"""Adjust a model with clicked court points: COLMAP model, clicks -> what ties say of fixed cameras."""
+"""Adjust a model with clicked court points: COLMAP model, clicks -> tie points of fixed cameras."""
 
 import json
 from pathlib import Path
@@ -13,6 +13,7 @@ from courtside.records.cameras import clicks, image_names
 from courtside.sfm import model, registration
 from courtside.study.errors import InputError
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options):
@@ -26,19 +27,21 @@ def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points,
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
     found = selection.fixed_cameras(network, placed, size_of)
     known, fault, residual_px = None, "", np.nan
-    places = selection.centres(network), network.xyz
+    centres, points = selection.centres(network), network.xyz
     if not outcome:
         try:
             known, parts = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
-            places = walk_parts.centres(parts), walk_parts.points(parts)
+            centres, points = walk_parts.centres(parts), walk_parts.points(parts)
             residual_px = walk_parts.residual_spread(parts)
         except InputError as error:
             fault = str(error)
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
     seen = [registration.n_seen(network, images, fixed[camera]) for camera in placed]
     n_maps = summary["n_agreeing"], summary["n_attempts"]
-    about = outcome, fault, found, seen, known, images, *places, residual_px, n_maps
-    tie_points.write(ties_npz, tie_points.Record(*about))
+    record = tie_points.Record(
+        outcome, fault, found, seen, known, images, centres, points, residual_px, n_maps
+    )
+    tie_points.write(ties_npz, record)
 
 
 def adjust(
@@ -55,12 +58,4 @@ def adjust(
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.summary,
-        snakemake.input.clicks,
-        snakemake.input.court,
-        snakemake.output.ties,
-        cameras=snakemake.params.cameras,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -10,6 +10,7 @@ from courtside.records.devices import clocks, device_motion
 from courtside.records.keypoints import body_motion, derived_joints
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
 
 
 def main(device_npz, sync_json, chosen_json, derived_yaml, body_npz, frame_json, *, skeleton, like):
@@ -24,13 +25,4 @@ def main(device_npz, sync_json, chosen_json, derived_yaml, body_npz, frame_json,
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.device,
-        snakemake.input.sync,
-        snakemake.input.chosen,
-        snakemake.input.derived,
-        snakemake.output.body,
-        snakemake.output.frame,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

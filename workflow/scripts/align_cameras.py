@@ -8,16 +8,17 @@ from courtside.records.cameras import clicks
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
 
 
-def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, **options):
+def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibration, **options):
     record = tie_points.read(ties_npz)
     if record.outcome:
         raise InputError(record.outcome)
     court = courts.read(court_yaml)
     marked = clicks.read(clicks_csv, [c.name for c in record.sfm_cameras], list(court.points))
     xyz_in_sfm = sfm_alignment.reconstruct(record.sfm_cameras, marked)
-    if name.startswith("paper"):
+    if calibration.startswith("paper"):
         frame = sfm_alignment.paper_frame(court, xyz_in_sfm)
         world_from_sfm, how = frame.nearest, {"skew_deg": frame.skew_deg}
     else:
@@ -25,7 +26,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, 
         how = {"n_points": int(accepted.sum())}
     found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
     report = {
-        "calibration": name,
+        "calibration": calibration,
         "scale": world_from_sfm.scale,
         **how,
         "misfit_cm": round(100 * sfm_alignment.misfit_m(court, world_from_sfm, xyz_in_sfm), 2),
@@ -33,7 +34,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, name, 
         "left_out": quality.left_out(court, found, marked),
     }
     log.logger.info("warnings: %s", report["warnings"] or "none")
-    camera_models.write_toml(cameras_toml, found, source=name)
+    camera_models.write_toml(cameras_toml, found, source=calibration)
     write_json(quality_json, report)
 
 
@@ -48,13 +49,4 @@ def warnings_of(court, record, marked, **options):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.ties,
-        snakemake.input.clicks,
-        snakemake.input.court,
-        snakemake.output.cameras,
-        snakemake.output.quality,
-        name=snakemake.wildcards.calibration,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

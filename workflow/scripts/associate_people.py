@@ -12,6 +12,7 @@ from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.errors import InputError
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(paths, people_npz, *, persons):
@@ -46,5 +47,4 @@ def main(paths, people_npz, *, persons):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input, snakemake.output.people, persons=snakemake.params.persons)
+    run(main, snakemake)

@@ -5,6 +5,7 @@ from courtside.pages import page
 from courtside.pages.clicking import page as clicking_page
 from courtside.records.cameras import click_proposals, clicks
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(
@@ -32,13 +33,4 @@ def main(
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pictures,
-        snakemake.input.court,
-        snakemake.output.page,
-        clicks_csv=snakemake.input.get("clicks"),
-        proposals_csv=snakemake.input.get("proposals"),
-        take_pictures=snakemake.input.get("take_pictures", ()),
-        **snakemake.params.settings,
-    )
+    run(main, snakemake)

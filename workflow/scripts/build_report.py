@@ -3,6 +3,7 @@
 from courtside.pages import page
 from courtside.pages.report import report
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(html, *, study):
@@ -13,5 +14,4 @@ def main(html, *, study):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.output.html, study=snakemake.params.study)
+    run(main, snakemake)

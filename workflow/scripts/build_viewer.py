@@ -13,6 +13,7 @@ from courtside.pages.viewer import viewer
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import skeleton
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(paths, html, *, title, layers, notes=()):
@@ -37,11 +38,4 @@ def main(paths, html, *, title, layers, notes=()):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.html,
-        title=snakemake.params.title,
-        layers=snakemake.params.layers,
-        notes=snakemake.params.get("notes", ()),
-    )
+    run(main, snakemake)

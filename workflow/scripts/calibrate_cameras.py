@@ -10,10 +10,19 @@ from courtside.records.cameras import clicks
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
 
 
 def main(
-    ties_npz, clicks_csv, court_yaml, cameras_toml, covariance_npz, quality_json, *, name, **options
+    ties_npz,
+    clicks_csv,
+    court_yaml,
+    cameras_toml,
+    covariance_npz,
+    quality_json,
+    *,
+    calibration,
+    **options,
 ):
     record = tie_points.read(ties_npz)
     if record.outcome or record.fault:
@@ -21,7 +30,7 @@ def main(
     names = list(record.ties.cameras)
     found, checked = solve(record, clicks_csv, court_yaml, **options)
     report = {
-        "calibration": name,
+        "calibration": calibration,
         "tie_residual_px": round(record.residual_px, 4),
         "n_images": len(record.images),
         "n_maps_agreeing": record.n_maps[0],
@@ -31,7 +40,7 @@ def main(
     }
     log.logger.info("warnings: %s", report["warnings"] or "none")
     unit = "m" if court_yaml else camera_fields.UNSCALED
-    camera_models.write_toml(cameras_toml, found.cameras, source=name, unit=unit)
+    camera_models.write_toml(cameras_toml, found.cameras, source=calibration, unit=unit)
     covariance = camera_covariance.of_network(names, found.covariance)
     camera_covariance.write(covariance_npz, covariance)
     write_json(quality_json, report)
@@ -46,14 +55,4 @@ def solve(record, clicks_csv, court_yaml, **options):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.ties,
-        snakemake.input.clicks,
-        snakemake.input.court,
-        snakemake.output.cameras,
-        snakemake.output.covariance,
-        snakemake.output.quality,
-        name=snakemake.wildcards.calibration,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -6,6 +6,7 @@ import numpy as np
 from courtside.calibration import chessboard
 from courtside.geometry import camera as cameras
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(images, lens_toml, *, camera, inner_corners):
@@ -21,10 +22,4 @@ def main(images, lens_toml, *, camera, inner_corners):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.params.images,
-        snakemake.output.lens,
-        camera=snakemake.wildcards.camera,
-        inner_corners=snakemake.params.inner_corners,
-    )
+    run(main, snakemake)

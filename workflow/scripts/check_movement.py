@@ -5,6 +5,7 @@ import pandas as pd
 
 from courtside.records import tables
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import static_picture, walk_frames
 
 
@@ -17,11 +18,4 @@ def main(static_png, video_path, movement_csv, *, camera, frames, **limits):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.static,
-        snakemake.input.video,
-        snakemake.output.movement,
-        camera=snakemake.wildcards.camera,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -6,6 +6,7 @@ from courtside.records.devices import clocks as sync
 from courtside.records.devices import device_motion
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
 
 
 def main(device_npz, sync_json, chosen_json, *, devices, stated):
@@ -30,10 +31,4 @@ def main(device_npz, sync_json, chosen_json, *, devices, stated):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.devices,
-        snakemake.input.sync,
-        snakemake.output.chosen,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

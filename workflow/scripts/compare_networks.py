@@ -6,6 +6,7 @@ from courtside.records import tables
 from courtside.records.keypoints import keypoints
 from courtside.statistics import agreement, longitudinal
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(measures_csv, pose3d_npz, pairs_csv, table_csv, *, labels, joint_labels, networks, **step):
@@ -27,14 +28,4 @@ def main(measures_csv, pose3d_npz, pairs_csv, table_csv, *, labels, joint_labels
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.measures,
-        snakemake.input.get("pose3d", []),
-        snakemake.output.pairs,
-        snakemake.output.table,
-        labels=snakemake.params.labels,
-        joint_labels=snakemake.params.joint_labels,
-        networks=snakemake.params.networks,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

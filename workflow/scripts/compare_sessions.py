@@ -6,6 +6,7 @@ from courtside.figures.comparison import archive
 from courtside.figures.style import style
 from courtside.statistics import longitudinal
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(measures_csv, agreement_csv, pdf, png, csv, *, labels, subject, measures, allow_mixed):
@@ -20,12 +21,4 @@ def main(measures_csv, agreement_csv, pdf, png, csv, *, labels, subject, measure
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.measures,
-        snakemake.input.get("agreement"),
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        **snakemake.params.settings,
-    )
+    run(main, snakemake)

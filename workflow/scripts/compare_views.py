@@ -3,7 +3,7 @@
 from courtside.evaluation import camera_sets
 from courtside.records import tables
 from courtside.records.keypoints import keypoints
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose3d_npz, distances_csv, *, fusions, labels):
@@ -15,10 +15,4 @@ def main(pose3d_npz, distances_csv, *, fusions, labels):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.output.distances,
-        fusions=snakemake.params.fusions,
-        labels=snakemake.params.labels,
-    )
+    run(main, snakemake)

@@ -4,7 +4,7 @@ from courtside.depth import single_view
 from courtside.records.cameras import frame_times
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import keypoints
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose2d_npz, device_npz, frames_csv=None, *, source):
@@ -15,10 +15,4 @@ def main(pose2d_npz, device_npz, frames_csv=None, *, source):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose2d,
-        snakemake.output.device,
-        snakemake.input.get("frames"),
-        source=snakemake.params.source,
-    )
+    run(main, snakemake)

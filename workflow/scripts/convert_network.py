@@ -1,7 +1,7 @@
 """Convert one network: TFLite -> ONNX."""
 
 from courtside.pose.conversion import tflite_onnx
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(tflite_path, onnx_path, *, outputs):
@@ -9,5 +9,4 @@ def main(tflite_path, onnx_path, *, outputs):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input.tflite, snakemake.output.onnx, outputs=snakemake.params.outputs)
+    run(main, snakemake)

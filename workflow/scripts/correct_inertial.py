@@ -11,12 +11,24 @@ from courtside.records.devices import device_motion
 from courtside.records.devices.hierarchy import forward
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 ABSENT = sync.Clock(status="unknown", note="not in the file")
 
 
-def main(bvh_file, skeleton_yaml, vision_npz, sync_json, out, *, device, vision_device, sigma_m):
+def main(
+    bvh_file,
+    skeleton_yaml,
+    vision_npz,
+    sync_json,
+    motion_npz,
+    corrected_bvh,
+    report_json,
+    *,
+    device,
+    vision_device,
+    sigma_m,
+):
     names = skeleton.read(skeleton_yaml)
     motion, posed = mocopi.read(bvh_file, names, source=device)
     vision = device_motion.read(vision_npz)
@@ -37,9 +49,9 @@ def main(bvh_file, skeleton_yaml, vision_npz, sync_json, out, *, device, vision_
     order = [corrected.hierarchy.joints.index(joint) for joint in motion.joints]
     xyz = forward(corrected)[0][:, order]
     motion = replace(motion, source=f"{device}-corrected", time_s=time_s, xyz=xyz)
-    device_motion.write(out.motion, motion)
-    bvh.write(out.bvh, _renamed(corrected, names))
-    report.write(out.report)
+    device_motion.write(motion_npz, motion)
+    bvh.write(corrected_bvh, _renamed(corrected, names))
+    report.write(report_json)
 
 
 def _renamed(posed, names):
@@ -50,7 +62,4 @@ def _renamed(posed, names):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    given = snakemake.input
-    files = given.bvh, given.skeleton, given.vision, given.sync
-    main(*files, snakemake.output, **snakemake.params.step)
+    run(main, snakemake)

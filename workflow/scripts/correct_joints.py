@@ -2,7 +2,7 @@
 
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import keypoints
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(filtered_npz, offsets_csv, corrected_npz, *, sex_of):
@@ -12,10 +12,4 @@ def main(filtered_npz, offsets_csv, corrected_npz, *, sex_of):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.offsets,
-        snakemake.output.pose3d,
-        sex_of=snakemake.params.sex_of,
-    )
+    run(main, snakemake)

@@ -6,10 +6,13 @@ import numpy as np
 from courtside.pose import decoders, foreground, tracklets
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader
 
 
-def main(paths, pose2d_npz, names, *, decoder, trim_s, max_people, min_difference, **options):
+def main(
+    paths, pose2d_npz, *, camera, model, decoder, trim_s, max_people, min_difference, **options
+):
     cv2.setNumThreads(1)
     joints = skeleton.read(paths.skeleton).joints
     start_s, stop_s = trim_s or (None, None)
@@ -19,7 +22,7 @@ def main(paths, pose2d_npz, names, *, decoder, trim_s, max_people, min_differenc
     if paths.background:
         changed = foreground.Foreground(cv2.imread(paths.background), min_difference)
     track = tracklets.track_people(
-        log.progress(frames, info.n_frames if not trim_s else None, f"{names.camera}: frames"),
+        log.progress(frames, info.n_frames if not trim_s else None, f"{camera}: frames"),
         decoders.person_detector(paths.detector),
         decoders.landmark_network(paths.landmarks, joints, **decoder),
         changed,
@@ -27,8 +30,8 @@ def main(paths, pose2d_npz, names, *, decoder, trim_s, max_people, min_differenc
         **options,
     )
     found = keypoints.Keypoints2D(
-        camera=names.camera,
-        model=names.model,
+        camera=camera,
+        model=model,
         joints=np.array(joints),
         size=np.array(info.size),
         time_s=track.time_s,
@@ -41,14 +44,4 @@ def main(paths, pose2d_npz, names, *, decoder, trim_s, max_people, min_differenc
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.pose2d,
-        snakemake.wildcards,
-        decoder=snakemake.params.decoder,
-        trim_s=snakemake.params.trim_s,
-        max_people=snakemake.params.max_people,
-        redetect=snakemake.params.redetect,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

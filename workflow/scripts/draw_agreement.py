@@ -2,7 +2,7 @@
 
 from courtside.figures.comparison import agreement
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pairs_csv, table_csv, pdf, png, csv, *, networks):
@@ -11,12 +11,4 @@ def main(pairs_csv, table_csv, pdf, png, csv, *, networks):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pairs,
-        snakemake.input.table,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        networks=snakemake.params.networks,
-    )
+    run(main, snakemake)

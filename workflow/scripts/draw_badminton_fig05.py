@@ -6,7 +6,7 @@ from courtside.figures.badminton import fig05
 from courtside.figures.style import style
 from courtside.pose import privacy
 from courtside.records.keypoints import keypoints, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader
 
 
@@ -33,13 +33,4 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        layouts=snakemake.params.layouts,
-        sources=snakemake.params.sources,
-        blur_faces=snakemake.params.blur_faces,
-    )
+    run(main, snakemake)

@@ -8,14 +8,20 @@ from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
 from courtside.records.cameras import footage
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
-    files = paths.cameras, paths.pose2d, paths.people, paths.sync, paths.videos
-    seen = footage.read(*files, wanted=points.cameras)
+    seen = footage.read(
+        paths.cameras,
+        paths.pose2d,
+        paths.people,
+        paths.sync,
+        paths.videos,
+        wanted=points.cameras,
+    )
     limbs, figure = (
         joints.groups["limbs"],
         stick_figure.stick(joints, derived_joints.read(paths.derived)),
@@ -40,12 +46,4 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        blur_faces=snakemake.params.blur_faces,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

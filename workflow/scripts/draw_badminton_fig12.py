@@ -3,7 +3,7 @@
 from courtside.evaluation.tables import racket
 from courtside.figures.badminton import fig12
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(lengths_csv, pdf, png, csv):
@@ -12,10 +12,4 @@ def main(lengths_csv, pdf, png, csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.lengths,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-    )
+    run(main, snakemake)

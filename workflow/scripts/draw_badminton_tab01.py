@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.figures.badminton import tab01
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(rows_csv, published_csv, pdf, png, csv, *, title):
@@ -14,12 +14,4 @@ def main(rows_csv, published_csv, pdf, png, csv, *, title):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.rows,
-        snakemake.input.published,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        title=snakemake.params.title,
-    )
+    run(main, snakemake)

@@ -3,7 +3,7 @@
 from courtside.calibration.court import court as courts
 from courtside.figures.calibration import court_points
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(court_yaml, pdf, png, csv):
@@ -12,10 +12,4 @@ def main(court_yaml, pdf, png, csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.court,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-    )
+    run(main, snakemake)

@@ -3,7 +3,7 @@
 from courtside.evaluation.tables import calibration
 from courtside.figures.calibration import coverage
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(errors_csv, pdf, png, csv):
@@ -12,10 +12,4 @@ def main(errors_csv, pdf, png, csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.errors,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-    )
+    run(main, snakemake)

@@ -5,25 +5,18 @@ from courtside.calibration.records import covariance as camera_covariance
 from courtside.figures.calibration import error_map
 from courtside.figures.style import style
 from courtside.geometry import camera
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
-def main(cameras_toml, covariance_npz, court_yaml, pdf, png, csv, *, title, heights_m):
+def main(
+    cameras_toml, covariance_npz, court_yaml, pdf, png, csv, *, session, calibration, heights_m
+):
     found, court = camera.read_toml(cameras_toml), courts.read(court_yaml)
     covariance = camera_covariance.read(covariance_npz)
     rows = error_map.table(found, covariance, court, heights_m)
+    title = f"{session}, calibration {calibration}"
     style.save(error_map.draw(rows, found, court, title), rows, pdf, png, csv)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.cameras,
-        snakemake.input.covariance,
-        snakemake.input.court,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        title=f"{snakemake.wildcards.session}, calibration {snakemake.wildcards.calibration}",
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -2,20 +2,13 @@
 
 from courtside.figures.calibration import growth
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
-def main(benchmarks_tsv, pdf, png, csv, *, title):
+def main(benchmarks_tsv, pdf, png, csv, *, session):
     rows = growth.table(benchmarks_tsv)
-    style.save(growth.draw(rows, title), rows, pdf, png, csv)
+    style.save(growth.draw(rows, session), rows, pdf, png, csv)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.benchmarks,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        title=snakemake.wildcards.session,
-    )
+    run(main, snakemake)

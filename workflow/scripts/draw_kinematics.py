@@ -5,7 +5,7 @@ import pandas as pd
 from courtside.calibration.court import court as courts
 from courtside.figures.style import style
 from courtside.figures.take import kinematics
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(frames_csv, summary_csv, court_yaml, pdf, png, csv):
@@ -16,12 +16,4 @@ def main(frames_csv, summary_csv, court_yaml, pdf, png, csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.frames,
-        snakemake.input.summary,
-        snakemake.input.get("court"),
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-    )
+    run(main, snakemake)

@@ -9,7 +9,7 @@ from courtside.pose import privacy
 from courtside.reconstruction import resampling
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader
 
 
@@ -46,12 +46,4 @@ def panel(points, camera, view, own_s, film, time_s, joints, blur_faces):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        blur_faces=snakemake.params.blur_faces,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

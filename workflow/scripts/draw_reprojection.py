@@ -3,7 +3,7 @@
 from courtside.figures.style import style
 from courtside.figures.take import reprojection
 from courtside.records.keypoints import keypoints
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose3d_npz, pdf, png, csv):
@@ -12,10 +12,4 @@ def main(pose3d_npz, pdf, png, csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-    )
+    run(main, snakemake)

@@ -12,9 +12,10 @@ from courtside.records.cameras import shake_table
 from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
 from courtside.study.execution.files import atomic
+from courtside.study.execution.script import run
 
 
-def main(paths, outputs):
+def main(paths, pdf, png, csv, text_path):
     calibrated = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
     tables = {Path(path).stem: shake_table.read(path) for path in paths.shake}
     seen = keypoints.read_3d(paths.pose3d).xyz.reshape(-1, 3)
@@ -24,11 +25,10 @@ def main(paths, outputs):
     for line in lines:
         log.logger.info("%s", line)
     rows = camera_shake.table(calibrated, tables, player)
-    style.save(camera_shake.draw(rows), rows, outputs.pdf, outputs.png, outputs.csv)
-    with atomic(outputs.text) as temporary:
+    style.save(camera_shake.draw(rows), rows, pdf, png, csv)
+    with atomic(text_path) as temporary:
         temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input, snakemake.output)
+    run(main, snakemake)

@@ -3,7 +3,7 @@
 from courtside.figures.devices import skeleton_plates
 from courtside.figures.style import joint_map, style
 from courtside.records.keypoints import body_motion, derived_joints, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(body_npz, skeleton_yaml, derived_yaml, pdf, png, csv, *, skeletons, kinds):
@@ -16,14 +16,4 @@ def main(body_npz, skeleton_yaml, derived_yaml, pdf, png, csv, *, skeletons, kin
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.get("bodies", []),
-        snakemake.input.skeletons,
-        snakemake.input.derived,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        skeletons=snakemake.params.skeletons,
-        kinds=snakemake.params.kinds,
-    )
+    run(main, snakemake)

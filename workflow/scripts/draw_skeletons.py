@@ -4,7 +4,7 @@ from courtside.figures.style import style
 from courtside.figures.take import skeletons
 from courtside.geometry import camera
 from courtside.records.keypoints import keypoints, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose3d_npz, cameras_toml, skeleton_yaml, pdf, png, csv):
@@ -15,12 +15,4 @@ def main(pose3d_npz, cameras_toml, skeleton_yaml, pdf, png, csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.cameras,
-        snakemake.input.skeleton,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-    )
+    run(main, snakemake)

@@ -2,7 +2,7 @@
 
 from courtside.figures.devices import smoothness_accuracy
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(distortion_csv, errors_csv, truth_csv, pdf, png, csv, *, labels, kinds):
@@ -11,14 +11,4 @@ def main(distortion_csv, errors_csv, truth_csv, pdf, png, csv, *, labels, kinds)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.distortion,
-        snakemake.input.get("errors", []),
-        snakemake.input.get("truth", []),
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        labels=snakemake.params.labels,
-        kinds=snakemake.params.kinds,
-    )
+    run(main, snakemake)

@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.figures.devices import source_errors
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(errors_csv, parts_csv, pdf, png, csv, *, kinds):
@@ -14,12 +14,4 @@ def main(errors_csv, parts_csv, pdf, png, csv, *, kinds):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.errors,
-        snakemake.input.parts,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        kinds=snakemake.params.kinds,
-    )
+    run(main, snakemake)

@@ -3,22 +3,13 @@
 from courtside.evaluation.tables import players
 from courtside.figures.badminton import three_cameras
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(errors_csv, kinematics_csv, pdf, png, csv, *, cameras):
-    parts = players.read(errors_csv), players.read(kinematics_csv)
-    numbers = three_cameras.table(*parts)
+    numbers = three_cameras.table(players.read(errors_csv), players.read(kinematics_csv))
     style.save(three_cameras.draw(numbers, cameras), numbers, pdf, png, csv)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.errors,
-        snakemake.input.kinematics,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        cameras=snakemake.params.cameras,
-    )
+    run(main, snakemake)

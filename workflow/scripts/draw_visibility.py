@@ -5,7 +5,7 @@ from courtside.figures.take import visibility
 from courtside.reconstruction import resampling
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(paths, pdf, png, csv):
@@ -18,5 +18,4 @@ def main(paths, pdf, png, csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input, snakemake.output.pdf, snakemake.output.png, snakemake.output.csv)
+    run(main, snakemake)

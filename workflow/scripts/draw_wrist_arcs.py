@@ -4,7 +4,7 @@ import pandas as pd
 
 from courtside.figures.devices import thesis_fig3
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(paths_csv, distortion_csv, truth_csv, pdf, png, csv, *, kinds):
@@ -15,13 +15,4 @@ def main(paths_csv, distortion_csv, truth_csv, pdf, png, csv, *, kinds):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.paths,
-        snakemake.input.distortion,
-        snakemake.input.get("truth"),
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        kinds=snakemake.params.kinds,
-    )
+    run(main, snakemake)

@@ -2,7 +2,7 @@
 
 from courtside.figures.devices import wrist_distance
 from courtside.figures.style import style
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(wrists_csv, events_csv, pdf, png, csv, *, aligned, kinds):
@@ -13,13 +13,4 @@ def main(wrists_csv, events_csv, pdf, png, csv, *, aligned, kinds):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.wrists,
-        snakemake.input.events,
-        snakemake.output.pdf,
-        snakemake.output.png,
-        snakemake.output.csv,
-        aligned=snakemake.params.aligned,
-        kinds=snakemake.params.kinds,
-    )
+    run(main, snakemake)

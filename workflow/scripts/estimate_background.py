@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader, static_picture
 
 
@@ -17,10 +17,4 @@ def main(source, background_png, *, trim_s, n_frames):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.source,
-        snakemake.output.png,
-        trim_s=snakemake.params.trim_s,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -9,7 +9,7 @@ from courtside.records import tables
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import body_motion, derived_joints
 from courtside.records.truth import take_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(body_npz, frame_json, truth_npz, derived_yaml, errors_csv, *, labels, person, owners):
@@ -26,14 +26,4 @@ def main(body_npz, frame_json, truth_npz, derived_yaml, errors_csv, *, labels, p
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.bodies,
-        snakemake.input.frames,
-        snakemake.input.truth,
-        snakemake.input.derived,
-        snakemake.output.errors,
-        labels=snakemake.params.labels,
-        person=snakemake.params.person,
-        owners=snakemake.params.owners,
-    )
+    run(main, snakemake)

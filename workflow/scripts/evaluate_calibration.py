@@ -13,7 +13,7 @@ from courtside.evaluation import calibration
 from courtside.records import tables
 from courtside.records.cameras import image_names
 from courtside.records.truth import session_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from virtualgym.session import clicks as clicking
 
 CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there
@@ -55,12 +55,4 @@ def main(
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.ties,
-        snakemake.input.summary,
-        snakemake.input.truth,
-        snakemake.input.court,
-        snakemake.output.errors,
-        **snakemake.params.settings,
-    )
+    run(main, snakemake)

@@ -7,7 +7,7 @@ from courtside.calibration import point_covariance
 from courtside.records import tables
 from courtside.records.devices import clocks as sync
 from courtside.records.truth import take_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(sync_json, truth_npz, errors_csv, *, labels):
@@ -40,10 +40,4 @@ def main(sync_json, truth_npz, errors_csv, *, labels):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.sync,
-        snakemake.input.truth,
-        snakemake.output.errors,
-        labels=snakemake.params.labels,
-    )
+    run(main, snakemake)

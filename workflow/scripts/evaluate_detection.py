@@ -8,6 +8,7 @@ from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import session_truth, take_truth
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, labels):
@@ -26,12 +27,4 @@ def main(pose2d_npz, take_truth_npz, truth_npz, skeleton_yaml, errors_csv, *, la
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose2d,
-        snakemake.input.take_truth,
-        snakemake.input.truth,
-        snakemake.input.skeleton,
-        snakemake.output.errors,
-        labels=snakemake.params.labels,
-    )
+    run(main, snakemake)

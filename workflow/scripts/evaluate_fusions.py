@@ -7,7 +7,7 @@ from courtside.evaluation import joints as pose_errors
 from courtside.records import tables
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose3d_npz, truth_npz, gains_csv, *, fusions, pairs, labels):
@@ -23,12 +23,4 @@ def main(pose3d_npz, truth_npz, gains_csv, *, fusions, pairs, labels):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.truth,
-        snakemake.output.gains,
-        fusions=snakemake.params.fusions,
-        pairs=snakemake.params.pairs,
-        labels=snakemake.params.labels,
-    )
+    run(main, snakemake)

@@ -8,6 +8,7 @@ from courtside.records import tables
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose3d_npz, truth_npz, offsets_csv, *, sex_of, about):
@@ -22,11 +23,4 @@ def main(pose3d_npz, truth_npz, offsets_csv, *, sex_of, about):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.truth,
-        snakemake.output.offsets,
-        sex_of=snakemake.params.sex_of,
-        about=snakemake.params.about,
-    )
+    run(main, snakemake)

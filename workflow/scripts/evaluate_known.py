@@ -4,16 +4,19 @@ import pandas as pd
 
 from courtside.calibration.court import court as courts
 from courtside.evaluation import calibration
-from courtside.geometry import camera as cameras
+from courtside.geometry import camera as camera_models
 from courtside.records import tables
 from courtside.records.truth import session_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from virtualgym.session import clicks as clicking
 
 
-def main(truth_npz, court_yaml, lens_toml, errors_csv, *, labels, clicks, sets, click_sigma_px):
+def main(
+    truth_npz, court_yaml, lens_toml, errors_csv, *, cameras, labels, clicks, sets, click_sigma_px
+):
     court, real = courts.read(court_yaml), session_truth.read(truth_npz)
-    lenses = {camera: cameras.read_toml(path)[0] for camera, path in lens_toml.items()}
+    lens_of = dict(zip(cameras, lens_toml, strict=False))
+    lenses = {camera: camera_models.read_toml(path)[0] for camera, path in lens_of.items()}
     rows = []
     for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
         found = calibration.of_known(
@@ -25,11 +28,4 @@ def main(truth_npz, court_yaml, lens_toml, errors_csv, *, labels, clicks, sets, 
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.truth,
-        snakemake.input.court,
-        dict(zip(snakemake.params.cameras, snakemake.input.lenses, strict=False)),
-        snakemake.output.errors,
-        **snakemake.params.settings,
-    )
+    run(main, snakemake)

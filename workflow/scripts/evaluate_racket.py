@@ -9,7 +9,7 @@ from courtside.calibration.records import tie_points
 from courtside.evaluation import racket
 from courtside.records import tables
 from courtside.records.truth import session_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from virtualgym.session import clicks as clicking
 
 VIEWS = 2  # the paper's: the first two fixed cameras of a layout
@@ -21,16 +21,16 @@ def main(
     court, real = courts.read(court_yaml), session_truth.read(truth_npz)
     views, records = real.cameras[:VIEWS], [tie_points.read(path) for path in ties_npz]
     rows = []
-    for run, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
-        offset = run % len(records)
+    for repeat, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
+        offset = repeat % len(records)
         ways = racket.calibrate(records[offset], views, court, marked, **options)
-        of_run = {"seed": clicks["seed"], "run": run}
+        of_run = {"seed": clicks["seed"], "run": repeat}
         ends = clicking.draw(court, length_m, **of_run)
         below = ends[..., 2].mean(axis=1) < court.net["mid_height_m"]
         for sigma_px, again in product(tips_px, (False, True)):
             tip = {"sigma_px_at_3840": sigma_px, "again": again}
             seen = clicking.click(views, ends, **tip, **of_run)
-            about = {"offset": offset, "draw": run, "tip_sigma_px": sigma_px, "again": again}
+            about = {"offset": offset, "draw": repeat, "tip_sigma_px": sigma_px, "again": again}
             found = racket.rows(ways, seen, length_m, below)
             rows += [{**about, **row} for row in found]
     lengths = racket.length_columns(clicking.FRAMES)
@@ -39,11 +39,4 @@ def main(
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.ties,
-        snakemake.input.truth,
-        snakemake.input.court,
-        snakemake.output.lengths,
-        **snakemake.params.settings,
-    )
+    run(main, snakemake)

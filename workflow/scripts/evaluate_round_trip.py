@@ -10,15 +10,24 @@ from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import derived_joints as derived
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import take_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(
-    pose3d_npz, cameras_toml, tables_yaml, rows_csv, *, pose2d_npz, sync_json, truth_npz, **step
+    pose3d_npz,
+    cameras_toml,
+    skeleton_yaml,
+    derived_yaml,
+    rows_csv,
+    *,
+    pose2d_npz=(),
+    sync_json=None,
+    truth_npz=None,
+    **step,
 ):
     known = cameras.read_toml(cameras_toml)
-    names = skeleton.read(tables_yaml[0]).name
-    table = derived.read(tables_yaml[1])
+    names = skeleton.read(skeleton_yaml).name
+    table = derived.read(derived_yaml)
     views = {view.camera: view for view in map(keypoints.read_2d, pose2d_npz)}
     clocks = sync.read(sync_json)[1] if sync_json else {}
     truth = None
@@ -44,14 +53,4 @@ def rows_of(points, known, others, truth, *, joints, derived_joints, n_frames, s
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.cameras,
-        (snakemake.input.skeleton, snakemake.input.derived),
-        snakemake.output.rows,
-        pose2d_npz=snakemake.input.get("pose2d", []),
-        sync_json=snakemake.input.get("sync"),
-        truth_npz=snakemake.input.get("truth"),
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -14,10 +14,22 @@ from courtside.records.devices import device_motion
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import body_motion, derived_joints
 from courtside.records.truth import take_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
-def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_hz):
+def main(
+    body_npz,
+    truth_npz,
+    derived_yaml,
+    errors_csv,
+    parts_csv,
+    paths_csv,
+    distortion_csv,
+    *,
+    labels,
+    person,
+    sparc_rate_hz,
+):
     true = device_motion.of_truth(take_truth.read(truth_npz), person)
     table = derived_joints.read(derived_yaml)
     carried_by = bodyframe.anchors(table, derived_joints.RIG, true.joints)
@@ -37,10 +49,10 @@ def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_h
         row = wrist_arcs.distortion(swept).assign(source=body.source, unit_m=reference.unit_m)
         distortion.append(row.assign(sparc=smoothness.of_arcs(reference, swept, sparc_rate_hz)))
     made = (
-        (out.errors, errors),
-        (out.parts, parts),
-        (out.paths, paths),
-        (out.distortion, distortion),
+        (errors_csv, errors),
+        (parts_csv, parts),
+        (paths_csv, paths),
+        (distortion_csv, distortion),
     )
     for path, rows in made:
         rows = pd.concat(rows, ignore_index=True)
@@ -48,13 +60,4 @@ def main(body_npz, truth_npz, derived_yaml, out, *, labels, person, sparc_rate_h
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.bodies,
-        snakemake.input.truth,
-        snakemake.input.derived,
-        snakemake.output,
-        labels=snakemake.params.labels,
-        person=snakemake.params.person,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

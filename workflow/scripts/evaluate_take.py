@@ -6,7 +6,7 @@ from courtside.evaluation import joints
 from courtside.records import tables
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import take_truth
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose3d_npz, truth_npz, errors_csv, *, labels):
@@ -29,10 +29,4 @@ def table(points, truth):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.truth,
-        snakemake.output.errors,
-        labels=snakemake.params.labels,
-    )
+    run(main, snakemake)

@@ -6,12 +6,13 @@ from courtside.geometry import camera as cameras
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader, writer
 
 COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
 
 
-def main(paths, mp4, camera, *, blur_faces, trim_s, crf, effort, keep_background):
+def main(paths, mp4, *, camera, blur_faces, trim_s, crf, effort, keep_background):
     known = {one.name: one for one in cameras.read_toml(paths.cameras)}
     view, (_, clocks) = keypoints.read_2d(paths.pose2d), sync.read(paths.sync)
     track = overlay_video.track(
@@ -33,12 +34,4 @@ def main(paths, mp4, camera, *, blur_faces, trim_s, crf, effort, keep_background
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.mp4,
-        snakemake.wildcards.camera,
-        blur_faces=snakemake.params.blur_faces,
-        trim_s=snakemake.params.trim_s,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

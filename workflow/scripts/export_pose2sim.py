@@ -5,7 +5,7 @@ from courtside.geometry import camera as cameras
 from courtside.reconstruction import resampling
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(paths, folder):
@@ -20,5 +20,4 @@ def main(paths, folder):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input, snakemake.output.project)
+    run(main, snakemake)

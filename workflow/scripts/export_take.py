@@ -2,23 +2,16 @@
 
 from courtside.exports import c3d, tidy, trc
 from courtside.records.keypoints import keypoints
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
-def main(pose3d_npz, person_id, trc_path, c3d_path, csv_path):
+def main(pose3d_npz, trc_path, c3d_path, csv_path, *, person):
     points = keypoints.read_3d(pose3d_npz)
-    person = points.person_id.tolist().index(person_id)
-    trc.write(trc_path, points, person)
-    c3d.write(c3d_path, points, person)
-    tidy.write(csv_path, points, person)
+    column = points.person_id.tolist().index(person)
+    trc.write(trc_path, points, column)
+    c3d.write(c3d_path, points, column)
+    tidy.write(csv_path, points, column)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.wildcards.person,
-        snakemake.output.trc,
-        snakemake.output.c3d,
-        snakemake.output.csv,
-    )
+    run(main, snakemake)

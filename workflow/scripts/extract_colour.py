@@ -4,6 +4,7 @@ from courtside.devices import open_depth
 from courtside.geometry import camera
 from courtside.records.cameras import frame_times
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import writer
 
 
@@ -20,12 +21,4 @@ def main(recording, video, frames_csv, camera_toml, *, device, crf):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.recording,
-        snakemake.output.video,
-        snakemake.output.frames,
-        snakemake.output.camera,
-        device=snakemake.wildcards.device,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -7,16 +7,17 @@ import pandas as pd
 from courtside.records import tables
 from courtside.sfm import features, grid
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
-def main(static_png, frames_csv, features_db, table_csv, *, threads, **options):
+def main(static_png, frames_csv, features_db, table_csv, *, cameras, walks, threads, **options):
     root = Path(features_db).parents[1]
-    walks = grid.read(frames_csv)
+    frames = grid.read(dict(zip(walks, frames_csv, strict=True)))
     groups = [
         features.Group(camera, (str(Path(path).relative_to(root)),))
-        for camera, path in static_png.items()
+        for camera, path in zip(cameras, static_png, strict=True)
     ]
-    groups += [features.Group(walk, walks.of_walk(walk)) for walk in frames_csv]
+    groups += [features.Group(walk, frames.of_walk(walk)) for walk in walks]
     counts, guessed = features.extract(features_db, root, groups, threads=threads, **options)
     for group in guessed:
         guess = f"{options['focal_factor']:g} picture widths"
@@ -29,12 +30,4 @@ def main(static_png, frames_csv, features_db, table_csv, *, threads, **options):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        dict(zip(snakemake.params.cameras, snakemake.input.static, strict=True)),
-        dict(zip(snakemake.params.walks, snakemake.input.frames, strict=True)),
-        snakemake.output.database,
-        snakemake.output.table,
-        threads=snakemake.threads,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

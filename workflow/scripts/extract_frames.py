@@ -7,10 +7,12 @@ from courtside.sfm import usable
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import atomic_folder
+from courtside.study.execution.script import run
 from courtside.video import walk_frames
 
 
-def main(video_path, folder, table_csv, *, every_s=None, every_frame=None, walk="walk"):
+def main(video_path, folder, table_csv, *, every_s=None, every_frame=None):
+    walk = Path(table_csv).stem
     with atomic_folder(folder) as beside:
         found = walk_frames.frames(video_path, every_s=every_s, every_frame=every_frame)
         table, small = walk_frames.extract(log.progress(found, None, f"{walk}: frames"), beside)
@@ -27,11 +29,4 @@ def main(video_path, folder, table_csv, *, every_s=None, every_frame=None, walk=
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.video,
-        snakemake.output.folder,
-        snakemake.output.table,
-        walk=Path(snakemake.output.table).stem,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -4,6 +4,7 @@ import pandas as pd
 
 from courtside.records import tables
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader, static_picture, walk_frames
 
 
@@ -25,11 +26,4 @@ def main(
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.video,
-        snakemake.output.png,
-        snakemake.output.get("csv"),
-        camera=snakemake.wildcards.camera,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

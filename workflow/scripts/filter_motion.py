@@ -2,7 +2,7 @@
 
 from courtside.kinematics import filtering
 from courtside.records.keypoints import keypoints, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(raw_npz, skeleton_yaml, filtered_npz, *, max_gap_s, order, cutoff_hz):
@@ -13,10 +13,4 @@ def main(raw_npz, skeleton_yaml, filtered_npz, *, max_gap_s, order, cutoff_hz):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.skeleton,
-        snakemake.output.pose3d,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -2,8 +2,8 @@
 
 from courtside.calibration import file_formats
 from courtside.geometry import camera
-from courtside.study.execution import log
 from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
 
 
 def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):
@@ -19,11 +19,4 @@ def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.calibration,
-        snakemake.output.cameras,
-        snakemake.output.quality,
-        names=snakemake.params.names,
-        crops_px=snakemake.params.crops_px,
-    )
+    run(main, snakemake)

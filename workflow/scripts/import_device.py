@@ -3,7 +3,7 @@
 from courtside.devices import mocopi, nuitrack
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(recording, skeleton_yaml, motion_npz, *, device, kind):
@@ -16,11 +16,4 @@ def main(recording, skeleton_yaml, motion_npz, *, device, kind):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.recording,
-        snakemake.input.skeleton,
-        snakemake.output.motion,
-        device=snakemake.wildcards.device,
-        kind=snakemake.params.kind,
-    )
+    run(main, snakemake)

@@ -3,30 +3,25 @@
 from courtside.devices import openpose
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader
 
 
-def main(paths, pose2d_npz, names, *, trim_s):
+def main(paths, pose2d_npz, *, camera, model, trim_s):
     stop_s = trim_s[1] if trim_s else None
     info = reader.probe(paths.video, stop_s=stop_s)
     found = openpose.read(
         paths.folder,
         skeleton.read(paths.skeleton),
-        camera=names.camera,
-        model=names.model,
+        camera=camera,
+        model=model,
         size=info.size,
         time_s=reader.frame_times(paths.video, stop_s=stop_s),
         trim_s=trim_s,
     )
-    log.logger.info("%s: %d tracklets, %d frames", names.camera, len(found.xy), len(found.time_s))
+    log.logger.info("%s: %d tracklets, %d frames", camera, len(found.xy), len(found.time_s))
     keypoints.write_2d(pose2d_npz, found)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.pose2d,
-        snakemake.wildcards,
-        trim_s=snakemake.params.trim_s,
-    )
+    run(main, snakemake)

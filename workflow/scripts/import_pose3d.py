@@ -3,6 +3,7 @@
 from courtside.exports import pose2sim
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(trc_files, persons, skeleton_yaml, pose3d_npz, model):
@@ -15,11 +16,4 @@ def main(trc_files, persons, skeleton_yaml, pose3d_npz, model):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.trc,
-        snakemake.params.persons,
-        snakemake.input.skeleton,
-        snakemake.output.pose3d,
-        snakemake.wildcards.model,
-    )
+    run(main, snakemake)

@@ -6,6 +6,7 @@ from courtside.records.cameras import frame_times
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m=None, **sampling):
@@ -27,11 +28,4 @@ def main(paths, device_npz, *, device, source, baseline_m, skin_m=None, beyond_m
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input,
-        snakemake.output.device,
-        device=snakemake.wildcards.device,
-        source=snakemake.params.source,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

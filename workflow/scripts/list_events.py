@@ -3,7 +3,7 @@
 from courtside.events import detect
 from courtside.records import tables
 from courtside.records.devices import device_motion
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(device_npz, wrists_csv, events_csv):
@@ -13,5 +13,4 @@ def main(device_npz, wrists_csv, events_csv):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input.devices, snakemake.output.wrists, snakemake.output.events)
+    run(main, snakemake)

@@ -7,31 +7,32 @@ import pandas as pd
 from courtside.sfm import grid, mapping
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
+from courtside.study.execution.script import run
 
 
 def main(
-    matches_db, features_csv, frames_csv, folder, summary_json, *, n_images, offset, rule, **options
+    matches_db,
+    features_csv,
+    frames_csv,
+    summary_json,
+    *,
+    walks,
+    mapper,
+    n_images,
+    offset,
+    rule,
+    **options,
 ):
-    walks = grid.read(frames_csv)
+    frames = grid.read(dict(zip(walks, frames_csv, strict=True)))
     images = pd.read_csv(features_csv)
-    fixed = images["name"][~images["source"].isin(list(frames_csv))].tolist()
-    chosen = walks.choose(n_images, offset, rule)
-    summary = mapping.map_images(matches_db, fixed + chosen, folder, **options)
+    fixed = images["name"][~images["source"].isin(walks)].tolist()
+    chosen = frames.choose(int(n_images), int(offset), rule)
+    folder = Path(summary_json).parent
+    summary = mapping.map_images(matches_db, fixed + chosen, folder, mapper=mapper, **options)
     summary["bridging_images"] = chosen
     log.logger.info("registered %(n_registered)d of %(n_images)d images", summary)
     write_json(summary_json, summary)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.matches,
-        snakemake.input.table,
-        dict(zip(snakemake.params.walks, snakemake.input.frames, strict=True)),
-        Path(snakemake.output.summary).parent,
-        snakemake.output.summary,
-        mapper=snakemake.wildcards.mapper,
-        n_images=int(snakemake.wildcards.n_images),
-        offset=int(snakemake.wildcards.offset),
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -5,13 +5,14 @@ import pandas as pd
 from courtside.records import tables
 from courtside.sfm import grid, matching
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
-def main(features_db, features_csv, frames_csv, matches_db, table_csv, **options):
-    walks = grid.read(frames_csv)
+def main(features_db, features_csv, frames_csv, matches_db, table_csv, *, walks, **options):
+    frames = grid.read(dict(zip(walks, frames_csv, strict=True)))
     images = pd.read_csv(features_csv)
-    fixed = images["name"][~images["source"].isin(list(frames_csv))].tolist()
-    found = matching.match(features_db, matches_db, walks.pairs(fixed), **options)
+    fixed = images["name"][~images["source"].isin(walks)].tolist()
+    found = matching.match(features_db, matches_db, frames.pairs(fixed), **options)
     table = pd.DataFrame(
         [(*pair, n) for pair, n in found.items()], columns=["name_a", "name_b", "n_matches"]
     )
@@ -22,12 +23,4 @@ def main(features_db, features_csv, frames_csv, matches_db, table_csv, **options
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.features,
-        snakemake.input.table,
-        dict(zip(snakemake.params.walks, snakemake.input.frames, strict=True)),
-        snakemake.output.database,
-        snakemake.output.table,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -5,7 +5,7 @@ import pandas as pd
 from courtside.kinematics import smoothness, wrist_arcs
 from courtside.records import tables
 from courtside.records.keypoints import body_motion
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(body_npz, paths_csv, distortion_csv, *, sparc_rate_hz):
@@ -21,10 +21,4 @@ def main(body_npz, paths_csv, distortion_csv, *, sparc_rate_hz):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.bodies,
-        snakemake.output.paths,
-        snakemake.output.distortion,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

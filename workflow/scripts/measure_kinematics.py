@@ -5,7 +5,7 @@ from courtside.kinematics import cutoffs, filtering
 from courtside.kinematics import measures as kinematics
 from courtside.records import tables
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_csv, **step):
@@ -23,14 +23,4 @@ def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.pose3d,
-        snakemake.input.skeleton,
-        snakemake.input.derived,
-        snakemake.output.frames,
-        snakemake.output.summary,
-        snakemake.output.cutoffs,
-        **snakemake.params.step,
-        sex_of=snakemake.params.sex_of,
-    )
+    run(main, snakemake)

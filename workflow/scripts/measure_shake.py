@@ -5,6 +5,7 @@ import numpy as np
 
 from courtside.records.cameras import shake_table
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.video import reader, shake_tracking
 
 
@@ -20,11 +21,4 @@ def main(static_png, video_path, shake_csv, *, camera, trim_s):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.static,
-        snakemake.input.video,
-        snakemake.output.shake,
-        camera=snakemake.wildcards.camera,
-        trim_s=snakemake.params.trim_s,
-    )
+    run(main, snakemake)

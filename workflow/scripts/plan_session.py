@@ -10,12 +10,25 @@ from courtside.sfm import model
 from courtside.study.configuration import plans
 from courtside.study.errors import InputError
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 THINNING = ("min_angle_deg", "max_error_px", "max_points", "seed")
 WEIGHTS = ("images_per_part", "tie_sigma", "click_sigma_px", "click_bias_px", "click_loss")
 
 
-def main(plan_yaml, court_yaml, growth, over_court, *, heights_m, adjust):
+def main(
+    plan_yaml,
+    court_yaml,
+    growth_pdf,
+    growth_png,
+    growth_csv,
+    map_pdf,
+    map_png,
+    map_csv,
+    *,
+    heights_m,
+    adjust,
+):
     planned, court = plans.read(plan_yaml), courts.read(court_yaml)
     fixed = [cameras.camera(name, **vars(c)) for name, c in planned.cameras.items()]
     found = predict_all(planned, fixed, court, adjust)
@@ -27,13 +40,15 @@ def main(plan_yaml, court_yaml, growth, over_court, *, heights_m, adjust):
     log.logger.info("%s: %s", enough, reason)
     rows = plan.table(found, chosen)
     title = f"{planned.description}\n{enough}: {reason}"
-    style.save(plan.draw(rows, title, widest_deg=planning.WIDEST_DEG, **limits), rows, *growth)
+    drawing = plan.draw(rows, title, widest_deg=planning.WIDEST_DEG, **limits)
+    style.save(drawing, rows, growth_pdf, growth_png, growth_csv)
     drawn = chosen or [prediction for prediction in found if prediction.solution][-1]
     names = [camera.name for camera in fixed]
     covariance = camera_covariance.of_network(names, drawn.solution.covariance)
     rows = error_map.table(fixed, covariance, court, heights_m)
     title = f"{planned.description}, {drawn.n_images} bridging images"
-    style.save(error_map.draw(rows, fixed, court, title), rows, *over_court)
+    drawing = error_map.draw(rows, fixed, court, title)
+    style.save(drawing, rows, map_pdf, map_png, map_csv)
 
 
 def predict_all(planned, fixed, court, adjust):
@@ -54,9 +69,4 @@ def predict_all(planned, fixed, court, adjust):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    outputs = [
-        [snakemake.output[f"{part}_{form}"] for form in ("pdf", "png", "csv")]
-        for part in ("growth", "map")
-    ]
-    main(snakemake.input.plan, snakemake.input.court, *outputs, **snakemake.params.step)
+    run(main, snakemake)

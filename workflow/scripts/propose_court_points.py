@@ -8,6 +8,7 @@ from courtside.geometry import camera as cameras
 from courtside.records.cameras import click_proposals
 from courtside.study.errors import InputError
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_share, **options):
@@ -29,12 +30,4 @@ def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_sha
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.cameras,
-        snakemake.input.pictures,
-        snakemake.input.court,
-        snakemake.output.proposals,
-        names=snakemake.params.cameras,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

@@ -2,7 +2,7 @@
 
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import keypoints
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(pose3d_npz, device_npz, *, person):
@@ -11,5 +11,4 @@ def main(pose3d_npz, device_npz, *, person):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input.pose3d, snakemake.output.device, person=snakemake.params.person)
+    run(main, snakemake)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from courtside.calibration.court import court
 from courtside.exports import bvh
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 from virtualgym.body import makehuman
 from virtualgym.session import session
 from virtualgym.session import take as takes
@@ -15,28 +15,20 @@ def body_folder(files):
     return next(above for above in Path(files[0]).parents if (above / makehuman.MESH).is_file())
 
 
-def main(court_yaml, body_folder, folder, *, backdrops_npz, settings, take, threads):
+def main(court_yaml, body_files, truth_npz, backdrops_npz=(), *, settings, take, threads):
+    folder = Path(truth_npz).parent
     worn = takes.simulate_take(
         session.Settings(**settings),
         takes.TakeSettings(**take),
         court.read(court_yaml),
-        body_folder,
+        body_folder(body_files),
         folder,
-        backdrops_npz=backdrops_npz,
+        backdrops_npz=next(iter(backdrops_npz), None),
         threads=threads,
     )
     for name, posed in worn.items():
-        bvh.write(Path(folder) / f"{name}.bvh", posed)
+        bvh.write(folder / f"{name}.bvh", posed)
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.court,
-        body_folder(snakemake.input.body),
-        Path(snakemake.output.truth).parent,
-        backdrops_npz=next(iter(snakemake.input.backdrops), None),
-        settings=snakemake.params.settings,
-        take=snakemake.params.take,
-        threads=snakemake.threads,
-    )
+    run(main, snakemake)

@@ -4,6 +4,7 @@ from courtside.geometry import camera as cameras
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.synchronisation import cameras as camera_sync
 
 WRIST_M_S = 12.0  # of a smash: what the uncertainty is worth in space
@@ -41,12 +42,4 @@ def report(clocks):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.get("cameras"),
-        snakemake.input.pose2d,
-        snakemake.output.sync,
-        synchronised=snakemake.params.synchronised,
-        stated=snakemake.params.stated,
-        **snakemake.params.step,
-    )
+    run(main, snakemake)

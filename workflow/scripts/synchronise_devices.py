@@ -5,10 +5,11 @@ from courtside.records import tables
 from courtside.records.devices import clocks as sync
 from courtside.records.devices import device_motion
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 from courtside.synchronisation import devices as device_sync
 
 
-def main(device_npz, paths, *, devices, stated, latency):
+def main(device_npz, sync_json, wrists_csv, events_csv, checks_csv, *, devices, stated, latency_s):
     motions = [device_motion.read(path) for path in device_npz]
     happened = detect.shown(motions, devices, stated)
     # The reference must clap: the first source of the first device that does.
@@ -16,14 +17,14 @@ def main(device_npz, paths, *, devices, stated, latency):
     motions.sort(key=lambda m: (devices[m.source] != first, not happened[m.source].claps))
     by_device = sync.stated(stated)
     known = {name: by_device[owner] for name, owner in devices.items() if owner in by_device}
-    clocks = {"devices": devices, "known": known, "latency": latency}
+    clocks = {"devices": devices, "known": known, "latency": latency_s}
     found = device_sync.synchronise(motions, happened, **clocks)
     clocks = {source: one.clock for source, one in found.items()}
     report(clocks)
-    sync.write(paths.sync, motions[0].source, clocks)
-    tables.write(paths.wrists, detect.wrists(motions, clocks))
-    tables.write(paths.events, detect.events(motions, clocks))
-    tables.write(paths.checks, detect.checks(found))
+    sync.write(sync_json, motions[0].source, clocks)
+    tables.write(wrists_csv, detect.wrists(motions, clocks))
+    tables.write(events_csv, detect.events(motions, clocks))
+    tables.write(checks_csv, detect.checks(found))
 
 
 def report(clocks):
@@ -41,11 +42,4 @@ def report(clocks):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.devices,
-        snakemake.output,
-        devices=snakemake.params.devices,
-        stated=snakemake.params.stated,
-        latency=snakemake.params.step["latency_s"],
-    )
+    run(main, snakemake)

@@ -2,7 +2,7 @@
 
 from courtside.evaluation.tables import calibration
 from courtside.records import tables
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(errors_csv, table_csv, *, n_reference):
@@ -11,9 +11,4 @@ def main(errors_csv, table_csv, *, n_reference):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(
-        snakemake.input.errors,
-        snakemake.output.table,
-        n_reference=snakemake.params.n_reference,
-    )
+    run(main, snakemake)

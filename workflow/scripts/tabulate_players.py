@@ -2,16 +2,18 @@
 
 from courtside.evaluation.tables import players
 from courtside.records import tables
-from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
 def main(paths, table_csv):
-    parts = [
-        players.read(part) for part in (paths.errors, paths.kinematics, paths.clocks, paths.gains)
-    ]
-    tables.write(table_csv, players.table(*parts), float_format="%.4f")
+    table = players.table(
+        players.read(paths.errors),
+        players.read(paths.kinematics),
+        players.read(paths.clocks),
+        players.read(paths.gains),
+    )
+    tables.write(table_csv, table, float_format="%.4f")
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    main(snakemake.input, snakemake.output.table)
+    run(main, snakemake)

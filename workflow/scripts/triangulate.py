@@ -13,10 +13,12 @@ from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.errors import InputError
 from courtside.study.execution import log
+from courtside.study.execution.script import run
 
 
-def main(paths, pose3d_npz, *, persons, used, rule, **options):
+def main(paths, pose3d_npz, *, persons, fusion, **options):
     known = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
+    used, rule = fusion["used"], fusion["rule"]
     views, joints = {}, skeleton.read(paths.skeleton)
     _, clocks = sync.read(paths.sync)
     if fault := sync.fault_line(paths.sync, clocks):
@@ -60,6 +62,4 @@ def report(points, swapped):
 
 
 if __name__ == "__main__":
-    log.to_file(snakemake.log[0])
-    chosen = {**snakemake.params.fusion, **snakemake.params.step}
-    main(snakemake.input, snakemake.output.pose3d, persons=snakemake.params.persons, **chosen)
+    run(main, snakemake)
