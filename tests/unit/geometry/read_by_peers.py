@@ -1,13 +1,14 @@
-"""Load one camera file with aniposelib and with Pose2Sim, and print where they project three points.
+"""Load a camera file with aniposelib and with Pose2Sim, and print where they project points.
 
-Run by hand, never by pytest, in the environments that `python benchmarks/peers.py aniposelib pose2sim`
-makes and prints; each run uses the peer that its interpreter has:
+Run by hand, never by pytest, in the environments that `python benchmarks/peers.py aniposelib
+pose2sim` makes and prints; each run uses the peer that its interpreter has:
 
     PYTHON tests/unit/geometry/read_by_peers.py cameras.toml [x,y,z x,y,z ...]
 
-Prints a line of JSON per peer: cameras in the order in which the peer holds them, with their projections in
-px of the points (metres, world). Pose2Sim has two ways: plain (its default; the lens is ignored) and with the
-file's lens (`undistort_points`, through cv2.projectPoints, as its triangulation does).
+Prints a line of JSON per peer: cameras in the order in which the peer holds them, with their
+projections in px of the points (metres, world). Pose2Sim has two ways: plain (its default; the lens
+is ignored) and with the file's lens (`undistort_points`, through cv2.projectPoints, as its
+triangulation does).
 """
 
 import json

@@ -1,4 +1,4 @@
-"""The camera model against OpenCV, COLMAP and real calibrations; its file against peers' way of reading."""
+"""The camera model against OpenCV, COLMAP and real calibrations; its file as peers read it."""
 
 import tomllib
 from dataclasses import replace
@@ -72,7 +72,7 @@ def test_jacobian_is_the_central_difference():
     np.testing.assert_allclose(cameras.projection_jacobian(make(), points()), expected, atol=1e-4)
 
 
-def test_any_leading_shape():
+def test_projection_takes_any_leading_shape():
     camera, xyz = make(), points(24)
     one_by_one = np.stack([cameras.project(camera, point) for point in xyz])
     many = cameras.project(camera, xyz.reshape(2, 3, 4, 3))
@@ -83,7 +83,7 @@ def test_any_leading_shape():
     assert cameras.undistort(camera, cameras.project(camera, empty)).shape == (0, 2)
 
 
-def test_missing_and_behind_are_missing():
+def test_points_missing_or_behind_the_camera_have_no_pixel():
     camera = make()
     seen = points(1)[0]
     behind = 2 * camera.centre_in_world - seen
@@ -107,7 +107,7 @@ def test_undistorting_gives_the_direction_back():
     np.testing.assert_allclose(normalised.reshape(-1, 2), expected[:, 0], atol=1e-9)
 
 
-def test_far_outside_the_picture_too():
+def test_undistorting_works_far_outside_the_picture():
     camera = make(dist=np.zeros(5))
     xy = np.array([[1e6, -3e5], [0.0, 0.0]])
     expected = (xy - K[:2, 2]) / np.diag(K)[:2]
@@ -129,9 +129,8 @@ def test_beyond_the_fold_is_missing():
 
 
 def test_a_model_that_rises_again_is_not_used_there():
-    camera = make(
-        dist=[-0.5, 0.1, 0.0, 0.0, 0.0]
-    )  # falls from r = 1, where it shows 0.6, to sqrt(2)
+    # Falls from r = 1, where it shows 0.6, to sqrt(2).
+    camera = make(dist=[-0.5, 0.1, 0.0, 0.0, 0.0])
     assert camera.fold_radius == pytest.approx(1.0, rel=1e-12)
     shown = np.concatenate([np.linspace(0.01, 0.59, 50), np.linspace(0.601, 3.0, 500)])
     xy = np.stack([shown * K[0, 0], 0 * shown], axis=-1) + K[:2, 2]
@@ -291,7 +290,7 @@ fisheye = false
     [("", 1.0), ("[metadata]\nerror = 0.0", 1.0), ('[metadata]\nunit = "mm"', 0.001),
      ('[metadata]\nunit = "cm"', 0.01)],
 )  # fmt: skip
-def test_units(tmp_path, metadata, metres):
+def test_lengths_are_read_in_the_unit_of_the_file(tmp_path, metadata, metres):
     (tmp_path / "c.toml").write_text(TABLE + metadata, encoding="utf-8")
     (camera,) = cameras.read_toml(tmp_path / "c.toml")
     np.testing.assert_allclose(camera.cam_from_world[:, 3], np.array([100, 200, 300]) * metres)
@@ -329,7 +328,7 @@ def test_malformed_files_are_one_line_to_mend(tmp_path, old, new, message):
     assert "\n" not in str(caught.value)
 
 
-def test_two_of_one_name_are_refused(tmp_path):
+def test_two_cameras_of_one_name_are_refused(tmp_path):
     (tmp_path / "c.toml").write_text(TABLE + TABLE.replace("cam_0", "cam_1"), encoding="utf-8")
     with pytest.raises(InputError, match="different names"):
         cameras.read_toml(tmp_path / "c.toml")
@@ -337,6 +336,6 @@ def test_two_of_one_name_are_refused(tmp_path):
         cameras.write_toml(tmp_path / "d.toml", [make(), make()], source="test")
 
 
-def test_no_file_is_named(tmp_path):
+def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.toml"):
         cameras.read_toml(tmp_path / "none.toml")

@@ -48,7 +48,7 @@ def test_every_depth_pixel_lies_on_the_plane():
     assert np.allclose(xy, cameras.project(COLOUR, in_colour))
 
 
-def test_holes_have_no_place():
+def test_pixels_without_depth_have_no_place():
     depth_m = plane_depth()
     depth_m[3, 4], depth_m[5, 6] = 0, np.nan
     xy, z = depth_registration.points_in_colour(
@@ -63,13 +63,14 @@ def test_a_plane_is_seen_by_every_colour_pixel_inside():
     aligned = depth_registration.align(plane_depth(), DEPTH, COLOUR, APART)
     seen = aligned[20:-20, 20:-20]
     assert np.isfinite(seen).mean() > 0.99
-    # A depth pixel is half a pixel wide either way: the plane's slope over that is the error allowed.
+    # A depth pixel is half a pixel wide either way: the plane's slope over that is the error
+    # allowed.
     slope = np.abs(np.gradient(plane_in_colour())).max()
     off = np.abs(aligned - plane_in_colour())[20:-20, 20:-20]
     assert np.nanmax(off) < 2.5 * slope
 
 
-def test_the_nearest_is_seen():
+def test_the_nearest_of_overlapping_depth_pixels_is_seen():
     """A square before a wall: the wall behind it must not show through."""
     depth_m = np.full((120, 160), 4.0)
     depth_m[40:80, 60:100] = 1.0

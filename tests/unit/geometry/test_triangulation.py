@@ -1,5 +1,6 @@
-"""Triangulation against exact truth, statistics, and a board of known size."""
+"""Triangulation against exact truth, OpenCV, NumPy, statistics, and a board of known size."""
 
+import cv2
 import numpy as np
 import pandas as pd
 import pytest
@@ -126,7 +127,8 @@ def test_points_behind_the_cameras_are_refused():
         camera.Camera(n, scene.SIZE, matrix, np.zeros(5), p)
         for n, p in zip("ab", poses, strict=True)
     ]
-    # The rays cross behind the cameras: the left camera sees the point further left than the right one.
+    # The rays cross behind the cameras: the left camera sees the point further left than the right
+    # one.
     xy = np.array([[[900.0, 500.0]], [[1300.0, 500.0]]])
     found = triangulation.triangulate_robust(pair, xy, np.ones((2, 1)), sigma_px=1, **LIMITS)
     assert np.isnan(found.xyz).all()
@@ -142,7 +144,7 @@ def test_batches_do_not_change_the_result(batch, monkeypatch):
     np.testing.assert_allclose(parts.xyz, whole.xyz, atol=1e-9)
 
 
-def test_shapes_are_checked():
+def test_contradicting_shapes_and_too_few_views_are_refused():
     with pytest.raises(ValueError, match="C = 2 cameras"):
         triangulation.triangulate_robust(
             scene.ring(2), np.zeros((3, 1, 2)), np.ones((3, 1)), sigma_px=1, **LIMITS
@@ -183,3 +185,129 @@ def test_a_board_of_known_size_keeps_its_squares():
     assert len(error_mm) > 900
     assert abs(error_mm.mean()) <= 0.3
     assert error_mm.std() <= 0.9
+
+
+# Plain DLT: exact on exact views, equal to OpenCV's, and helpless against a wrong view.
+PLAIN_XYZ = scene.points(50)
+
+
+def test_exact_views_give_the_points_whatever_the_lens():
+    cameras = scene.ring(3, dist=(-0.1, 0.02, 1e-3, -1e-3, 0))
+    found = triangulation.triangulate_plain(
+        cameras, scene.views(cameras, PLAIN_XYZ), np.ones((3, 50)), sigma_px=1.0
+    )
+    np.testing.assert_allclose(found.xyz, PLAIN_XYZ, atol=1e-7)
+    assert found.accepted.all() and found.error_px.max() < 1e-5
+
+
+def test_two_noisy_views_give_nearly_what_opencv_does():
+    cameras = scene.ring(5)[:2]
+    xy = scene.views(cameras, PLAIN_XYZ) + np.random.default_rng(0).normal(0, 3, (2, 50, 2))
+    found = triangulation.triangulate_plain(cameras, xy, np.ones((2, 50)), sigma_px=3.0)
+    matrices = [camera.K @ camera.cam_from_world for camera in cameras]
+    other = cv2.triangulatePoints(*matrices, xy[0].T.copy(), xy[1].T.copy())
+    apart = np.linalg.norm(found.xyz - (other[:3] / other[3]).T, axis=1)
+    error = np.linalg.norm(found.xyz - PLAIN_XYZ, axis=1)
+    assert np.median(apart) < 0.1 * np.median(error)
+    sigma = np.sqrt(np.trace(found.covariance, axis1=1, axis2=2))
+    assert np.sqrt(np.mean(error**2)) == pytest.approx(np.sqrt(np.mean(sigma**2)), rel=0.25)
+
+
+def test_a_wrong_view_is_used_and_a_doubtful_one_is_not():
+    cameras = scene.ring(4)
+    xy, score = scene.views(cameras, PLAIN_XYZ), np.ones((4, 50))
+    xy[0] += 200
+    found = triangulation.triangulate_plain(cameras, xy, score, sigma_px=1.0)
+    assert np.linalg.norm(found.xyz - PLAIN_XYZ, axis=1).min() > 0.02
+    score[0] = 0.1
+    found = triangulation.triangulate_plain(cameras, xy, score, sigma_px=1.0, min_score=0.5)
+    np.testing.assert_allclose(found.xyz, PLAIN_XYZ, atol=1e-7)
+    assert not found.accepted[0].any()
+
+
+def test_points_of_too_few_views_are_missing():
+    cameras = scene.ring(3)
+    xy = scene.views(cameras, PLAIN_XYZ)
+    xy[:2, 3] = np.nan
+    xy[0, 4] = np.nan
+    found = triangulation.triangulate_plain(
+        cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=2
+    )
+    assert np.isnan(found.xyz[3]).all() and not found.accepted[:, 3].any()
+    assert found.accepted[:, 4].tolist() == [False, True, True]
+    with pytest.raises(ValueError, match="min_views"):
+        triangulation.triangulate_plain(cameras, xy, np.ones((3, 50)), sigma_px=1.0, min_views=1)
+
+
+def systems(count, seed=0):
+    root = np.random.default_rng(seed).normal(size=(count, 3, 3))
+    return root @ root.transpose(0, 2, 1)
+
+
+def test_inverses_and_solutions_are_those_of_numpy():
+    matrix, right = systems(200), np.random.default_rng(1).normal(size=(200, 3))
+    expected = np.linalg.solve(matrix, right[..., None])[..., 0]
+    scale = np.abs(expected).max(axis=1, keepdims=True)
+    assert (np.abs(triangulation.solve_3x3(matrix, right) - expected) / scale).max() < 1e-6
+    product = triangulation.inverse_3x3(matrix) @ matrix
+    assert np.median(np.abs(product - np.eye(3))) < 1e-12
+
+
+def test_a_singular_system_has_no_solution_and_spoils_no_other():
+    matrix = systems(3)
+    matrix[1] = np.outer([1, 2, 3], [1, 2, 3])
+    found = triangulation.solve_3x3(matrix, np.ones((3, 3)))
+    assert np.isnan(found[1]).all() and np.isfinite(found[[0, 2]]).all()
+
+
+# Views: residuals against OpenCV, derivatives against differences.
+VIEWED_BY = scene.ring(3)  # without distortion, pixels are the plane
+VIEWED = scene.points(20)
+SEEN = triangulation.Views(VIEWED_BY, scene.views(VIEWED_BY, VIEWED), np.ones((3, 20)))
+NEAR = VIEWED + np.random.default_rng(1).normal(0, 0.05, VIEWED.shape)
+
+
+def test_residuals_are_those_of_opencv():
+    found, in_cam = SEEN.residuals(NEAR)
+    expected = scene.views(VIEWED_BY, NEAR) - scene.views(VIEWED_BY, VIEWED)
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+    np.testing.assert_allclose(SEEN.distance(NEAR), np.linalg.norm(expected, axis=-1), atol=1e-6)
+    depth = np.einsum("cj,nj->cn", [c.cam_from_world[2, :3] for c in VIEWED_BY], NEAR)
+    np.testing.assert_allclose(in_cam[..., 2], depth + SEEN.matrix[:, 2, 3:], atol=1e-12)
+
+
+def test_normal_equations_are_those_of_differences():
+    weight = np.random.default_rng(2).uniform(0.2, 1, (3, 20))
+    residual, in_cam = SEEN.residuals(NEAR)
+    square, right = SEEN.normal(in_cam, weight, residual)
+    steps = 1e-6 * np.eye(3)
+    slope = [(SEEN.residuals(NEAR + d)[0] - SEEN.residuals(NEAR - d)[0]) / 2e-6 for d in steps]
+    expected = np.einsum("icnr,cn,jcnr->nij", slope, weight, slope)
+    np.testing.assert_allclose(square, expected, rtol=1e-6)
+    np.testing.assert_allclose(
+        right, np.einsum("icnr,cn,cnr->ni", slope, weight, residual), rtol=1e-6
+    )
+
+
+def test_steps_end_at_the_points_that_the_views_show():
+    xyz = NEAR
+    for _ in range(4):
+        xyz = SEEN.stepped(xyz, SEEN.weight)
+    np.testing.assert_allclose(xyz, VIEWED, atol=1e-9)
+    part = SEEN.of(np.array([3, 5]))
+    np.testing.assert_allclose(part.stepped(VIEWED[[3, 5]], part.weight), VIEWED[[3, 5]], atol=1e-9)
+
+
+def test_a_step_without_weight_leaves_a_point_where_it_is():
+    weight = SEEN.weight.copy()
+    weight[:, 4] = 0
+    moved = SEEN.stepped(NEAR, weight) != NEAR
+    assert moved.any(axis=1).tolist() == [True] * 4 + [False] + [True] * 15
+
+
+def test_points_are_in_front_of_the_cameras_named():
+    behind = 2 * VIEWED_BY[0].centre_in_world - VIEWED
+    nobody, first = np.zeros((3, 20), bool), np.zeros((3, 20), bool)
+    first[0] = True
+    assert SEEN.in_front(VIEWED, ~nobody).all() and SEEN.in_front(behind, nobody).all()
+    assert not SEEN.in_front(behind, first).any()

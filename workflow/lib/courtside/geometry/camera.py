@@ -1,27 +1,30 @@
 """Pinhole cameras with lens distortion: projection, its inverse, and camera files."""
 
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tomli_w
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry import camera_fields, rotations
 from courtside.study.errors import InputError, reading
 from courtside.study.execution.files import atomic
 
 OTHER_TABLES = ("metadata", "capture_volume", "charuco", "checkerboard")  # as Pose2Sim has it
-TOLERANCE_PX = 1e-10
+TOLERANCE_PX = 1e-10  # of `undistort`: far below the noise of any keypoint, above rounding errors
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """One calibrated view, with OpenCV's model of five distortion coefficients.
+    """A calibrated camera with OpenCV's five distortion coefficients.
 
     Attributes
     ----------
-    name : str
     size : (int, int)
         Width and height, px.
     K : (3, 3) float
@@ -34,22 +37,21 @@ class Camera:
     Raises
     ------
     ValueError
-        If a shape or value is impossible, or the rotation is none within 1e-6.
+        If a shape or value is impossible, or the rotation matrix is not orthonormal to 1e-6.
     """
 
     name: str
-    size: tuple
-    K: np.ndarray
-    dist: np.ndarray
-    cam_from_world: np.ndarray
+    size: tuple[int, int]
+    K: NDArray
+    dist: NDArray
+    cam_from_world: NDArray
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for field, shape in (("K", (3, 3)), ("dist", (5,)), ("cam_from_world", (3, 4))):
             value = np.array(getattr(self, field), dtype=float)
             if value.shape != shape or not np.isfinite(value).all():
-                raise ValueError(
-                    f"expected {field} as {shape} finite numbers, found {camera_fields.short(value)}"
-                )
+                found = camera_fields.short(value)
+                raise ValueError(f"expected {field} as {shape} finite numbers, found {found}")
             value.setflags(write=False)
             object.__setattr__(self, field, value)
         object.__setattr__(self, "size", _whole(self.size))
@@ -60,20 +62,22 @@ class Camera:
             raise ValueError(f"expected a matrix of positive focal lengths, no skew, found {found}")
         rotation = self.cam_from_world[:, :3]
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0:
-            raise ValueError("expected an orthonormal, right-handed rotation, found another matrix")
+            raise ValueError(
+                "expected a right-handed rotation matrix, orthonormal to 1e-6, found another matrix"
+            )
 
     @property
-    def centre_in_world(self):
+    def centre_in_world(self) -> NDArray:
         """The projection centre, (3,) m."""
         return rotations.invert(self.cam_from_world)[:, 3]
 
     @cached_property
-    def fold_radius(self):
-        """Radius on the z = 1 plane from where the lens model shows nothing new; inf if there is none."""
+    def fold_radius(self) -> float:
+        """Radius on the z = 1 plane where the lens model folds back; inf if it never does."""
         return fold_radius(self.dist)
 
 
-def _whole(size):
+def _whole(size: Sequence[float]) -> tuple[int, ...]:
     whole = tuple(int(length) for length in size)
     if len(whole) != 2 or min(whole) <= 0 or whole != tuple(size):
         raise ValueError(
@@ -82,50 +86,30 @@ def _whole(size):
     return whole
 
 
-def project(camera, xyz_in_world):
-    """Project points into the picture.
+def project(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
+    """Project points (..., 3) m to distorted px (..., 2), not limited to the picture.
 
-    Parameters
-    ----------
-    camera : Camera
-    xyz_in_world : (..., 3) float
-        Metres; NaN where missing.
-
-    Returns
-    -------
-    xy : (..., 2) float
-        Distorted px, not limited to the picture; NaN where the point is missing, behind the camera,
-        or so far aside that the lens model folds back.
+    NaN where the point is missing, behind the camera, or outside the fold radius of the lens model.
     """
     normalised, _ = _normalise(camera, xyz_in_world)
     return distort(camera.dist, normalised) * _focal(camera) + camera.K[:2, 2]
 
 
-def projection_jacobian(camera, xyz_in_world):
-    """Return the derivative of `project`, distortion included.
+def projection_jacobian(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
+    """Return the derivative (..., 2, 3) of `project` at points (..., 3) m, distortion included.
 
-    Parameters
-    ----------
-    camera : Camera
-    xyz_in_world : (..., 3) float
-        Metres.
-
-    Returns
-    -------
-    jacobian : (..., 2, 3) float
-        d(x, y) / d(x, y, z), px per metre; NaN where `project` gives NaN.
+    d(x, y) / d(x, y, z), px per metre; NaN where `project` gives NaN.
     """
     normalised, depth = _normalise(camera, xyz_in_world)
     in_cam = jacobian_by_place(camera.dist, normalised, depth)
     return _focal(camera)[:, np.newaxis] * (in_cam @ camera.cam_from_world[:, :3])
 
 
-def undistort(camera, xy):
-    """Find the directions that pixels look along: the inverse of `project`.
+def undistort(camera: Camera, xy: ArrayLike) -> NDArray:
+    """Return the viewing directions of distorted pixels: the inverse of `project`.
 
     Parameters
     ----------
-    camera : Camera
     xy : (..., 2) float
         Distorted px; NaN where missing.
 
@@ -133,21 +117,21 @@ def undistort(camera, xy):
     -------
     xy_normalised : (..., 2) float
         On the z = 1 plane in front of the camera, no unit; NaN where missing, and where the lens
-        model shows no direction at that pixel.
+        model has no direction for that pixel.
     """
     xy = np.asarray(xy, dtype=float)
     distorted = (np.where(np.isfinite(xy), xy, np.nan) - camera.K[:2, 2]) / _focal(camera)
-    # Of a far-off pixel even the last digit is more than the tolerance near the centre.
+    # Far from the centre, rounding errors exceed the tolerance that holds near the centre.
     tolerance = TOLERANCE_PX / _focal(camera).max() * (1 + np.abs(distorted).sum(axis=-1))
     return undistort_below_fold(camera.dist, camera.fold_radius, distorted, tolerance)
 
 
-def _focal(camera):
+def _focal(camera: Camera) -> NDArray:
     return np.diag(camera.K)[:2]
 
 
-def _normalise(camera, xyz_in_world):
-    """Return points on the z = 1 plane (..., 2) and their depths (..., 1), NaN where not visible."""
+def _normalise(camera: Camera, xyz_in_world: ArrayLike) -> tuple[NDArray, NDArray]:
+    """Return points on the z = 1 plane (..., 2) and depths (..., 1), NaN where not visible."""
     in_cam = np.asarray(xyz_in_world, dtype=float) @ camera.cam_from_world[:, :3].T
     in_cam = in_cam + camera.cam_from_world[:, 3]
     depth = np.where(in_cam[..., 2:] > 0, in_cam[..., 2:], np.nan)
@@ -156,18 +140,18 @@ def _normalise(camera, xyz_in_world):
     return np.where(radius < camera.fold_radius, normalised, np.nan), depth
 
 
-def crop(camera, crop_px):
+def crop(camera: Camera, crop_px: Sequence[int]) -> Camera:
     """Return the camera of a video that shows only a part of the calibrated picture.
 
     Parameters
     ----------
-    camera : Camera
     crop_px : (x, y, width, height) of int
         In px of the calibrated picture.
 
     Returns
     -------
-    camera : Camera, with that size and a shifted principal point; nothing is scaled.
+    camera : Camera
+        With that size and a shifted principal point; nothing is scaled.
 
     Raises
     ------
@@ -179,41 +163,32 @@ def crop(camera, crop_px):
     if min(x, y) < 0 or min(width, height) <= 0 or outside:
         raise InputError(
             f"camera {camera.name}: expected crop_px [x, y, width, height] inside the calibrated "
-            f"{camera_fields.times(camera.size)} px, found {list(crop_px)}; correct crop_px in the session "
-            "file"
+            f"{camera_fields.times(camera.size)} px, found {list(crop_px)}; correct crop_px in the "
+            "session file"
         )
     shift = np.zeros((3, 3))
     shift[:2, 2] = x, y
     return replace(camera, size=(width, height), K=camera.K - shift)
 
 
-def check_size(camera, video_size, video_path):
-    """Raise `InputError` unless a video has the size its camera was calibrated at.
-
-    Parameters
-    ----------
-    camera : Camera
-    video_size : (int, int)
-        Width and height, px.
-    video_path : str or Path
-    """
+def check_size(
+    camera: Camera, video_size: tuple[int, int], video_path: str | os.PathLike[str]
+) -> None:
+    """Raise `InputError` unless a video has the (width, height) its camera was calibrated at."""
     if tuple(video_size) != camera.size:
         raise InputError(
             f"{video_path}: expected {camera_fields.times(camera.size)} px, the size that camera "
             f"{camera.name} was calibrated at, found {camera_fields.times(video_size)}; declare "
-            "`crop_px: [x, y, width, height]` for this camera in the session file if the video is a cut-out "
-            "of the calibrated picture, else calibrate at the video's size"
+            "`crop_px: [x, y, width, height]` for this camera in the session file if the video is "
+            "a cut-out of the calibrated picture, else calibrate at the video's size"
         )
 
 
-def read_toml(path):
+def read_toml(path: str | os.PathLike[str]) -> list[Camera]:
     """Read cameras from a TOML file as this study, Pose2Sim and aniposelib write it.
 
-    Parameters
-    ----------
-    path : str or Path
-        One table per camera with `name size matrix distortions rotation translation`; `[metadata]`
-        may hold `unit`: m (where absent), cm or mm.
+    The file holds one table per camera with `name size matrix distortions rotation translation`;
+    `[metadata]` may hold `unit`: m (where absent), cm or mm.
 
     Returns
     -------
@@ -238,14 +213,16 @@ def read_toml(path):
     return camera_fields.check_distinct(path, found)
 
 
-def build(where, name, table, metres):
-    """Make a camera of a table as a file holds it; `where` begins messages.
+def build(where: str, name: str, table: Mapping[str, Any], metres: float) -> Camera:
+    """Build a camera from its table in a file.
 
     Parameters
     ----------
-    where, name : str
-    table : dict
-        `size matrix distortions rotation translation` and perhaps `fisheye`, rotation as vector or matrix.
+    where : str
+        File and camera, to begin error messages with.
+    table : mapping
+        `size matrix distortions rotation translation`, optionally `fisheye`; rotation as vector or
+        matrix. As a parser returns it, so of any type.
     metres : float
         Unit of the translation.
     """
@@ -264,21 +241,21 @@ def build(where, name, table, metres):
         raise InputError(f"{where}: {error}; {camera_fields.EXPORT_AGAIN}") from error
 
 
-def write_toml(path, cameras, *, source, unit="m"):
+def write_toml(
+    path: str | os.PathLike[str], cameras: Sequence[Camera], *, source: str, unit: str = "m"
+) -> None:
     """Write cameras so that `read_toml`, Pose2Sim and aniposelib read them.
 
     Parameters
     ----------
-    path : str or Path
-    cameras : list of Camera
     source : str
-        How they were found; kept in `[metadata]`.
+        How the cameras were found; kept in `[metadata]`.
     unit : str
-        `camera_fields.UNSCALED` where lengths are not in metres: such files are refused by `read_toml`.
+        `camera_fields.UNSCALED` where lengths are not in metres: `read_toml` refuses such files.
     """
     camera_fields.check_distinct(path, cameras)
     digits = len(str(len(cameras) - 1))  # aniposelib sorts the tables by name
-    content = {
+    content: dict[str, dict[str, object]] = {
         f"cam_{index:0{digits}}": {
             "name": camera.name,
             "size": list(camera.size),
@@ -295,13 +272,13 @@ def write_toml(path, cameras, *, source, unit="m"):
         temporary.write_text(tomli_w.dumps(content), encoding="utf-8")
 
 
-MAX_ITERATIONS = 50
-ENTRIES = 2048
-NOTHING = 1e-30  # a coefficient so small beside the others divides them beyond what a float holds
+MAX_ITERATIONS = 50  # ASSUME: enough for Newton's method; pixels not solved by then become NaN
+ENTRIES = 2048  # radii tabulated for its start, which so lies within about 1 %
+NEGLIGIBLE = 1e-30  # dividing by a coefficient this much smaller than the others overflows
 
 
-def distort(dist, normalised):
-    """Move points (..., 2) to where the lens shows them.
+def distort(dist: NDArray, normalised: NDArray) -> NDArray:
+    """Return where the lens shows points (..., 2) of the z = 1 plane.
 
     Brown 1971, in OpenCV's order of coefficients.
     """
@@ -318,13 +295,13 @@ def distort(dist, normalised):
     )
 
 
-def jacobian(dist, normalised):
+def jacobian(dist: NDArray, normalised: NDArray) -> NDArray:
     """Return the derivative (..., 2, 2) of `distort`; it is symmetric."""
     along_x, mixed, along_y = _slopes(dist, normalised)
     return np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*mixed.shape, 2, 2)
 
 
-def _slopes(dist, normalised):
+def _slopes(dist: NDArray, normalised: NDArray) -> tuple[NDArray, NDArray, NDArray]:
     """Return the three elements (...) of the symmetric derivative of `distort`."""
     x, y = normalised[..., 0], normalised[..., 1]
     square = x * x + y * y
@@ -337,16 +314,11 @@ def _slopes(dist, normalised):
     return along_x, mixed, along_y
 
 
-def jacobian_by_place(dist, normalised, depth):
-    """Return the derivative (..., 2, 3) of distorted points by the places that the camera sees them at.
+def jacobian_by_place(dist: NDArray, normalised: NDArray, depth: NDArray) -> NDArray:
+    """Return the derivative (..., 2, 3) of distorted points with respect to camera coordinates.
 
-    Parameters
-    ----------
-    dist : (5,) float
-    normalised : (..., 2) float
-        On the z = 1 plane.
-    depth : (..., 1) float
-        Along the camera's axis; the derivative is per unit of it.
+    `normalised` (..., 2) lies on the z = 1 plane. `depth` (..., 1) is along the camera's axis; the
+    derivative is per unit of it.
     """
     pinhole = np.zeros((*normalised.shape, 3))
     pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
@@ -354,25 +326,26 @@ def jacobian_by_place(dist, normalised, depth):
     return jacobian(dist, normalised) @ pinhole / depth[..., np.newaxis]
 
 
-def fold_radius(dist):
+def fold_radius(dist: NDArray) -> float:
     """Return the radius at which the radial part turns back, inf if it never does.
 
-    From there on the lens model would show one pixel for several directions.
+    Beyond it the lens model maps several directions to one pixel.
     """
     k1, k2, _, _, k3 = dist
     coefficients = np.array([7 * k3, 5 * k2, 3 * k1, 1.0])
-    coefficients[np.abs(coefficients) < NOTHING * np.abs(coefficients).max()] = 0.0
+    coefficients[np.abs(coefficients) < NEGLIGIBLE * np.abs(coefficients).max()] = 0.0
     squares = np.roots(coefficients)
     real = squares.real[(np.abs(squares.imag) < 1e-9 * np.abs(squares)) & (squares.real > 0)]
     return float(np.sqrt(real.min(initial=np.inf)))
 
 
-def undistort_below_fold(dist, fold, distorted, tolerance):
-    """Invert `distort` below the fold.
+def undistort_below_fold(
+    dist: NDArray, fold: float, distorted: NDArray, tolerance: NDArray
+) -> NDArray:
+    """Invert `distort` below the fold radius.
 
     Parameters
     ----------
-    dist : (5,) float
     fold : float
         From `fold_radius`.
     distorted : (..., 2) float
@@ -382,12 +355,12 @@ def undistort_below_fold(dist, fold, distorted, tolerance):
     Returns
     -------
     normalised : (..., 2) float
-        NaN where missing, and where no point below the fold is shown there.
+        NaN where missing, and where no point below the fold maps to that pixel.
 
     Notes
     -----
-    Newton's method from the inverse of the radial part, tabulated up to the fold: it neither diverges
-    under strong distortion nor lands on a direction beyond the fold.
+    Newton's method from the inverse of the radial part, tabulated up to the fold: it neither
+    diverges under strong distortion nor ends at a direction beyond the fold.
     """
     normalised = _undistort_radially(dist, fold, distorted)
     for _ in range(MAX_ITERATIONS):
@@ -405,11 +378,11 @@ def undistort_below_fold(dist, fold, distorted, tolerance):
     return np.where(found[..., np.newaxis], normalised, np.nan)
 
 
-def _radial(dist, square):
+def _radial(dist: NDArray, square: Any) -> Any:  # a float for a float, else an array
     return 1 + square * (dist[0] + square * (dist[1] + square * dist[4]))
 
 
-def _undistort_radially(dist, fold, distorted):
+def _undistort_radially(dist: NDArray, fold: float, distorted: NDArray) -> NDArray:
     """Undo the radial part to about 1 %: the start for Newton's method."""
     radius = np.hypot(distorted[..., 0], distorted[..., 1])
     farthest = np.nan_to_num(radius).max(initial=1.0)
@@ -418,6 +391,6 @@ def _undistort_radially(dist, fold, distorted):
         limit *= 2
     radii = np.geomspace(1e-3, min(limit, fold), ENTRIES)
     seen = radii * _radial(dist, radii**2)
-    # The entry below: the slope falls towards the fold, so that steps from below cannot jump it.
+    # The entry below: the slope falls towards the fold, so that steps from below do not cross it.
     below = np.maximum(np.searchsorted(seen, radius) - 1, 0)
     return distorted / _radial(dist, radii[below] ** 2)[..., np.newaxis]

@@ -1,40 +1,47 @@
-"""The numbers of a calibration file, whatever it holds, checked and brought to one form."""
+"""Fields of calibration files, checked and converted to this study's form."""
 
+from __future__ import annotations
+
+import os
 import tomllib
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import rotations
 from courtside.study.errors import InputError
 
-LARGEST = 1e12  # beyond any length, pixel or coefficient of a lens
+if TYPE_CHECKING:
+    from courtside.geometry.camera import Camera
+
+    Cameras = TypeVar("Cameras", bound=Sequence[Camera])
+
+LARGEST = 1e12  # beyond any length, pixel or lens coefficient
 METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 UNSCALED = "unscaled"  # unit of cameras of a session without a court
 EXPORT_AGAIN = "export the calibration again or mend the file"
 
 
-def numbers(where, key, value, *shapes):
+def numbers(where: str, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
     """Return `value` as a finite float array of one of `shapes`.
 
     Parameters
     ----------
     where : str
-        File and camera, to begin the message with.
+        File and camera, to begin error messages with.
     key : str
-        What is read.
+        The field's name.
     value : object
         As the file holds it; None where it is missing.
-    *shapes : tuple of int
-
-    Returns
-    -------
-    array : ndarray of float
 
     Raises
     ------
     InputError
         If it is anything else.
     """
+    array: NDArray | None
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -43,31 +50,32 @@ def numbers(where, key, value, *shapes):
         expected = " or ".join("x".join(map(str, shape)) for shape in shapes)
         found = "nothing" if value is None else short(value)
         raise InputError(
-            f"{where}: expected {key} as {expected or 'one'} finite number(s), found {found}; {EXPORT_AGAIN}"
+            f"{where}: expected {key} as {expected or 'one'} finite number(s), found {found}; "
+            f"{EXPORT_AGAIN}"
         )
     return array
 
 
-def five_coefficients(where, value):
-    """Return distortion as k1 k2 p1 p2 k3 of any list that holds these, and zeros beyond."""
+def five_coefficients(where: str, value: object) -> NDArray:
+    """Return distortion as k1 k2 p1 p2 k3 (5,); missing ones are 0, further ones must be 0."""
     if isinstance(value, np.ndarray):
         value = value.ravel()
     coefficients = numbers(where, "distortions", value, (4,), (5,), (8,), (12,), (14,))
     if np.any(coefficients[5:]):
         raise InputError(
-            f"{where}: expected distortions k1 k2 p1 p2 k3, found {len(coefficients)} that are not zero "
-            "beyond the fifth; calibrate with OpenCV's standard five-coefficient model"
+            f"{where}: expected distortions k1 k2 p1 p2 k3, found {len(coefficients)} that are not "
+            "zero beyond the fifth; calibrate with OpenCV's standard five-coefficient model"
         )
     return np.pad(coefficients[:5], (0, max(0, 5 - len(coefficients))))
 
 
-def pose(where, rotation, translation, metres):
+def pose(where: str, rotation: object, translation: object, metres: float) -> NDArray:
     """Return `cam_from_world` (3, 4).
 
     Parameters
     ----------
     where : str
-        File and camera: begins messages.
+        File and camera, to begin error messages with.
     rotation : (3,) or (3, 3) array_like
         Rodrigues vector, radians, or matrix.
     translation : (3,) array_like
@@ -77,7 +85,7 @@ def pose(where, rotation, translation, metres):
     Raises
     ------
     InputError
-        If a shape is wrong or the matrix is no rotation.
+        If a shape is wrong or the matrix is not a rotation.
     """
     rotation = numbers(where, "rotation", rotation, (3,), (3, 1), (1, 3), (3, 3))
     translation = numbers(where, "translation", translation, (3,), (3, 1), (1, 3))
@@ -91,13 +99,12 @@ def pose(where, rotation, translation, metres):
     return np.column_stack([rotation, translation.ravel() * metres])
 
 
-def unit_in_metres(where, unit):
-    """Return the length of a unit that a file names: m, cm or mm."""
+def unit_in_metres(where: str | os.PathLike[str], unit: object) -> float:
+    """Return the length in metres of a unit that a file names: m, cm or mm."""
     if unit == UNSCALED:
         raise InputError(
             f"{where}: expected cameras in metres, found unscaled ones of a session without a "
-            "court; give the "
-            "session a court and click its points"
+            "court; give the session a court and click its points"
         )
     if not isinstance(unit, str) or unit not in METRES:
         raise InputError(
@@ -106,8 +113,8 @@ def unit_in_metres(where, unit):
     return METRES[unit]
 
 
-def check_distinct(path, cameras):
-    """Return `cameras`; raise `InputError` if there is none, or two have one name."""
+def check_distinct(path: str | os.PathLike[str], cameras: Cameras) -> Cameras:
+    """Return `cameras`; raise `InputError` if there are none or two have the same name."""
     names = [camera.name for camera in cameras]
     if not names or len(set(names)) < len(names):
         raise InputError(
@@ -116,18 +123,18 @@ def check_distinct(path, cameras):
     return cameras
 
 
-def toml(text):
-    """Return the tables of a TOML text; raise an error of `study.errors.DAMAGED` where it is none."""
+def toml(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text; raise an error of `study.errors.DAMAGED` if it is none."""
     tables = tomllib.loads(text)
-    str(tables)  # of numbers of thousands of digits, and brackets without end, nothing can be said
+    str(tables)  # raises for numbers of thousands of digits and for endless nesting
     return tables
 
 
-def short(value):
-    """Return a value as at most 80 characters of one line."""
+def short(value: object) -> str:
+    """Return a value as one line of at most 80 characters."""
     return " ".join(str(value).split())[:80]
 
 
-def times(size):
+def times(size: Sequence[int]) -> str:
     """Return a size in px as text, `1080x1920`."""
     return f"{size[0]}x{size[1]}"

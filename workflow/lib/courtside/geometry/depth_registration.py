@@ -1,43 +1,42 @@
-"""Bring the pictures of a depth camera and of the colour camera beside it together."""
+"""Register depth images to the picture of the colour camera beside the depth camera.
+
+Depth images hold the distance along the camera's axis, metres; 0 or NaN where nothing was measured.
+"""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
 
 NEAREST_M, FARTHEST_M = 0.1, 20.0  # beyond what depth cameras for bodies measure
-SLACK_PX = 0.25
-STEP_PX = 0.5  # between two places that are tried along a colour pixel's ray, in the depth picture
-MOST_STEPS = 4096
+SLACK_PX = 0.25  # ASSUME: closes the gaps on slanted surfaces
+STEP_PX = 0.5  # along a colour pixel's ray, in the depth image: no depth pixel is stepped over
+MOST_STEPS = 4096  # ASSUME: bounds the memory of a call
 
 
-def rays(camera):
-    """Return the directions that a camera's pixels look along.
+def rays(camera: Camera) -> NDArray:
+    """Return the viewing directions (H, W, 2) of a camera's pixels on the z = 1 plane.
 
-    Parameters
-    ----------
-    camera : Camera
-
-    Returns
-    -------
-    directions : (H, W, 2) float
-        On the z = 1 plane; NaN where the lens shows none.
+    NaN where the lens model has none.
     """
     columns, rows = np.meshgrid(np.arange(camera.size[0]), np.arange(camera.size[1]))
     return cameras.undistort(camera, np.stack([columns, rows], axis=-1))
 
 
-def points_in_colour(depth_m, depth_rays, colour, colour_from_depth):
-    """Place every depth pixel in the colour picture.
+def points_in_colour(
+    depth_m: NDArray, depth_rays: NDArray, colour: Camera, colour_from_depth: NDArray
+) -> tuple[NDArray, NDArray]:
+    """Project every depth pixel into the colour picture.
 
     Parameters
     ----------
     depth_m : (h, w) float
-        Along the depth camera's axis, metres; 0 or NaN where there is none.
     depth_rays : (h, w, 2) float
         From `rays` of the depth camera.
     colour : Camera
-        Of the colour picture; its place in the world does not matter.
+        Its pose in the world does not matter.
     colour_from_depth : (3, 4) float
 
     Returns
@@ -60,28 +59,24 @@ def points_in_colour(depth_m, depth_rays, colour, colour_from_depth):
     return cameras.project(_at_origin(colour), xyz), np.where(xyz[..., 2] > 0, xyz[..., 2], np.nan)
 
 
-def align(depth_m, depth_camera, colour, colour_from_depth, *, depth_rays=None):
-    """Return the depth that each colour pixel sees.
+def align(
+    depth_m: NDArray,
+    depth_camera: Camera,
+    colour: Camera,
+    colour_from_depth: NDArray,
+    *,
+    depth_rays: NDArray | None = None,
+) -> NDArray:
+    """Return the depth (H, W) of each colour pixel, along the colour camera's axis.
 
-    Parameters
-    ----------
-    depth_m : (h, w) float
-        Along the depth camera's axis, metres; 0 or NaN where there is none.
-    depth_camera, colour : Camera
-    colour_from_depth : (3, 4) float
-    depth_rays : (h, w, 2) float, optional
-        From `rays` of the depth camera, where many pictures are aligned.
-
-    Returns
-    -------
-    z : (H, W) float
-        Along the colour camera's axis, metres; NaN where no depth pixel falls.
+    NaN where no depth pixel falls. `depth_m` is (h, w), `colour_from_depth` (3, 4).
+    To align many pictures, compute `depth_rays` once, by `rays` of the depth camera.
 
     Notes
     -----
-    A depth pixel covers every colour pixel whose centre lies within its projected square or a quarter of a
-    pixel beside it, which closes gaps on slanting surfaces, and at the least the one nearest to its own
-    centre. Of several the nearest is seen.
+    A depth pixel covers every colour pixel whose centre lies within its projected square or
+    `SLACK_PX` beside it, which closes gaps on slanted surfaces, and at least the colour pixel
+    nearest to its own centre. Where several overlap, the nearest surface counts.
     """
     depth_rays = rays(depth_camera) if depth_rays is None else depth_rays
     xy, z = points_in_colour(depth_m, depth_rays, colour, colour_from_depth)
@@ -113,15 +108,19 @@ def align(depth_m, depth_camera, colour, colour_from_depth, *, depth_rays=None):
 
 
 def sample(
-    depth_m, depth_camera, colour, colour_from_depth, xy, *, range_m=(NEAREST_M, FARTHEST_M)
-):
-    """Return how far colour pixels see, by following their rays through the depth picture.
+    depth_m: NDArray,
+    depth_camera: Camera,
+    colour: Camera,
+    colour_from_depth: NDArray,
+    xy: ArrayLike,
+    *,
+    range_m: tuple[float, float] = (NEAREST_M, FARTHEST_M),
+) -> NDArray:
+    """Return the depth at colour pixels, by following their rays through the depth image.
 
     Parameters
     ----------
     depth_m : (h, w) float
-        Along the depth camera's axis, metres; 0 or NaN where there is none.
-    depth_camera, colour : Camera
     colour_from_depth : (3, 4) float
     xy : (N, 2) float
         Px of the colour picture; NaN where missing.
@@ -131,14 +130,14 @@ def sample(
     Returns
     -------
     z : (N,) float
-        Along the colour camera's axis, metres: of the first depth pixel on the way that lies on the ray;
-        NaN where there is none, as for a ray that passes behind what the depth camera sees.
+        Along the colour camera's axis, metres, of the first depth pixel on the ray; NaN where there
+        is none, as for a ray that passes behind what the depth camera sees.
 
     Notes
     -----
-    The way is divided evenly in 1 / z, so that the picture is crossed in steps of half a pixel. A depth
-    pixel lies on the ray if it is not farther from it than the next place tried: the cameras stand close
-    together, and depth that differs by less shows no parallax.
+    The ray is divided evenly in 1 / z, which gives steps of half a pixel in the depth image. A
+    depth pixel lies on the ray if its distance from it is at most one step: the cameras stand close
+    together, and smaller depth differences cause no parallax.
     """
     depth_m = np.where(depth_m > 0, depth_m, np.inf)
     xy = np.asarray(xy, dtype=float).reshape(-1, 2)
@@ -161,15 +160,17 @@ def sample(
     return np.where(hit.any(axis=1) & np.isfinite(xy).all(axis=-1), z_found, np.nan)
 
 
-def _in_depth(depth_camera, depth_from_colour, directions, z):
-    """Return where points at depths (S,) along directions (N, 3) lie in the depth picture, (N, S, 2)."""
+def _in_depth(
+    depth_camera: Camera, depth_from_colour: NDArray, directions: NDArray, z: NDArray
+) -> NDArray:
+    """Return depth-image px (N, S, 2) of points at depths (S,) along directions (N, 3)."""
     xyz = directions[:, np.newaxis] * z[:, np.newaxis]
     in_depth = xyz @ depth_from_colour[:, :3].T + depth_from_colour[:, 3]
     return cameras.project(_at_origin(depth_camera), in_depth)
 
 
-def _at_origin(camera):
-    """Return the camera with the world as its own axes."""
+def _at_origin(camera: Camera) -> Camera:
+    """Return the camera at the origin of the world, along its axes."""
     if np.array_equal(camera.cam_from_world, np.eye(3, 4)):
         return camera
-    return cameras.Camera(camera.name, camera.size, camera.K, camera.dist, np.eye(3, 4))
+    return Camera(camera.name, camera.size, camera.K, camera.dist, np.eye(3, 4))

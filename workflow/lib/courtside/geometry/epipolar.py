@@ -1,43 +1,30 @@
-"""Epipolar geometry of two calibrated cameras: how far two pixels are from showing one point."""
+"""Epipolar geometry of two calibrated cameras.
+
+A straight pixel is what a lens without distortion would show, px about the principal point.
+"""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
 
-TINY = 1e-12
+TINY = 1e-12  # keeps divisions finite; far below any distance in px
 
 
-def straight_px(camera, xy):
-    """Return pixels (..., 2) as a lens without distortion shows them, about the principal point, px.
-
-    Parameters
-    ----------
-    camera : Camera
-    xy : (..., 2) float
-        Distorted px; NaN where missing.
-    """
+def straight_px(camera: Camera, xy: ArrayLike) -> NDArray:
+    """Return the straight px (..., 2) of distorted px (..., 2), NaN where missing."""
     return camera_models.undistort(camera, xy) * focal_px(camera)
 
 
-def focal_px(camera):
+def focal_px(camera: Camera) -> float:
     """Return the mean of a camera's two focal lengths, px."""
     return (camera.K[0, 0] + camera.K[1, 1]) / 2
 
 
-def fundamental(camera_a, camera_b):
-    """Return the matrix of two cameras whose straight pixels fulfil `b' F a = 0`.
+def fundamental(camera_a: Camera, camera_b: Camera) -> NDArray:
+    """Return the fundamental matrix (3, 3) for homogeneous straight px (x, y, 1): `b' F a = 0`.
 
-    Parameters
-    ----------
-    camera_a, camera_b : Camera
-
-    Returns
-    -------
-    fundamental : (3, 3) float
-        For homogeneous straight pixels (x, y, 1) in px about the principal points.
-
-    Notes
-    -----
     Hartley & Zisserman 2004, sec. 9.6.
     """
     b_from_a = camera_b.cam_from_world[:, :3] @ camera_a.cam_from_world[:, :3].T
@@ -51,44 +38,25 @@ def fundamental(camera_a, camera_b):
     return matrix / np.linalg.norm(matrix)
 
 
-def lines(matrix, xy):
-    """Return the epipolar lines (..., 3) of straight pixels (..., 2), with a unit normal.
+def lines(matrix: NDArray, xy: NDArray) -> NDArray:
+    """Return the epipolar lines (..., 3) of straight px (..., 2) of the other camera.
 
-    Parameters
-    ----------
-    matrix : (3, 3) float
-        Of `fundamental`; transposed for lines in the first camera.
-    xy : (..., 2) float
-        Straight px of the other camera.
-
-    Returns
-    -------
-    lines : (..., 3) float
-        `line @ (x, y, 1)` is the signed distance of a straight pixel, px.
+    `matrix` is of `fundamental`; transpose it for lines in the first camera. Normals have length 1:
+    `line @ (x, y, 1)` is the signed distance of a straight pixel, px.
     """
     line = xy @ matrix[:, :2].T + matrix[:, 2]
     return line / (np.hypot(line[..., 0], line[..., 1]) + TINY)[..., None]
 
 
-def distance_px(matrix, xy_a, xy_b):
-    """Return by how much two straight pixels miss one another, with a sign, px.
+def distance_px(matrix: NDArray, xy_a: NDArray, xy_b: NDArray) -> NDArray:
+    """Return the signed Sampson distance (...) of two straight px (..., 2), px; NaN where missing.
 
-    Parameters
-    ----------
-    matrix : (3, 3) float
-        Of `fundamental`.
-    xy_a, xy_b : (..., 2) float
-        Straight px; NaN where missing.
-
-    Returns
-    -------
-    distance_px : (...) float
-        To first order the least movement of both pixels together that lets their rays meet; its
-        standard deviation is the one of a coordinate where both pixels have equal noise.
+    To first order the least movement of both pixels together that lets their rays meet. Its
+    standard deviation is that of one coordinate if both pixels have equal noise.
 
     Notes
     -----
-    Sampson's distance: Hartley & Zisserman 2004, sec. 11.4.3.
+    Hartley & Zisserman 2004, sec. 11.4.3.
     """
     in_b = xy_a @ matrix[:, :2].T + matrix[:, 2]
     in_a = xy_b @ matrix[:2, :2] + matrix[2, :2]

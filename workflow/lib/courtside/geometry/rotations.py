@@ -1,33 +1,29 @@
-"""Rotation matrices and rotation vectors: conversion, interpolation, rotations between directions."""
+"""Rotation matrices and vectors: conversion, interpolation, rotations between directions."""
+
+from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 ROUNDING = 1e-4  # files print rotations with as few as six decimals
+SMALL = 1e-6  # radians: below, the first terms of the series
+NEARLY_OPPOSITE = -1 + 1e-9  # ASSUME: cosine below which the plane of the swing is not determined
+NO_TURN = np.eye(3)
 
 
-def rotation_from_rodrigues(vector):
+def rotation_from_rodrigues(vector: ArrayLike) -> NDArray:
     """Return the rotation matrix (3, 3) of a rotation vector (3,): axis times angle in radians."""
     return Rotation.from_rotvec(vector).as_matrix()
 
 
-def rodrigues_from_rotation(rotation):
+def rodrigues_from_rotation(rotation: ArrayLike) -> NDArray:
     """Return the rotation vector (3,), axis times angle in radians, of a rotation matrix (3, 3)."""
     return Rotation.from_matrix(rotation).as_rotvec()
 
 
-def nearest_rotation(matrix):
-    """Return the rotation nearest to a matrix that is one but for rounding.
-
-    Parameters
-    ----------
-    matrix : (3, 3) float
-        A rotation as a file prints it.
-
-    Returns
-    -------
-    rotation : (3, 3) float
-        Orthonormal to machine precision (polar factor).
+def nearest_rotation(matrix: NDArray) -> NDArray:
+    """Return the rotation (3, 3) nearest to a printed one: its polar factor.
 
     Raises
     ------
@@ -44,59 +40,44 @@ def nearest_rotation(matrix):
     return rotation
 
 
-def unit(vectors):
-    """Return vectors (..., 3) at length 1; NaN where they have none."""
+def unit(vectors: NDArray) -> NDArray:
+    """Return vectors (..., 3) scaled to length 1; NaN for zero vectors."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return vectors / np.where(length > 0, length, np.nan)
 
 
-def invert(b_from_a):
+def invert(b_from_a: NDArray) -> NDArray:
     """Return `a_from_b` (3, 4) of a rigid transform `b_from_a` (3, 4)."""
     rotation = b_from_a[:, :3].T
     return np.column_stack([rotation, -rotation @ b_from_a[:, 3]])
 
 
-SMALL = 1e-6  # radians: below, the first terms of the series
-
-
-def matrices_from_vectors(vectors):
+def matrices_from_vectors(vectors: ArrayLike) -> NDArray:
     """Return the rotations (..., 3, 3) of rotation vectors (..., 3), radians."""
     vectors = np.asarray(vectors, float)
     flat = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
     return flat.reshape(*vectors.shape, 3)
 
 
-def vectors_from_matrices(rotations):
+def vectors_from_matrices(rotations: ArrayLike) -> NDArray:
     """Return the rotation vectors (..., 3), radians, of rotations (..., 3, 3)."""
     rotations = np.asarray(rotations, float)
     flat = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
     return flat.reshape(rotations.shape[:-1])
 
 
-def cross_matrices(vectors):
-    """Return the matrices (..., 3, 3) that take the cross product of vectors (..., 3) with what follows."""
+def cross_matrices(vectors: ArrayLike) -> NDArray:
+    """Return the matrices (..., 3, 3) whose product with another vector is the cross product."""
     x, y, z = np.moveaxis(np.asarray(vectors, float), -1, 0)
     none = np.zeros_like(x)
     rows = [none, -z, y, z, none, -x, -y, x, none]
     return np.stack(rows, -1).reshape(*x.shape, 3, 3)
 
 
-def left_jacobians(vectors):
-    """Return how a rotation turns, in the outer frame, as its rotation vector changes.
+def left_jacobians(vectors: NDArray) -> NDArray:
+    """Return the left Jacobians J (..., 3, 3) of rotation vectors v (..., 3), radians.
 
-    Parameters
-    ----------
-    vectors : (..., 3) float
-        Rotation vectors, radians.
-
-    Returns
-    -------
-    jacobians : (..., 3, 3) float
-        J with exp(v + dv) = exp(J dv) exp(v) to first order.
-
-    Notes
-    -----
-    Barfoot 2017, eq. 7.77.
+    exp(v + dv) = exp(J dv) exp(v) to first order: Barfoot 2017, eq. 7.77.
     """
     angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
     safe = np.maximum(angle, SMALL)
@@ -106,20 +87,10 @@ def left_jacobians(vectors):
     return np.eye(3) + first * cross + second * cross @ cross
 
 
-def interpolate(time_s, rotations, wanted_s):
-    """Return rotations between samples, turning at constant speed from one to the next.
+def interpolate(time_s: NDArray, rotations: NDArray, wanted_s: NDArray) -> NDArray:
+    """Interpolate rotations (T, ..., 3, 3) at times (N,) by slerp.
 
-    Parameters
-    ----------
-    time_s : (T,) float
-        Increasing.
-    rotations : (T, ..., 3, 3) float
-    wanted_s : (N,) float
-        Times outside the samples take the nearest one.
-
-    Returns
-    -------
-    rotations : (N, ..., 3, 3) float
+    Times outside the increasing samples take the nearest one.
     """
     before, share = interpolation_shares(time_s, wanted_s)
     start, stop = rotations[before], rotations[np.minimum(before + 1, len(time_s) - 1)]
@@ -127,26 +98,22 @@ def interpolate(time_s, rotations, wanted_s):
     return start @ matrices_from_vectors(step * share.reshape((-1,) + (1,) * (step.ndim - 1)))
 
 
-def interpolation_shares(time_s, wanted_s):
+def interpolation_shares(time_s: NDArray, wanted_s: NDArray) -> tuple[NDArray, NDArray]:
     """Return the sample before each wanted time (N,) and the share of the way to the next (N,)."""
     wanted_s = np.clip(wanted_s, time_s[0], time_s[-1])
     before = np.clip(np.searchsorted(time_s, wanted_s, side="right") - 1, 0, len(time_s) - 2)
     return before, (wanted_s - time_s[before]) / (time_s[before + 1] - time_s[before])
 
 
-NEARLY_OPPOSITE = -1 + 1e-9
-NO_TURN = np.eye(3)
-
-
-def unit_vector(vector):
-    """Return a vector (3,) of length 1 of the same direction."""
+def unit_vector(vector: NDArray) -> NDArray:
+    """Return a vector (3,) of length 1 of the same direction; faster than `unit` on one vector."""
     return vector / np.sqrt(vector @ vector)
 
 
-def swing(start, end):
+def swing(start: NDArray, end: NDArray) -> NDArray:
     """Return the smallest rotation (3, 3) that turns one unit vector into another.
 
-    Of opposite vectors there are many; one of them is returned.
+    For opposite vectors it is one of many.
     """
     cosine = start @ end
     if cosine < NEARLY_OPPOSITE:
@@ -156,42 +123,25 @@ def swing(start, end):
     return NO_TURN + cross + cross @ cross / (1 + cosine)
 
 
-def about_axis(axis, angle):
+def about_axis(axis: NDArray, angle: float) -> NDArray:
     """Return the rotation (3, 3) about a unit vector by an angle, radians."""
     cross = skew(axis)
     return NO_TURN + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
-def angle_about(axis, start, end):
-    """Return the angle from one vector to another as seen along an axis, radians in -pi..pi.
+def angle_about(axis: NDArray, start: NDArray, end: NDArray) -> float:
+    """Return the angle from one vector to another about a unit vector, radians in -pi..pi.
 
-    Parameters
-    ----------
-    axis : (3,) float
-        Unit vector; only the parts of the others orthogonal to it count.
-    start, end : (3,) float
-
-    Returns
-    -------
-    angle : float
+    Only the parts of the vectors (3,) orthogonal to the axis count.
     """
     start, end = start - (start @ axis) * axis, end - (end @ axis) * axis
     return float(np.arctan2(axis @ cross3(start, end), start @ end))
 
 
-def twist(rotation, axis):
-    """Return by how much a rotation turns about an axis, radians in -pi..pi (swing-twist decomposition).
+def twist(rotation: NDArray, axis: NDArray) -> float:
+    """Return the twist of a rotation (3, 3) about a unit vector (3,), radians in -pi..pi.
 
-    Parameters
-    ----------
-    rotation : (3, 3) float
-    axis : (3,) float
-        Unit vector.
-
-    Returns
-    -------
-    angle : float
-        What is left of the rotation after the smallest one that turns the axis as it does.
+    Swing-twist decomposition: what remains after the smallest rotation that moves the axis alike.
     """
     rest = swing(axis, rotation @ axis).T @ rotation
     sine = 0.5 * np.array(
@@ -200,37 +150,26 @@ def twist(rotation, axis):
     return float(np.arctan2(sine @ axis, (np.trace(rest) - 1) / 2))
 
 
-def shares(start, end, parts):
-    """Return rotations on the shortest way from one to another.
-
-    Parameters
-    ----------
-    start, end : (3, 3) float
-    parts : list of float
-        How much of the way, 0..1.
-
-    Returns
-    -------
-    rotations : list of (3, 3) float
-    """
+def shares(start: NDArray, end: NDArray, parts: Iterable[float]) -> list[NDArray]:
+    """Return rotations at shares 0..1 of the shortest way from one rotation (3, 3) to another."""
     turn = start.T @ end
     sine = 0.5 * np.array(
         [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
     )
     length = np.sqrt(sine @ sine)
     angle = np.arctan2(length, (np.trace(turn) - 1) / 2)
-    if length < 1e-9:  # ASSUME: nobody turns the head or the trunk by half a turn
+    if length < 1e-9:  # ASSUME: no turn, for nobody turns the head or the trunk by half a turn
         return [start for _ in parts]
     return [start @ about_axis(sine / length, part * angle) for part in parts]
 
 
-def skew(vector):
+def skew(vector: NDArray) -> NDArray:
     """Return the matrix (3, 3) whose product with another vector is the cross product."""
-    x, y, z = vector.tolist()  # arithmetic on NumPy's own numbers takes several times as long
+    x, y, z = vector.tolist()  # Python floats are several times as fast as NumPy scalars
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
-def cross3(first, second):
-    """Return the cross product (3,) of two vectors; NumPy's own takes ten times as long on so few."""
+def cross3(first: NDArray, second: NDArray) -> NDArray:
+    """Return the cross product (3,) of two vectors; ten times as fast as NumPy's on one pair."""
     (a, b, c), (x, y, z) = first.tolist(), second.tolist()
     return np.array([b * z - c * y, c * x - a * z, a * y - b * x])

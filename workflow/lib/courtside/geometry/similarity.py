@@ -1,23 +1,27 @@
 """Similarity transforms (rotation, translation, scale) between frames, fitted to points."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
-MOST_SUBSETS = 2000
-# Of the length of a normal vector in three dimensions, sigma 1 per axis.
+MOST_SUBSETS = 2000  # ASSUME: all subsets of up to 23 points, and an even choice of more
+# Of the length of a normal vector in three dimensions with standard deviation 1 per axis.
 MEDIAN = 1.538
 QUANTILE_99 = 3.368
-BETTER = 4.0  # so many times better must a mirrored fit be before the points are called mirrored
-MAX_ROUNDS = 20
+BETTER = 4.0  # ASSUME: points are mirrored if their mirror image fits this many times better
+MAX_ROUNDS = 20  # ASSUME: the inliers settle in a few
 
 
 @dataclass(frozen=True, eq=False)
 class Sim3:
-    """A transform from a to b, named `b_from_a`: x_in_b = scale * rotation @ x_in_a + translation.
+    """A similarity from a to b, named `b_from_a`: x_in_b = scale * rotation @ x_in_a + translation.
 
     Attributes
     ----------
@@ -30,37 +34,27 @@ class Sim3:
     """
 
     scale: float
-    rotation: np.ndarray
-    translation: np.ndarray
+    rotation: NDArray
+    translation: NDArray
 
-    def points(self, x_in_a):
+    def points(self, x_in_a: ArrayLike) -> NDArray:
         """Return points (..., 3) of a in b."""
         return self.scale * np.asarray(x_in_a, float) @ self.rotation.T + self.translation
 
-    def inverse(self):
+    def inverse(self) -> Sim3:
         """Return `a_from_b`."""
         rotation = self.rotation.T
         return Sim3(1 / self.scale, rotation, -rotation @ self.translation / self.scale)
 
-    def camera(self, camera):
-        """Return a camera known in a as a camera in b: the same picture of the same points.
-
-        Parameters
-        ----------
-        camera : courtside.geometry.camera.Camera
-            Its `cam_from_world` is from a; lengths along its axes are in units of a.
-
-        Returns
-        -------
-        camera : courtside.geometry.camera.Camera, with lengths in units of b.
-        """
+    def camera(self, camera: Camera) -> Camera:
+        """Return a camera known in a as a camera in b, lengths in units of b: the same picture."""
         rotation = camera.cam_from_world[:, :3] @ self.rotation.T
         shift = self.scale * camera.cam_from_world[:, 3] - rotation @ self.translation
         return replace(camera, cam_from_world=np.column_stack([rotation, shift]))
 
 
-def umeyama(x_in_a, x_in_b, weight=None):
-    """Find the similarity that brings points of a nearest to their places in b, by least squares.
+def umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, weight: ArrayLike | None = None) -> Sim3:
+    """Fit the similarity `b_from_a` to corresponding points by weighted least squares.
 
     Parameters
     ----------
@@ -69,10 +63,6 @@ def umeyama(x_in_a, x_in_b, weight=None):
     weight : (N,) float, optional
         Of the squared distances.
 
-    Returns
-    -------
-    b_from_a : Sim3
-
     Raises
     ------
     ValueError
@@ -80,7 +70,8 @@ def umeyama(x_in_a, x_in_b, weight=None):
 
     Notes
     -----
-    Umeyama 1991, eq. 40-42. Never a reflection: of mirrored points it gives the best rotation. See `robust`.
+    Umeyama 1991, eq. 40-42. Never a reflection: mirrored points get the best rotation. See
+    `robust`.
     """
     x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
     weight = np.ones(len(x_in_a)) if weight is None else np.asarray(weight, float)
@@ -96,34 +87,34 @@ def umeyama(x_in_a, x_in_b, weight=None):
     return Sim3(float(scale), rotation, translation)
 
 
-def is_collinear(xyz):
-    """Say whether points (N, 3) are fewer than three or lie on one line, to 0.1 % of their extent."""
+def is_collinear(xyz: NDArray) -> bool:
+    """Say whether points (N, 3) are fewer than three or on one line, to 0.1 % of their extent."""
     return len(xyz) < 3 or flatness(xyz)[1] < 1e-3
 
 
-def flatness(xyz):
-    """Return the extent of points (N, 3) along their three principal axes relative to the first, (3,)."""
+def flatness(xyz: NDArray) -> NDArray:
+    """Return the extents (3,) of points (N, 3) along their principal axes, over the first."""
     extent = np.linalg.svd(xyz - np.mean(xyz, axis=0), compute_uv=False)
     extent = np.pad(extent, (0, 3 - len(extent)))
     return extent / max(extent[0], np.finfo(float).tiny)
 
 
-def robust(x_in_a, x_in_b, sigma):
-    """Find the similarity that most points agree on, and say which these are.
+def robust(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3, NDArray]:
+    """Fit the similarity that most points agree on, and say which these are.
 
     Parameters
     ----------
     x_in_a, x_in_b : (P, 3) float
         The same points in both frames; NaN where missing in one.
     sigma : float or (P,) float
-        Standard deviation of a point per axis, in units of b. Where points scatter more, all are taken to be
-        as many times worse.
+        Standard deviation of a point per axis, in units of b. If the points scatter more, all
+        sigmas are scaled up by one factor.
 
     Returns
     -------
     b_from_a : Sim3
     accepted : (P,) bool
-        Points that it rests on: those within the 99 % limit.
+        Inliers: points within the 99 % limit.
 
     Raises
     ------
@@ -132,9 +123,10 @@ def robust(x_in_a, x_in_b, sigma):
 
     Notes
     -----
-    Least median of squares (Rousseeuw & Leroy 1987) over all subsets of three points: no random numbers. Then
-    weighted least squares on the points within the limit, until these stay the same. Mirrored points that
-    all lie in one plane fit a rotation as well: they are told apart by where the cameras are, not here.
+    Least median of squares (Rousseeuw & Leroy 1987) over all subsets of three points: no random
+    numbers. Then weighted least squares on the inliers until they stay the same. Mirrored points
+    that all lie in one plane fit a rotation as well: only the positions of the cameras tell them
+    apart, which this function does not know.
     """
     x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
     sigma = np.broadcast_to(np.asarray(sigma, float), len(x_in_a))
@@ -143,8 +135,9 @@ def robust(x_in_a, x_in_b, sigma):
     if is_collinear(x_in_a[known]) or is_collinear(x_in_b[known]):
         line = ", all on one line" if len(known) > 2 else ""
         raise InputError(
-            f"court points: expected three or more that are not on one line, found {len(known)} that two "
-            f"cameras see{line}; click more points, in two cameras or more each"
+            "court points: expected three or more that are not on one line, found "
+            f"{len(known)} that two cameras see{line}; click more points, in two cameras or more "
+            "each"
         )
     places = x_in_a[known], x_in_b[known], sigma[known]
     b_from_a, agree = _select(*places)
@@ -154,7 +147,7 @@ def robust(x_in_a, x_in_b, sigma):
     return b_from_a, accepted
 
 
-def _refuse_mirrored(b_from_a, x_in_a, x_in_b, sigma):
+def _refuse_mirrored(b_from_a: Sim3, x_in_a: NDArray, x_in_b: NDArray, sigma: NDArray) -> None:
     if len(x_in_a) < 4:
         return
     flipped = x_in_a * [1, 1, -1]
@@ -163,14 +156,14 @@ def _refuse_mirrored(b_from_a, x_in_a, x_in_b, sigma):
     as_mirrored = _distance(mirrored, flipped, x_in_b, sigma)[agree]
     if np.sqrt(np.mean(as_found**2)) > BETTER * max(1, np.sqrt(np.mean(as_mirrored**2))):
         raise InputError(
-            "court points: expected a right-handed world (x along the short side, y along the long side, z "
-            "up), found the points of its mirror image; exchange the names of the left and right "
-            "points in all cameras, or undo the flip of the videos"
+            "court points: expected a right-handed world (x along the short side, y along the long "
+            "side, z up), found the points of its mirror image; exchange the names of the left and "
+            "right points in all cameras, or undo the flip of the videos"
         )
 
 
-def _select(x_in_a, x_in_b, sigma):
-    """Return the similarity that most points agree on, and which do, (P,) bool."""
+def _select(x_in_a: NDArray, x_in_b: NDArray, sigma: NDArray) -> tuple[Sim3, NDArray]:
+    """Return the similarity that most points agree on, and the inliers (P,) bool."""
     n_points = len(x_in_a)
     subsets = np.array(list(combinations(range(n_points), 3)))
     subsets = subsets[:: -(-len(subsets) // MOST_SUBSETS)]
@@ -182,7 +175,7 @@ def _select(x_in_a, x_in_b, sigma):
     best = np.argmin(np.nan_to_num(distance[:, quorum], nan=np.inf))
     fitted = Sim3(float(scale[best]), rotation[best], shift[best])
     found = _distance(fitted, x_in_a, x_in_b, sigma)
-    # The three points of the subset fit by themselves: the limit is wide at first.
+    # Three points fit themselves, which makes the scatter look small: start with a wide limit.
     now = found <= 2 * QUANTILE_99 * max(1, distance[best, quorum] / MEDIAN)
     agree = np.zeros(n_points, dtype=bool)
     for _ in range(MAX_ROUNDS):
@@ -195,12 +188,12 @@ def _select(x_in_a, x_in_b, sigma):
     return fitted, agree
 
 
-def _distance(b_from_a, x_in_a, x_in_b, sigma):
+def _distance(b_from_a: Sim3, x_in_a: NDArray, x_in_b: NDArray, sigma: NDArray) -> NDArray:
     return np.linalg.norm(b_from_a.points(x_in_a) - x_in_b, axis=1) / sigma
 
 
-def _fit(x_in_a, x_in_b, weight):
-    """Fit similarities to (..., N, 3) points: scale (...), rotation (..., 3, 3), translation (..., 3)."""
+def _fit(x_in_a: NDArray, x_in_b: NDArray, weight: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Fit similarities to (..., N, 3) points: scale (...), rotation (..., 3, 3), shift (..., 3)."""
     share = (weight / weight.sum(axis=-1, keepdims=True))[..., None]
     middle_a = (share * x_in_a).sum(axis=-2, keepdims=True)
     middle_b = (share * x_in_b).sum(axis=-2, keepdims=True)

@@ -1,16 +1,23 @@
-"""Triangulation of points seen by several cameras: plain DLT, least squares, and robust subsets of views.
+"""Triangulation from several cameras: plain DLT, least squares, and robust selection of views.
 
-Small matrices are solved for many points at once.
+C cameras, N points. `xy` is (C, N, 2) px, distorted as in the pictures, NaN where unseen. `score`
+is (C, N), the detector's confidence 0 to 1. `xyz` is (N, 3) m in the world, NaN where missing.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
 
-FADE = 4 / 3  # default of `fade_px`, in units of the limit
-START = 12.0  # the first robust kernel, in units of the last
+FADE = 4 / 3  # default of `fade_px`, in units of the limit: 20 px for 15, as in config/config.yaml
+# ASSUME: the schedule of the robust kernel; outliers of 80 to 400 px are left out (tests).
+START = 12.0  # the first kernel, in units of the last
 GRADUATION = 1.6  # each round narrows the kernel by this factor
 SETTLING = 5  # steps with the last kernel
 WIDEST = 2.0  # beyond this many limits a view is never used
@@ -19,47 +26,44 @@ BATCH = 20000  # points at a time: keeps the working set in the cache and memory
 
 @dataclass(frozen=True)
 class Triangulated:
-    """Points in the world with what is known of them.
+    """Triangulated points.
 
     Attributes
     ----------
     xyz : (N, 3) float
-        Metres; NaN where too few views are usable or agree.
+        NaN where too few views are usable or agree.
     covariance : (N, 3, 3) float
         From the keypoints' own noise, square metres; NaN where missing.
     accepted : (C, N) bool
         Views that the point rests on.
     error_px : (C, N) float
-        Distance of each view's keypoint, accepted or not, to the projected point; NaN without either.
+        Distance of each view's keypoint, accepted or not, to the projected point; NaN without
+        either.
     """
 
-    xyz: np.ndarray
-    covariance: np.ndarray
-    accepted: np.ndarray
-    error_px: np.ndarray
+    xyz: NDArray
+    covariance: NDArray
+    accepted: NDArray
+    error_px: NDArray
 
 
-def triangulate(xy, weight, cam_from_world):
-    """Triangulate points seen by calibrated cameras, by weighted DLT.
+def triangulate(xy: NDArray, weight: NDArray, cam_from_world: NDArray) -> NDArray:
+    """Triangulate points (N, 3) by weighted DLT.
 
     Parameters
     ----------
     xy : (C, N, 2) float
         Points on the undistorted, normalised image plane (z = 1, no unit); NaN where unseen.
     weight : (C, N) float
-        Weight of that camera's two rows; zero leaves the view out.
+        Weight of that camera's two rows; zero leaves the view out. Points with fewer than two
+        positive weights become NaN.
     cam_from_world : (C, 3, 4) float
         World to camera, translation in metres.
 
-    Returns
-    -------
-    xyz_in_world : (N, 3) float
-        Metres; NaN where fewer than two views have a positive weight.
-
     Notes
     -----
-    Hartley & Zisserman 2004, sec. 12.2, inhomogeneous form: points lie at finite distance. Minimises an
-    algebraic error: report the reprojection error beside it.
+    Hartley & Zisserman 2004, sec. 12.2, inhomogeneous form: points lie at finite distance.
+    Minimises an algebraic error: report the reprojection error beside it.
     """
     used = (weight > 0) & np.isfinite(xy).all(axis=-1)
     rows = xy[..., None] * cam_from_world[:, None, 2:3, :] - cam_from_world[:, None, :2, :]
@@ -71,19 +75,10 @@ def triangulate(xy, weight, cam_from_world):
     return xyz
 
 
-def triangulate_all(cameras, xy):
-    """Triangulate points from all views that show them, by least squares of the pixel errors.
+def triangulate_all(cameras: Sequence[Camera], xy: NDArray) -> NDArray:
+    """Triangulate points (N, 3) by least squares of the pixel errors in all views that show them.
 
-    Parameters
-    ----------
-    cameras : list of Camera, length C
-    xy : (C, N, 2) float
-        Px, distorted as in the pictures; NaN where unseen.
-
-    Returns
-    -------
-    xyz_in_world : (N, 3) float
-        Metres; NaN where fewer than two cameras see the point, or do not meet before all that do.
+    NaN where fewer than two cameras see the point, or where it lies behind one that does.
     """
     views = Views(cameras, xy, np.isfinite(xy).all(axis=-1).astype(float))
     found = np.full((xy.shape[1], 3), np.nan)
@@ -99,32 +94,33 @@ def triangulate_all(cameras, xy):
 
 
 def triangulate_robust(
-    cameras, xy, score, *, sigma_px, max_error_px, min_views=2, min_score=0.0, fade_px=None
-):
+    cameras: Sequence[Camera],
+    xy: NDArray,
+    score: NDArray,
+    *,
+    sigma_px: ArrayLike,
+    max_error_px: float,
+    min_views: int = 2,
+    min_score: float = 0.0,
+    fade_px: float | None = None,
+) -> Triangulated:
     """Triangulate points, leaving out views that disagree.
 
     Parameters
     ----------
-    cameras : list of Camera, length C
-        Calibrated views.
-    xy : (C, N, 2) float
-        Keypoints in px, distorted as in the pictures; NaN where unseen.
     score : (C, N) float
-        Detector confidence, 0 to 1; its square root scales the weight of a view.
+        Its square root scales the weight of a view.
     sigma_px : float or (N,) float
         Standard deviation per axis of a keypoint with score 1: scales the covariance only.
     max_error_px : float
-        The limit: a view is accepted where its keypoint lies this close to the projected point.
+        The limit: a view is accepted if its keypoint lies this close to the projected point.
     min_views : int
         Fewest accepted views of a point, at least 2.
     min_score : float
         Keypoints below it are not used.
     fade_px : float, optional
-        A view with this reprojection error has a quarter of its weight; 4/3 of the limit by default.
-
-    Returns
-    -------
-    triangulated : Triangulated
+        A view with this reprojection error has a quarter of its weight; 4/3 of the limit by
+        default.
 
     Raises
     ------
@@ -134,24 +130,30 @@ def triangulate_robust(
     Notes
     -----
     The start is a weighted DLT. Points with a view beyond the limit are solved again by graduated
-    non-convexity (Blake & Zisserman 1987; Yang et al. 2020): Gauss-Newton with Geman-McClure weights
-    whose scale shrinks from 12 times its last value, so that an outlier loses its weight before it
-    decides which views agree. All points then settle with the last kernel, `fade_px` wide: a view fades
-    as it disagrees instead of switching off, which keeps a point from jumping between frames when a view
-    hovers at the limit (a slightly wrong calibration makes views hover). Views beyond twice the limit
-    have no weight. Accepted are the views within the limit, and where these are fewer than `min_views`,
-    the closest ones within twice the limit.
+    non-convexity (Blake & Zisserman 1987; Yang et al. 2020): Gauss-Newton with Geman-McClure
+    weights whose scale shrinks from 12 times its last value, so that an outlier loses its weight
+    before the views that agree are chosen. All points then settle with the last kernel, `fade_px`
+    wide: a view fades as it disagrees instead of switching off, which keeps a point from jumping
+    between frames when a view is near the limit (a slightly wrong calibration causes this). Views
+    beyond twice the limit have no weight. Accepted are the views within the limit, and where these
+    are fewer than `min_views`, the closest ones within twice the limit.
     """
     check(cameras, xy, score, min_views)
     sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
     pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
-    limits = {
-        "fade_px": fade_px or FADE * max_error_px,
-        "max_error_px": max_error_px,
-        "min_views": min_views,
-        "min_score": min_score,
-    }
-    parts = [_solve(cameras, xy[:, s], score[:, s], sigma_px[s], **limits) for s in pieces]
+    parts = [
+        _solve(
+            cameras,
+            xy[:, piece],
+            score[:, piece],
+            sigma_px[piece],
+            fade_px=fade_px or FADE * max_error_px,
+            max_error_px=max_error_px,
+            min_views=min_views,
+            min_score=min_score,
+        )
+        for piece in pieces
+    ]
     return Triangulated(
         xyz=np.concatenate([part.xyz for part in parts]),
         covariance=np.concatenate([part.covariance for part in parts]),
@@ -160,14 +162,8 @@ def triangulate_robust(
     )
 
 
-def check(cameras, xy, score, min_views):
-    """Raise `ValueError` where the inputs of a triangulation contradict each other.
-
-    Parameters
-    ----------
-    cameras, xy, score, min_views
-        As for `triangulate_robust`.
-    """
+def check(cameras: Sequence[Camera], xy: NDArray, score: NDArray, min_views: int) -> None:
+    """Raise `ValueError` where the inputs of a triangulation contradict each other."""
     if xy.shape != (len(cameras), *score.shape[1:], 2) or score.ndim != 2:
         raise ValueError(
             f"expected xy (C, N, 2) and score (C, N) with C = {len(cameras)} cameras, "
@@ -177,7 +173,17 @@ def check(cameras, xy, score, min_views):
         raise ValueError(f"expected min_views of 2 or more, found {min_views}")
 
 
-def _solve(cameras, xy, score, sigma_px, *, fade_px, max_error_px, min_views, min_score):
+def _solve(
+    cameras: Sequence[Camera],
+    xy: NDArray,
+    score: NDArray,
+    sigma_px: NDArray,
+    *,
+    fade_px: float,
+    max_error_px: float,
+    min_views: int,
+    min_score: float,
+) -> Triangulated:
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
     usable = seen & (score >= min_score) & (score > 0)
     views = Views(cameras, xy, np.where(usable, score, 0.0))
@@ -194,7 +200,9 @@ def _solve(cameras, xy, score, sigma_px, *, fade_px, max_error_px, min_views, mi
     return Triangulated(xyz, covariance, accepted, error_px)
 
 
-def _select_and_refine(views, limit_px, fade_px, min_views):
+def _select_and_refine(
+    views: Views, limit_px: float, fade_px: float, min_views: int
+) -> tuple[NDArray, NDArray]:
     """Return points (N, 3), NaN where views disagree, and accepted views (C, N)."""
     xyz = _linear(views)
     bad = np.flatnonzero(((views.distance(xyz) > limit_px) & (views.weight > 0)).any(axis=0))
@@ -208,20 +216,20 @@ def _select_and_refine(views, limit_px, fade_px, min_views):
     return xyz, accepted & fine
 
 
-def _linear(views):
+def _linear(views: Views) -> NDArray:
     """Return points (N, 3) by weighted DLT, then one step of least squares."""
     xyz = triangulate(views.xy, np.sqrt(views.weight) * views.focal_px[:, None], views.matrix)
     return views.stepped(xyz, views.weight)
 
 
-def _accept(error, usable, limit_px, min_views):
-    """Accept views within the limit; where these are too few, the closest ones up to the widest limit."""
+def _accept(error: NDArray, usable: NDArray, limit_px: float, min_views: int) -> NDArray:
+    """Accept views within the limit; where these are too few, the closest up to `WIDEST` limits."""
     error = np.where(usable, error, np.inf)
     enough_px = np.sort(error, axis=0)[min_views - 1]
     return error <= np.clip(enough_px, limit_px, WIDEST * limit_px)
 
 
-def _graduate(views, xyz, fade_px):
+def _graduate(views: Views, xyz: NDArray, fade_px: float) -> NDArray:
     scale = START * fade_px
     while scale > fade_px:
         xyz = views.stepped(xyz, _faded(views, xyz, scale, np.inf))
@@ -229,37 +237,24 @@ def _graduate(views, xyz, fade_px):
     return xyz
 
 
-def _faded(views, xyz, scale_px, widest_px):
+def _faded(views: Views, xyz: NDArray, scale_px: float, widest_px: float) -> NDArray:
     """Return Geman-McClure weights (C, N): an error of `scale_px` leaves a quarter."""
     error = views.distance(xyz)
     return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)
 
 
-def noise_covariance(views, xyz, accepted, sigma_px):
-    """Return the covariance (N, 3, 3) of points from the noise of the views that they rest on, m2.
+def noise_covariance(views: Views, xyz: NDArray, accepted: NDArray, sigma_px: NDArray) -> NDArray:
+    """Return the covariance (N, 3, 3) m2 of points from the noise of their accepted views (C, N).
 
-    Parameters
-    ----------
-    views : Views
-    xyz : (N, 3) float
-    accepted : (C, N) bool
-    sigma_px : (N,) float
-        Standard deviation per axis of a keypoint with weight 1.
+    `sigma_px` (N,) is the standard deviation per axis of a keypoint with weight 1.
     """
     _, in_cam = views.residuals(np.nan_to_num(xyz))
-    square, _ = views.normal(in_cam, views.weight * accepted)
+    square = views.information(in_cam, views.weight * accepted)
     return inverse_3x3(square) * (sigma_px**2)[:, None, None]
 
 
-def reprojection_px(cameras, xy, xyz):
-    """Return the distance of keypoints to projected points, (C, N) px.
-
-    Parameters
-    ----------
-    cameras : list of Camera, length C
-    xy : (C, N, 2) float
-    xyz : (N, 3) float
-    """
+def reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDArray:
+    """Return the distance (C, N) px of keypoints to projected points."""
     projected = np.stack([camera_models.project(camera, xyz) for camera in cameras])
     return np.linalg.norm(projected - xy, axis=-1)
 
@@ -267,16 +262,10 @@ def reprojection_px(cameras, xy, xyz):
 class Views:
     """Keypoints of C cameras on the normalised plane.
 
-    Parameters
-    ----------
-    cameras : list of Camera, length C
-    xy : (C, N, 2) float
-        Px, distorted as in the pictures; NaN where unseen.
-    weight : (C, N) float
-        In px^-2, relative to score 1.
+    Made of `xy` (C, N, 2) px and `weight` (C, N) in px^-2, relative to score 1.
     """
 
-    def __init__(self, cameras, xy, weight):
+    def __init__(self, cameras: Sequence[Camera], xy: NDArray, weight: NDArray) -> None:
         self.xy = np.stack(
             [camera_models.undistort(c, points) for c, points in zip(cameras, xy, strict=True)]
         )
@@ -285,14 +274,14 @@ class Views:
         self.matrix = np.stack([camera.cam_from_world for camera in cameras])
         self.focal_px = np.array([(c.K[0, 0] + c.K[1, 1]) / 2 for c in cameras])
 
-    def of(self, at):
+    def of(self, at: NDArray) -> Views:
         """Return the same views of some of the points only."""
         part = object.__new__(Views)
         part.xy, part.weight = self.xy[:, at], self.weight[:, at]
         part.matrix, part.focal_px = self.matrix, self.focal_px
         return part
 
-    def residuals(self, xyz):
+    def residuals(self, xyz: NDArray) -> tuple[NDArray, NDArray]:
         """Return residuals (C, N, 2) px and points in each camera (C, N, 3) m."""
         rotation, shift = self.matrix[:, :, :3], self.matrix[:, :, 3]
         in_cam = xyz[None] @ rotation.transpose(0, 2, 1) + shift[:, None]
@@ -300,48 +289,61 @@ class Views:
         residual = (in_cam[..., :2] / depth - self.xy) * self.focal_px[:, None, None]
         return residual, in_cam
 
-    def normal(self, in_cam, weight, residual=None):
-        """Return J'WJ (N, 3, 3), and J'Wr (N, 3) where residuals are given."""
+    def _rows(self, in_cam: NDArray, weight: NDArray) -> tuple[NDArray, NDArray]:
+        """Return J (N, 2 C, 3) and J'W (N, 3, 2 C)."""
         scale = self.focal_px[:, None] / in_cam[..., 2]
         ratio = in_cam[..., :2] / in_cam[..., 2:]
         rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
         rows = rows * scale[..., None, None]
         weighted = rows * weight[..., None, None]
         flat = rows.transpose(1, 0, 2, 3).reshape(rows.shape[1], -1, 3)
-        flat_weighted = weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
-        square = flat_weighted @ flat
-        if residual is None:
-            return square, None
-        right = residual.transpose(1, 0, 2).reshape(rows.shape[1], -1, 1)
-        return square, (flat_weighted @ right)[..., 0]
+        return flat, weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
 
-    def stepped(self, xyz, weight):
+    def information(self, in_cam: NDArray, weight: NDArray) -> NDArray:
+        """Return J'WJ (N, 3, 3)."""
+        rows, weighted = self._rows(in_cam, weight)
+        return weighted @ rows
+
+    def normal(
+        self, in_cam: NDArray, weight: NDArray, residual: NDArray
+    ) -> tuple[NDArray, NDArray]:
+        """Return the normal equations: J'WJ (N, 3, 3) and J'Wr (N, 3)."""
+        rows, weighted = self._rows(in_cam, weight)
+        right = residual.transpose(1, 0, 2).reshape(len(rows), -1, 1)
+        return weighted @ rows, (weighted @ right)[..., 0]
+
+    def stepped(self, xyz: NDArray, weight: NDArray) -> NDArray:
         """Return points (N, 3) after a Gauss-Newton step; one whose system is singular stays."""
         residual, in_cam = self.residuals(xyz)
         square, right = self.normal(in_cam, weight, residual)
         return xyz - np.nan_to_num(solve_3x3(square, right))
 
-    def distance(self, xyz):
-        """Return how far keypoints are from the projected points, (C, N) px."""
+    def distance(self, xyz: NDArray) -> NDArray:
+        """Return the distance (C, N) px of keypoints to the projected points."""
         residual, _ = self.residuals(xyz)
         return np.sqrt(np.einsum("cni,cni->cn", residual, residual))
 
-    def in_front(self, xyz, which):
-        """Return which points (N,) are before all those cameras that `which` (C, N) names."""
+    def in_front(self, xyz: NDArray, which: NDArray) -> NDArray:
+        """Return which points (N,) are in front of all cameras that `which` (C, N) names."""
         _, in_cam = self.residuals(xyz)
         return ((in_cam[..., 2] > 0) | ~which).all(axis=0)
 
 
-def triangulate_plain(cameras, xy, score, *, sigma_px, min_views=2, min_score=0.0):
+def triangulate_plain(
+    cameras: Sequence[Camera],
+    xy: NDArray,
+    score: NDArray,
+    *,
+    sigma_px: ArrayLike,
+    min_views: int = 2,
+    min_score: float = 0.0,
+) -> Triangulated:
     """Triangulate points by a DLT over all views that see them, without weights.
 
     Parameters
     ----------
-    cameras : list of Camera, length C
-    xy : (C, N, 2) float
-        Keypoints in px, distorted as in the pictures; NaN where unseen.
     score : (C, N) float
-        Detector confidence, 0 to 1: chooses views, and weighs none.
+        Selects views, does not weigh them. `accepted` are all views used.
     sigma_px : float or (N,) float
         Standard deviation per axis of a keypoint: scales the covariance only.
     min_views : int
@@ -349,15 +351,11 @@ def triangulate_plain(cameras, xy, score, *, sigma_px, min_views=2, min_score=0.
     min_score : float
         Keypoints below it are not used.
 
-    Returns
-    -------
-    triangulated : courtside.geometry.triangulation.Triangulated
-        `accepted` are all views used.
-
     Notes
     -----
-    [Shishido2020, section 2]; Hartley & Zisserman 2004, sec. 12.2. The covariance is that of the point of
-    least squares in the pictures, to which a DLT is close where cameras are about equally far.
+    [Shishido2020, section 2]; Hartley & Zisserman 2004, sec. 12.2. The covariance is that of the
+    least-squares point in the pictures, to which a DLT is close if the cameras are about equally
+    far.
     """
     check(cameras, xy, score, min_views)
     used = np.isfinite(xy).all(axis=-1) & np.isfinite(score) & (score >= min_score) & (score > 0)
@@ -372,12 +370,12 @@ def triangulate_plain(cameras, xy, score, *, sigma_px, min_views=2, min_score=0.
     )
 
 
-def solve_3x3(matrix, right):
+def solve_3x3(matrix: NDArray, right: NDArray) -> NDArray:
     """Solve symmetric (N, 3, 3) systems for (N, 3) right sides; NaN where singular."""
     return np.einsum("nij,nj->ni", inverse_3x3(matrix), right)
 
 
-def inverse_3x3(matrix):
+def inverse_3x3(matrix: NDArray) -> NDArray:
     """Invert symmetric (N, 3, 3) matrices by cofactors; NaN where singular."""
     a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 0, 2]
     d, e, f = matrix[:, 1, 1], matrix[:, 1, 2], matrix[:, 2, 2]
