@@ -243,7 +243,7 @@ def test_file_gives_the_cameras_back(tmp_path):
 
 
 def test_file_is_as_peers_read_it(tmp_path):
-    """Pose2Sim takes every table but `metadata` in the file's order, aniposelib in the names' order."""
+    """Pose2Sim reads every table but `metadata` in file order, aniposelib in order of names."""
     many = [make(name=f"c{index}") for index in range(11)]
     cameras.write_toml(tmp_path / "cameras.toml", many, source="test")
     content = tomllib.loads((tmp_path / "cameras.toml").read_text(encoding="utf-8"))

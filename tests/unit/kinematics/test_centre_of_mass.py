@@ -1,4 +1,4 @@
-"""The centre of mass against the printed table's own second definitions and bodies with a known centre."""
+"""The centre of mass against the printed table's second definitions and known bodies."""
 
 from pathlib import Path
 
@@ -11,8 +11,9 @@ from courtside.study.errors import InputError
 from fixtures.people import footwork, walker
 
 TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
-# de Leva 1996, table 4: lengths in mm and the place of the centre in %, for men and women, where the same
-# segment is given between other points; what both say of the distance to their common end must agree.
+# de Leva 1996, table 4: lengths in mm and the place of the centre in %, for men and women, where
+# the same segment is given between other points; what both say of the distance to their common end
+# must agree.
 TRUNK_FROM_SUPRASTERNALE = {"m": (531.9, 44.86), "f": (529.3, 41.51)}
 TRUNK_FROM_MID_SHOULDER = {"m": 515.5, "f": 497.9}
 SHANK_TO_MALLEOLUS = {"m": (434.0, 44.59), "f": (432.3, 44.16)}
@@ -71,7 +72,8 @@ def test_a_standing_man_has_his_centre_at_the_height_that_is_measured():
         next((h for joint, h in heights.items() if name.endswith("_" + joint)), 1.0)
         for name in walker.SKELETON.joints
     ]
-    # A man of 1.75 m: 55 to 57 % of body height (Zatsiorsky 2002); the feet are put 5 cm too high here.
+    # A man of 1.75 m: 55 to 57 % of body height (Zatsiorsky 2002); the feet are put 5 cm too high
+    # here.
     assert 0.55 < weights("m") @ z / 1.75 < 0.575
 
 

@@ -48,7 +48,7 @@ def test_the_gain_at_the_cutoff_is_half_the_power(cutoff_hz, order):
     assert np.sqrt(2 * np.mean(middle**2)) == pytest.approx(np.sqrt(0.5), abs=0.01)
 
 
-def test_there_is_no_delay():
+def test_the_filter_has_no_delay():
     smoothed = filtering.smooth(record(wave(2.0)), [6.0], 4)
     ours, truth = smoothed.xyz[0, 120:480, 0, 0], wave(2.0)[120:480, 0, 0]
     lags = [np.dot(ours, np.roll(truth, lag)) for lag in (-1, 0, 1)]

@@ -1,4 +1,4 @@
-"""Angles of poses that are bent by known amounts, and whether their sigmas hold what they promise."""
+"""Angles of poses that are bent by known amounts, and the coverage of their sigmas."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ NONE = np.zeros((1, 3, 3))
 
 
 def hinge(degrees, n_frames=1):
-    """Return first, middle, last point of two segments of 0.4 and 0.3 m at an angle, turned in space."""
+    """Return the points of two segments of 0.4 and 0.3 m at an angle, turned in space."""
     rng = np.random.default_rng(5)
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     angle = np.radians(degrees)
@@ -59,7 +59,7 @@ def test_a_player_is_bent_as_he_was_made():
 
 
 def upright(elbow):
-    """Return (1, 12 joints) of a person who faces +y, arms straight towards `elbow` (of the left side)."""
+    """Return the angles of a person who faces +y, arms straight towards the left `elbow`."""
     joints, xyz = [], []
     for side, sign in (("left_", 1), ("right_", -1)):
         arm = np.multiply(elbow, [sign, 1, 1])
@@ -80,7 +80,7 @@ def upright(elbow):
 @pytest.mark.parametrize(
     ("elbow", "degrees"), [((0, 0, -1), 0), ((-1, 0, 0), 90), ((0, 1, 0), 90), ((0, 0, 1), 180)]
 )
-def test_zero_poses(elbow, degrees):
+def test_a_straight_body_has_zero_angles_and_the_elevation_of_its_arms(elbow, degrees):
     angles = upright(np.array(elbow, dtype=float))
     for side in ("left_", "right_"):
         assert angles[side + "shoulder_elevation"].degrees[0] == pytest.approx(degrees, abs=1e-5)

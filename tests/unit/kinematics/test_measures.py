@@ -1,4 +1,4 @@
-"""Speeds, accelerations and distances of people whose movement is a formula, and what their sigmas hold."""
+"""Speeds, accelerations and distances of formula-made movements, and their sigmas."""
 
 from dataclasses import replace
 from pathlib import Path

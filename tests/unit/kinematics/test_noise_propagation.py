@@ -1,4 +1,4 @@
-"""Gains of filters and derivatives against made-up noise, and the noise found again in made-up paths."""
+"""Gains of filters and derivatives against made-up noise, and the noise found in made-up paths."""
 
 import numpy as np
 import pytest

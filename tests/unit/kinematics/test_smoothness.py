@@ -16,7 +16,7 @@ def reach(seconds=1.0, rate_hz=RATE_HZ):
 
 
 def arc_length(spectrum, stop_hz):
-    """Return minus the length of a curve over frequencies scaled to 0..1, by adaptive integration."""
+    """Return minus the length of a curve over frequencies scaled to 0..1, by integration."""
 
     def step(share, d=1e-6):
         slope = (spectrum((share + d) * stop_hz) - spectrum((share - d) * stop_hz)) / (2 * d)

@@ -1,4 +1,4 @@
-"""Wrists on circles about the shoulders are on their own arcs, and not on the circle about the navel."""
+"""Wrists on circles about the shoulders are on their own arcs, not on that about the navel."""
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,7 @@ ASIDE, ARM, BACK = 0.25, 0.75, -0.05
 
 
 def swing(off=0.0, stretch_z=1.0):
-    """Return a body whose straight arms close from the sides to the middle in the second after the T-pose."""
+    """Return a body whose straight arms close in the second after the T-pose."""
     time_s = np.arange(0, 2.5, 1 / 60)
     meet = np.pi / 2 + np.arcsin(ASIDE / ARM)
     angle = np.clip(time_s - 1.0, 0, 1) * meet
@@ -57,7 +57,7 @@ def test_depth_that_is_pressed_flat_shows():
     assert np.all(rows.p95_distance > rows.mean_distance)
 
 
-def test_the_arms_that_cannot_meet():
+def test_arms_out_of_reach_have_no_meeting_point():
     left, _ = wrist_arcs.arcs(swing())
     short = wrist_arcs.Arc("left", left.time_s, left.path, np.array([0.25, 0.0]), 0.2)
     assert np.isnan(short.meeting[1])

@@ -23,17 +23,6 @@ TOLERANCE_PX = 1e-10  # of `undistort`: far below the noise of any keypoint, abo
 class Camera:
     """A calibrated camera with OpenCV's five distortion coefficients.
 
-    Attributes
-    ----------
-    size : (int, int)
-        Width and height, px.
-    K : (3, 3) float
-        Focal lengths and principal point, px, with the first pixel's centre at (0, 0); no skew.
-    dist : (5,) float
-        k1 k2 p1 p2 k3.
-    cam_from_world : (3, 4) float
-        Rotation, and translation in metres.
-
     Raises
     ------
     ValueError
@@ -41,10 +30,10 @@ class Camera:
     """
 
     name: str
-    size: tuple[int, int]
-    K: NDArray
-    dist: NDArray
-    cam_from_world: NDArray
+    size: tuple[int, int]  # width and height, px
+    K: NDArray  # (3, 3) px: first pixel's centre at (0, 0), no skew
+    dist: NDArray  # (5,): k1 k2 p1 p2 k3
+    cam_from_world: NDArray  # (3, 4): rotation, and translation in metres
 
     def __post_init__(self) -> None:
         for field, shape in (("K", (3, 3)), ("dist", (5,)), ("cam_from_world", (3, 4))):

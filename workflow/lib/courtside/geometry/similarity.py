@@ -21,21 +21,11 @@ MAX_ROUNDS = 20  # ASSUME: the inliers settle in a few
 
 @dataclass(frozen=True, eq=False)
 class Sim3:
-    """A similarity from a to b, named `b_from_a`: x_in_b = scale * rotation @ x_in_a + translation.
+    """A similarity `b_from_a`: x_in_b = scale * rotation @ x_in_a + translation."""
 
-    Attributes
-    ----------
-    scale : float
-        Units of b per unit of a.
-    rotation : (3, 3) float
-        Orthonormal, right-handed.
-    translation : (3,) float
-        In units of b.
-    """
-
-    scale: float
-    rotation: NDArray
-    translation: NDArray
+    scale: float  # units of b per unit of a
+    rotation: NDArray  # (3, 3): orthonormal, right-handed
+    translation: NDArray  # (3,): in units of b
 
     def points(self, x_in_a: ArrayLike) -> NDArray:
         """Return points (..., 3) of a in b."""

@@ -26,25 +26,12 @@ BATCH = 20000  # points at a time: keeps the working set in the cache and memory
 
 @dataclass(frozen=True)
 class Triangulated:
-    """Triangulated points.
+    """Triangulated points."""
 
-    Attributes
-    ----------
-    xyz : (N, 3) float
-        NaN where too few views are usable or agree.
-    covariance : (N, 3, 3) float
-        From the keypoints' own noise, square metres; NaN where missing.
-    accepted : (C, N) bool
-        Views that the point rests on.
-    error_px : (C, N) float
-        Distance of each view's keypoint, accepted or not, to the projected point; NaN without
-        either.
-    """
-
-    xyz: NDArray
-    covariance: NDArray
-    accepted: NDArray
-    error_px: NDArray
+    xyz: NDArray  # (N, 3): NaN where too few views are usable or agree
+    covariance: NDArray  # (N, 3, 3) m2: from the keypoints' own noise; NaN where missing
+    accepted: NDArray  # (C, N): views that the point rests on
+    error_px: NDArray  # (C, N): from keypoint, accepted or not, to projection; NaN without either
 
 
 def triangulate(xy: NDArray, weight: NDArray, cam_from_world: NDArray) -> NDArray:

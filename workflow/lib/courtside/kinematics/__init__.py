@@ -1,1 +1,12 @@
-"""Measures of motion: filtering, speeds, distances, joint angles, centre of mass, smoothness."""
+"""Measures of motion: filtering, speeds, distances, joint angles, centre of mass, smoothness.
+
+filtering: `fill_gaps`, `leave_out_uncertain`, `smooth`, `zero_lag`, `runs`
+cutoffs: `by_group`, `choose_cutoff`
+noise_propagation: `Noise`, `estimate`, `filtered_covariance`, `differentiate`
+path_length: `measure`, `mean_norm`
+joint_angles: `measure`, `between`, `trunk`
+centre_of_mass: `shares`, `weights`
+measures: `measure` (all of a take), `Filter`, `Person`, `Point`
+smoothness: `sparc`, `of_path`, `of_arcs`
+wrist_arcs: `arcs`, `paths`, `distortion`
+"""

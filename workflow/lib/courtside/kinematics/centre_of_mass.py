@@ -1,12 +1,15 @@
-"""Where the body's mass is: the centre of mass as a weighted mean of joints.
+"""Centre of mass of the body, as a weighted mean of joints.
 
-Masses and places of the segments are de Leva's (1996, J. Biomech. 29, 1223-1230, table 4), for men and women.
+Segment masses and centres are those of de Leva (1996, J. Biomech. 29, 1223-1230, table 4).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.study.errors import InputError
 
 SIDES = ("left_", "right_")
@@ -14,29 +17,17 @@ SIDES = ("left_", "right_")
 
 @dataclass(frozen=True)
 class Segment:
-    """Where a segment's centre of mass lies.
+    """Mass of a segment and the place of its centre of mass."""
 
-    Attributes
-    ----------
-    start, end : str
-        Points between which it is measured; limbs without their side.
-    mass : dict of str to float
-        Percent of the body's mass for `m` and `f`; of one side for limbs.
-    place : dict of str to float
-        Percent of the way from `start` to `end`.
-    paired : bool
-        Whether there is one on each side.
-    """
-
-    start: str
+    start: str  # `start` and `end` are points; limbs without their side
     end: str
-    mass: dict
-    place: dict
-    paired: bool = True
+    mass: dict[str, float]  # percent of the body's mass for `m` and `f`; of one side for limbs
+    place: dict[str, float]  # percent of the way from `start` to `end`
+    paired: bool = True  # whether there is one on each side
 
 
-# The hand's centre lies beyond the wrist, on the forearm's line continued: 79.00 (74.74) % of 86.2 (78.0) mm,
-# from wrist to third knuckle, over a forearm of 268.9 (264.3) mm.
+# The hand's centre lies beyond the wrist on the forearm's line: at 79.00 (74.74) % of the 86.2
+# (78.0) mm from wrist to third knuckle, for a forearm of 268.9 (264.3) mm; men (women).
 HAND = {"m": 100 + 79.00 * 86.2 / 268.9, "f": 100 + 74.74 * 78.0 / 264.3}
 SEGMENTS = {
     "head": Segment("head_mass", "head_mass", {"m": 6.94, "f": 6.68}, {"m": 0, "f": 0}, False),
@@ -52,19 +43,12 @@ SEGMENTS = {
 }
 
 
-def shares(sex):
+def shares(sex: str | None) -> dict[str, float]:
     """Return the share of the body's mass at each point.
 
-    Parameters
-    ----------
-    sex : {"m", "f"} or None
-        None: the mean of men and women.
-
-    Returns
-    -------
-    shares : dict of str to float
-        For `head_mass`, `mid_shoulder`, `mid_hip` and the 12 limb joints; they sum to 1. Those of wrists are
-        larger than the forearm's part and those of elbows smaller, for the hand lies beyond.
+    `sex` is "m" or "f"; None gives the mean of men and women. The points are `head_mass`,
+    `mid_shoulder`, `mid_hip` and the 12 limb joints; the shares sum to 1. The hand lies beyond the
+    wrist, which makes the wrists' shares larger than the forearm's part and the elbows' smaller.
 
     Raises
     ------
@@ -73,18 +57,18 @@ def shares(sex):
 
     Notes
     -----
-    Trunk: a straight line from mid-shoulder to mid-hip, so that a bent back is not followed. Head: the point
-    `head_mass` of `config/derived_joints.yaml`. Hand: on the forearm's line, as if the wrist were straight;
-    a wrist bent by 60 degrees moves the body's centre by 0.4 mm. Foot: at the ankle; its centre is 6 to 8 cm
-    in front of and below it, which moves the body's centre by about 1 mm per foot. What a racket weighs
-    (0.09 kg) is left out: about 1 mm.
+    Trunk: a straight line from mid-shoulder to mid-hip, which does not follow a bent back. Head:
+    the point `head_mass` of `config/derived_joints.yaml`. Hand: on the forearm's line, as if the
+    wrist were straight; a wrist bent by 60 degrees moves the body's centre by 0.4 mm. Foot: at the
+    ankle; its centre is 6 to 8 cm in front of and below it, which moves the body's centre by about
+    1 mm per foot. The mass of a racket (0.09 kg) is left out: about 1 mm.
     """
     if sex is None:
         both = [shares("m"), shares("f")]
         return {point: (both[0][point] + both[1][point]) / 2 for point in both[0]}
     if sex not in ("m", "f"):
         raise InputError(f"subject: sex: expected m or f, or none stated, found {sex!r}")
-    found = {}
+    found: dict[str, float] = {}
     for segment in SEGMENTS.values():
         place = segment.place[sex] / 100
         for side in SIDES if segment.paired else ("",):
@@ -95,15 +79,9 @@ def shares(sex):
     return {point: mass / total for point, mass in found.items()}
 
 
-def weights(table, skeleton, joints, sex):
-    """Return the weights of joints that make the centre of mass, (J,) float.
-
-    Parameters
-    ----------
-    table : courtside.records.keypoints.derived_joints.DerivedJoints
-    skeleton : str
-    joints : sequence of str, length J
-    sex : {"m", "f"} or None
-    """
+def weights(
+    table: DerivedJoints, skeleton: str, joints: Sequence[str] | NDArray, sex: str | None
+) -> NDArray:
+    """Return the weights (J,) of the joints of a named skeleton that make the centre of mass."""
     parts = [share * table.weights(skeleton, point, joints) for point, share in shares(sex).items()]
     return np.sum(parts, axis=0)

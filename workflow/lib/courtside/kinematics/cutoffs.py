@@ -1,51 +1,49 @@
-"""Which cut-off frequency a group of joints is filtered with: residual analysis, or a stated number."""
+"""Cut-off frequencies for groups of joints: by residual analysis, or as stated."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.kinematics import filtering
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError
 
 RESIDUAL = "residual"  # in place of a number: choose by residual analysis
-TAIL = 0.5  # of the highest candidate: above it the residual is taken to be noise alone
-HIGHEST = 0.45  # of the frame rate
-STEP_HZ = 0.5
-MIN_FRAMES = 30
+TAIL = 0.5  # ASSUME: above this share of the highest candidate the residual is noise alone
+HIGHEST = 0.45  # of the frame rate; the filter needs less than half
+STEP_HZ = 0.5  # ASSUME: fine enough, as the result is interpolated between candidates
+MIN_FRAMES = 30  # ASSUME: fewer give no steady residual
 
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """A cut-off and why.
-
-    Attributes
-    ----------
-    cutoff_hz : float
-    candidates_hz, residual_m : (N,) float
-        Root mean square difference per axis between raw and filtered path; empty where a number was stated.
-    noise_m : float
-        Standard deviation per axis of the noise found; NaN where a number was stated.
-    """
+    """A chosen cut-off and the residual analysis behind it."""
 
     cutoff_hz: float
-    candidates_hz: np.ndarray
-    residual_m: np.ndarray
-    noise_m: float
+    # candidates_hz, residual_m: (N,), root mean square difference per axis between raw and filtered
+    # path; empty for a stated number.
+    candidates_hz: NDArray
+    residual_m: NDArray
+    noise_m: float  # standard deviation per axis of the noise found; NaN for a stated number
 
 
-def candidates(rate_hz):
-    """Return the cut-offs tried by default, (N,) Hz: 1 Hz to 0.45 of the frame rate, at most 20 Hz."""
+def candidates(rate_hz: float) -> NDArray:
+    """Return the default candidates (N,) Hz: from 1 Hz to 0.45 of the frame rate, at most 20 Hz."""
     return np.arange(1.0, min(HIGHEST * rate_hz, 20.0) + 1e-9, STEP_HZ)
 
 
-def choose_cutoff(xyz, rate_hz, candidates_hz=None, order=4):
+def choose_cutoff(
+    xyz: NDArray, rate_hz: float, candidates_hz: ArrayLike | None = None, order: int = 4
+) -> Choice:
     """Choose a cut-off by residual analysis.
 
     Parameters
     ----------
     xyz : (T, ..., 3) float
         Raw paths of one group of joints, short gaps filled; NaN in gaps.
-    rate_hz : float
     candidates_hz : (N,) float, optional
         Rising, below half the frame rate.
     order : int
@@ -54,8 +52,8 @@ def choose_cutoff(xyz, rate_hz, candidates_hz=None, order=4):
     Returns
     -------
     choice : Choice
-        The lowest cut-off at which the filter takes no more from the motion than it lets pass of the noise.
-        The lowest or highest candidate where none fits.
+        The lowest cut-off at which the filter removes no more of the motion than it passes of the
+        noise; the lowest or highest candidate where none fits.
 
     Raises
     ------
@@ -64,24 +62,25 @@ def choose_cutoff(xyz, rate_hz, candidates_hz=None, order=4):
 
     Notes
     -----
-    Winter 2009, sec. 2.2.4.3 draws the residual over the cut-off, a straight line through its tail, and takes
-    the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is straight only by eye.
-    For white noise of standard deviation s the squared residual in the tail is s^2 r(f), where the share r of
-    the noise that the filter takes away follows from its coefficients: a line through the origin, whose slope
-    is the median of residual^2 / r over the candidates above half the highest. With the share p(f) that
-    passes, motion lost equals noise passed where residual^2 = s^2 (r + p).
+    Winter 2009, sec. 2.2.4.3 plots the residual over the cut-off, fits a straight line to its tail,
+    and takes the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is
+    straight only by eye. For white noise of standard deviation s the squared residual in the tail
+    is s^2 r(f), where the share r of the noise that the filter removes follows from its
+    coefficients: a line through the origin, whose slope is the median of residual^2 / r over the
+    candidates above half the highest. With the share p(f) that passes, motion lost equals noise
+    passed where residual^2 = s^2 (r + p).
 
-    Of noise that is alike from frame to frame only the fast part is seen; the slow part counts as motion, and
-    the cut-off comes out higher. A take that is mostly slow gets a low cut-off, which blunts its few fast
-    moments: state a number where peaks matter.
+    Of noise that is correlated from frame to frame only the fast part is seen; the slow part counts
+    as motion, and the cut-off becomes higher. A take that is mostly slow gets a low cut-off, which
+    blunts its few fast moments: state a number where peaks matter.
     """
     candidates_hz = candidates(rate_hz) if candidates_hz is None else np.asarray(candidates_hz)
     lines = np.reshape(xyz, (len(xyz), -1, 3))
     n_known = int(np.isfinite(lines).all(axis=2).sum())
     if n_known < MIN_FRAMES:
         raise InputError(
-            f"filter_motion.cutoff_hz: expected {MIN_FRAMES} frames or more to choose a cut-off from, "
-            f"found {n_known}; state a number"
+            f"filter_motion.cutoff_hz: expected {MIN_FRAMES} frames or more to choose a cut-off "
+            f"from, found {n_known}; state a number"
         )
     residual = np.array([_residual(lines, rate_hz, cutoff, order) for cutoff in candidates_hz])
     shares = [_shares(rate_hz, float(cutoff), order) for cutoff in candidates_hz]
@@ -92,21 +91,21 @@ def choose_cutoff(xyz, rate_hz, candidates_hz=None, order=4):
     return Choice(_crossing(candidates_hz, excess), candidates_hz, residual, noise)
 
 
-def _residual(lines, rate_hz, cutoff_hz, order):
+def _residual(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> float:
     moved = lines - filtering.zero_lag_points(lines, rate_hz, cutoff_hz, order)
     return float(np.sqrt(np.nanmean(np.square(moved))))
 
 
-def _shares(rate_hz, cutoff_hz, order):
-    """Return the shares of white noise's variance that the filter takes away and lets pass."""
+def _shares(rate_hz: float, cutoff_hz: float, order: int) -> tuple[float, float]:
+    """Return the shares of white noise's variance that the filter removes and passes."""
     n_frames = int(np.ceil(4 * rate_hz / cutoff_hz)) + 1
     passing = filtering.zero_lag(np.eye(n_frames), rate_hz, cutoff_hz, order)[n_frames // 2]
     stopping = (np.arange(n_frames) == n_frames // 2) - passing
     return stopping @ stopping, passing @ passing
 
 
-def _crossing(candidates_hz, excess):
-    """Return the lowest cut-off at which the excess falls to 0, between candidates linearly."""
+def _crossing(candidates_hz: NDArray, excess: NDArray) -> float:
+    """Return the lowest cut-off at which the excess falls to 0, by linear interpolation."""
     below = np.flatnonzero(excess <= 0)
     if not len(below) or below[0] == 0:
         return float(candidates_hz[below[0] if len(below) else -1])
@@ -115,21 +114,12 @@ def _crossing(candidates_hz, excess):
     return float(candidates_hz[at - 1] + share * (candidates_hz[at] - candidates_hz[at - 1]))
 
 
-def by_group(points, skeleton, wanted, order=4):
-    """Return the cut-off of each group of joints, as stated or as found in the take.
+def by_group(
+    points: Keypoints3D, skeleton: Skeleton, wanted: Mapping[str, float | str], order: int = 4
+) -> dict[str, Choice]:
+    """Return the cut-off of each group of joints: the stated number, or `RESIDUAL`'s choice.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-        Raw, short gaps filled.
-    skeleton : Skeleton
-    wanted : dict of str to float or "residual"
-        For groups of the skeleton.
-    order : int
-
-    Returns
-    -------
-    choices : dict of str to Choice
+    `points` are raw, short gaps filled. `wanted` maps groups of the skeleton to Hz or `RESIDUAL`.
     """
     choices = {}
     for group, value in wanted.items():

@@ -1,40 +1,32 @@
-"""Skeletons over time: short gaps filled, noise removed without delay.
+"""Fill short gaps in 3D keypoints and remove noise without delay.
 
-Each step is its own function and keeps the record's form; the raw record stays beside the result.
+Every function returns a new record; the raw one is not changed.
 """
 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy import signal
 from scipy.interpolate import PchipInterpolator
 
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError
 
-UNCERTAIN_TIMES = 4.0  # the usual standard deviation
-PAD_PERIODS = 1.0  # mirrored padding at both ends, in periods of the cut-off
+UNCERTAIN_TIMES = 4.0  # ASSUME: times the usual standard deviation
+PAD_PERIODS = 1.0  # ASSUME: mirrored padding at both ends, in periods of the cut-off
 
 
-def fill_gaps(points, max_gap_s):
-    """Interpolate short gaps, cubically from the trusted values around them.
+def fill_gaps(points: Keypoints3D, max_gap_s: float) -> Keypoints3D:
+    """Interpolate gaps of at most `max_gap_s`, cubically; longer ones and those at the ends stay.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-        On uniform times.
-    max_gap_s : float
-        Longer gaps stay open, as do gaps at the ends.
-
-    Returns
-    -------
-    filled : Keypoints3D
-        Filled values have reason INTERPOLATED and no covariance.
+    `points` has uniform times. Filled values have reason INTERPOLATED and no covariance.
 
     Notes
     -----
-    A cubic Hermite spline through the neighbours with slopes from central differences (Fritsch & Butland
-    1984, as scipy's PCHIP) does not overshoot.
+    A cubic Hermite spline through the neighbours (Fritsch & Butland 1984, as scipy's PCHIP), which
+    does not overshoot.
     """
     xyz, reason = points.xyz.copy(), points.reason.copy()
     most = int(np.floor(max_gap_s * points.rate_hz + 1e-6)) if len(points.time_s) > 1 else 0
@@ -47,20 +39,12 @@ def fill_gaps(points, max_gap_s):
     return replace(points, xyz=xyz, reason=reason)
 
 
-def leave_out_uncertain(points, times=UNCERTAIN_TIMES):
-    """Leave out frames that are known far worse than the rest of the take.
+def leave_out_uncertain(points: Keypoints3D, times: float = UNCERTAIN_TIMES) -> Keypoints3D:
+    """Leave out frames that are far more uncertain than the rest of the take.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    times : float
-        A frame is left out where the median over the joints of their stated standard deviation, each over its
-        own median in the take, is larger: where few cameras film, and from nearly one side.
-
-    Returns
-    -------
-    points : Keypoints3D
-        Without those frames, whose reason is UNCERTAIN.
+    For each joint, its stated standard deviation over its own median in the take; a frame is left
+    out (reason UNCERTAIN) where the median of this ratio over the joints exceeds `times`. This
+    happens where few cameras see a person, and from nearly one side.
     """
     sigma = np.sqrt(np.trace(points.covariance_2d, axis1=-2, axis2=-1))
     stated = np.ma.masked_invalid(sigma)
@@ -75,12 +59,12 @@ def leave_out_uncertain(points, times=UNCERTAIN_TIMES):
     )
 
 
-def _pchip(time_s, line, holes):
+def _pchip(time_s: NDArray, line: NDArray, holes: NDArray) -> NDArray:
     known = np.isfinite(line).all(axis=1)
     return PchipInterpolator(time_s[known], line[known])(time_s[holes])
 
 
-def _short_gaps(missing, most):
+def _short_gaps(missing: NDArray, most: int) -> NDArray:
     """Return (T,) bool: missing frames in runs of at most `most`, not touching an end."""
     chosen = np.zeros_like(missing)
     for start, stop in runs(missing):
@@ -89,40 +73,27 @@ def _short_gaps(missing, most):
     return chosen
 
 
-def runs(flags):
+def runs(flags: NDArray) -> list[tuple[int, int]]:
     """Return the (start, stop) of every run of True in (T,) bool, in order."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
     return list(zip(edges[::2], edges[1::2], strict=True))
 
 
-def corrected_cutoff(cutoff_hz, rate_hz, order):
-    """Return the cut-off of one pass so that two passes have -3 dB at `cutoff_hz`.
-
-    Parameters
-    ----------
-    cutoff_hz : float
-        Wanted for the zero-lag filter.
-    rate_hz : float
-        Frames per second.
-    order : int
-        Of one pass.
-
-    Returns
-    -------
-    one_pass_hz : float
+def corrected_cutoff(cutoff_hz: float, rate_hz: float, order: int) -> float:
+    """Return the cut-off of one pass of this order so that two passes have -3 dB at `cutoff_hz`.
 
     Notes
     -----
-    Forwards and backwards squares the gain, which would move the -3 dB point down. The correction
-    (sqrt 2 - 1)^(-1 / (2 order)) acts on the tangent of the digital frequency (Winter 2009, sec. 2.2.4.4;
-    Robertson & Dowling 2003).
+    Filtering forwards and backwards squares the gain, which would lower the -3 dB frequency. The
+    correction (sqrt 2 - 1)^(-1 / (2 order)) acts on the tangent of the digital frequency (Winter
+    2009, sec. 2.2.4.4; Robertson & Dowling 2003).
     """
     warped = np.tan(np.pi * cutoff_hz / rate_hz)
     corrected = warped / (np.sqrt(2) - 1) ** (1 / (2 * order))
     return float(np.arctan(corrected) * rate_hz / np.pi)
 
 
-def smooth(points, cutoff_hz, order):
+def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D:
     """Remove noise with a zero-lag Butterworth low-pass filter, each joint with its own cut-off.
 
     Parameters
@@ -132,13 +103,13 @@ def smooth(points, cutoff_hz, order):
     cutoff_hz : (J,) float
         -3 dB frequency of the whole, forwards and backwards, filter.
     order : int
-        Effective order of the whole filter; each pass has half of it, so it is even.
+        Effective order of the whole filter; each pass has half of it, which makes it even.
 
     Returns
     -------
     smoothed : Keypoints3D
-        The same values missing. `covariance_2d` is scaled by the share of white noise that the filter
-        lets pass; noise that stays alike from frame to frame passes more (`motion.noise_gain`).
+        The same values missing. `covariance_2d` is scaled by the share of white noise that the
+        filter passes; correlated noise passes more (`noise_propagation`).
 
     Raises
     ------
@@ -151,8 +122,8 @@ def smooth(points, cutoff_hz, order):
         )
     if np.max(cutoff_hz) >= points.rate_hz / 2:
         raise InputError(
-            f"filter_motion.cutoff_hz: expected less than half the frame rate ({points.rate_hz:g} Hz), "
-            f"found {np.max(cutoff_hz):g} Hz; lower it for this session"
+            f"filter_motion.cutoff_hz: expected less than half the frame rate ({points.rate_hz:g} "
+            f"Hz), found {np.max(cutoff_hz):g} Hz; lower it for this session"
         )
     xyz, covariance = points.xyz.copy(), points.covariance_2d.copy()
     for cutoff in np.unique(cutoff_hz):
@@ -165,19 +136,8 @@ def smooth(points, cutoff_hz, order):
     return replace(points, xyz=xyz, covariance_2d=covariance)
 
 
-def zero_lag_points(xyz, rate_hz, cutoff_hz, order):
-    """Filter several points, those that are known in the same frames at once.
-
-    Parameters
-    ----------
-    xyz : (T, n, 3) float
-    rate_hz, cutoff_hz, order
-        As for `zero_lag`.
-
-    Returns
-    -------
-    filtered : (T, n, 3) float
-    """
+def zero_lag_points(xyz: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
+    """Apply `zero_lag` to points (T, n, 3), those that are known in the same frames at once."""
     known = np.isfinite(xyz).all(axis=2)
     _, alike = np.unique(known, axis=1, return_inverse=True)
     filtered = np.empty(xyz.shape)
@@ -188,26 +148,22 @@ def zero_lag_points(xyz, rate_hz, cutoff_hz, order):
     return filtered
 
 
-def zero_lag(lines, rate_hz, cutoff_hz, order):
-    """Filter lines forwards and backwards, each run of known values by itself.
+def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
+    """Filter series (T, n) forwards and backwards, each run of known frames by itself.
 
     Parameters
     ----------
     lines : (T, n) float
-        A frame is filtered where all its values are finite.
-    rate_hz, cutoff_hz : float
-        Frames per second; -3 dB frequency of the whole filter.
+        A frame is known, and filtered, where all its values are finite; NaN elsewhere in the
+        result. Runs of one or two frames stay as they are.
+    cutoff_hz : float
+        -3 dB frequency of the whole filter.
     order : int
         Effective order of the whole filter: twice that of each pass.
 
-    Returns
-    -------
-    filtered : (T, n) float
-        Runs of one or two frames stay as they are; NaN where a value of the frame is.
-
     Notes
     -----
-    At its ends a run is continued by its reflection in the end point, over one period of the cut-off.
+    Each end of a run is extended by its odd reflection over one period of the cut-off.
     """
     sections = _sections(cutoff_hz, rate_hz, order // 2)
     pad = round(PAD_PERIODS * rate_hz / cutoff_hz)
@@ -221,12 +177,12 @@ def zero_lag(lines, rate_hz, cutoff_hz, order):
     return filtered
 
 
-def _sections(cutoff_hz, rate_hz, order):
+def _sections(cutoff_hz: float, rate_hz: float, order: int) -> NDArray:
     one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order)
     return signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")
 
 
-def _noise_passed(sections):
+def _noise_passed(sections: NDArray) -> float:
     """Return the variance of filtered white noise of variance 1."""
     _, response = signal.sosfreqz(sections, worN=4096)
     return float(np.mean(np.abs(response) ** 4))

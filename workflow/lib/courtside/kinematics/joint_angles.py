@@ -1,16 +1,18 @@
-"""Angles between three joints, and of the trunk against the vertical, with their uncertainty.
+"""Joint angles, and the lean of the trunk, with their uncertainty.
 
-They are angles between straight lines from joint to joint. The joint angles of the International Society of
-Biomechanics (Wu et al. 2002, 2005) are rotations between the frames of two segments, split into flexion,
-abduction and axial rotation; such a frame needs three points of its segment that are not in line, and the
-joints at its ends are two.
-So these angles say how far a joint is bent, not about which axis: abduction and flexion of the hip are one
-number, and the turning of a segment about its own length is not seen at all.
+The angles lie between straight lines from joint to joint. They are not those of the International
+Society of Biomechanics (Wu et al. 2002, 2005), which are rotations between segment frames, split
+into flexion, abduction and axial rotation: a segment frame needs three points that are not in line,
+and a segment here has only the joints at its two ends. An angle here tells how far a joint is bent,
+not about which axis: abduction and flexion of the hip are one number, and axial rotation is not
+seen.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 SIDES = ("left_", "right_")
 UP = np.array([0.0, 0.0, 1.0])
@@ -24,48 +26,37 @@ TRUNK = ("left_hip", "right_hip", "left_shoulder", "right_shoulder")
 DICTIONARY = {  # angle: zero, sign
     "knee_flexion": "0 with hip, knee and ankle in line, positive however it is bent",
     "elbow_flexion": "0 with shoulder, elbow and wrist in line, positive however it is bent",
-    "hip_flexion": "0 with shoulder, hip and knee in line; positive forwards, backwards and sideways",
-    "shoulder_elevation": "0 with the arm along the line from shoulder to hip, 90 held out, 180 overhead; "
-    "positive in every direction",
-    "trunk_lean": "between the line from mid-hip to mid-shoulder and the vertical; 0 upright, never negative",
-    "trunk_lean_forward": "its part in the person's own vertical plane from back to front; positive forwards",
+    "hip_flexion": "0 with shoulder, hip and knee in line; positive forwards, backwards and "
+    "sideways",
+    "shoulder_elevation": "0 with the arm along the line from shoulder to hip, 90 held out, 180 "
+    "overhead; positive in every direction",
+    "trunk_lean": "between the line from mid-hip to mid-shoulder and the vertical; 0 upright, "
+    "never negative",
+    "trunk_lean_forward": "its part in the person's own vertical plane from back to front; "
+    "positive forwards",
 }
 
 
 @dataclass(frozen=True, eq=False)
 class Angle:
-    """One angle over time.
+    """One angle over time (T,); NaN where a joint, or for sigma a covariance, is missing."""
 
-    Attributes
-    ----------
-    degrees, sigma_deg : (T,) float
-        NaN where a joint is missing; sigma also where a covariance is.
-    """
-
-    degrees: np.ndarray
-    sigma_deg: np.ndarray
+    degrees: NDArray
+    sigma_deg: NDArray
 
 
-def between(first, middle, last, covariances):
-    """Return the angle at the middle one of three points.
+def between(
+    first: NDArray, middle: NDArray, last: NDArray, covariances: Sequence[NDArray]
+) -> Angle:
+    """Return the angle, 0 to 180 degrees, at the middle one of three points (T, 3) m.
 
-    Parameters
-    ----------
-    first, middle, last : (T, 3) float
-        Metres.
-    covariances : tuple of three (T, 3, 3) float
-        Square metres; the three points' errors are independent of one another.
-
-    Returns
-    -------
-    angle : Angle
-        0 to 180 degrees.
+    `covariances` are three (T, 3, 3) m2; the errors of the points are independent.
 
     Notes
     -----
-    Moved across its line, a point at distance l turns the line by 1 / l. This holds while the error is much
-    smaller than the bend: near 0 and 180 degrees the angle has a fold, and noise only ever bends a straight
-    line, by about sigma.
+    A point at distance l that moves across its line turns the line by 1 / l. This holds while the
+    error is much smaller than the bend: near 0 and 180 degrees the angle folds, and noise only ever
+    bends a straight line, by about sigma.
     """
     u, v = first - middle, last - middle
     length_u, length_v = (np.linalg.norm(a, axis=-1, keepdims=True) for a in (u, v))
@@ -80,14 +71,14 @@ def between(first, middle, last, covariances):
     return _angle(radians, slopes, covariances)
 
 
-def _any_normal(u):
+def _any_normal(u: NDArray) -> NDArray:
     """Return unit vectors at right angles to (T, 3) unit vectors."""
     axis = np.eye(3)[np.argmin(np.nan_to_num(np.abs(u)), axis=-1)]
     found = np.cross(u, axis)
     return found / np.linalg.norm(found, axis=-1, keepdims=True)
 
 
-def _angle(radians, slopes, covariances):
+def _angle(radians: NDArray, slopes: Sequence[NDArray], covariances: Sequence[NDArray]) -> Angle:
     variance = sum(
         np.einsum("ti,tij,tj->t", slope, covariance, slope)
         for slope, covariance in zip(slopes, covariances, strict=True)
@@ -95,8 +86,10 @@ def _angle(radians, slopes, covariances):
     return Angle(np.degrees(radians), np.degrees(np.sqrt(variance)))
 
 
-def trunk(hips, shoulders, covariances):
-    """Return how far the trunk leans.
+def trunk(
+    hips: Sequence[NDArray], shoulders: Sequence[NDArray], covariances: Sequence[NDArray]
+) -> tuple[Angle, Angle]:
+    """Return the trunk's lean and its forward part, as `DICTIONARY` defines them.
 
     Parameters
     ----------
@@ -105,16 +98,15 @@ def trunk(hips, shoulders, covariances):
     covariances : tuple of four (T, 3, 3) float
         Of the left and right hip, the left and right shoulder.
 
-    Returns
-    -------
-    lean, forward : Angle
-        `DICTIONARY`. Forwards is level and at right angles to the line of the hips, whose own uncertainty is
-        left out: turned by 3 degrees it changes a forward lean of 20 degrees by 0.03, and a sideways lean of
-        20 degrees reads as 1 degree forward.
+    Notes
+    -----
+    Forwards is level and at right angles to the line of the hips. That line's own uncertainty is
+    left out: turned by 3 degrees, it changes a forward lean of 20 degrees by 0.03, and a sideways
+    lean of 20 degrees reads as 1 degree forward.
     """
     along = (shoulders[0] + shoulders[1] - hips[0] - hips[1]) / 2
     parts = [np.broadcast_to(c, (len(along), 3, 3)) / 4 for c in covariances]
-    total = sum(parts)
+    total = sum(parts, np.zeros((3, 3)))
     length = np.linalg.norm(along, axis=-1, keepdims=True)
     level = along * [1, 1, 0]
     flat = np.linalg.norm(level, axis=-1, keepdims=True)
@@ -129,31 +121,23 @@ def trunk(hips, shoulders, covariances):
     return lean, _angle(np.arctan2(reach, height)[:, 0], [slope], [total])
 
 
-def measure(xyz, covariance, joints):
-    """Return all angles of a person.
+def measure(xyz: NDArray, covariance: NDArray, joints: Sequence[str]) -> dict[str, Angle]:
+    """Return all angles of a person by name, those of limbs with their side: `left_knee_flexion`.
 
     Parameters
     ----------
-    xyz : (T, J, 3) float
-        Filtered, metres.
-    covariance : (T, J, 3, 3) float
-        Of the filtered joints.
+    xyz, covariance : (T, J, 3) float, (T, J, 3, 3) float
+        Filtered joints, metres, and their covariance.
     joints : sequence of str, length J
         With the 12 limb joints.
-
-    Returns
-    -------
-    angles : dict of str to Angle
-        The angles of `DICTIONARY`, those of limbs with their side: `left_knee_flexion`.
     """
     at = {joint: index for index, joint in enumerate(joints)}
     angles = {}
     for name, (*ends, rest) in LINES.items():
         for side in SIDES:
             three = [at[side + end] for end in ends]
-            found = between(
-                *(xyz[:, index] for index in three), [covariance[:, index] for index in three]
-            )
+            first, middle, last = (xyz[:, index] for index in three)
+            found = between(first, middle, last, [covariance[:, index] for index in three])
             angles[side + name] = Angle(180 - found.degrees, found.sigma_deg) if rest else found
     four = [at[joint] for joint in TRUNK]
     points = [xyz[:, index] for index in four]

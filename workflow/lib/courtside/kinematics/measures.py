@@ -1,8 +1,10 @@
 """Path, distance, speed and acceleration of points of the body, each with its uncertainty."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.kinematics import (
     centre_of_mass,
@@ -11,121 +13,81 @@ from courtside.kinematics import (
     noise_propagation,
     path_length,
 )
+from courtside.kinematics.joint_angles import Angle
+from courtside.kinematics.noise_propagation import Noise
+from courtside.kinematics.path_length import Distance
 from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints import skeleton as limbs
+from courtside.records.keypoints.derived_joints import DerivedJoints
+from courtside.records.keypoints.keypoints import Keypoints3D
 
-CENTRE = (
-    "head_centre",
-    "neck",
-    *limbs.JOINTS,
-)  # the 14 joints whose plain mean is the skeleton's centre
-# ASSUME: joints err along their way where they move, and less at rest than their covariance says, so that
-# noise lengthens paths less than a steady one would: on the eight development takes by 0.72 of it for the
-# neck and both centres of the body (24 values, standard deviation 0.43).
+# The 14 joints whose plain mean is the skeleton's centre.
+CENTRE = ("head_centre", "neck", *limbs.JOINTS)
+# ASSUME: moving joints err along their path, and joints at rest err less than their covariance
+# says: noise lengthens paths less than steady noise would. On the eight development takes it did by
+# 0.72 of that for the neck and both centres of the body (24 values, standard deviation 0.43).
 MODEL_BIAS = 0.7, 0.4
 
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """How a take is filtered.
+    """How a take is filtered."""
 
-    Attributes
-    ----------
-    cutoff_hz : (J,) float
-        -3 dB frequency of the whole zero-lag filter for each joint.
-    order : int
-        Its effective order.
-    distance_cutoff_hz : float
-        For distances, of all points (`path_length.measure`).
-    noise : courtside.kinematics.noise_propagation.Noise or None
-        Of the keypoints; found from each path where None.
-    """
-
-    cutoff_hz: np.ndarray
-    order: int = 4
-    distance_cutoff_hz: float = 6.0
-    noise: noise_propagation.Noise | None = None
+    cutoff_hz: NDArray  # (J,): -3 dB frequency of the whole zero-lag filter for each joint
+    order: int = 4  # its effective order
+    distance_cutoff_hz: float = 6.0  # for distances, of all points (`path_length.measure`)
+    noise: Noise | None = None  # of the keypoints; estimated from each path where None
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A weighted mean of joints of one person over time, filtered.
+    """A weighted mean of joints of one person over time, filtered."""
 
-    Attributes
-    ----------
-    definition : str
-        How it is made; the same words where it can be compared.
-    position, velocity, acceleration : (T, 3) float
-        Metres and seconds, world.
-    covariance : tuple of three (T, 3, 3) float
-        Of these three, from the keypoints' noise.
-    camera_sigma_m : (T,) float
-        Standard deviation of the position from the calibration, root of the sum over the axes: one error for
-        all frames, which changes slowly over the hall and so hardly touches speeds.
-    noise : courtside.kinematics.noise_propagation.Noise
-    reason : (T,) uint8
-        `courtside.records.keypoints.missing_reason`.
-    distance, ground_distance : Distance
-        In space, and of the path's projection on the floor.
-    """
-
-    definition: str
-    position: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
-    covariance: tuple
-    camera_sigma_m: np.ndarray
-    noise: noise_propagation.Noise
-    reason: np.ndarray
-    distance: path_length.Distance
-    ground_distance: path_length.Distance
+    definition: str  # how it is made; points with the same text are comparable
+    # position, velocity, acceleration: (T, 3), metres and seconds, world.
+    position: NDArray
+    velocity: NDArray
+    acceleration: NDArray
+    covariance: tuple[NDArray, ...]  # of these three, (T, 3, 3), from the keypoints' noise
+    # (T,): sigma of the position from the calibration, root of the sum over the axes: one error for
+    # all frames, which changes slowly over the hall and hardly affects speeds.
+    camera_sigma_m: NDArray
+    noise: Noise
+    reason: NDArray  # (T,): `courtside.records.keypoints.missing_reason`
+    # distance, ground_distance: in space, and of the path's projection on the floor.
+    distance: Distance
+    ground_distance: Distance
 
 
 @dataclass(frozen=True, eq=False)
 class Person:
-    """What was measured of one person.
-
-    Attributes
-    ----------
-    person : str
-    time_s : (T,) float
-    points : dict of str to Point
-        `neck`, `centre` (plain mean of `CENTRE`), `mass` (`courtside.kinematics.centre_of_mass`).
-    angles : dict of str to Angle
-        `courtside.kinematics.joint_angles.measure`.
-    """
+    """Measures of one person."""
 
     person: str
-    time_s: np.ndarray
-    points: dict
-    angles: dict
+    time_s: NDArray
+    # `neck`, `centre` (plain mean of `CENTRE`), `mass` (`courtside.kinematics.centre_of_mass`).
+    points: dict[str, Point]
+    angles: dict[str, Angle]  # `courtside.kinematics.joint_angles.measure`
 
 
 @dataclass(frozen=True, eq=False)
 class _Take:
     """One person's raw and filtered joints, and how they are filtered."""
 
-    raw: object
-    filtered: np.ndarray
+    raw: Keypoints3D
+    filtered: NDArray
     person: int
-    how: object
+    how: Filter
 
 
-def size(vectors, covariance, axes=path_length.SPACE):
-    """Return the lengths of vectors and their standard deviations.
+def size(
+    vectors: NDArray, covariance: NDArray, axes: slice = path_length.SPACE
+) -> tuple[NDArray, NDArray]:
+    """Return the lengths (T,) of vectors (T, 3) of covariance (T, 3, 3), and their sigmas (T,).
 
-    Parameters
-    ----------
-    vectors : (T, 3) float
-    covariance : (T, 3, 3) float
-    axes : slice
-        `path_length.SPACE` or `path_length.GROUND`.
-
-    Returns
-    -------
-    length, sigma : (T,) float, (T,) float
-        Sigma is that along the vector. A length below two sigma says little: noise makes it longer, so that
-        a point at rest has the speed of its noise.
+    Sigma is that along the vector. `axes` is `path_length.SPACE` or `path_length.GROUND`. A length
+    below two sigma says little: noise makes it longer, and a point at rest has the speed of its
+    noise.
     """
     vectors, covariance = vectors[:, axes], covariance[:, axes, axes]
     length = np.linalg.norm(vectors, axis=1)
@@ -133,20 +95,12 @@ def size(vectors, covariance, axes=path_length.SPACE):
     return length, np.sqrt(np.einsum("ti,tij,tj->t", unit, covariance, unit))
 
 
-def definitions(table, skeleton, joints, sex):
-    """Return weights and definition of the measured points.
+def definitions(
+    table: DerivedJoints, skeleton: str, joints: Sequence[str] | NDArray, sex: str | None
+) -> tuple[dict[str, NDArray], dict[str, str]]:
+    """Return weights (J,) and definition of each measured point of a named skeleton.
 
-    Parameters
-    ----------
-    table : courtside.records.keypoints.derived_joints.DerivedJoints
-    skeleton : str
-        Name of the joints' skeleton.
-    joints : sequence of str, length J
-    sex : {"m", "f"} or None
-
-    Returns
-    -------
-    weights, words : dict of str to (J,) float, dict of str to str
+    `sex` is "m", "f" or None (`centre_of_mass.shares`).
     """
     of = {name: table.definition(skeleton, name) for name in ("neck", "head_centre", "head_mass")}
     people = {"m": "men", "f": "women", None: "mean of men and women"}[sex]
@@ -164,29 +118,29 @@ def definitions(table, skeleton, joints, sex):
     return weights, words
 
 
-def measure(points, table, skeleton, how, sex_of=None):
+def measure(
+    points: Keypoints3D,
+    table: DerivedJoints,
+    skeleton: str,
+    how: Filter,
+    sex_of: Mapping[str, str | None] | None = None,
+) -> list[Person]:
     """Measure all persons of a take.
 
     Parameters
     ----------
     points : Keypoints3D
         Raw, short gaps filled (`filtering.fill_gaps`), not filtered.
-    table : courtside.records.keypoints.derived_joints.DerivedJoints
     skeleton : str
         Name of the skeleton of `points`.
-    how : Filter
     sex_of : dict of str to {"m", "f", None}, optional
         By person.
-
-    Returns
-    -------
-    people : list of Person
 
     Notes
     -----
     All joints are filtered first; points are means of filtered joints, speeds and accelerations the
-    derivatives of their cubic splines. Joints' errors are taken to be independent of one another; what the
-    filter takes from the motion is in no uncertainty.
+    derivatives of their cubic splines. The joints' errors are taken to be independent; what the
+    filter removes of the motion is in no uncertainty.
     """
     smooth = filtering.smooth(points, how.cutoff_hz, how.order).xyz
     made = []
@@ -199,7 +153,7 @@ def measure(points, table, skeleton, how, sex_of=None):
     return made
 
 
-def _point(take, weights, words):
+def _point(take: _Take, weights: NDArray, words: str) -> Point:
     raw, how, used = take.raw, take.how, np.flatnonzero(weights)
     xyz, covariance, reason = derived_joints.combine(
         raw.xyz[take.person], raw.covariance_2d[take.person], raw.reason[take.person], weights
@@ -227,15 +181,15 @@ def _point(take, weights, words):
     )
 
 
-def _noise(xyz, covariance, take):
+def _noise(xyz: NDArray, covariance: NDArray, take: _Take) -> Noise:
     if take.how.noise is not None:
         return take.how.noise
     return noise_propagation.estimate(xyz, covariance, take.raw.rate_hz)
 
 
-def _spread(take, weights, noise, derivative):
+def _spread(take: _Take, weights: NDArray, noise: Noise, derivative: int) -> NDArray:
     """Return the covariance of a filtered mean of joints, or of a derivative."""
-    total = 0.0
+    total = np.zeros(())
     known = np.isfinite(take.filtered[:, weights != 0]).all(axis=(1, 2))
     for cutoff_hz in np.unique(np.asarray(take.how.cutoff_hz)[weights != 0]):
         share = np.where(take.how.cutoff_hz == cutoff_hz, weights, 0.0)
@@ -249,7 +203,7 @@ def _spread(take, weights, noise, derivative):
     return total
 
 
-def _angles(take):
+def _angles(take: _Take) -> dict[str, Angle]:
     joints = [joint for joint in take.raw.joints if joint in limbs.JOINTS]
     at = [take.raw.joints.tolist().index(joint) for joint in joints]
     spreads = []

@@ -1,65 +1,53 @@
-"""How much of the keypoints' noise is left in filtered paths, speeds and accelerations.
+"""Keypoint noise that remains in filtered paths, speeds and accelerations.
 
-The noise of a joint has the stated covariance. A share of it is white, new in every frame; the rest is a
-first-order autoregressive process, whose correlation falls to 1/e within a memory time.
+The noise of a joint has the stated covariance. A share of it is white, new in every frame; the rest
+is a first-order autoregressive process, whose correlation falls to 1/e within a memory time.
+
+Throughout, `rate_hz` is the frame rate, `cutoff_hz` the -3 dB frequency and `order` the effective
+order of the zero-lag filter, and `derivative` 0 for the path, 1 for the velocity, 2 for the
+acceleration.
 """
 
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import signal
 from scipy.interpolate import CubicSpline
 
 from courtside.kinematics import filtering
 
 EDGE_PERIODS = 2.0  # of the cut-off: nearer to an end of a run, the ends change the filter
-MEMORIES_S = np.geomspace(0.01, 2.0, 40)  # tried for the noise
-# Of half the frame rate: changes between these, and faster ones, are taken to be noise.
+MEMORIES_S = np.geomspace(0.01, 2.0, 40)  # ASSUME: spans the memories of keypoint noise
+# ASSUME: changes between these shares of half the frame rate, and faster ones, are noise.
 BANDS = (0.45, 0.7)
-SHARP = 8  # order of the filters that part them
-CLIP = 4.0  # standard deviations to which single changes are cut, for motion and outliers
-SQUARES_PER_POINT = 3
+SHARP = 8  # ASSUME: order of the filters that separate the bands
+CLIP = 4.0  # ASSUME: standard deviations to which single changes are cut, for motion and outliers
+SQUARES_PER_POINT = 3  # one per axis
 CHI2_MEDIAN = 2.366  # of 3 degrees of freedom
-MIN_FRAMES = 30  # to estimate the noise from
+MIN_FRAMES = 30  # ASSUME: fewer give no steady estimate
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise of one point.
+    """Noise of one point."""
 
-    Attributes
-    ----------
-    memory_s : float
-        Time in which the correlation of its slow part falls to 1/e; 0 if all of it is white.
-    white : float
-        Share of its variance that is white.
-    scale : float
-        Its variance over the stated one.
-    """
-
+    # Time in which the correlation of its slow part falls to 1/e; 0 if all of it is white.
     memory_s: float
-    white: float = 0.0
-    scale: float = 1.0
+    white: float = 0.0  # share of its variance that is white
+    scale: float = 1.0  # its variance over the stated one
 
 
-def differentiate(lines, rate_hz):
-    """Return the time derivative of each run of known values, by cubic splines.
+def differentiate(lines: NDArray, rate_hz: float) -> NDArray:
+    """Return the time derivative of series (T, n), per second, by cubic splines.
 
-    Parameters
-    ----------
-    lines : (T, n) float
-    rate_hz : float
-
-    Returns
-    -------
-    derivative : (T, n) float
-        Per second; NaN in runs of fewer than 3 frames.
+    Each run of known frames by itself; NaN in runs of fewer than 3 frames.
 
     Notes
     -----
-    Up to a fifth of the frame rate the splines' derivative is exact to 2 %, up to a tenth to 0.1 %, where
-    central differences lose 24 and 6 %.
+    The splines' derivative is exact to 2 % up to a fifth of the frame rate and to 0.1 % up to a
+    tenth, where central differences lose 24 and 6 %.
     """
     derivative = np.full(np.shape(lines), np.nan)
     for start, stop in filtering.runs(np.isfinite(lines).all(axis=1)):
@@ -70,7 +58,9 @@ def differentiate(lines, rate_hz):
 
 
 @lru_cache(maxsize=256)
-def _operator(n_frames, rate_hz, cutoff_hz, order, derivative):
+def _operator(
+    n_frames: int, rate_hz: float, cutoff_hz: float, order: int, derivative: int
+) -> NDArray:
     """Return (n, n): the filter, and the derivative after it, as a matrix on a run of n frames."""
     matrix = filtering.zero_lag(np.eye(n_frames), rate_hz, cutoff_hz, order)
     for _ in range(derivative):
@@ -78,20 +68,13 @@ def _operator(n_frames, rate_hz, cutoff_hz, order, derivative):
     return matrix
 
 
-def _block(n_frames, rate_hz, cutoff_hz):
-    """Return the length of a run whose middle frame feels no end, or the run's own where shorter."""
+def _block(n_frames: int, rate_hz: float, cutoff_hz: float) -> int:
+    """Return the length of a run whose ends do not affect its middle frame, at most `n_frames`."""
     return min(n_frames, 2 * int(np.ceil(EDGE_PERIODS * rate_hz / cutoff_hz)) + 1)
 
 
-def correlation(n_frames, rate_hz, noise):
-    """Return the (n, n) correlation over time of noise.
-
-    Parameters
-    ----------
-    n_frames : int
-    rate_hz : float
-    noise : Noise
-    """
+def correlation(n_frames: int, rate_hz: float, noise: Noise) -> NDArray:
+    """Return the (n, n) correlation over time of noise."""
     if noise.memory_s <= 0:
         return np.eye(n_frames)
     lag_s = np.abs(np.subtract.outer(np.arange(n_frames), np.arange(n_frames))) / rate_hz
@@ -100,39 +83,23 @@ def correlation(n_frames, rate_hz, noise):
 
 
 @lru_cache(maxsize=1024)
-def block_covariance(n_frames, rate_hz, cutoff_hz, order, noise, derivative):
-    """Return the covariance over time of filtered noise whose stated variance is 1.
+def block_covariance(
+    n_frames: int, rate_hz: float, cutoff_hz: float, order: int, noise: Noise, derivative: int
+) -> NDArray:
+    """Return the covariance (n, n) over time of filtered noise whose stated variance is 1.
 
-    Parameters
-    ----------
-    n_frames : int
-        Length of the run.
-    rate_hz, cutoff_hz : float
-    order : int
-        Effective order of the zero-lag filter.
-    noise : Noise
-    derivative : int
-        0 for the path, 1 for the velocity, 2 for the acceleration.
-
-    Returns
-    -------
-    covariance : (n, n) float
-        n is at most four periods of the cut-off. Units: s^(-2 derivative).
+    `n_frames` is the length of the run; n is at most four periods of the cut-off. Units:
+    s^(-2 derivative).
     """
     n_block = _block(n_frames, rate_hz, cutoff_hz)
     matrix = _operator(n_block, rate_hz, cutoff_hz, order, derivative)
     return noise.scale * matrix @ correlation(n_block, rate_hz, noise) @ matrix.T
 
 
-def autocorrelation(n_lags, rate_hz, cutoff_hz, order, noise, derivative):
-    """Return the correlation of filtered noise 0, 1, ... n_lags - 1 frames apart, far from the ends.
-
-    Parameters
-    ----------
-    n_lags : int
-    rate_hz, cutoff_hz, order, noise, derivative
-        As for `block_covariance`.
-    """
+def autocorrelation(
+    n_lags: int, rate_hz: float, cutoff_hz: float, order: int, noise: Noise, derivative: int
+) -> NDArray:
+    """Return the correlation (n_lags,) of filtered noise 0, 1, ... frames apart, far from ends."""
     matrix = _operator(_block(10**6, rate_hz, cutoff_hz), rate_hz, cutoff_hz, order, derivative)
     kernel = matrix[len(matrix) // 2]
     raw = correlation(n_lags + len(kernel), rate_hz, noise)[0]
@@ -141,14 +108,10 @@ def autocorrelation(n_lags, rate_hz, cutoff_hz, order, noise, derivative):
     return spread[middle : middle + n_lags] / spread[middle]
 
 
-def gains(n_frames, rate_hz, cutoff_hz, order, noise, derivative):
-    """Return the variance of filtered noise of stated variance 1 in each frame of a run, (n_frames,) float.
-
-    Parameters
-    ----------
-    n_frames, rate_hz, cutoff_hz, order, noise, derivative
-        As for `block_covariance`.
-    """
+def gains(
+    n_frames: int, rate_hz: float, cutoff_hz: float, order: int, noise: Noise, derivative: int
+) -> NDArray:
+    """Return the variance (n_frames,) of filtered noise of stated variance 1, by frame of a run."""
     found = np.diag(block_covariance(n_frames, rate_hz, cutoff_hz, order, noise, derivative))
     middle = len(found) // 2
     return np.concatenate(
@@ -156,8 +119,16 @@ def gains(n_frames, rate_hz, cutoff_hz, order, noise, derivative):
     )
 
 
-def filtered_covariance(covariance, known, noise, rate_hz, cutoff_hz, order, derivative=0):
-    """Return the covariance of a filtered path or of its derivative.
+def filtered_covariance(
+    covariance: NDArray,
+    known: NDArray,
+    noise: Noise,
+    rate_hz: float,
+    cutoff_hz: float,
+    order: int,
+    derivative: int = 0,
+) -> NDArray:
+    """Return the covariance (T, 3, 3) of a filtered path or of its derivative.
 
     Parameters
     ----------
@@ -165,20 +136,17 @@ def filtered_covariance(covariance, known, noise, rate_hz, cutoff_hz, order, der
         Of the raw points; NaN where unknown.
     known : (T,) bool
         Frames that have a value, measured or filled in.
-    noise : Noise
-    rate_hz, cutoff_hz, order, derivative
-        As for `block_covariance`.
 
     Returns
     -------
     filtered : (T, 3, 3) float
-        NaN where no frame within the filter's reach has a covariance. In filled gaps it is that of the
-        frames around them, and so too small.
+        NaN where no frame within the filter's reach has a covariance. In filled gaps it is that of
+        the frames around them, which is too small.
 
     Notes
     -----
-    The raw covariance is averaged with the filter's squared weights, which is exact for white noise, and for
-    any noise while the covariance changes slowly.
+    The raw covariance is averaged with the filter's squared weights, which is exact for white
+    noise, and for any noise while the covariance changes slowly.
     """
     matrix = _operator(
         _block(len(known), rate_hz, cutoff_hz), rate_hz, cutoff_hz, order, derivative
@@ -199,7 +167,7 @@ def filtered_covariance(covariance, known, noise, rate_hz, cutoff_hz, order, der
 
 
 @lru_cache(maxsize=64)
-def _band_gains(rate_hz):
+def _band_gains(rate_hz: float) -> tuple[NDArray, NDArray]:
     """Return the shares in both bands of white noise (2,) and of noise with each memory (M, 2)."""
     cutoffs_hz = [band * rate_hz / 2 for band in BANDS]
     n_block = _block(10**6, rate_hz, cutoffs_hz[0] / 2)
@@ -212,8 +180,8 @@ def _band_gains(rate_hz):
     return np.array([row @ row for row in rows]), np.array(slow)
 
 
-def estimate(xyz, covariance, rate_hz):
-    """Find the noise that explains how much of a raw path is too fast for motion.
+def estimate(xyz: NDArray, covariance: NDArray, rate_hz: float) -> Noise:
+    """Estimate the noise from the part of a raw path that is too fast for motion.
 
     Parameters
     ----------
@@ -221,22 +189,21 @@ def estimate(xyz, covariance, rate_hz):
         Raw, short gaps filled.
     covariance : (T, 3, 3) float
         Stated for the raw points; NaN in filled frames.
-    rate_hz : float
 
     Returns
     -------
     noise : Noise
-        White with a scale above 1 where there is more fast noise than the stated covariance can explain;
-        white of scale 1 where there are too few frames.
+        White with a scale above 1 where there is more fast noise than the stated covariance can
+        explain; white of scale 1 where there are too few frames.
 
     Notes
     -----
-    The power in two bands, 0.45 to 0.7 of half the frame rate and above, fixes the white share and the
-    memory of the rest, given the stated variance. The extrapolation to slower noise is well founded just
-    below, where it matters for speeds and path lengths: a variance stated too large leads to a memory that is
-    too long, and both errors nearly cancel. Views that were interpolated to common times lost part of their
-    fast noise: the memory is then too long. Motion in these bands, as at a hit, counts as noise; single
-    changes are cut to 4 standard deviations.
+    The power in two bands, 0.45 to 0.7 of half the frame rate and above, fixes the white share and
+    the memory of the rest, given the stated variance. The extrapolation to slower noise holds just
+    below these bands, where it matters for speeds and path lengths: a variance stated too large
+    leads to a memory that is too long, and both errors nearly cancel. Views that were interpolated
+    to common times lost part of their fast noise: the memory is then too long. Motion in these
+    bands, as at a hit, counts as noise; single changes are cut to 4 standard deviations.
     """
     white, slow = _band_gains(float(rate_hz))
     power = _band_powers(xyz, covariance, rate_hz)
@@ -252,7 +219,7 @@ def estimate(xyz, covariance, rate_hz):
     return Noise(float(MEMORIES_S[best]), float(share[best]))
 
 
-def _band_powers(xyz, covariance, rate_hz):
+def _band_powers(xyz: NDArray, covariance: NDArray, rate_hz: float) -> NDArray | None:
     """Return the mean variance in both bands over the stated one, or None with too few frames."""
     low, high = (filtering.zero_lag(xyz, rate_hz, band * rate_hz / 2, SHARP) for band in BANDS)
     known = np.isfinite(covariance).all(axis=(1, 2)) & np.isfinite(high).all(axis=1)

@@ -1,42 +1,33 @@
-"""How far a point went: the length of a noisy path, its bias, and the uncertainty of both."""
+"""Length of a noisy path, its bias, and the uncertainty of both."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.kinematics import filtering, noise_propagation
+from courtside.kinematics.noise_propagation import Noise
 
-N_NODES = 48  # of the quadrature
+N_NODES = 48  # ASSUME: enough for the quadrature; the tests compare it with closed forms
 SLOWER = 2.0  # the true speed is taken from a path filtered at the cut-off divided by this
-SUBTRACTED = 0.5  # share of the noise's variance taken from the square of that speed
-MEMORIES_S = (0.0, 0.01, 0.02, 0.04, 0.08, 0.16)  # tried for the largest bias
-MEMORIES = 4.0  # noise further apart is independent
-MODEL_BIAS = (
-    1.0,
-    0.15,
-)  # ASSUME: mean and standard deviation of a bias over what its noise model makes expect
+SUBTRACTED = 0.5  # share of the noise's variance taken from the square of that speed: `measure`
+MEMORIES_S = (0.0, 0.01, 0.02, 0.04, 0.08, 0.16)  # ASSUME: tried for the largest bias
+INDEPENDENT_AFTER = 4.0  # memories: the correlation is below exp(-4) = 2 %
+# ASSUME: mean and standard deviation of a bias over the one that its noise model predicts.
+MODEL_BIAS = (1.0, 0.15)
 GROUND = slice(0, 2)  # x and y
 SPACE = slice(0, 3)
 
 
-def mean_norm(mean, covariance):
-    """Return the expected length of normally distributed vectors.
-
-    Parameters
-    ----------
-    mean : (N, d) float
-    covariance : (N, d, d) float
-
-    Returns
-    -------
-    expected : (N,) float
+def mean_norm(mean: NDArray, covariance: NDArray) -> NDArray:
+    """Return the expected length (N,) of normal vectors of mean (N, d) and covariance (N, d, d).
 
     Notes
     -----
-    |x| = (1 / sqrt pi) integral over t > 0 of (1 - exp(-t^2 |x|^2)) / t^2 dt, and the expectation of the
-    exponential is prod_i (1 + 2 t^2 l_i)^(-1/2) exp(-t^2 m_i^2 / (1 + 2 t^2 l_i)) with the variances l_i and
-    means m_i along the covariance's axes. With t = tan(angle) / size the integrand is smooth between 0 and
-    90 degrees, where Gauss-Legendre's rule is used.
+    |x| = (1 / sqrt pi) integral over t > 0 of (1 - exp(-t^2 |x|^2)) / t^2 dt, and the expectation
+    of the exponential is prod_i (1 + 2 t^2 l_i)^(-1/2) exp(-t^2 m_i^2 / (1 + 2 t^2 l_i)) with the
+    variances l_i and means m_i along the covariance's axes. With t = tan(angle) / size the
+    integrand is smooth between 0 and 90 degrees: Gauss-Legendre quadrature.
     """
     variance, axes = np.linalg.eigh(covariance)
     variance = np.maximum(variance, 0.0)
@@ -55,36 +46,29 @@ def mean_norm(mean, covariance):
 
 @dataclass(frozen=True)
 class Distance:
-    """Length of a path.
+    """Length of a path."""
 
-    Attributes
-    ----------
-    measured_m : float
-        Of the filtered path as it is.
-    bias_m : float
-        By how much noise lengthens it, in expectation; NaN where no covariance is known.
-    bias_sigma_m : float
-        Standard deviation of `bias_m`.
-    bias_most_m : float
-        The most that noise of the stated covariance can do, whatever its memory.
-    corrected_m : float
-        Measured, less the bias. What the filter cuts off corners and hops is not added.
-    sigma_m : float
-        Standard deviation of `corrected_m`, that of the bias included.
-    seconds : float
-        Time over which the path is known; gaps that stayed open are not in the distance.
-    """
-
-    measured_m: float
-    bias_m: float
-    bias_sigma_m: float
-    bias_most_m: float
+    measured_m: float  # of the filtered path as it is
+    bias_m: float  # expected lengthening by noise; NaN where no covariance is known
+    bias_sigma_m: float  # standard deviation of `bias_m`
+    bias_most_m: float  # the largest lengthening by noise of the stated covariance, for any memory
+    # Measured, less the bias. What the filter cuts off corners and hops is not added.
     corrected_m: float
-    sigma_m: float
+    sigma_m: float  # standard deviation of `corrected_m`, that of the bias included
+    # Time over which the path is known; gaps that stayed open are not in the distance.
     seconds: float
 
 
-def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE, model_bias=MODEL_BIAS):
+def measure(
+    xyz: NDArray,
+    covariance: NDArray,
+    rate_hz: float,
+    noise: Noise,
+    cutoff_hz: float,
+    order: int,
+    axes: slice = SPACE,
+    model_bias: tuple[float, float] = MODEL_BIAS,
+) -> Distance:
     """Return the length of a path.
 
     Parameters
@@ -93,28 +77,23 @@ def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE, model
         Raw, metres, short gaps filled; NaN in open gaps.
     covariance : (T, 3, 3) float
         Of the raw points; NaN where unknown.
-    rate_hz : float
-    noise : courtside.kinematics.noise_propagation.Noise
     cutoff_hz, order : float, int
-        Of the zero-lag filter. High enough to keep the motion: the noise that is let through is known and
-        taken off, what is cut from the motion is not known.
+        Of the zero-lag filter. High enough to keep the motion: the noise that passes is known and
+        subtracted, what is cut from the motion is not known.
     axes : slice
         `SPACE`, or `GROUND` for the path's projection on the floor.
     model_bias : (float, float)
-        Mean and standard deviation of the bias over what the noise makes expect.
-
-    Returns
-    -------
-    distance : Distance
+        Mean and standard deviation of the true bias over the expected one.
 
     Notes
     -----
-    The length is the integral of the speed by the trapezoidal rule. Noise e with covariance S lengthens a
-    velocity v to E|v + e|, by about the variance across v over 2 |v| where the noise is small and by E|e| at
-    rest. |v| is not known: the speed of the path filtered at half the cut-off, where the velocity's noise is
-    several times smaller, stands for it. Half of that noise's variance is subtracted from its square. None
-    would leave too much speed in rests, and all of it too little, for negative squares are cut at 0; a half
-    left 0.1 % of the length on made-up footwork where noise had added 4 %.
+    The length is the integral of the speed by the trapezoidal rule. Noise e with covariance S
+    lengthens a velocity v to E|v + e|, by about the variance across v over 2 |v| where the noise is
+    small and by E|e| at rest. |v| is not known: the speed of the path filtered at half the cut-off,
+    where the velocity's noise is several times smaller, stands for it. Half of that noise's
+    variance is subtracted from its square. None would leave too much speed in rests, and all of it
+    too little, for negative squares are cut at 0; a half left 0.1 % of the length on made-up
+    footwork where noise had added 4 %.
     """
     known = np.isfinite(xyz).all(axis=1)
     velocity, spread = _velocity(xyz, covariance, known, rate_hz, noise, cutoff_hz, order)
@@ -128,12 +107,12 @@ def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE, model
     )
     measured = float(np.linalg.norm(velocity, axis=1) @ weight_s)
     if not used.any() or not np.isfinite(spread).any():
-        unknown = float("nan")
-        return Distance(measured, *5 * [unknown], float(weight_s.sum()))
+        nan, seconds = float("nan"), float(weight_s.sum())
+        return Distance(measured, nan, nan, nan, nan, nan, seconds)
     spread = _filled(spread)
     true = true_velocity(slow[0][used][:, axes], _filled(slow[1][used][:, axes, axes]))
     bias, bias_sigma = float(_lengthening(true, spread) @ weight_s) * np.array(model_bias)
-    most = _most(rate_hz, noise, cutoff_hz, order)
+    most = _largest_variance_ratio(rate_hz, noise, cutoff_hz, order)
     lags = _correlation(len(true), rate_hz, noise, cutoff_hz, order)
     sigma = np.hypot(np.sqrt(variance(true, spread, weight_s, lags)), bias_sigma)
     return Distance(
@@ -147,7 +126,15 @@ def measure(xyz, covariance, rate_hz, noise, cutoff_hz, order, axes=SPACE, model
     )
 
 
-def _velocity(xyz, covariance, known, rate_hz, noise, cutoff_hz, order):
+def _velocity(
+    xyz: NDArray,
+    covariance: NDArray,
+    known: NDArray,
+    rate_hz: float,
+    noise: Noise,
+    cutoff_hz: float,
+    order: int,
+) -> tuple[NDArray, NDArray]:
     path = filtering.zero_lag(xyz, rate_hz, cutoff_hz, order)
     spread = noise_propagation.filtered_covariance(
         covariance, known, noise, rate_hz, float(cutoff_hz), order, 1
@@ -155,8 +142,8 @@ def _velocity(xyz, covariance, known, rate_hz, noise, cutoff_hz, order):
     return noise_propagation.differentiate(path, rate_hz), spread
 
 
-def _weights_s(known, rate_hz):
-    """Return the trapezoidal rule's weights in seconds, 0 in gaps and in runs of fewer than 3 frames."""
+def _weights_s(known: NDArray, rate_hz: float) -> NDArray:
+    """Return trapezoidal weights in seconds, 0 in gaps and in runs of fewer than 3 frames."""
     weights = np.zeros(len(known))
     for start, stop in filtering.runs(known):
         if stop - start > 2:
@@ -165,26 +152,28 @@ def _weights_s(known, rate_hz):
     return weights
 
 
-def _filled(spread):
+def _filled(spread: NDArray) -> NDArray:
     """Return covariances with the mean one where none is known."""
     known = np.isfinite(spread).all(axis=(1, 2))
     return np.where(known[:, None, None], spread, spread[known].mean(axis=0))
 
 
-def _lengthening(velocity, spread):
+def _lengthening(velocity: NDArray, spread: NDArray) -> NDArray:
     return mean_norm(velocity, spread) - np.linalg.norm(velocity, axis=1)
 
 
-def _correlation(n_frames, rate_hz, noise, cutoff_hz, order):
+def _correlation(
+    n_frames: int, rate_hz: float, noise: Noise, cutoff_hz: float, order: int
+) -> NDArray:
     """Return the velocity noise's correlation at 0, 1, ... frames, for as long as it lasts."""
-    seconds = noise_propagation.EDGE_PERIODS / cutoff_hz + MEMORIES * noise.memory_s
+    seconds = noise_propagation.EDGE_PERIODS / cutoff_hz + INDEPENDENT_AFTER * noise.memory_s
     n_lags = min(n_frames, int(np.ceil(seconds * rate_hz)) + 1)
     return noise_propagation.autocorrelation(n_lags, rate_hz, float(cutoff_hz), order, noise, 1)
 
 
-def _most(rate_hz, noise, cutoff_hz, order):
-    """Return the largest variance of the velocity's noise for any memory, over that for the noise's own."""
-    others = [noise_propagation.Noise(float(memory), scale=noise.scale) for memory in MEMORIES_S]
+def _largest_variance_ratio(rate_hz: float, noise: Noise, cutoff_hz: float, order: int) -> float:
+    """Return the largest variance of the velocity's noise for any memory, over that for its own."""
+    others = [Noise(float(memory), scale=noise.scale) for memory in MEMORIES_S]
     found = [
         noise_propagation.gains(10**3, rate_hz, float(cutoff_hz), order, one, 1)[500]
         for one in (noise, *others)
@@ -192,14 +181,10 @@ def _most(rate_hz, noise, cutoff_hz, order):
     return max(found) / found[0]
 
 
-def true_velocity(velocity, spread):
-    """Return velocities whose lengths are those without their noise, in the mean.
+def true_velocity(velocity: NDArray, spread: NDArray) -> NDArray:
+    """Return velocities (N, d) shortened to their expected length without noise.
 
-    Parameters
-    ----------
-    velocity : (N, d) float
-    spread : (N, d, d) float
-        Covariance of their noise.
+    `spread` (N, d, d) is the covariance of their noise.
     """
     squared = np.sum(velocity**2, axis=1)
     less = squared - SUBTRACTED * np.trace(spread, axis1=1, axis2=2)
@@ -207,8 +192,8 @@ def true_velocity(velocity, spread):
     return velocity * np.sqrt(share)[:, None]
 
 
-def variance(velocity, spread, weight_s, correlation):
-    """Return the variance of the length of a path.
+def variance(velocity: NDArray, spread: NDArray, weight_s: NDArray, correlation: NDArray) -> float:
+    """Return the variance, m2, of the length of a path.
 
     Parameters
     ----------
@@ -221,22 +206,20 @@ def variance(velocity, spread, weight_s, correlation):
     correlation : (L,) float
         Of the velocity's noise at 0, 1, ... L - 1 frames; 1 first.
 
-    Returns
-    -------
-    variance_m2 : float
-
     Notes
     -----
-    Noise along the path changes its length linearly; on a straight path these changes cancel but for both
-    ends. Noise across it changes the length by its square, whose correlation is the square of the noise's.
-    Both are scaled to the exact variance of |v + e|, which is less than their sum near rest.
+    Noise along the path changes its length linearly; on a straight path these changes cancel except
+    at both ends. Noise across it changes the length by its square, whose correlation is the square
+    of the noise's. Both are scaled to the exact variance of |v + e|, which is less than their sum
+    near rest.
     """
     size = np.linalg.norm(velocity, axis=1)
     direction = velocity / np.where(size > 0, size, 1.0)[:, None]
     along = np.einsum("ni,nij,nj->n", direction, spread, direction)
     whole = np.trace(spread, axis1=1, axis2=2)
     across = np.maximum(whole - along, 0.0)
-    # |e|^2 / (2 |v|) has this variance for equal noise in two directions, and less for more unequal.
+    # |e|^2 / (2 |v|) has this variance for equal noise in two directions, and less for more
+    # unequal.
     square = across**2 / (4 * np.maximum(size**2, across))
     exact = np.maximum(size**2 + whole - mean_norm(velocity, spread) ** 2, 0.0)
     share = exact / np.where(along + square > 0, along + square, 1.0)

@@ -1,31 +1,39 @@
-"""How smooth a movement is: the arc length of its speed's spectrum (SPARC)."""
+"""Smoothness of a movement: the spectral arc length of its speed (SPARC)."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from courtside.kinematics.wrist_arcs import Arc
+from courtside.records.keypoints.body_motion import BodyMotion
+
+# Defaults of the authors' own code (references in `sparc`).
 CUTOFF_HZ = 10.0
 THRESHOLD = 0.05
 PADDING = 4  # powers of two by which the spectrum is made finer
 
 
-def sparc(speed, rate_hz, *, cutoff_hz=CUTOFF_HZ, threshold=THRESHOLD):
-    """Return the spectral arc length of a speed profile.
+def sparc(
+    speed: ArrayLike,
+    rate_hz: float,
+    *,
+    cutoff_hz: float = CUTOFF_HZ,
+    threshold: float = THRESHOLD,
+) -> float:
+    """Return the spectral arc length of a speed profile (T,), no unit; nearer to 0 is smoother.
+
+    -1.41 for a single minimum-jerk reach. Neither amplitude nor duration changes it, as long as the
+    spectrum ends below the cut-off.
 
     Parameters
     ----------
     speed : (T,) float
         Of one movement, from rest to rest; any unit.
-    rate_hz : float
-        Values per second.
     cutoff_hz : float
         Frequencies beyond do not count.
     threshold : float
-        Share of the spectrum at 0 Hz: frequencies beyond the last that reaches it do not count either.
-
-    Returns
-    -------
-    sparc : float
-        Without unit; nearer to 0 is smoother: -1.41 for a single minimum-jerk reach. Neither amplitude nor
-        duration changes it, as long as the cut-off is not met.
+        Share of the spectrum at 0 Hz: frequencies beyond the last that reaches it do not count.
 
     Raises
     ------
@@ -35,7 +43,8 @@ def sparc(speed, rate_hz, *, cutoff_hz=CUTOFF_HZ, threshold=THRESHOLD):
     Notes
     -----
     Balasubramanian, Melendez-Calderon & Burdet 2012; with the adaptive limit of Balasubramanian,
-    Melendez-Calderon, Roby-Brami & Burdet 2015. Noise counts as unsmooth: compare sources at one rate.
+    Melendez-Calderon, Roby-Brami & Burdet 2015. Noise counts as unsmooth: compare sources at one
+    rate.
     """
     speed = np.asarray(speed, dtype=float)
     if speed.ndim != 1 or len(speed) < 4 or not np.isfinite(speed).all() or not speed.any():
@@ -51,22 +60,13 @@ def sparc(speed, rate_hz, *, cutoff_hz=CUTOFF_HZ, threshold=THRESHOLD):
     return float(-np.hypot(1 / (len(part) - 1), np.diff(part)).sum())
 
 
-def of_path(time_s, xyz, rate_hz, *, start_s, stop_s):
-    """Return the SPARC of a point's speed between two times.
+def of_path(
+    time_s: NDArray, xyz: NDArray, rate_hz: float, *, start_s: float, stop_s: float
+) -> float:
+    """Return the SPARC of the speed of a point (T, 3), any unit, between two times.
 
-    Parameters
-    ----------
-    time_s : (T,) float
-    xyz : (T, 3) float
-        Any unit; values that are missing are bridged by straight lines.
-    rate_hz : float
-        All sources are compared at this rate.
-    start_s, stop_s : float
-
-    Returns
-    -------
-    sparc : float
-        NaN where fewer than half of the values in between are known.
+    The path is resampled at `rate_hz`, at which sources are compared; straight lines bridge missing
+    values. NaN where fewer than half of the values in between are known.
     """
     grid = np.arange(start_s, stop_s, 1 / rate_hz)
     known = np.isfinite(xyz).all(axis=1)
@@ -78,21 +78,8 @@ def of_path(time_s, xyz, rate_hz, *, start_s, stop_s):
     return sparc(speed, rate_hz)
 
 
-def of_arcs(body, arcs, rate_hz):
-    """Return the SPARC of the wrists on their arcs from T-pose to clap.
-
-    Parameters
-    ----------
-    body : courtside.records.keypoints.body_motion.BodyMotion
-    arcs : list of courtside.kinematics.wrist_arcs.Arc
-        Of that body.
-    rate_hz : float
-
-    Returns
-    -------
-    sparc : list of float
-        One for each arc.
-    """
+def of_arcs(body: BodyMotion, arcs: Sequence[Arc], rate_hz: float) -> list[float]:
+    """Return the SPARC of each wrist of a body on its arc from T-pose to clap."""
     return [
         of_path(
             body.time_s,

@@ -1,14 +1,17 @@
-"""The wrists' paths from T-pose to clap, seen from above, against the arcs that they could follow.
+"""The wrists' paths from T-pose to clap, seen from above, against arcs about the shoulders.
 
-The arms turn about the shoulders: the circle of radius 1 about the navel, which the wrists leave from, is no
-path that straight arms can follow. The subject's own arcs have their centres at the shoulders.
+The arms turn about the shoulders: wrists of straight arms cannot follow the circle of radius 1
+about the navel on which they start. The subject's own arcs have their centres at the shoulders.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
+from courtside.records.keypoints.body_motion import BodyMotion
 from courtside.study.errors import InputError
 
 PLANE = [0, 2]  # x to the left hand, z forwards
@@ -17,55 +20,33 @@ SIDES = ("left", "right")
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """One wrist's path and its own arc, in the x-z plane of the body, units.
-
-    Attributes
-    ----------
-    side : str
-    time_s : (n,) float
-        On the reference clock.
-    path : (n, 2) float
-        x and z of the wrist; NaN where missing.
-    shoulder : (2,) float
-        Centre of the arc: the shoulder in the T-pose.
-    radius : float
-        Of the arc: from shoulder to wrist in the T-pose.
-    """
+    """One wrist's path and its own arc, in the x-z plane of the body, units."""
 
     side: str
-    time_s: np.ndarray
-    path: np.ndarray
-    shoulder: np.ndarray
-    radius: float
+    time_s: NDArray  # (n,): on the reference clock
+    path: NDArray  # (n, 2): x and z of the wrist; NaN where missing
+    shoulder: NDArray  # (2,): centre of the arc: the shoulder in the T-pose
+    radius: float  # of the arc: from shoulder to wrist in the T-pose
 
     @property
-    def off_arc(self):
+    def off_arc(self) -> NDArray:
         """Distance of the path to the own arc, (n,) units; positive outside."""
         return np.linalg.norm(self.path - self.shoulder, axis=1) - self.radius
 
     @property
-    def off_circle(self):
+    def off_circle(self) -> NDArray:
         """Distance of the path to the circle of radius 1, (n,) units; positive outside."""
         return np.linalg.norm(self.path, axis=1) - 1.0
 
     @property
-    def meeting(self):
-        """Place (2,) on the own arc where both hands could meet, in the middle; NaN if out of reach."""
+    def meeting(self) -> NDArray:
+        """Where the own arc crosses the middle and the hands could meet, (2,); NaN out of reach."""
         aside = self.radius**2 - self.shoulder[0] ** 2
         return np.array([0.0, self.shoulder[1] + np.sqrt(aside) if aside >= 0 else np.nan])
 
 
-def arcs(body):
-    """Return the arcs of both wrists from the T-pose's end to the first clap after it.
-
-    Parameters
-    ----------
-    body : courtside.records.keypoints.body_motion.BodyMotion
-
-    Returns
-    -------
-    arcs : list of Arc
-        Left, right.
+def arcs(body: BodyMotion) -> list[Arc]:
+    """Return the arcs of the left and right wrist from the T-pose's end to the first clap after it.
 
     Raises
     ------
@@ -76,8 +57,9 @@ def arcs(body):
     later = body.clap_s[body.clap_s > stop_s]
     if not len(later):
         raise InputError(
-            f"{body.source}: expected a clap after the T-pose of {start_s:.2f} to {stop_s:.2f} s, found "
-            f"claps at {', '.join(f'{t:.2f}' for t in body.clap_s) or 'no time'}; choose another T-pose"
+            f"{body.source}: expected a clap after the T-pose of {start_s:.2f} to {stop_s:.2f} s, "
+            f"found claps at {', '.join(f'{t:.2f}' for t in body.clap_s) or 'no time'}; choose "
+            "another T-pose"
         )
     still = (body.time_s >= start_s) & (body.time_s <= stop_s)
     moving = (body.time_s >= stop_s) & (body.time_s <= later[0])
@@ -90,7 +72,7 @@ def arcs(body):
     return found
 
 
-def paths(found):
+def paths(found: Sequence[Arc]) -> pd.DataFrame:
     """Return the points of arcs as a table: side, time_s, x, z, off_arc, off_circle; body units."""
     tables = [
         pd.DataFrame(
@@ -108,19 +90,16 @@ def paths(found):
     return pd.concat(tables, ignore_index=True)
 
 
-def distortion(found):
-    """Return how far the paths are from their own arcs, one row per wrist, body units.
-
-    Parameters
-    ----------
-    found : list of Arc
+def distortion(found: Sequence[Arc]) -> pd.DataFrame:
+    """Return the distances of the paths from their own arcs, one row per wrist, body units.
 
     Returns
     -------
     rows : pandas.DataFrame
-        side; n; shoulder_x, shoulder_z, radius: of the own arc; meeting_z: where it crosses the middle;
-        mean_signed, mean_distance, p95_distance: of the path's points to the own arc; mean_off_circle: to
-        the circle of radius 1; end_radius: distance of the last known point to the origin.
+        side; n; shoulder_x, shoulder_z, radius: of the own arc; meeting_z: where it crosses the
+        middle; mean_signed, mean_distance, p95_distance: of the path's points to the own arc;
+        mean_off_circle: to the circle of radius 1; end_radius: distance of the last known point to
+        the origin.
     """
     rows = []
     for arc in found:
