@@ -122,7 +122,7 @@ def test_a_right_device_stays_right_where_vision_is_good():
     assert np.median(errors_m(body, report)) < 0.004
 
 
-def test_it_stays_a_body_of_constant_bones():
+def test_the_corrected_body_has_constant_bones():
     raw, body, _ = corrected("swivel")
     assert body.hierarchy.joints == raw.hierarchy.joints
     lengths = np.linalg.norm(body.translation[:, 1:], axis=2)

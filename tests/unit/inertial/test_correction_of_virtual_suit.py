@@ -1,6 +1,7 @@
-"""A virtual athlete in a virtual suit: the corrected skeleton is nearer the truth than what the suit says.
+"""A virtual athlete in a virtual suit: the corrected skeleton is nearer the truth than the suit's.
 
-The method was made without the suit's errors; seeds 1 to 3, mild and usual, served to choose its settings.
+The method was made without the suit's errors; seeds 1 to 3, mild and usual, served to choose its
+settings.
 """
 
 from dataclasses import replace
@@ -28,7 +29,7 @@ NOT_MODELLED = "disturbed"
 
 @cache
 def performed():
-    """Return the athlete, the times (T,) of the suit's rows and the true joints (T, 12, 3), in world."""
+    """Return the athlete, the times (T,) of the suit's rows, the true joints (T, 12, 3)."""
     figure = skinned_body.Body.read(mannequin.folder(), shapes.BODIES["m2"])
     rng = np.random.default_rng(SEED)
     motion = catalogue.single_view(figure.proportions, performers.COURT, rng, free_s=20.0, claps=2)
@@ -47,7 +48,7 @@ def lasting(rng, shape, keep):
 
 @cache
 def vision():
-    """Return a depth camera's joints: error mostly along the view, lasting, biased per joint, with gaps."""
+    """Return a depth camera's joints: lasting errors along the view, biases, gaps."""
     _, time_s, true = performed()
     rng = np.random.default_rng([SEED, 99])
     xyz = (true[12:-12:2] - true.mean(axis=(0, 1))) @ CAM_FROM_WORLD.T + [0, 0, 4.0]
@@ -65,7 +66,7 @@ def vision():
 
 @cache
 def errors_m(strength):
-    """Return the median error of the suit and of its correction, both after one common alignment."""
+    """Return the median error of the suit and of its correction, after one common alignment."""
     mover, time_s, true = performed()
     errors = inertial_errors.STRENGTHS[strength]
     rng = np.random.default_rng([SEED, len(strength)])

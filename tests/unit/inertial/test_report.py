@@ -53,7 +53,7 @@ def test_changes_are_of_the_pose_alone():
         assert report.change_mm[joint] < 60
 
 
-def test_it_is_written_as_json(tmp_path):
+def test_a_report_is_written_as_json(tmp_path):
     report = case()[-1]
     report.write(tmp_path / "report.json")
     read = json.loads((tmp_path / "report.json").read_text())

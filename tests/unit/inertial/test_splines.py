@@ -1,4 +1,4 @@
-"""Splines, their prior and the bordered system, against dense algebra and the process's covariance."""
+"""Splines, their prior and the bordered system, against dense algebra and known covariances."""
 
 import numpy as np
 import pytest

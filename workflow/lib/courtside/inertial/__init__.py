@@ -1,1 +1,9 @@
-"""Correction of an inertial suit by what cameras see: segments, heading, slow drift."""
+"""Correction of an inertial suit by what cameras see: segments, heading, slow drift.
+
+correction: `correct` (the entry), `Settings`
+fit: `Fit`, `observe`, `Seen`, `Noise`, `estimate_vision_noise`, `stated`
+segments: `segments_of`, `Segments`, `Model`, `Frames`
+heading: `estimate`, `Alignment`, `turn_path`
+splines: `Basis`, `basis_over`, `precision`, `gather`, `solve`, `Solution`
+report: `CorrectionReport`, `describe`
+"""

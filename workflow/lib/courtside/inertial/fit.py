@@ -1,25 +1,41 @@
-"""Fit the correction of an inertial suit to what cameras or a depth camera see of the same motion."""
+"""Fit the correction of an inertial suit to what cameras or a depth camera see meanwhile."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import rotations as rotation_vectors
+from courtside.geometry import rotations
 from courtside.inertial import heading as heading_drift
 from courtside.inertial import splines
 from courtside.inertial.segments import Frames, Model, segments_of
-from courtside.records.devices.hierarchy import forward
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.hierarchy import PosedHierarchy, forward
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-CHUNK = 500  # frames whose derivatives are held at once
-SAMPLES = 6  # draws, to tell how much of a correction the data determine
+if TYPE_CHECKING:
+    from courtside.inertial.correction import Settings
+
+CHUNK = 500  # frames whose derivatives are held at once: bounds the memory
+SAMPLES = 6  # ASSUME: draws, to tell how much of a correction the data determine
 SEED = 5
-PRIOR_COEFFICIENTS = 5.0  # that the stated size of a correction counts for
-RANGE = (0.02, 4.0)  # of the stated size, that the estimated one may take
+PRIOR_COEFFICIENTS = 5.0  # ASSUME: that the stated size of a correction counts for
+RANGE = (0.02, 4.0)  # ASSUME: of the stated size, that the estimated one may take
 PAD_S = 1.0  # of the splines beyond the recording: the clock may shift
-FIRST_ROUNDS = 2  # with the stated sizes
+FIRST_ROUNDS = 2  # ASSUME: with the stated sizes
+LEAST_FRAMES = 30  # ASSUME: with `LEAST_JOINTS` joints, to be fitted at all
+LEAST_JOINTS = 6  # ASSUME: half of the limb joints
+TAIL = 4.0  # degrees of freedom of Student's t: a robust estimate (Lange et al. 1989)
+ROUNDS = 5  # ASSUME: the noise settles in a few
+PRIOR_FRAMES = 5.0  # ASSUME: independent frames that the stated sigma counts for
+LONGEST_S = 0.5  # memory of the noise: beyond, it cannot be told from a slow error of the device
+SHORT_S = 0.1  # ASSUME: lag at which the memory is read
 
 
 class Fit:
@@ -29,17 +45,22 @@ class Fit:
     ----------
     posed : PosedHierarchy
         Performed frames only, times on the reference clock.
-    seen : courtside.inertial.correction.Seen
-        What vision tells.
     up : (3,) float
     lag_s : float
         Standard deviation of the clocks' offset.
     offsets_m : dict of str to (3,) float
         Known offsets of vision's joints.
-    settings : courtside.inertial.correction.Settings
     """
 
-    def __init__(self, posed, seen, up, lag_s, offsets_m, settings):
+    def __init__(
+        self,
+        posed: PosedHierarchy,
+        seen: Seen,
+        up: NDArray,
+        lag_s: float,
+        offsets_m: Mapping[str, NDArray],
+        settings: Settings,
+    ) -> None:
         self.posed, self.seen, self.up, self.settings = posed, seen, up, settings
         self.segments = segments_of(posed.hierarchy, seen.source)
         observed = [list(posed.hierarchy.joints).index(joint) for joint in seen.joints]
@@ -52,10 +73,10 @@ class Fit:
         self._fixed_prior(lag_s, offsets_m)
         self.fixed = self.fixed_mean.copy()
         self.rate_hz = 1 / np.median(np.diff(seen.time_s))
-        self.rms_change_m, self.noise = [], None
+        self.rms_change_m: list[float] = []
 
-    def _align(self):
-        """Turn and place vision's joints into the device's world, and the device by its drifting heading."""
+    def _align(self) -> None:
+        """Move vision's joints into the device's world; turn the device by its drifting heading."""
         xyz, world = forward(self.posed)
         time_s, seen_s = self.posed.time_s, self.seen.time_s
         device = _linear(time_s, xyz[:, self.model.observed], seen_s)
@@ -64,15 +85,13 @@ class Fit:
             seen_s, device, self.seen.xyz, self.up, window_s=window
         )
         heading = self.alignment.heading_at(time_s)
-        turn = rotation_vectors.matrices_from_vectors(heading[:, None] * self.up)[:, None]
+        turn = rotations.matrices_from_vectors(heading[:, None] * self.up)[:, None]
         root = heading_drift.turn_path(xyz[:, 0], heading, self.up)
         placed = root[:, None] + (turn @ (xyz - xyz[:, :1])[..., None])[..., 0]
         self.translation = self.posed.translation.copy()
         self.centre = root.mean(axis=0)
         self.translation[:, 0] = root - self.centre
-        self.facing = rotation_vectors.matrices_from_vectors(
-            facings(turn[:, 0] @ world[:, 0], self.up)
-        )
+        self.facing = rotations.matrices_from_vectors(facings(turn[:, 0] @ world[:, 0], self.up))
         self.local = self.facing.swapaxes(1, 2)[:, None] @ turn @ world
         observed = placed[:, self.model.observed] - self.centre
         self.velocity = np.gradient(observed, time_s, axis=0)
@@ -80,7 +99,7 @@ class Fit:
         self.place = np.nanmedian(vision - _linear(time_s, observed, seen_s), axis=(0, 1))
         self.vision = vision - self.place
 
-    def _slow_prior(self):
+    def _slow_prior(self) -> None:
         settings = self.settings
         kinds = [self.segments.kind(name) for name in self.segments.names]
         names = [kind for kind in kinds for _ in range(3)] + ["heading"] + ["shift"] * 3
@@ -96,7 +115,7 @@ class Fit:
         band = {tau: splines.precision(self.basis, tau) for tau in set(memory.values())}
         self.band = np.stack([band[memory[name]] for name in names], axis=2)  # (K, 4, P)
 
-    def _fixed_prior(self, lag_s, offsets_m):
+    def _fixed_prior(self, lag_s: float, offsets_m: Mapping[str, NDArray]) -> None:
         settings, layout = self.settings, self.model.fixed
         deviation, self.fixed_mean = np.zeros(self.model.n_fixed), np.zeros(self.model.n_fixed)
         kinds = [self.segments.kind(name) for name in self.segments.names]
@@ -119,8 +138,8 @@ class Fit:
         self.fixed_mean[layout["offset"]] = np.concatenate(known)
         self.fixed_precision = deviation**-2
 
-    def run(self):
-        """Fit: in each round the noise, one step of Gauss and Newton, and the sizes of corrections."""
+    def run(self) -> None:
+        """Fit: in each round the noise, a Gauss-Newton step, and the sizes of the corrections."""
         rng = np.random.default_rng(SEED)
         self.first = before = self.predicted()
         for number in range(1, self.settings.rounds + 1):
@@ -138,39 +157,39 @@ class Fit:
                 break
         self.last, self.border_covariance = before, solution.border_covariance
 
-    def frames(self, part=slice(None)):
-        """Return the uncorrected skeleton at vision's times, by the clocks' shift as found so far."""
+    def frames(self, part: slice = slice(None)) -> Frames:
+        """Return the uncorrected skeleton at vision's times, by the current clock offset."""
         wanted = self.seen.time_s[part] + self.fixed[self.model.fixed["lag"]]
         time_s = self.posed.time_s
         return Frames(
-            rotation_vectors.interpolate(time_s, self.facing, wanted),
-            rotation_vectors.interpolate(time_s, self.local, wanted),
+            rotations.interpolate(time_s, self.facing, wanted),
+            rotations.interpolate(time_s, self.local, wanted),
             _linear(time_s, self.translation, wanted),
             _linear(time_s, self.velocity, wanted),
         )
 
-    def slow_at(self, time_s):
+    def slow_at(self, time_s: NDArray) -> NDArray:
         """Return the slow parameters (T, P) at times of the reference clock."""
         return self.basis.evaluate(self.coefficients, time_s)
 
-    def predicted(self):
-        """Return where vision should see the joints, (N, D, 3) metres, in the device's centred world."""
+    def predicted(self) -> NDArray:
+        """Return the predicted joints of vision, (N, D, 3) m, in the device's centred world."""
         slow = self.slow_at(self.seen.time_s)
         return np.concatenate(
             [self.model.places(self.frames(part), slow[part], self.fixed) for part in self._parts()]
         )
 
-    def _parts(self):
+    def _parts(self) -> list[slice]:
         n = len(self.seen.time_s)
         return [slice(start, min(start + CHUNK, n)) for start in range(0, n, CHUNK)]
 
-    def _step(self, predicted):
+    def _step(self, predicted: NDArray) -> splines.Solution:
         first, values = self.basis.at(self.seen.time_s)
         slow = self.slow_at(self.seen.time_s)
         white = self.noise.whitening() / self.seen.sigma_m[..., None, None]
         residual = np.nan_to_num(self.vision - predicted)
         white = np.nan_to_num(white)
-        sums = None
+        sums: list[NDArray] = []
         for part in self._parts():
             _, by_slow, by_fixed = self.model.linear(self.frames(part), slow[part], self.fixed)
             rows = len(by_slow)
@@ -180,13 +199,13 @@ class Fit:
             across = np.concatenate([by_fixed, left], axis=2)
             per_frame = by_slow.swapaxes(1, 2) @ by_slow
             vector = by_slow.swapaxes(1, 2) @ across
-            found = splines.gather(self.basis, first[part], values[part], per_frame, vector)
+            gathered = splines.gather(self.basis, first[part], values[part], per_frame, vector)
             flat = by_fixed.reshape(-1, self.model.n_fixed)
-            found = (*found, flat.T @ across.reshape(len(flat), -1))
-            sums = found if sums is None else [a + b for a, b in zip(sums, found, strict=True)]
+            found = [*gathered, flat.T @ across.reshape(len(flat), -1)]
+            sums = [a + b for a, b in zip(sums, found, strict=True)] if sums else found
         return self._solve(*sums)
 
-    def _solve(self, blocks, border, fixed):
+    def _solve(self, blocks: NDArray, border: NDArray, fixed: NDArray) -> splines.Solution:
         scale = self._inverse_squares()
         diagonal = np.arange(self.model.n_slow)
         blocks[:, :, diagonal, diagonal] += self.band * scale
@@ -198,14 +217,14 @@ class Fit:
         self.fixed = self.fixed + solution.border
         return solution
 
-    def _inverse_squares(self):
+    def _inverse_squares(self) -> NDArray:
         scale = np.zeros(self.model.n_slow)
         for kind, columns in self.kinds.items():
             scale[columns] = self.size[kind] ** -2
         return scale
 
-    def _resize(self, solution, rng):
-        """Estimate how large each kind of slow correction is.
+    def _resize(self, solution: splines.Solution, rng: np.random.Generator) -> None:
+        """Estimate the size of each kind of slow correction.
 
         MacKay 1992: its energy over the number of coefficients that the data determine.
         """
@@ -222,58 +241,35 @@ class Fit:
             self.size[kind] = float(np.clip(np.sqrt(squared), *(stated * np.array(RANGE))))
 
 
-def facings(rotations, up):
+def facings(matrices: NDArray, up: NDArray) -> NDArray:
     """Return the part about the vertical of rotations (T, 3, 3), as rotation vectors (T, 3)."""
-    quaternion = Rotation.from_matrix(rotations).as_quat()
+    quaternion = Rotation.from_matrix(matrices).as_quat()
     angle = 2 * np.arctan2(quaternion[:, :3] @ up, quaternion[:, 3])
     return np.unwrap(angle)[:, None] * up
 
 
-def _linear(time_s, values, wanted_s):
-    before, share = rotation_vectors.interpolation_shares(time_s, wanted_s)
+def _linear(time_s: NDArray, values: NDArray, wanted_s: NDArray) -> NDArray:
+    before, share = rotations.interpolation_shares(time_s, wanted_s)
     share = share.reshape((-1,) + (1,) * (values.ndim - 1))
     return values[before] * (1 - share) + values[before + 1] * share
 
 
-LEAST_FRAMES = 30
-LEAST_JOINTS = 6
-
-
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What vision tells of the joints that it shares with a skeleton.
-
-    Attributes
-    ----------
-    source : str
-    joints : tuple of str, length D
-    time_s : (N,) float
-    xyz : (N, D, 3) float
-        Metres, in vision's frame; NaN where missing.
-    sigma_m : (N, D) float
-    """
+    """What vision tells of the joints that it shares with a skeleton."""
 
     source: str
-    joints: tuple
-    time_s: np.ndarray
-    xyz: np.ndarray
-    sigma_m: np.ndarray
+    joints: tuple[str, ...]  # length D
+    time_s: NDArray  # (N,)
+    xyz: NDArray  # (N, D, 3): metres, in vision's frame; NaN where missing
+    sigma_m: NDArray  # (N, D): standard deviation per axis
 
 
-def observe(posed, vision, sigma_m):
-    """Pick what vision tells of a skeleton's limbs while it moves.
+def observe(posed: PosedHierarchy, vision: DeviceMotion, sigma_m: ArrayLike) -> Seen:
+    """Select what vision tells of a skeleton's limbs while it moves, on the same clock.
 
-    Parameters
-    ----------
-    posed : PosedHierarchy
-    vision : DeviceMotion
-        On the same clock.
-    sigma_m : float or (T, J) float
-        Standard deviation per axis; joints where it is not a positive number are not used.
-
-    Returns
-    -------
-    seen : Seen
+    `sigma_m`, a number or (T, J), is the standard deviation per axis; joints where it is not a
+    positive number are not used.
 
     Raises
     ------
@@ -282,8 +278,8 @@ def observe(posed, vision, sigma_m):
     """
     if vision.kind == "rgb":
         raise InputError(
-            f"{vision.source}: expected joints with a place in space, found a skeleton about its own "
-            "hips (kind rgb); correct by a depth camera or by several cameras"
+            f"{vision.source}: expected joints with a place in space, found a skeleton about its "
+            "own hips (kind rgb); correct by a depth camera or by several cameras"
         )
     names = list(posed.hierarchy.joints)
     joints = [name for name in skeleton.JOINTS if name in names and name in vision.joints]
@@ -296,59 +292,38 @@ def observe(posed, vision, sigma_m):
     frames = (usable.sum(axis=1) >= LEAST_JOINTS).sum()
     if frames < LEAST_FRAMES:
         raise InputError(
-            f"{vision.source}: expected {LEAST_FRAMES} frames with {LEAST_JOINTS} limb joints during "
-            f"the inertial recording, found {frames}; check the clocks and what the camera saw"
+            f"{vision.source}: expected {LEAST_FRAMES} frames with {LEAST_JOINTS} limb joints "
+            f"during the inertial recording, found {frames}; check the clocks and what the camera "
+            "saw"
         )
     xyz, sigma = np.where(usable[..., None], xyz, np.nan), np.where(usable, sigma, 1.0)
     return Seen(vision.source, tuple(joints), vision.time_s[inside], xyz, sigma)
 
 
-TAIL = 4.0  # degrees of freedom of Student's t: a robust estimate (Lange et al. 1989)
-ROUNDS = 5
-PRIOR_FRAMES = 5.0  # independent frames that the stated sigma counts for
-LONGEST_S = 0.5  # memory of the noise: beyond, it cannot be told from a slow error of the device
-SHORT_S = 0.1  # lag at which the memory is read
-
-
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """Noise of each joint of vision.
+    """Noise of each joint of vision."""
 
-    Attributes
-    ----------
-    covariance : (D, 3, 3) float
-        Of residuals divided by their stated sigma.
-    inflation : (D,) float
-        Frames that tell as much as one independent frame would.
-    weight : (N, D) float
-        1 for a frame as expected, towards 0 for an outlier; 0 where there is no residual.
-    """
+    covariance: NDArray  # (D, 3, 3): of residuals divided by their stated sigma
+    inflation: NDArray  # (D,): frames that tell as much as one independent frame would
+    # (N, D): 1 for a frame as expected, towards 0 for an outlier; 0 where there is no residual.
+    weight: NDArray
 
-    covariance: np.ndarray
-    inflation: np.ndarray
-    weight: np.ndarray
-
-    def whitening(self):
+    def whitening(self) -> NDArray:
         """Return (N, D, 3, 3): multiply residuals over sigma by it and sum the squares."""
         root = np.linalg.cholesky(np.linalg.inv(self.covariance)).swapaxes(1, 2)
         return np.sqrt(self.weight / self.inflation)[..., None, None] * root
 
 
-def estimate_vision_noise(residual, rate_hz, correlation_s):
+def estimate_vision_noise(residual: NDArray, rate_hz: float, correlation_s: float) -> Noise:
     """Estimate the noise of vision from residuals of a fit.
 
     Parameters
     ----------
     residual : (N, D, 3) float
         Over the stated sigma; NaN where vision has no joint.
-    rate_hz : float
-        Frames per second.
     correlation_s : float
-        Time over which errors of a network are alike at least; more is found from the residuals.
-
-    Returns
-    -------
-    noise : Noise
+        Least correlation time of a network's errors; the residuals may show a longer one.
     """
     seen = np.isfinite(residual).all(axis=2)
     filled = np.where(seen[..., None], residual, 0.0)
@@ -366,22 +341,11 @@ def estimate_vision_noise(residual, rate_hz, correlation_s):
     return Noise(covariance, inflation, weight)
 
 
-def stated(residual, rate_hz, correlation_s):
-    """Return the noise as stated, every frame with its full weight: to begin with.
+def stated(residual: NDArray, rate_hz: float, correlation_s: float) -> Noise:
+    """Return the noise as stated, every frame with its full weight, for the first rounds.
 
-    Residuals of a skeleton that is not yet corrected would pass for noise, and then no correction would
-    ever be worth it.
-
-    Parameters
-    ----------
-    residual : (N, D, 3) float
-        NaN where vision has no joint.
-    rate_hz, correlation_s : float
-        As for `estimate`.
-
-    Returns
-    -------
-    noise : Noise
+    Residuals of a skeleton that is not yet corrected would count as noise, and then no correction
+    would pay. The parameters are those of `estimate_vision_noise`.
     """
     n_joints = residual.shape[1]
     inflation = np.full(n_joints, _floor(rate_hz, correlation_s))
@@ -389,28 +353,28 @@ def stated(residual, rate_hz, correlation_s):
     return Noise(np.tile(np.eye(3), (n_joints, 1, 1)), inflation, weight)
 
 
-def _start(filled, seen):
+def _start(filled: NDArray, seen: NDArray) -> NDArray:
     length = np.sum(filled**2, axis=2) / 3
     typical = [np.median(length[at, d]) if at.any() else 1.0 for d, at in enumerate(seen.T)]
     return np.maximum(typical, 1e-3)[:, None, None]
 
 
-def _floor(rate_hz, correlation_s):
+def _floor(rate_hz: float, correlation_s: float) -> float:
     alike = np.exp(-1 / max(rate_hz * correlation_s, 1e-6))
     return (1 + alike) / (1 - alike)
 
 
-def _weights(filled, covariance, seen):
+def _weights(filled: NDArray, covariance: NDArray, seen: NDArray) -> tuple[NDArray, NDArray]:
     root = np.linalg.cholesky(np.linalg.inv(covariance)).swapaxes(1, 2)
     white = np.einsum("dij,ndj->ndi", root, filled)
     squared = np.sum(white**2, axis=2)
     return seen * (TAIL + 3) / (TAIL + squared), white
 
 
-def _inflation(white, weight, seen, rate_hz):
-    """Return the frames per independent one, (D,), of noise that is white and Ornstein-Uhlenbeck.
+def _inflation(white: NDArray, weight: NDArray, seen: NDArray, rate_hz: float) -> NDArray:
+    """Return the frames per independent one (D,) of noise that is white and Ornstein-Uhlenbeck.
 
-    From short lags alone: over long ones the fit has taken up part of the noise.
+    From short lags alone: over long ones the fit has absorbed part of the noise.
     """
     tamed = white * np.sqrt(weight)[..., None]
     near, far = 1, max(2, round(SHORT_S * rate_hz))

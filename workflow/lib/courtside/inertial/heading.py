@@ -1,60 +1,50 @@
-"""Turn of an inertial skeleton against vision: one fixed rotation, and a heading that drifts."""
+"""Rotation between an inertial skeleton and vision: a fixed one, and a heading that drifts."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from courtside.geometry import rotations
 
-ROUNDS = 20
-STARTS = 5
-HARSH_M = 0.1  # a joint so far off counts half
+ROUNDS = 20  # ASSUME: of rotation and headings, each time
+STARTS = 5  # ASSUME: frames whose own rotation is a start
+HARSH_M = 0.1  # ASSUME: a joint this far off counts half
 
 
 @dataclass(frozen=True, eq=False)
 class Alignment:
-    """How vision's frame lies to the device's world.
+    """Rotation between vision's frame and the device's world."""
 
-    Attributes
-    ----------
-    vision_from_device : (3, 3) float
-        Rotation.
-    time_s, heading : (N,) float
-        What the device's heading lacks, radians about `up`, zero at first; by the reference clock.
-    """
+    vision_from_device: NDArray  # (3, 3): rotation
+    time_s: NDArray  # (N,): on the reference clock
+    heading: NDArray  # (N,): to add to the device's heading, radians about `up`, zero at first
 
-    vision_from_device: np.ndarray
-    time_s: np.ndarray
-    heading: np.ndarray
-
-    def heading_at(self, time_s):
-        """Return the heading (T,) at times (T,); beyond the ends it stays."""
+    def heading_at(self, time_s: NDArray) -> NDArray:
+        """Return the heading (T,) at times (T,); constant beyond the ends."""
         return np.interp(time_s, self.time_s, self.heading)
 
 
-def estimate(time_s, device_xyz, vision_xyz, up, *, window_s):
+def estimate(
+    time_s: NDArray, device_xyz: NDArray, vision_xyz: NDArray, up: NDArray, *, window_s: float
+) -> Alignment:
     """Find the rotation between two skeletons whose vertical stays and whose heading drifts.
 
     Parameters
     ----------
-    time_s : (N,) float
     device_xyz, vision_xyz : (N, D, 3) float
-        The same joints in both frames, metres; NaN where vision has none. Places do not matter: only
-        the joints about their mean in each frame.
+        The same joints in both frames, metres; NaN where vision has none. Only the joints about
+        their mean in each frame count, not the place.
     up : (3,) float
         Vertical in the device's world.
     window_s : float
         Standard deviation of the window in time over which one heading is taken.
 
-    Returns
-    -------
-    alignment : Alignment
-
     Notes
     -----
-    Alternates the rotation (Kabsch 1976) and the headings, which have a closed form each; from several
-    starts, because headings all around leave the mean without a direction.
+    Alternates the rotation (Kabsch 1976) and the headings, which have a closed form each; from
+    several starts, because headings all around leave the mean without a direction.
     """
     weights = np.isfinite(vision_xyz).all(axis=2).astype(float)
     frames = max(window_s / np.median(np.diff(time_s)), 1e-3) if len(time_s) > 1 else 1.0
@@ -70,28 +60,17 @@ def estimate(time_s, device_xyz, vision_xyz, up, *, window_s):
     return Alignment(rotation, np.asarray(time_s), heading - heading[0])
 
 
-def turn_path(path, heading, up):
-    """Turn every step of a path by a heading, from the same start.
-
-    Parameters
-    ----------
-    path : (T, 3) float
-    heading : (T,) float
-        Radians about `up`.
-    up : (3,) float
-        Unit vector.
-
-    Returns
-    -------
-    turned : (T, 3) float
-    """
+def turn_path(path: NDArray, heading: NDArray, up: NDArray) -> NDArray:
+    """Turn every step of a path (T, 3) by a heading (T,), radians about `up`; the start stays."""
     steps = np.diff(path, axis=0)
     middle = (heading[1:] + heading[:-1]) / 2
     turned = np.einsum("tij,tj->ti", _about(up, middle), steps)
     return path[0] + np.concatenate([np.zeros((1, 3)), np.cumsum(turned, axis=0)])
 
 
-def _products(device_xyz, vision_xyz, weights):
+def _products(
+    device_xyz: NDArray, vision_xyz: NDArray, weights: NDArray
+) -> tuple[NDArray, NDArray, NDArray]:
     total = np.maximum(weights.sum(axis=1), 1e-9)[:, None, None]
     vision = np.nan_to_num(vision_xyz)
     device = device_xyz - (weights[..., None] * device_xyz).sum(axis=1, keepdims=True) / total
@@ -99,9 +78,9 @@ def _products(device_xyz, vision_xyz, weights):
     return np.einsum("tj,tja,tjb->tab", weights, vision, device), device, vision
 
 
-def _alternate(products, up):
+def _alternate(products: NDArray, up: NDArray) -> tuple[NDArray, NDArray]:
     chosen = np.linspace(0, len(products) - 1, STARTS).astype(int)
-    best = (-np.inf, None, None)
+    highest = -np.inf
     for start in [products.sum(axis=0), *products[chosen]]:
         rotation = _nearest(start)
         for _ in range(ROUNDS):
@@ -109,22 +88,22 @@ def _alternate(products, up):
             aligned = np.einsum("tij,tkj->ik", products, _about(up, heading))
             rotation = _nearest(aligned)
         score = np.sum(rotation * aligned)
-        if score > best[0]:
-            best = (score, rotation, heading)
-    return best[1:]
+        if score > highest:
+            highest, best = score, (rotation, heading)
+    return best
 
 
-def _headings(products, up):
-    """Return the angle about `up` that best explains each product of vision and device (N, 3, 3)."""
+def _headings(products: NDArray, up: NDArray) -> NDArray:
+    """Return the angle about `up` that best explains each product of both frames (N, 3, 3)."""
     sine = np.sum(rotations.cross_matrices(up) * products, axis=(1, 2))
     cosine = np.trace(products, axis1=1, axis2=2) - np.einsum("i,nij,j->n", up, products, up)
     return np.arctan2(sine, cosine)
 
 
-def _about(up, angles):
+def _about(up: NDArray, angles: NDArray) -> NDArray:
     return rotations.matrices_from_vectors(np.asarray(angles)[:, None] * np.asarray(up))
 
 
-def _nearest(product):
+def _nearest(product: NDArray) -> NDArray:
     left, _, right = np.linalg.svd(product)
     return left @ np.diag([1, 1, np.sign(np.linalg.det(left @ right))]) @ right

@@ -1,97 +1,55 @@
-"""What a correction of an inertial skeleton by vision changed, and what it rests on."""
+"""What the correction of an inertial skeleton by vision changed, and what it rests on."""
 
+import os
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import rotations
-from courtside.records.devices.hierarchy import forward
+from courtside.inertial.fit import Fit
+from courtside.records.devices.hierarchy import PosedHierarchy, forward
 from courtside.study.execution.files import write_json
 
 
 @dataclass(frozen=True)
 class CorrectionReport:
-    """A correction in numbers; every array as a list.
+    """A correction in numbers; every array as a list."""
 
-    Attributes
-    ----------
-    source : str
-        Vision's.
-    joints : list of str
-        Those that vision and the skeleton have in common, in the order of the lists below.
-    seen : list of float
-        Share of vision's frames with that joint.
-    weight : list of float
-        Mean weight of these frames: 1 as expected, towards 0 for outliers.
-    noise_mm, offset_mm : list of float
-        Standard deviation per axis of vision as found; length of its constant offset as found.
-    independent_s : list of float
-        Time per independent value of vision, as found.
-    before_mm, after_mm : list of float
-        Median distance to vision of the skeleton, in place by the first estimate, and corrected. Agreement,
-        not accuracy.
-    change_mm : dict of str to float
-        Median change of each joint of the skeleton about the root, the change of heading taken out.
-    bone_scale : dict of str to float
-        Factor on the bone that ends at a joint.
-    mount_deg, slow_deg : dict of str to float
-        Constant turn of each segment; standard deviation of the slow ones as estimated, by kind.
-    heading_removed_deg : float
-        Range of the heading correction.
-    heading_s, heading_deg : list of float
-        Heading correction, once a second.
-    shift_m : float
-        Standard deviation of the slow shift of the root as estimated.
-    lag_s, lag_sd_s : float
-        Shift of the clock as found: taken off the device's times; its standard deviation.
-    vision_from_device : list of list of float, (3, 4)
-        Where the corrected skeleton lies in vision's frame.
-    rounds : int
-    rms_change_mm : list of float
-        Change of all joints in each round of the fit.
-    """
-
-    source: str
-    joints: list
-    seen: list
-    weight: list
-    noise_mm: list
-    offset_mm: list
-    independent_s: list
-    before_mm: list
-    after_mm: list
-    change_mm: dict
-    bone_scale: dict
-    mount_deg: dict
-    slow_deg: dict
-    heading_removed_deg: float
-    heading_s: list
-    heading_deg: list
-    shift_m: float
-    lag_s: float
-    lag_sd_s: float
-    vision_from_device: list
+    source: str  # vision's
+    joints: list[str]  # common to vision and the skeleton, in the order of the lists below
+    seen: list[float]  # share of vision's frames with that joint
+    weight: list[float]  # mean weight of these frames: 1 as expected, towards 0 for outliers
+    noise_mm: list[float]  # estimated standard deviation of vision per axis
+    offset_mm: list[float]  # length of vision's estimated constant offset
+    independent_s: list[float]  # estimated time per independent value of vision
+    # Median distance to vision (agreement, not accuracy) as placed by the first estimate.
+    before_mm: list[float | None]
+    after_mm: list[float | None]  # the same, corrected
+    # Median change of each joint of the skeleton about the root, without the change of heading.
+    change_mm: dict[str, float]
+    bone_scale: dict[str, float]  # factor on the bone that ends at a joint
+    mount_deg: dict[str, float]  # constant turn of each segment
+    slow_deg: dict[str, float]  # estimated standard deviation of the slow turns, by kind
+    heading_removed_deg: float  # range of the heading correction
+    heading_s: list[float]  # times of `heading_deg`, once a second
+    heading_deg: list[float]  # heading correction
+    shift_m: float  # estimated standard deviation of the slow shift of the root
+    lag_s: float  # estimated shift of the clock: subtracted from the device's times
+    lag_sd_s: float  # its standard deviation
+    vision_from_device: list[list[float]]  # (3, 4) of the corrected skeleton
     rounds: int
-    rms_change_mm: list
+    rms_change_mm: list[float]  # change of all joints in each round of the fit
 
-    def write(self, path):
+    def write(self, path: str | os.PathLike[str]) -> None:
         """Write as JSON."""
         write_json(path, asdict(self))
 
 
-def describe(fit, before, after):
-    """Describe a finished fit.
-
-    Parameters
-    ----------
-    fit : courtside.inertial.fit.Fit
-    before, after : PosedHierarchy
-        The performed frames, uncorrected and corrected.
-
-    Returns
-    -------
-    report : CorrectionReport
-    """
+def describe(fit: Fit, before: PosedHierarchy, after: PosedHierarchy) -> CorrectionReport:
+    """Describe a finished fit; `before` and `after` hold the performed frames."""
     seen = np.isfinite(fit.seen.xyz).all(axis=2)
     count = np.maximum(seen.sum(axis=0), 1)
     sigma = np.sqrt(np.trace(fit.noise.covariance, axis1=1, axis2=2) / 3)
@@ -110,7 +68,8 @@ def describe(fit, before, after):
         noise_mm=_list(1e3 * sigma * np.array(typical), 1),
         offset_mm=_list(1e3 * offset, 1),
         independent_s=_list(fit.noise.inflation / fit.rate_hz, 2),
-        **_agreement(fit),
+        before_mm=_away(fit, fit.first),
+        after_mm=_away(fit, fit.last),
         change_mm=_changes(fit, before, after),
         bone_scale=_scales(fit),
         mount_deg=dict(zip(fit.segments.names, _list(np.degrees(mount), 2), strict=True)),
@@ -125,22 +84,19 @@ def describe(fit, before, after):
     )
 
 
-def _list(values, digits):
+def _list(values: Iterable[float], digits: int) -> list[float]:
     return [round(float(value), digits) for value in values]
 
 
-def _agreement(fit):
-    away = {}
-    for name, xyz in (("before_mm", fit.first), ("after_mm", fit.last)):
-        distance = 1e3 * np.linalg.norm(fit.vision - xyz, axis=2)
-        away[name] = [
-            round(float(np.nanmedian(joint)), 1) if np.isfinite(joint).any() else None
-            for joint in distance.T
-        ]
-    return away
+def _away(fit: Fit, xyz: NDArray) -> list[float | None]:
+    distance = 1e3 * np.linalg.norm(fit.vision - xyz, axis=2)
+    return [
+        round(float(np.nanmedian(joint)), 1) if np.isfinite(joint).any() else None
+        for joint in distance.T
+    ]
 
 
-def _scales(fit):
+def _scales(fit: Fit) -> dict[str, float]:
     joints, parents = fit.posed.hierarchy.joints, fit.posed.hierarchy.parents
     factor = fit.model.stretches(fit.fixed)
     return {
@@ -150,13 +106,13 @@ def _scales(fit):
     }
 
 
-def _total_heading(fit, time_s):
+def _total_heading(fit: Fit, time_s: NDArray) -> NDArray:
     return (
         fit.alignment.heading_at(time_s) + fit.slow_at(time_s)[:, fit.model.slow["heading"]][:, 0]
     )
 
 
-def _heading(fit):
+def _heading(fit: Fit) -> dict[str, Any]:
     time_s = np.arange(fit.posed.time_s[0], fit.posed.time_s[-1], 1.0)
     heading = np.degrees(_total_heading(fit, time_s))
     return {
@@ -166,7 +122,7 @@ def _heading(fit):
     }
 
 
-def _changes(fit, before, after):
+def _changes(fit: Fit, before: PosedHierarchy, after: PosedHierarchy) -> dict[str, float]:
     """Return the median change of each joint about the root, in axes turned back by the heading."""
     old, new = (forward(posed)[0] for posed in (before, after))
     turn = rotations.matrices_from_vectors(_total_heading(fit, after.time_s)[:, None] * fit.up)
@@ -175,7 +131,7 @@ def _changes(fit, before, after):
     return dict(zip(before.hierarchy.joints, _list(change, 1), strict=True))
 
 
-def _vision_from_device(fit, after):
+def _vision_from_device(fit: Fit, after: PosedHierarchy) -> list[list[float]]:
     layout = fit.model.fixed
     turned = rotations.matrices_from_vectors(fit.fixed[layout["tilt"]])
     rotation = fit.alignment.vision_from_device @ turned

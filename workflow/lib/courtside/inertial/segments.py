@@ -1,218 +1,20 @@
-"""Segments of an inertial skeleton: their lengths, and how joints hang on them."""
+"""Segments of an inertial skeleton: their lengths, and how joints depend on them."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
-from courtside.geometry import rotations as rotation_vectors
+from courtside.geometry import rotations
+from courtside.records.devices.hierarchy import Hierarchy
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
 
-
-@dataclass(frozen=True, eq=False)
-class Frames:
-    """A skeleton at the times of some frames, before correction.
-
-    Attributes
-    ----------
-    facing : (N, 3, 3) float
-        Turn about the vertical, from the body's heading.
-    facing_from_joint : (N, J, 3, 3) float
-    translation : (N, J, 3) float
-        Of each joint in its parent, metres; a root's in the world.
-    velocity : (N, D, 3) float
-        Of the observed joints, metres per second: what a shift of the clock does.
-    """
-
-    facing: np.ndarray
-    facing_from_joint: np.ndarray
-    translation: np.ndarray
-    velocity: np.ndarray
-
-
-class Model:
-    """The parameters of a correction and the skeleton they give.
-
-    Parameters
-    ----------
-    hierarchy : courtside.records.devices.hierarchy.Hierarchy
-    segments : courtside.inertial.segments.Segments
-    observed : sequence of int, length D
-        Indices of the joints that vision sees.
-    up : (3,) float
-        Unit vector of the vertical in the device's world.
-
-    Notes
-    -----
-    Per frame, `slow` (P,) holds a rotation vector per segment, the heading and the root's shift; `fixed`
-    (Q,) a rotation vector per segment, the logarithms of stretches, an offset per observed joint in the
-    axes of its parent and one in vision's, the frame's tilt (rotation vector) and shift, and the clock's
-    shift in seconds.
-    """
-
-    def __init__(self, hierarchy, segments, observed, up):
-        self.parents = np.asarray(hierarchy.parents)
-        self.segments, self.observed = segments, list(observed)
-        self.up = np.asarray(up, float)
-        n, d = len(segments.names), len(self.observed)
-        self.slow = _layout({"turn": 3 * n, "heading": 1, "shift": 3})
-        sizes = {"mount": 3 * n, "stretch": len(segments.stretches), "offset": 3 * d}
-        self.fixed = _layout(sizes | {"bias": 3 * d, "tilt": 3, "place": 3, "lag": 1})
-        self.n_slow, self.n_fixed = (layout["n"] for layout in (self.slow, self.fixed))
-        self.paths = [path(hierarchy, joint) for joint in self.observed]
-        self.owner = self._owners()
-
-    def _owners(self):
-        owner = np.arange(len(self.parents))
-        for joint, parent in enumerate(self.parents):
-            if parent >= 0 and not self.segments.turned[joint]:
-                owner[joint] = owner[parent]
-        return owner
-
-    def orient(self, frames, slow, fixed):
-        """Return corrected world rotations (N, J, 3, 3).
-
-        Parameters
-        ----------
-        frames : Frames
-        slow : (N, P) float
-        fixed : (Q,) float
-        """
-        turn, mount, heading = self._turns(slow, fixed)
-        outer = (heading @ frames.facing)[:, None] @ rotation_vectors.matrices_from_vectors(turn)
-        found = outer @ frames.facing_from_joint @ rotation_vectors.matrices_from_vectors(mount)
-        for joint, owner in enumerate(self.owner):
-            if owner != joint:
-                measured = frames.facing_from_joint[:, owner].swapaxes(1, 2)
-                found[:, joint] = found[:, owner] @ measured @ frames.facing_from_joint[:, joint]
-        return found
-
-    def stretches(self, fixed):
-        """Return the factor on the bone that ends at each joint, (J,)."""
-        return np.exp(self.segments.stretch @ fixed[self.fixed["stretch"]])
-
-    def _turns(self, slow, fixed):
-        turn = slow[:, self.slow["turn"]].reshape(len(slow), -1, 3)
-        turn = np.einsum("jg,ngi->nji", self.segments.share, turn)
-        mount = self.segments.share @ fixed[self.fixed["mount"]].reshape(-1, 3)
-        return (
-            turn,
-            mount,
-            rotation_vectors.matrices_from_vectors(slow[:, self.slow["heading"]] * self.up),
-        )
-
-    def places(self, frames, slow, fixed):
-        """Return where vision should see the joints, (N, D, 3) metres.
-
-        Parameters
-        ----------
-        frames : Frames
-        slow : (N, P) float
-        fixed : (Q,) float
-        """
-        world = self.orient(frames, slow, fixed)
-        offsets = fixed[self.fixed["offset"]].reshape(-1, 3)
-        factor = self.stretches(fixed)
-        xyz = np.zeros((len(slow), len(self.observed), 3))
-        for row, path in enumerate(self.paths):
-            for parent, joint in pairwise(path):
-                bone = factor[joint] * frames.translation[:, joint]
-                xyz[:, row] += _turned(world[:, parent], bone + offsets[row] * (joint == path[-1]))
-        xyz += (frames.translation[:, self.paths[0][0]] + slow[:, self.slow["shift"]])[:, None]
-        tilt = rotation_vectors.matrices_from_vectors(fixed[self.fixed["tilt"]])
-        return xyz @ tilt.T + self._shift(fixed)
-
-    def linear(self, frames, slow, fixed):
-        """Return where vision should see the joints, and the derivatives.
-
-        Parameters
-        ----------
-        frames : Frames
-        slow : (N, P) float
-        fixed : (Q,) float
-
-        Returns
-        -------
-        xyz : (N, D, 3) float
-            Metres.
-        by_slow, by_fixed : (N, D, 3, P), (N, D, 3, Q) float
-        """
-        n = len(slow)
-        xyz = np.zeros((n, len(self.observed), 3))
-        by_slow = np.zeros((*xyz.shape, self.n_slow))
-        by_fixed = np.zeros((*xyz.shape, self.n_fixed))
-        world = self.orient(frames, slow, fixed)
-        inner = self._levers(frames, slow, fixed)
-        offsets = fixed[self.fixed["offset"]].reshape(-1, 3)
-        factor = self.stretches(fixed)
-        for row, path in enumerate(self.paths):
-            for parent, joint in pairwise(path):
-                last = joint == path[-1]
-                bone = factor[joint] * frames.translation[:, joint]
-                arm = _turned(world[:, parent], bone + offsets[row] * last)
-                xyz[:, row] += arm
-                self._add_turns(by_slow[:, row], by_fixed[:, row], self.owner[parent], arm, inner)
-                stretched = (
-                    _turned(world[:, parent], bone)[..., None] * self.segments.stretch[joint]
-                )
-                by_fixed[:, row, :, self.fixed["stretch"]] += stretched
-                if last:
-                    start = self.fixed["offset"].start + 3 * row
-                    by_fixed[:, row, :, start : start + 3] = world[:, parent]
-            by_slow[:, row, :, self.slow["heading"]] = np.cross(self.up, xyz[:, row])[..., None]
-        root = frames.translation[:, self.paths[0][0]] + slow[:, self.slow["shift"]]
-        xyz += root[:, None]
-        by_slow[..., self.slow["shift"]] = np.eye(3)
-        return self._in_view(frames, xyz, by_slow, by_fixed, fixed)
-
-    def _levers(self, frames, slow, fixed):
-        """Return, per joint, what turns a change of its vectors into a small rotation in the world."""
-        turn, mount, heading = self._turns(slow, fixed)
-        facing = (heading @ frames.facing)[:, None]
-        outer = facing @ rotation_vectors.left_jacobians(turn)
-        measured = facing @ rotation_vectors.matrices_from_vectors(turn) @ frames.facing_from_joint
-        return outer, measured @ rotation_vectors.left_jacobians(mount)
-
-    def _add_turns(self, by_slow, by_fixed, joint, arm, inner):
-        cross = -rotation_vectors.cross_matrices(arm)
-        turns, mounts = (cross @ lever[:, joint] for lever in inner)
-        for segment in np.flatnonzero(self.segments.share[joint]):
-            part = self.segments.share[joint, segment]
-            start = 3 * segment
-            by_slow[:, :, start : start + 3] += part * turns
-            by_fixed[:, :, start : start + 3] += part * mounts
-
-    def _in_view(self, frames, xyz, by_slow, by_fixed, fixed):
-        tilt = fixed[self.fixed["tilt"]]
-        turned = rotation_vectors.matrices_from_vectors(tilt)
-        by_fixed[..., self.fixed["lag"]] = frames.velocity[..., None]
-        xyz, by_slow, by_fixed = xyz @ turned.T, turned @ by_slow, turned @ by_fixed
-        by_fixed[..., self.fixed["tilt"]] = -rotation_vectors.cross_matrices(
-            xyz
-        ) @ rotation_vectors.left_jacobians(tilt)
-        by_fixed[..., self.fixed["place"]] = np.eye(3)
-        for row in range(len(self.observed)):
-            start = self.fixed["bias"].start + 3 * row
-            by_fixed[:, row, :, start : start + 3] = np.eye(3)
-        return xyz + self._shift(fixed), by_slow, by_fixed
-
-    def _shift(self, fixed):
-        return fixed[self.fixed["place"]] + fixed[self.fixed["bias"]].reshape(-1, 3)
-
-
-def _turned(rotations, vectors):
-    return np.einsum("nij,nj->ni", rotations, vectors)
-
-
-def _layout(sizes):
-    found, at = {}, 0
-    for name, size in sizes.items():
-        found[name] = slice(at, at + size)
-        at += size
-    return found | {"n": at}
-
-
+Shares = dict[str, list[tuple[int, float]]]  # per segment: joints and their shares in it
 SIDES = ("left", "right")
 LIMBS = {  # segment: (joint it begins at, joint it ends at)
     "upper_arm": ("shoulder", "elbow"),
@@ -223,38 +25,201 @@ LIMBS = {  # segment: (joint it begins at, joint it ends at)
 
 
 @dataclass(frozen=True, eq=False)
-class Segments:
-    """How corrections of segments reach the joints of a skeleton.
+class Frames:
+    """A skeleton at the times of some frames, before correction."""
 
-    Attributes
+    facing: NDArray  # (N, 3, 3): turn about the vertical, from the body's heading
+    facing_from_joint: NDArray  # (N, J, 3, 3)
+    translation: NDArray  # (N, J, 3): of each joint in its parent, metres; a root's in the world
+    velocity: NDArray  # (N, D, 3): of the observed joints, m/s: the effect of a clock shift
+
+
+class Model:
+    """The parameters of a correction and the skeleton they give.
+
+    Parameters
     ----------
-    names : tuple of str, length G
-        `pelvis`, `thorax`, `left_clavicle`, `left_upper_arm`, ...
-    share : (J, G) float
-        Share of a segment's correction that a joint's frame takes; joints whose row is zero keep their
-        rotation against their parent.
-    stretches : tuple of str, length B
-        `body` (all bones), `upper_arm` (both sides), `upper_arm difference` (left minus right, halved), ...
-    stretch : (J, B) float
-        Share of each in the logarithm of the factor on the bone that ends at a joint.
+    observed : sequence of int, length D
+        Indices of the joints that vision sees.
+    up : (3,) float
+        Unit vector of the vertical in the device's world.
+
+    Notes
+    -----
+    Per frame, `slow` (P,) holds a rotation vector per segment, the heading and the root's shift.
+    `fixed` (Q,) holds a rotation vector per segment, the logarithms of stretches, an offset per
+    observed joint in the axes of its parent and one in vision's, the frame's tilt (rotation vector)
+    and shift, and the clock's shift in seconds. The methods take `slow` as (N, P).
     """
 
-    names: tuple
-    share: np.ndarray
-    stretches: tuple
-    stretch: np.ndarray
+    def __init__(
+        self, hierarchy: Hierarchy, segments: Segments, observed: Iterable[int], up: NDArray
+    ) -> None:
+        self.parents = np.asarray(hierarchy.parents)
+        self.segments, self.observed = segments, list(observed)
+        self.up = np.asarray(up, float)
+        n, d = len(segments.names), len(self.observed)
+        self.slow, self.n_slow = _layout({"turn": 3 * n, "heading": 1, "shift": 3})
+        sizes = {"mount": 3 * n, "stretch": len(segments.stretches), "offset": 3 * d}
+        sizes |= {"bias": 3 * d, "tilt": 3, "place": 3, "lag": 1}
+        self.fixed, self.n_fixed = _layout(sizes)
+        self.paths = [path(hierarchy, joint) for joint in self.observed]
+        self.owner = self._owners()
+
+    def _owners(self) -> NDArray:
+        owner = np.arange(len(self.parents))
+        for joint, parent in enumerate(self.parents):
+            if parent >= 0 and not self.segments.turned[joint]:
+                owner[joint] = owner[parent]
+        return owner
+
+    def orient(self, frames: Frames, slow: NDArray, fixed: NDArray) -> NDArray:
+        """Return corrected world rotations (N, J, 3, 3)."""
+        turn, mount, heading = self._turns(slow, fixed)
+        outer = (heading @ frames.facing)[:, None] @ rotations.matrices_from_vectors(turn)
+        found = outer @ frames.facing_from_joint @ rotations.matrices_from_vectors(mount)
+        for joint, owner in enumerate(self.owner):
+            if owner != joint:
+                measured = frames.facing_from_joint[:, owner].swapaxes(1, 2)
+                found[:, joint] = found[:, owner] @ measured @ frames.facing_from_joint[:, joint]
+        return found
+
+    def stretches(self, fixed: NDArray) -> NDArray:
+        """Return the factor on the bone that ends at each joint, (J,)."""
+        return np.exp(self.segments.stretch @ fixed[self.fixed["stretch"]])
+
+    def _turns(self, slow: NDArray, fixed: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+        turn = slow[:, self.slow["turn"]].reshape(len(slow), -1, 3)
+        turn = np.einsum("jg,ngi->nji", self.segments.share, turn)
+        mount = self.segments.share @ fixed[self.fixed["mount"]].reshape(-1, 3)
+        heading = rotations.matrices_from_vectors(slow[:, self.slow["heading"]] * self.up)
+        return turn, mount, heading
+
+    def places(self, frames: Frames, slow: NDArray, fixed: NDArray) -> NDArray:
+        """Return where vision should see the joints, (N, D, 3) metres."""
+        world = self.orient(frames, slow, fixed)
+        offsets = fixed[self.fixed["offset"]].reshape(-1, 3)
+        factor = self.stretches(fixed)
+        xyz = np.zeros((len(slow), len(self.observed), 3))
+        for row, path in enumerate(self.paths):
+            for parent, joint in pairwise(path):
+                bone = factor[joint] * frames.translation[:, joint]
+                xyz[:, row] += _turned(world[:, parent], bone + offsets[row] * (joint == path[-1]))
+        xyz += (frames.translation[:, self.paths[0][0]] + slow[:, self.slow["shift"]])[:, None]
+        tilt = rotations.matrices_from_vectors(fixed[self.fixed["tilt"]])
+        return xyz @ tilt.T + self._shift(fixed)
+
+    def linear(
+        self, frames: Frames, slow: NDArray, fixed: NDArray
+    ) -> tuple[NDArray, NDArray, NDArray]:
+        """Return `places` (N, D, 3), and its derivatives (N, D, 3, P) and (N, D, 3, Q)."""
+        n = len(slow)
+        xyz = np.zeros((n, len(self.observed), 3))
+        by_slow = np.zeros((*xyz.shape, self.n_slow))
+        by_fixed = np.zeros((*xyz.shape, self.n_fixed))
+        world = self.orient(frames, slow, fixed)
+        levers = self._levers(frames, slow, fixed)
+        offsets = fixed[self.fixed["offset"]].reshape(-1, 3)
+        factor = self.stretches(fixed)
+        for row, path in enumerate(self.paths):
+            for parent, joint in pairwise(path):
+                last = joint == path[-1]
+                bone = factor[joint] * frames.translation[:, joint]
+                arm = _turned(world[:, parent], bone + offsets[row] * last)
+                xyz[:, row] += arm
+                self._add_turns(by_slow[:, row], by_fixed[:, row], self.owner[parent], arm, levers)
+                along = _turned(world[:, parent], bone)[..., None]
+                by_fixed[:, row, :, self.fixed["stretch"]] += along * self.segments.stretch[joint]
+                if last:
+                    start = self.fixed["offset"].start + 3 * row
+                    by_fixed[:, row, :, start : start + 3] = world[:, parent]
+            by_slow[:, row, :, self.slow["heading"]] = np.cross(self.up, xyz[:, row])[..., None]
+        root = frames.translation[:, self.paths[0][0]] + slow[:, self.slow["shift"]]
+        xyz += root[:, None]
+        by_slow[..., self.slow["shift"]] = np.eye(3)
+        return self._in_view(frames, xyz, by_slow, by_fixed, fixed)
+
+    def _levers(self, frames: Frames, slow: NDArray, fixed: NDArray) -> tuple[NDArray, NDArray]:
+        """Return the left Jacobians (N, J, 3, 3) of turn and mount per joint, in the world."""
+        turn, mount, heading = self._turns(slow, fixed)
+        facing = (heading @ frames.facing)[:, None]
+        outer = facing @ rotations.left_jacobians(turn)
+        measured = facing @ rotations.matrices_from_vectors(turn) @ frames.facing_from_joint
+        return outer, measured @ rotations.left_jacobians(mount)
+
+    def _add_turns(
+        self,
+        by_slow: NDArray,
+        by_fixed: NDArray,
+        joint: int,
+        arm: NDArray,
+        levers: tuple[NDArray, NDArray],
+    ) -> None:
+        cross = -rotations.cross_matrices(arm)
+        turns, mounts = (cross @ lever[:, joint] for lever in levers)
+        for segment in np.flatnonzero(self.segments.share[joint]):
+            part = self.segments.share[joint, segment]
+            start = 3 * segment
+            by_slow[:, :, start : start + 3] += part * turns
+            by_fixed[:, :, start : start + 3] += part * mounts
+
+    def _in_view(
+        self, frames: Frames, xyz: NDArray, by_slow: NDArray, by_fixed: NDArray, fixed: NDArray
+    ) -> tuple[NDArray, NDArray, NDArray]:
+        tilt = fixed[self.fixed["tilt"]]
+        turned = rotations.matrices_from_vectors(tilt)
+        by_fixed[..., self.fixed["lag"]] = frames.velocity[..., None]
+        xyz, by_slow, by_fixed = xyz @ turned.T, turned @ by_slow, turned @ by_fixed
+        lever = rotations.left_jacobians(tilt)
+        by_fixed[..., self.fixed["tilt"]] = -rotations.cross_matrices(xyz) @ lever
+        by_fixed[..., self.fixed["place"]] = np.eye(3)
+        for row in range(len(self.observed)):
+            start = self.fixed["bias"].start + 3 * row
+            by_fixed[:, row, :, start : start + 3] = np.eye(3)
+        return xyz + self._shift(fixed), by_slow, by_fixed
+
+    def _shift(self, fixed: NDArray) -> NDArray:
+        return fixed[self.fixed["place"]] + fixed[self.fixed["bias"]].reshape(-1, 3)
+
+
+def _turned(matrices: NDArray, vectors: NDArray) -> NDArray:
+    return np.einsum("nij,nj->ni", matrices, vectors)
+
+
+def _layout(sizes: Mapping[str, int]) -> tuple[dict[str, slice], int]:
+    """Return where each parameter stands in a vector of all, and the vector's length."""
+    found, at = {}, 0
+    for name, size in sizes.items():
+        found[name] = slice(at, at + size)
+        at += size
+    return found, at
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """How corrections of segments act on the joints of a skeleton."""
+
+    names: tuple[str, ...]  # length G: `pelvis`, `thorax`, `left_clavicle`, `left_upper_arm`,
+    # (J, G): share of a segment's correction that a joint's frame takes; joints whose row is zero
+    # keep their rotation against their parent.
+    share: NDArray
+    # Length B: `body` (all bones), `upper_arm` (both sides), `upper_arm difference` (left minus
+    # right, halved), .
+    stretches: tuple[str, ...]
+    # (J, B): share of each in the logarithm of the factor on the bone that ends at a joint.
+    stretch: NDArray
 
     @property
-    def turned(self):
+    def turned(self) -> NDArray:
         """(J,) bool: joints whose frame is corrected itself, not only carried along."""
-        return self.share.any(axis=1)
+        return np.any(self.share, axis=1)
 
-    def kind(self, segment):
+    def kind(self, segment: str) -> str:
         """Return the name of a segment without its side."""
         return segment.removeprefix("left_").removeprefix("right_")
 
 
-def path(hierarchy, joint):
+def path(hierarchy: Hierarchy, joint: int) -> list[int]:
     """Return the indices of joints from the root to `joint`, both included."""
     found = [joint]
     while hierarchy.parents[found[0]] >= 0:
@@ -262,26 +227,22 @@ def path(hierarchy, joint):
     return found
 
 
-def segments_of(hierarchy, where="skeleton"):
+def segments_of(hierarchy: Hierarchy, where: str = "skeleton") -> Segments:
     """Find the segments of a skeleton that names its limbs' joints as the study does.
 
     Parameters
     ----------
-    hierarchy : courtside.records.devices.hierarchy.Hierarchy
-        Holds `left_shoulder`, `left_elbow`, `left_wrist`, `left_hip`, `left_knee`, `left_ankle` and the
-        right ones; between the root and the shoulders any number of joints of the spine and clavicles.
+    hierarchy : Hierarchy
+        Holds the 12 limb joints (`skeleton.JOINTS`); between the root and the shoulders any number
+        of joints of the spine and clavicles. The spine's joints share the corrections of pelvis and
+        thorax by their place between them.
     where : str
-        Begins the line of an error.
-
-    Returns
-    -------
-    segments : Segments
-        The spine's joints share the corrections of pelvis and thorax by their place between them.
+        Begins error messages.
 
     Raises
     ------
     InputError
-        If a joint is missing or is not below the one it should hang from.
+        If a joint is missing or is not below its expected parent.
     """
     joints = list(hierarchy.joints)
     missing = [name for name in skeleton.JOINTS if name not in joints]
@@ -292,28 +253,30 @@ def segments_of(hierarchy, where="skeleton"):
         )
     paths = {name: path(hierarchy, joints.index(name)) for name in skeleton.JOINTS}
     parts = _trunk(paths) | _limbs(paths, joints, where)
-    share = np.zeros((len(joints), len(parts)))
-    for column, members in enumerate(parts.values()):
-        for joint, part in members:
-            share[joint, column] = part
     stretches = _stretches(paths, joints)
-    stretch = np.zeros((len(joints), len(stretches)))
-    for column, members in enumerate(stretches.values()):
-        for joint, part in members:
-            stretch[joint, column] = part
+    share, stretch = (_matrix(shares, len(joints)) for shares in (parts, stretches))
     return Segments(tuple(parts), share, tuple(stretches), stretch)
 
 
-def _spine(paths):
-    """Return the joints from the root to the last that both shoulders hang from."""
+def _matrix(shares: Shares, n_joints: int) -> NDArray:
+    matrix = np.zeros((n_joints, len(shares)))
+    for column, members in enumerate(shares.values()):
+        for joint, share in members:
+            matrix[joint, column] = share
+    return matrix
+
+
+def _spine(paths: Mapping[str, list[int]]) -> list[int]:
+    """Return the joints from the root to the last common one of both shoulders."""
     both = zip(paths["left_shoulder"], paths["right_shoulder"], strict=False)
     return [left for left, right in both if left == right]
 
 
-def _trunk(paths):
+def _trunk(paths: Mapping[str, list[int]]) -> Shares:
     spine = _spine(paths)
     along = np.linspace(0, 1, len(spine)) if len(spine) > 1 else np.zeros(1)
-    parts = {"pelvis": [(joint, 1 - part) for joint, part in zip(spine, along, strict=True)]}
+    parts: Shares = {}
+    parts["pelvis"] = [(joint, 1 - part) for joint, part in zip(spine, along, strict=True)]
     if len(spine) > 1:
         parts["thorax"] = list(zip(spine, along, strict=True))
     for side in SIDES:
@@ -323,7 +286,7 @@ def _trunk(paths):
     return parts
 
 
-def _limbs(paths, joints, where):
+def _limbs(paths: Mapping[str, list[int]], joints: list[str], where: str) -> Shares:
     parts = {}
     for side in SIDES:
         for name, (start, stop) in LIMBS.items():
@@ -338,7 +301,7 @@ def _limbs(paths, joints, where):
     return parts
 
 
-def _stretches(paths, joints):
+def _stretches(paths: Mapping[str, list[int]], joints: list[str]) -> Shares:
     spine = _spine(paths)
     found = {"body": [(joint, 1.0) for joint in range(len(joints))]}
     found["trunk"] = [(joint, 1.0) for joint in spine[1:]]

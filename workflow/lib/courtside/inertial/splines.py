@@ -1,13 +1,14 @@
-"""Smooth functions of time: B-splines whose coefficients follow a prior, and the linear system they give.
+"""Smooth functions of time: B-splines whose coefficients have a prior, and their linear system.
 
-A correction that is a spline with a knot every half second or so cannot follow the fast noise of the data
-it is fitted to. Its prior is that of an Ornstein-Uhlenbeck process: a standard deviation, and a time over
-which it forgets; so a stretch without data falls back to no correction.
+A correction that is a spline with a knot every half second or so cannot follow the fast noise of
+the data it is fitted to. Its prior is an Ornstein-Uhlenbeck process with a standard deviation and a
+memory time: where data are missing, the correction returns to zero.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline
 from scipy.linalg import cho_factor, cho_solve, cholesky_banded, lapack
 
@@ -18,25 +19,18 @@ GAUSS = 4  # points per knot interval: exact for products of two cubics
 
 @dataclass(frozen=True)
 class Basis:
-    """Cubic B-splines on equally spaced knots that cover a span of time.
+    """Cubic B-splines on equally spaced knots that cover a span of time."""
 
-    Attributes
-    ----------
-    start_s, spacing_s : float
-        First knot, and the distance from knot to knot.
-    n_intervals : int
-    """
-
-    start_s: float
-    spacing_s: float
+    start_s: float  # first knot
+    spacing_s: float  # between knots
     n_intervals: int
 
     @property
-    def n(self):
+    def n(self) -> int:
         """Number of basis functions."""
         return self.n_intervals + DEGREE
 
-    def at(self, time_s):
+    def at(self, time_s: NDArray) -> tuple[NDArray, NDArray]:
         """Return the first of the four functions at each time (T,) int, and their values (T, 4).
 
         Times outside the span are taken as its ends.
@@ -44,56 +38,39 @@ class Basis:
         first, local = self._place(time_s)
         return first, _pieces()(local)
 
-    def evaluate(self, coefficients, time_s):
+    def evaluate(self, coefficients: NDArray, time_s: NDArray) -> NDArray:
         """Return the splines (T, ...) with coefficients (K, ...) at times (T,)."""
         first, values = self.at(time_s)
         picked = coefficients[first[:, None] + np.arange(REACH)]
         return np.einsum("tk,tk...->t...", values, picked)
 
-    def _place(self, time_s):
+    def _place(self, time_s: ArrayLike) -> tuple[NDArray, NDArray]:
         u = (np.asarray(time_s, float) - self.start_s) / self.spacing_s
         u = np.clip(u, 0, self.n_intervals)
         first = np.minimum(u.astype(int), self.n_intervals - 1)
         return first, u - first
 
 
-def basis_over(start_s, stop_s, spacing_s):
-    """Return the `Basis` over a span of time.
-
-    Parameters
-    ----------
-    start_s, stop_s : float
-    spacing_s : float
-        The knots lie at most so far apart.
-    """
+def basis_over(start_s: float, stop_s: float, spacing_s: float) -> Basis:
+    """Return the `Basis` over a span of time, with knots at most `spacing_s` apart."""
     n_intervals = max(1, int(np.ceil((stop_s - start_s) / spacing_s)))
     return Basis(start_s, max(stop_s - start_s, 1e-6) / n_intervals, n_intervals)
 
 
-def _pieces():
+def _pieces() -> BSpline:
     knots = np.arange(-DEGREE, REACH + 1.0)
     return BSpline(knots, np.eye(REACH), DEGREE)
 
 
-def precision(basis, memory_s):
-    """Return the prior precision of a process of unit variance, as the blocks of a band.
+def precision(basis: Basis, memory_s: float) -> NDArray:
+    """Return the prior precision of a process of unit variance, as a band (K, 4).
 
-    Parameters
-    ----------
-    basis : Basis
-    memory_s : float
-        Time over which the correlation falls to 1/e.
+    Entry (k, l) of the band belongs to coefficients k and k + l; 0 beyond the last. The correlation
+    of the process falls to 1/e within `memory_s`.
 
-    Returns
-    -------
-    band : (K, 4) float
-        Entry (k, l) of the matrix between coefficients k and k + l; 0 beyond the last.
-
-    Notes
-    -----
-    The squared norm of the process's reproducing kernel space (Rasmussen & Williams 2006, sec. 6.1):
-    half of tau times the integral of the squared slope, plus that of the square over tau, plus the squares
-    at both ends.
+    The squared norm of the process's reproducing kernel space (Rasmussen & Williams 2006, sec.
+    6.1): half of tau times the integral of the squared slope, plus that of the square over tau,
+    plus the squares at both ends.
     """
     nodes, weights = np.polynomial.legendre.leggauss(GAUSS)
     local = (nodes + 1) / 2
@@ -112,16 +89,17 @@ def precision(basis, memory_s):
     return band
 
 
-def gather(basis, first, values, per_frame, vector):
-    """Sum normal equations of every frame's own values into those of the coefficients.
+def gather(
+    basis: Basis, first: NDArray, values: NDArray, per_frame: NDArray, vector: NDArray
+) -> tuple[NDArray, NDArray]:
+    """Sum the normal equations of every frame into those of the coefficients.
 
     Parameters
     ----------
-    basis : Basis
     first, values : (T,) int, (T, 4) float
         From `Basis.at`.
     per_frame : (T, P, P) float
-        Normal matrix of each frame in the P functions' values there.
+        Normal matrix of each frame in the values of the P functions there.
     vector : (T, P, ...) float
         Right-hand side, or the matrix to border parameters.
 
@@ -145,8 +123,8 @@ def gather(basis, first, values, per_frame, vector):
     return blocks, right
 
 
-def to_band(blocks):
-    """Return the lower band (4 P, K P) that LAPACK reads, of `gather`'s blocks."""
+def to_band(blocks: NDArray) -> NDArray:
+    """Return the lower band (4 P, K P) of `gather`'s blocks, as LAPACK reads it."""
     n, _, size, _ = blocks.shape
     band = np.zeros((REACH * size, n * size))
     row, column = np.meshgrid(np.arange(size), np.arange(size), indexing="ij")
@@ -160,26 +138,15 @@ def to_band(blocks):
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Solution of a bordered banded system.
+    """Solution of a bordered banded system."""
 
-    Attributes
-    ----------
-    inner : (K, P) float
-        Coefficients of the splines.
-    border : (Q,) float
-        The other parameters.
-    factor : (4 P, K P) float
-        Lower Cholesky factor of the banded part.
-    border_covariance : (Q, Q) float
-    """
+    inner: NDArray  # (K, P): coefficients of the splines
+    border: NDArray  # (Q,): the other parameters
+    factor: NDArray  # (4 P, K P): lower Cholesky factor of the banded part
+    border_covariance: NDArray  # (Q, Q)
 
-    inner: np.ndarray
-    border: np.ndarray
-    factor: np.ndarray
-    border_covariance: np.ndarray
-
-    def samples(self, n, rng):
-        """Draw deviations (n, K, P) of the coefficients about their estimate, the border held."""
+    def samples(self, n: int, rng: np.random.Generator) -> NDArray:
+        """Draw deviations (n, K, P) of the coefficients from their estimate, given the border."""
         size = self.factor.shape[1]
         drawn, _ = lapack.dtbtrs(
             self.factor, rng.standard_normal((size, n)), uplo="L", trans="T", diag="N"
@@ -187,21 +154,23 @@ class Solution:
         return drawn.T.reshape(n, *self.inner.shape)
 
 
-def solve(blocks, right, border, border_matrix, border_right):
-    """Solve the normal equations of splines and a few further parameters.
+def solve(
+    blocks: NDArray,
+    right: NDArray,
+    border: NDArray,
+    border_matrix: NDArray,
+    border_right: NDArray,
+) -> Solution:
+    """Solve the normal equations of splines and a few further (border) parameters.
 
     Parameters
     ----------
     blocks : (K, 4, P, P) float
-        As `gather` gives them, with the priors added; positive definite.
+        From `gather`, with the priors added; positive definite.
     right : (K, P) float
     border : (K, P, Q) float
         Between the coefficients and the further parameters.
     border_matrix, border_right : (Q, Q), (Q,) float
-
-    Returns
-    -------
-    solution : Solution
     """
     n, size = right.shape
     factor = cholesky_banded(to_band(blocks), lower=True, overwrite_ab=True)
@@ -215,7 +184,7 @@ def solve(blocks, right, border, border_matrix, border_right):
     return Solution(inner.reshape(n, size), found, factor, cho_solve(outer, np.eye(len(rest))))
 
 
-def times(band, coefficients):
+def times(band: NDArray, coefficients: NDArray) -> NDArray:
     """Return a symmetric band (K, 4, P), one matrix per function, times coefficients (K, P)."""
     product = band[:, 0] * coefficients
     for step in range(1, REACH):
