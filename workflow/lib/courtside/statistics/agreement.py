@@ -1,32 +1,35 @@
-"""Agreement of two ways to measure: limits of agreement, and whether one may replace the other."""
+"""Agreement of two methods: limits of agreement, and whether one may replace the other.
 
+Networks are given as (first, second): the one in use, and the one that might replace it.
+"""
+
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike, NDArray
 from scipy.stats import chi2, norm
 
 from courtside.study.errors import InputError
 
+LEVEL = 0.95  # of the limits and of their confidence intervals, as is usual
 PAIRS = ["subject", "session", "take", "measure", "unit", "definition", "first", "second"]
 SAME_PLACE = ["subject", "session", "take", "calibration", "measure", "unit"]
 YES, UNSURE, NO, UNKNOWN = "yes", "unsure", "no", "unknown"
 
 
-def pair(rows, networks):
+def pair(rows: pd.DataFrame, networks: tuple[str, str]) -> pd.DataFrame:
     """Put the values of two networks from the same takes side by side.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `longitudinal.read`.
-    networks : (str, str)
-        The network in use, and the one that might take its place.
+    `rows` are of `longitudinal.read`.
 
     Returns
     -------
     pairs : pandas.DataFrame
-        `PAIRS`; `definition` is empty where both networks define the measure alike, and else says both.
+        `PAIRS`; `definition` is empty where both networks define the measure alike, and else names
+        both definitions.
 
     Raises
     ------
@@ -46,32 +49,33 @@ def pair(rows, networks):
     both = sides[0].merge(sides[1], on=SAME_PLACE, validate="one_to_one")
     if both.empty:
         raise InputError(
-            f"networks {networks[0]} and {networks[1]}: expected values from the same takes and calibration, "
-            "found none; measure the same takes with both"
+            f"networks {networks[0]} and {networks[1]}: expected values from the same takes and "
+            "calibration, found none; measure the same takes with both"
         )
     first, second = both.pop("first_definition"), both.pop("second_definition")
     both["definition"] = np.where(first == second, "", first + " / " + second)
     return both[PAIRS]
 
 
-def compare(pairs, networks, *, min_subjects=3, min_repeats=5):
-    """Compare two networks, measure by measure.
+def compare(
+    pairs: pd.DataFrame,
+    networks: tuple[str, str],
+    *,
+    min_subjects: int = 3,
+    min_repeats: int = 5,
+) -> pd.DataFrame:
+    """Compare two networks, measure by measure, in the `pairs` of `pair`.
 
-    Parameters
-    ----------
-    pairs : pandas.DataFrame
-        Of `pair`.
-    networks : (str, str)
-    min_subjects, min_repeats : int
-        Fewest subjects with so many repeats each.
+    At least `min_subjects` subjects with `min_repeats` repeats each are needed.
 
     Returns
     -------
     table : pandas.DataFrame
-        One row per measure: bias, limits and their intervals (second minus first), standard deviations, the
-        smallest detectable change of the first network with its interval and that of the second, the number
-        of subjects and differences, and a verdict: `yes`, `unsure` (the limits lie within the change, their
-        intervals do not), `no`, `unknown` (too few values), with a sentence.
+        One row per measure: bias, limits and their intervals (second minus first), standard
+        deviations, the smallest detectable change of the first network with its interval and that
+        of the second, the number of subjects and differences, and a verdict: `yes`, `unsure` (the
+        limits lie within the change, their intervals do not), `no`, `unknown` (too few values),
+        with a sentence.
 
     Raises
     ------
@@ -91,7 +95,14 @@ def compare(pairs, networks, *, min_subjects=3, min_repeats=5):
     return pd.DataFrame(table)
 
 
-def _row(name, unit, part, networks, min_subjects, min_repeats):
+def _row(
+    name: str,
+    unit: str,
+    part: pd.DataFrame,
+    networks: tuple[str, str],
+    min_subjects: int,
+    min_repeats: int,
+) -> dict[str, Any]:
     part = part.dropna(subset=["first", "second"])
     repeats = part.groupby("subject")["first"].transform("count")
     part = part[repeats >= min_repeats]
@@ -121,24 +132,15 @@ def _row(name, unit, part, networks, min_subjects, min_repeats):
     return row | verdict(row, networks)
 
 
-def verdict(row, networks):
-    """Say whether two networks may be exchanged for one measure.
+def verdict(row: Mapping[str, Any], networks: tuple[str, str]) -> dict[str, str]:
+    """Say whether two networks may be exchanged for one measure: verdict and sentence.
 
-    Parameters
-    ----------
-    row : dict
-        measure, unit, lower, upper, lower_from, upper_to, detectable, n_subjects, definitions_differ.
-    networks : (str, str)
+    `row` holds measure, unit, lower, upper, lower_from, upper_to, detectable, n_subjects,
+    definitions_differ.
 
-    Returns
-    -------
-    verdict : dict
-        verdict, sentence.
-
-    Notes
-    -----
-    Two networks with independent errors as large as the repeats' and no bias have limits of exactly the
-    smallest detectable change: beyond it, a change of network looks like a change of the athlete.
+    Two networks without bias, with independent errors as large as the repeats', have limits of
+    exactly the smallest detectable change: beyond it, a change of network looks like a change of
+    the athlete.
     """
     what, unit = row["measure"].replace("_", " "), row["unit"]
     span = f"limits of agreement {row['lower']:.3g} to {row['upper']:.3g} {unit}"
@@ -151,46 +153,33 @@ def verdict(row, networks):
         return {"verdict": NO, "sentence": f"not for {what}: {span} exceed {change}{mark}"}
     reach = max(-row["lower_from"], row["upper_to"])
     if reach > row["detectable"]:
-        words = f"{both} may be exchanged for {what} as far as {row['n_subjects']} subjects tell: {span} lie"
-        words += f" within {change}, but their 95 % intervals reach {reach:.3g} {unit}{mark}"
+        words = f"{both} may be exchanged for {what} as far as {row['n_subjects']} subjects tell: "
+        words += (
+            f"{span} lie within {change}, but their 95 % intervals reach {reach:.3g} {unit}{mark}"
+        )
         return {"verdict": UNSURE, "sentence": words}
-    words = f"{both} may be exchanged for {what}: {span} lie within {change}, with their 95 % intervals{mark}"
+    words = f"{both} may be exchanged for {what}: {span} lie within {change}, with their 95 % "
+    words += f"intervals{mark}"
     return {"verdict": YES, "sentence": words}
-
-
-LEVEL = 0.95  # of the limits and of their confidence intervals
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of agreement of two methods.
+    """Limits of agreement of two methods."""
 
-    Attributes
-    ----------
-    bias : float
-        Mean difference, second minus first.
-    sd_between, sd_within : float
-        Of the differences: between subjects, and between the repeats of one.
-    lower, upper : float
-        95 % of differences of single measurements are expected between these.
-    lower_interval, upper_interval : (float, float)
-        95 % confidence intervals of the limits.
-    n_subjects, n : int
-        Subjects, and differences of all together.
-    """
-
-    bias: float
-    sd_between: float
-    sd_within: float
+    bias: float  # mean difference, second minus first
+    sd_between: float  # of the differences, between subjects
+    sd_within: float  # of the differences, between the repeats of one subject
+    # 95 % of the differences of single measurements are expected between `lower` and `upper`.
     lower: float
     upper: float
-    lower_interval: tuple
-    upper_interval: tuple
+    lower_interval: tuple[float, float]  # 95 % confidence interval of `lower`
+    upper_interval: tuple[float, float]  # 95 % confidence interval of `upper`
     n_subjects: int
-    n: int
+    n: int  # differences of all subjects together
 
 
-def limits(subject, difference):
+def limits(subject: ArrayLike, difference: ArrayLike) -> Limits:
     """Find limits of agreement from several differences of each subject, the true value varying.
 
     Parameters
@@ -200,10 +189,6 @@ def limits(subject, difference):
     difference : (N,) float
         Of the two methods, measured at the same time.
 
-    Returns
-    -------
-    limits : Limits
-
     Raises
     ------
     ValueError
@@ -211,10 +196,11 @@ def limits(subject, difference):
 
     Notes
     -----
-    Bland & Altman 2007, J Biopharm Stat 17:571-582, section 3: the variance of a single difference is the sum
-    of its components between and within subjects, from a one-way analysis of variance. Intervals after Zou
-    2013, Stat Methods Med Res 22:630-642 (method of variance estimates recovery), which hold their level for
-    few subjects too: with three subjects they are very wide, and rightly so.
+    Bland & Altman 2007, J Biopharm Stat 17:571-582, section 3: the variance of a single difference
+    is the sum of its components between and within subjects, from a one-way analysis of variance.
+    Intervals after Zou 2013, Stat Methods Med Res 22:630-642 (method of variance estimates
+    recovery), which hold their level for few subjects too: with three subjects they are very wide,
+    and rightly so.
     """
     count, mean, within, difference = _by_subject(subject, difference)
     n_subjects, total = len(count), int(count.sum())
@@ -237,7 +223,7 @@ def limits(subject, difference):
     )
 
 
-def _by_subject(subject, value):
+def _by_subject(subject: ArrayLike, value: ArrayLike) -> tuple[NDArray, NDArray, float, NDArray]:
     """Return repeats, mean of each subject, pooled variance within, and the values, as arrays."""
     value = np.asarray(value, dtype=float)
     names, at = np.unique(np.asarray(subject), return_inverse=True)
@@ -251,7 +237,7 @@ def _by_subject(subject, value):
     return count, mean, within, value
 
 
-def _margins(count, mean, within):
+def _margins(count: NDArray, mean: NDArray, within: float) -> tuple[float, float]:
     """Return how far the interval of a limit reaches towards the bias and away from it."""
     n_subjects, tail = len(count), (1 - LEVEL) / 2
     normal = norm.ppf(1 - tail)
@@ -271,15 +257,12 @@ def _margins(count, mean, within):
     return inner, outer
 
 
-def smallest_detectable_change(subject, value):
-    """Find the change of one subject that repeats alone do not explain.
+def smallest_detectable_change(
+    subject: ArrayLike, value: ArrayLike
+) -> tuple[float, tuple[float, float], int]:
+    """Find the smallest change of one subject that repeats alone do not explain.
 
-    Parameters
-    ----------
-    subject : (N,) array_like
-        Labels.
-    value : (N,) float
-        One method's.
+    `subject` (N,) are labels, `value` (N,) those of one method.
 
     Returns
     -------
@@ -292,9 +275,9 @@ def smallest_detectable_change(subject, value):
 
     Notes
     -----
-    The standard error of measurement is the standard deviation between repeats of one subject, pooled
-    (Bland & Altman 1996, BMJ 312:1654; de Vet et al. 2006, Health Qual Life Outcomes 4:54). What differs
-    between repeats belongs to it: the athlete's own variation and the measurement's.
+    The standard error of measurement is the standard deviation between repeats of one subject,
+    pooled (Bland & Altman 1996, BMJ 312:1654; de Vet et al. 2006, Health Qual Life Outcomes 4:54).
+    It includes all that differs between repeats: the athlete's own variation and the measurement's.
     """
     count, _, within, _ = _by_subject(subject, value)
     freedom = int(count.sum() - len(count))

@@ -1,27 +1,19 @@
-"""Shares of time, and means of values that depend on their neighbours in time."""
+"""Shares and means of values that are correlated in time, with their uncertainty."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.stats import norm
 
-LEVEL = 0.95
+LEVEL = 0.95  # of intervals, as is usual
+MOST_CORRELATED = 0.95  # beyond this a series is too short to tell from a drift
 
 
-def runs(hits):
-    """Return how many frames in a row count as one independent trial.
+def runs(hits: ArrayLike) -> float:
+    """Return how many frames in a row, of (T,) bool, count as one independent trial.
 
-    Parameters
-    ----------
-    hits : (T,) bool
-        By time.
+    1 + 2 * the sum of the autocorrelations up to the first pair of lags whose sum is not positive,
+    at least 1 and at most T; 1 where all frames are alike, which shows no correlation.
 
-    Returns
-    -------
-    frames : float
-        1 + 2 * the sum of the autocorrelations up to the first pair of lags whose sum is not positive, at
-        least 1 and at most T; 1 where all frames are alike, which shows no correlation.
-
-    Notes
-    -----
     Geyer 1992, initial positive sequence.
     """
     hits = np.asarray(hits, dtype=float)
@@ -35,24 +27,11 @@ def runs(hits):
     return float(np.clip(2 * pairs[:last].sum() - 1, 1, len(hits)))
 
 
-def interval(share, n_effective, level=LEVEL):
-    """Return the limits of Wilson's interval of a share.
+def interval(share: float, n_effective: float, level: float = LEVEL) -> tuple[float, float]:
+    """Return Wilson's interval of a share (0 to 1) of so many independent trials.
 
-    Parameters
-    ----------
-    share : float
-        0 to 1.
-    n_effective : float
-        Independent trials.
-    level : float
-
-    Returns
-    -------
-    low, high : float
-
-    Notes
-    -----
-    Wilson 1927, J. Am. Stat. Assoc. 22, 209. It holds near 0 and 1 as well, where the usual one has no width.
+    Wilson 1927, J. Am. Stat. Assoc. 22, 209. It holds near 0 and 1 as well, where the normal
+    interval has no width.
     """
     if not n_effective > 0:
         return 0.0, 1.0
@@ -61,27 +40,15 @@ def interval(share, n_effective, level=LEVEL):
     half = z * np.sqrt(share * (1 - share) / n_effective + z**2 / (4 * n_effective**2))
     scale = 1 + z**2 / n_effective
     # Rounding must not put a share of 0 or 1 outside its own interval.
-    return max(0.0, min(share, (middle - half) / scale)), min(
-        1.0, max(share, (middle + half) / scale)
-    )
+    low, high = min(share, (middle - half) / scale), max(share, (middle + half) / scale)
+    return max(0.0, low), min(1.0, high)
 
 
-def share(hits, least_frames=1.0, level=LEVEL):
-    """Return a share of frames with its interval.
+def share(hits: ArrayLike, least_frames: float = 1.0, level: float = LEVEL) -> dict[str, float]:
+    """Return n_frames, n_effective, share, low and high of a share of frames (T,) bool.
 
-    Parameters
-    ----------
-    hits : (T,) bool
-        By time.
-    least_frames : float
-        Frames in a row that count as one trial at least: how long a pose lasts, for hits so alike that their
-        correlation cannot be seen.
-    level : float
-
-    Returns
-    -------
-    found : dict
-        n_frames, n_effective, share, low, high.
+    At least `least_frames` in a row count as one trial: the duration of a pose, for hits so alike
+    that their correlation cannot be seen.
     """
     hits = np.asarray(hits, dtype=bool)
     count = len(hits)
@@ -93,31 +60,16 @@ def share(hits, least_frames=1.0, level=LEVEL):
     return {**found, "low": low, "high": high}
 
 
-MOST_CORRELATED = 0.95  # beyond this a series is too short to tell from a drift
+def covariance_of_sum(series: NDArray) -> NDArray:
+    """Return the long-run covariance (K, K) of the sum of a series (T, K) with mean zero.
 
-
-def covariance_of_sum(series):
-    """Return the covariance (K, K) of the sum of a series (T, K) with mean zero, whatever its memory.
-
-    Parameters
-    ----------
-    series : (T, K) float
-
-    Returns
-    -------
-    covariance : (K, K) float
-
-    Notes
-    -----
-    Bartlett's kernel with the automatic width of Andrews (1991), after each column was whitened by an
-    autoregression of order 1 (Andrews & Monahan 1992). Rather too large than too small.
+    Bartlett's kernel with the automatic width of Andrews (1991), after prewhitening of each column
+    by an autoregression of order 1 (Andrews & Monahan 1992). Rather too large than too small.
     """
     count = len(series)
     if count < 3:
         return series.T @ series
-    own = (series**2).sum(axis=0)
-    rho = (series[1:] * series[:-1]).sum(axis=0) / np.where(own > 0, own, 1.0)
-    rho = np.clip(rho, -MOST_CORRELATED, MOST_CORRELATED)
+    rho = _lag_1(series)
     white = series[1:] - rho * series[:-1]
     width = _width(white)
     weights = 1 - np.arange(1, min(int(width) + 1, count - 2)) / (width + 1)
@@ -125,7 +77,14 @@ def covariance_of_sum(series):
     return _weighted(white, weights) * np.outer(colour, colour) * count / (count - 1)
 
 
-def _weighted(series, weights):
+def _lag_1(series: NDArray) -> NDArray:
+    """Return the autocorrelation (K,) of each column at lag 1, limited."""
+    own = (series**2).sum(axis=0)
+    rho = (series[1:] * series[:-1]).sum(axis=0) / np.where(own > 0, own, 1.0)
+    return np.clip(rho, -MOST_CORRELATED, MOST_CORRELATED)
+
+
+def _weighted(series: NDArray, weights: NDArray) -> NDArray:
     total = series.T @ series
     for lag, weight in enumerate(weights, start=1):
         product = series[lag:].T @ series[:-lag] * weight
@@ -133,16 +92,17 @@ def _weighted(series, weights):
     return total
 
 
-def _width(white):
-    own = (white**2).sum(axis=0)
-    rho = (white[1:] * white[:-1]).sum(axis=0) / np.where(own > 0, own, 1.0)
-    rho = np.clip(rho, -MOST_CORRELATED, MOST_CORRELATED)
+def _width(white: NDArray) -> float:
+    rho = _lag_1(white)
     strength = np.max(4 * rho**2 / ((1 - rho) ** 2 * (1 + rho) ** 2))
     return 1.1447 * (strength * len(white)) ** (1 / 3)
 
 
-def distinct(difference):
-    """Return by how many standard deviations the mean of a series (T,) lies above zero."""
+def distinct(difference: NDArray) -> float:
+    """Return by how many of its standard deviations the mean of a series (T,) exceeds zero.
+
+    0 for fewer than 3 values.
+    """
     if len(difference) < 3:
         return 0.0
     mean = difference.mean()

@@ -1,45 +1,58 @@
-"""Changes of a measure from session to session, and the tables that they are read from."""
+"""Changes of a measure from session to session, and the tables that hold it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy import stats
 
 from courtside.study.errors import InputError
 
-CONDITIONS = (
-    "model",
-    "calibration",
-)  # what must not change unsaid; definition is checked beside them
-LEVEL = 0.95
+# What must not change unnoticed; the definition is checked beside them.
+CONDITIONS = ("model", "calibration")
+LEVEL = 0.95  # of detectable changes, as is usual
 FACTOR = stats.norm.ppf(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
 REAL, WITHIN, UNTOLD, MIXED = "real", "within", "untold", "mixed"
 VALUES = [
-    "measure", "unit", "session", "date", "order", "model", "calibration", "definition", "n_takes", "value",
-    "sd_takes",
+    "measure", "unit", "session", "date", "order", "model", "calibration", "definition", "n_takes",
+    "value", "sd_takes",
 ]  # fmt: skip
 CHANGES = [
-    "measure", "unit", "session", "date", "order", "against", "change", "detectable", "freedom", "verdict",
-    "mixed",
+    "measure", "unit", "session", "date", "order", "against", "change", "detectable", "freedom",
+    "verdict", "mixed",
 ]  # fmt: skip
+NEEDED = ["person", "measure", "value", "unit"]
+KEY = ["session", "take", "model", "calibration", "subject", "measure"]
+COLUMNS = [
+    "session", "date", "take", "model", "calibration", "subject", "measure", "value", "sigma",
+    "unit", "definition",
+]  # fmt: skip
+HIPS = ("left_hip", "right_hip")
 
 
-def of_subject(rows, subject, measures=None, *, allow_mixed=False):
-    """Return the rows of one subject, in order of sessions.
+def of_subject(
+    rows: pd.DataFrame,
+    subject: str,
+    measures: Sequence[str] | None = None,
+    *,
+    allow_mixed: bool = False,
+) -> pd.DataFrame:
+    """Return the rows of one subject.
 
     Parameters
     ----------
     rows : pandas.DataFrame
-        Of `courtside.statistics.longitudinal.read`.
-    subject : str
+        Of `read`.
     measures : sequence of str, optional
-        Those wanted; all by default.
+        All by default.
     allow_mixed : bool
-        Whether values of different networks or kinds of calibration, or of one measure defined differently,
-        may stand in one table: `changes` marks them.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
+        Whether values of different networks or kinds of calibration, or of one measure defined
+        differently, may stand in one table: `changes` marks them.
 
     Raises
     ------
@@ -55,8 +68,8 @@ def of_subject(rows, subject, measures=None, *, allow_mixed=False):
     missing = [name for name in measures or [] if name not in set(rows["measure"])]
     if missing:
         raise InputError(
-            f"subject {subject}: expected values of {missing}, found {sorted(rows['measure'].unique())}; "
-            "choose some of these"
+            f"subject {subject}: expected values of {missing}, found "
+            f"{sorted(rows['measure'].unique())}; choose some of these"
         )
     if measures:
         rows = rows[rows["measure"].isin(measures)]
@@ -65,38 +78,34 @@ def of_subject(rows, subject, measures=None, *, allow_mixed=False):
     return rows
 
 
-def _refuse_mixed(rows, subject):
+def _refuse_mixed(rows: pd.DataFrame, subject: str) -> None:
     for name in CONDITIONS:
         if rows[name].nunique() > 1:
             found = rows.groupby(name, sort=True)["session"].unique()
             words = "; ".join(f"{value} in {', '.join(found[value])}" for value in found.index)
             raise InputError(
-                f"subject {subject}: expected one {name} over all sessions, found {words}; measure all with "
-                "one, or set allow_mixed to have them marked"
+                f"subject {subject}: expected one {name} over all sessions, found {words}; measure "
+                "all with one, or set allow_mixed to have them marked"
             )
     defined = rows.groupby("measure")["definition"].nunique()
     if (defined > 1).any():
         measure = defined.index[defined > 1][0]
         found = sorted(rows.loc[rows["measure"] == measure, "definition"].unique())
         raise InputError(
-            f"subject {subject}: expected one definition of {measure}, found {found}; measure all sessions "
-            "alike, or set allow_mixed to have them marked"
+            f"subject {subject}: expected one definition of {measure}, found {found}; measure all "
+            "sessions alike, or set allow_mixed to have them marked"
         )
 
 
-def over_sessions(rows):
-    """Average the takes of each session.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `of_subject`.
+def over_sessions(rows: pd.DataFrame) -> pd.DataFrame:
+    """Average the takes of each session, from rows of `of_subject`.
 
     Returns
     -------
     values : pandas.DataFrame
-        `VALUES`, one row per measure, session and way of measuring: mean over the takes and their standard
-        deviation. `order` counts sessions by date where all have one, and else as they come.
+        `VALUES`, one row per measure, session and way of measuring: mean over the takes and their
+        standard deviation. `order` counts sessions by date where all have one, and else as they
+        come.
     """
     rows = rows.dropna(subset=["value"])
     order = _order(rows)
@@ -109,29 +118,29 @@ def over_sessions(rows):
     return found.sort_values(["place", "order"], kind="stable")[VALUES].reset_index(drop=True)
 
 
-def _order(rows):
+def _order(rows: pd.DataFrame) -> dict[str, int]:
     sessions = rows[["session", "date"]].drop_duplicates()
     if (sessions["date"] != "").all():
         sessions = sessions.sort_values("date", kind="stable")
     return {session: at for at, session in enumerate(dict.fromkeys(sessions["session"]))}
 
 
-def errors_of_measurement(rows, detectable=None):
-    """Return each measure's standard error of measurement.
+def errors_of_measurement(
+    rows: pd.DataFrame, detectable: pd.DataFrame | None = None
+) -> pd.DataFrame:
+    """Return each measure's standard error of measurement, from rows of `of_subject`.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
-        Of `of_subject`.
     detectable : pandas.DataFrame, optional
-        measure, detectable: smallest detectable changes of single takes from a study of repeats, with as many
-        degrees of freedom as n less n_subjects says.
+        measure, detectable, n, n_subjects: smallest detectable changes of single takes from a study
+        of repeats, with n less n_subjects degrees of freedom.
 
     Returns
     -------
     errors : pandas.DataFrame, index measure
-        sem, freedom. From `detectable` where it has the measure, and else from the takes within one session:
-        NaN where there are none.
+        sem, freedom. From `detectable` where it has the measure, and else from the takes within one
+        session: NaN where there are none.
     """
     keys = ["measure", "session", "date", *CONDITIONS, "definition"]
     own = rows.dropna(subset=["value"]).groupby(keys, sort=False)["value"]
@@ -151,7 +160,7 @@ def errors_of_measurement(rows, detectable=None):
     return found
 
 
-def changes(values, errors):
+def changes(values: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
     """Compare every session with the first one.
 
     Parameters
@@ -164,16 +173,16 @@ def changes(values, errors):
     Returns
     -------
     rows : pandas.DataFrame
-        `CHANGES`, one row per measure and later value. `detectable` is the smallest detectable change of
-        means over so many takes, t SEM sqrt(1/n + 1/n'), with Student's t (1.96 for many degrees of freedom):
-        5 % of those who did not change exceed it. `verdict`: `real` beyond it, `within` it, `untold` without
-        repeats, `mixed` where the way of measuring changed, as `mixed` says: such a change may be the
-        network's or the calibration's.
+        `CHANGES`, one row per measure and later value. `detectable` is the smallest detectable
+        change of means over so many takes, t SEM sqrt(1/n + 1/n'), with Student's t (1.96 for many
+        degrees of freedom): 5 % of those who did not change exceed it. `verdict`: `real` beyond it,
+        `within` it, `untold` without repeats, `mixed` where the way of measuring changed, as
+        `mixed` says: such a change may be the network's or the calibration's.
 
     Notes
     -----
-    Repeats within a session know nothing of what only differs between sessions (a new calibration, another
-    hall): the smallest detectable change is a lower bound then.
+    Repeats within a session do not contain what differs between sessions only (a new calibration,
+    another hall): the smallest detectable change is a lower bound then.
     """
     rows = []
     for measure, part in values.groupby("measure", sort=False):
@@ -188,20 +197,13 @@ def changes(values, errors):
                 for name in (*CONDITIONS, "definition")
                 if first[name] != row[name]
             )
-            where = (
-                measure,
-                row["unit"],
-                row["session"],
-                row["date"],
-                row["order"],
-                first["session"],
-            )
+            where = [measure, *row[["unit", "session", "date", "order"]], first["session"]]
             verdict = _verdict(change, detectable, mixed)
             rows.append((*where, change, detectable, int(freedom), verdict, mixed))
     return pd.DataFrame(rows, columns=CHANGES)
 
 
-def _verdict(change, detectable, mixed):
+def _verdict(change: float, detectable: float, mixed: str) -> str:
     if mixed:
         return MIXED
     if not np.isfinite(detectable):
@@ -209,24 +211,16 @@ def _verdict(change, detectable, mixed):
     return REAL if abs(change) > detectable else WITHIN
 
 
-LABELS = ["session", "take", "model", "calibration"]
-NEEDED = ["person", "measure", "value", "unit"]
-COLUMNS = [
-    "session", "date", "take", "model", "calibration", "subject", "measure", "value", "sigma", "unit",
-    "definition",
-]  # fmt: skip
-KEY = ["session", "take", "model", "calibration", "subject", "measure"]
-HIPS = ("left_hip", "right_hip")
-
-
-def read(paths, labels):
+def read(
+    paths: Sequence[str | os.PathLike[str]], labels: Sequence[Mapping[str, str]]
+) -> pd.DataFrame:
     """Read the summaries of takes into one table.
 
     Parameters
     ----------
     paths : sequence of str or Path
-        CSV with a row for each person and measure: person, measure, value, unit; sigma and definition where
-        there are such.
+        CSV with a row for each person and measure: person, measure, value, unit; sigma and
+        definition optional.
     labels : sequence of dict, one for each path
         session, take, model, calibration; date (year-month-day) where known.
 
@@ -253,16 +247,8 @@ def read(paths, labels):
     return check_single(rows)
 
 
-def labelled(table, label):
-    """Return rows of one take with its labels, in the columns of `COLUMNS`.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        person, measure, value, unit; sigma and definition where there are such.
-    label : dict
-        As for `read`.
-    """
+def labelled(table: pd.DataFrame, label: Mapping[str, str]) -> pd.DataFrame:
+    """Return the rows of one take as `COLUMNS`, with its labels; both arguments as for `read`."""
     rows = table.rename(columns={"person": "subject"}).assign(**label)
     rows = rows.reindex(columns=COLUMNS)
     rows["sigma"] = rows["sigma"].astype(float)
@@ -271,7 +257,7 @@ def labelled(table, label):
     return rows
 
 
-def check_single(rows):
+def check_single(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the rows; raise `InputError` if a value stands twice."""
     twice = rows[rows.duplicated(KEY)]
     if len(twice):
@@ -282,8 +268,18 @@ def check_single(rows):
     return rows
 
 
-def of_joints(points, label):
-    """Measure every joint of a take in ways that do not depend on where somebody stands or faces.
+class Skeletons(Protocol):
+    """What `of_joints` reads of `Keypoints3D`, which this room may not import."""
+
+    model: str
+    joints: NDArray
+    person_id: NDArray
+    time_s: NDArray
+    xyz: NDArray
+
+
+def of_joints(points: Skeletons, label: Mapping[str, str]) -> pd.DataFrame:
+    """Measure every joint of a take in ways that do not depend on position or direction.
 
     Parameters
     ----------
@@ -295,8 +291,8 @@ def of_joints(points, label):
     Returns
     -------
     rows : pandas.DataFrame
-        `COLUMNS`: mean height above the floor (mm), mean speed (m/s, between neighbouring frames), and mean
-        distance to the middle of the hips (mm), over the frames that have them.
+        `COLUMNS`: mean height above the floor (mm), mean speed (m/s, between neighbouring frames),
+        and mean distance to the middle of the hips (mm), over the frames that have them.
     """
     names = list(map(str, points.joints))
     middle = points.xyz[:, :, [names.index(hip) for hip in HIPS]].mean(axis=2, keepdims=True)
@@ -316,6 +312,6 @@ def of_joints(points, label):
     return labelled(table, {**label, "model": points.model})
 
 
-def _mean(values):
+def _mean(values: NDArray) -> float:
     known = values[np.isfinite(values)]
     return known.mean() if len(known) else np.nan
