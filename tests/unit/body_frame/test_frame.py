@@ -17,7 +17,7 @@ CARRIED_BY = bodyframe.anchors(TABLE, "rig", device_takes.JOINTS)
 
 
 def expected(take, number=1):
-    """Return axes (rows), unit and origin in world by the words of the definition, on the exact joints."""
+    """Return axes (rows), unit and origin in world by definition, on the exact joints."""
     times, xyz, events = take
     held = (times > events[f"tpose_{number}_start"]) & (times < events[f"tpose_{number}_stop"])
     at = dict(zip(device_takes.JOINTS, np.median(xyz[held], axis=0), strict=True))

@@ -1,1 +1,5 @@
-"""The body frame of a T-pose, and the frame that all sources of a take share."""
+"""The body frame of a T-pose, and the frame that all sources of a take share.
+
+frame: `anchors`, `at_tpose`, `axes`, `fixed`, `following`, `BodyFrame`, `Anchors`
+common: `common`, `claps_of`, `aligned`, `counterpart`
+"""

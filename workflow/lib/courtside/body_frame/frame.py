@@ -1,23 +1,29 @@
-"""The body's own frame and unit, from a T-pose: the same for every device, whatever its axes and its scale.
+"""The body's own frame and unit, from a T-pose: the same for devices of any axes and scale.
 
-Origin: the point that stands for the navel (derived joint `pelvis_thorax`). y: to the head, along the trunk.
-x: from the right wrist to the left one, square to y. z = x cross y: forwards. Unit: half the distance of the
-wrists along x, which is their distance in the x-z plane.
+Origin: the point that stands for the navel (derived joint `pelvis_thorax`). y: to the head, along
+the trunk. x: from the right wrist to the left one, square to y. z = x cross y: forwards. Unit: half
+the distance of the wrists along x, which is their distance in the x-z plane.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from courtside.events import tpose as tposes
-from courtside.geometry import rotations as transforms
+from courtside.events.tpose import TPose
+from courtside.geometry.rotations import unit
 from courtside.geometry.similarity import Sim3
+from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.study.errors import InputError
 
 ORIGIN = "pelvis_thorax"
-# ASSUME: the middle of the shoulders shows where the head is. It has one definition in every skeleton; the
-# head itself is another point for each (ears, eyes, base of the skull), and nods.
+# ASSUME: the middle of the shoulders shows where the head is. It has one definition in every
+# skeleton; the head itself is another point for each (ears, eyes, base of the skull), and nods.
 TOP = "mid_shoulder"
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
 HEADS = (("left_ear", "right_ear"), ("head",), ("left_eye", "right_eye"), ("nose",))
@@ -31,49 +37,41 @@ FORWARDS = (  # pairs of joints, the second in front of the first
     ("left_ear", "nose"),
     ("right_ear", "nose"),
 )
-LEAST_FORWARD = 0.02  # units: less says nothing
-NEAR = 4.0  # median distances from the median: further is an outlier
-SMALLEST_M = 1e-9
+LEAST_FORWARD = 0.02  # ASSUME: units; less does not tell front from back
+NEAR = 4.0  # ASSUME: median distances from the median; further is an outlier
+SMALLEST_M = 1e-9  # for joints that do not move at all
 
 
 @dataclass(frozen=True, eq=False)
 class Anchors:
-    """The points that carry the frame, as weights of a device's joints.
+    """Weights (J,) of a device's joints that make the frame's origin and top; each sum to 1."""
 
-    Attributes
-    ----------
-    origin, top : (J,) float
-        They sum to 1.
-    """
-
-    origin: np.ndarray
-    top: np.ndarray
+    origin: NDArray
+    top: NDArray
 
 
 @dataclass(frozen=True, eq=False)
 class BodyFrame:
     """The frame of one T-pose of one device.
 
-    Attributes
-    ----------
-    body_from_device : Sim3
-        Metres of the device to units of the body.
-    tpose : courtside.events.tpose.TPose
-    residuals : dict of str to float or None
-        unit_m: metres in a unit, the scale factor's inverse. elbow_left_deg, elbow_right_deg: bend of the
-        arms. level_deg: angle of the line of the wrists from square to y, positive with the left one higher.
-        wrist_height_difference_m: left less right, along y. stillness_m: root mean square, per axis, of the
-        wrists about their median. unit_spread_percent, origin_spread_m, frame_spread_deg: standard
-        deviations of the unit, origin (per axis) and axes (angle) from frame to frame. head_deg: angle
-        between y and the line from the origin to the head. forward: how far toes or nose are in front, units;
-        None where the device has neither. n_frames: with all joints known.
+    `body_from_device` takes metres of the device to units of the body. `residuals` holds:
+    unit_m: metres in a unit, the inverse of the scale.
+    elbow_left_deg, elbow_right_deg: bend of the arms.
+    level_deg: angle of the wrists' line from square to y, positive with the left one higher.
+    wrist_height_difference_m: left less right, along y.
+    stillness_m: root mean square, per axis, of the wrists about their median.
+    unit_spread_percent, origin_spread_m, frame_spread_deg: standard deviations of the unit, origin
+    (per axis) and axes (angle) from frame to frame.
+    head_deg: angle between y and the line from the origin to the head.
+    forward: how far toes or nose are in front, units; None where the device has neither.
+    n_frames: with all joints known.
     """
 
     body_from_device: Sim3
-    tpose: tposes.TPose
-    residuals: dict
+    tpose: TPose
+    residuals: dict[str, float | None]
 
-    def as_dict(self):
+    def as_dict(self) -> dict[str, Any]:
         """Return all numbers for JSON."""
         transform = self.body_from_device
         return {
@@ -85,17 +83,10 @@ class BodyFrame:
         }
 
 
-def anchors(table, skeleton, joints, *, top=TOP):
-    """Return the anchors of a skeleton.
-
-    Parameters
-    ----------
-    table : courtside.records.keypoints.derived_joints.DerivedJoints
-    skeleton : str
-        As the table names it.
-    joints : sequence of str
-    top : str
-        The derived joint towards which y points.
+def anchors(
+    table: DerivedJoints, skeleton: str, joints: Sequence[str] | NDArray, *, top: str = TOP
+) -> Anchors:
+    """Return the anchors of a skeleton that the table names; y points to the derived joint `top`.
 
     Raises
     ------
@@ -105,7 +96,9 @@ def anchors(table, skeleton, joints, *, top=TOP):
     return Anchors(table.weights(skeleton, ORIGIN, joints), table.weights(skeleton, top, joints))
 
 
-def axes(origin, top, left_wrist, right_wrist):
+def axes(
+    origin: NDArray, top: NDArray, left_wrist: NDArray, right_wrist: NDArray
+) -> tuple[NDArray, NDArray]:
     """Return the body's axes and unit, for each of any number of poses.
 
     Parameters
@@ -120,34 +113,22 @@ def axes(origin, top, left_wrist, right_wrist):
     unit_m : (...) float
         Half the distance of the wrists, seen along y.
     """
-    y = transforms.unit(top - origin)
+    y = unit(top - origin)
     across = left_wrist - right_wrist
     across = across - (across * y).sum(axis=-1, keepdims=True) * y
-    x = transforms.unit(across)
+    x = unit(across)
     rotation = np.stack([x, y, np.cross(x, y)], axis=-2)
     return rotation, np.linalg.norm(across, axis=-1) / 2
 
 
-def at_tpose(motion, carried_by, tpose):
-    """Return the frame of a T-pose.
-
-    Parameters
-    ----------
-    motion : courtside.records.devices.device_motion.DeviceMotion
-    carried_by : Anchors
-    tpose : courtside.events.tpose.TPose
-        Of this motion.
-
-    Returns
-    -------
-    frame : BodyFrame
-        Of the joints' means over the T-pose, outliers left out.
+def at_tpose(motion: DeviceMotion, carried_by: Anchors, tpose: TPose) -> BodyFrame:
+    """Return the frame of a T-pose of this motion, from the joints' means over it without outliers.
 
     Raises
     ------
     InputError
-        If joints are missing throughout, or toes and nose are behind: left and right are exchanged, or the
-        device's axes are left-handed.
+        If joints are missing throughout, or toes and nose are behind: left and right are exchanged,
+        or the device's axes are left-handed.
     """
     xyz = motion.xyz[tpose.frames]
     names = [str(name) for name in motion.joints]
@@ -166,38 +147,28 @@ def at_tpose(motion, carried_by, tpose):
     forward = _forward(transform.points(middle), names)
     if forward is not None and forward < -LEAST_FORWARD:
         raise InputError(
-            f"{motion.source}: expected toes or nose in front at the T-pose of {tpose.start_s:.2f} s, found "
-            f"them {-forward:.2f} units behind; left and right are exchanged, or the axes are left-handed"
+            f"{motion.source}: expected toes or nose in front at the T-pose of {tpose.start_s:.2f} "
+            f"s, found them {-forward:.2f} units behind; left and right are exchanged, or the axes "
+            "are left-handed"
         )
     residuals = _arms(middle, names, transform) | _spread(xyz[whole], names, carried_by, rotation)
     head = _head_deg(transform.points(middle), names)
     residuals |= {"head_deg": head, "forward": forward, "n_frames": int(whole.sum())}
-    return BodyFrame(transform, tpose, {"unit_m": float(unit_m)} | residuals)
+    return BodyFrame(transform, tpose, {"unit_m": float(unit_m), **residuals})
 
 
-def fixed(motion, frame):
-    """Return the joints in the frame of the T-pose, which stays where it was, (T, J, 3) units."""
+def fixed(motion: DeviceMotion, frame: BodyFrame) -> NDArray:
+    """Return the joints (T, J, 3) in the frame of the T-pose, which stays where it was, units."""
     return frame.body_from_device.points(motion.xyz)
 
 
-def following(motion, frame):
-    """Return the joints in a frame that goes with the trunk.
+def following(motion: DeviceMotion, frame: BodyFrame) -> NDArray:
+    """Return the joints (T, J, 3) in a frame that goes with the trunk, units.
 
-    Parameters
-    ----------
-    motion : courtside.records.devices.device_motion.DeviceMotion
-    frame : BodyFrame
-        Of a T-pose of this motion.
+    `frame` is of a T-pose of this motion. NaN throughout where a shoulder or hip is missing.
 
-    Returns
-    -------
-    xyz : (T, J, 3) float
-        Units; NaN throughout where a shoulder or hip is missing.
-
-    Notes
-    -----
-    In every frame shoulders and hips are brought nearest to where they were in the T-pose, by a rotation and
-    a shift (Kabsch 1976); the unit stays. The line of the wrists cannot carry the axes here: hands meet.
+    In every frame a rotation and a shift bring shoulders and hips nearest to where they were in the
+    T-pose (Kabsch 1976); the unit stays. The wrists' line cannot carry the axes here: hands meet.
     """
     xyz = fixed(motion, frame)
     names = list(motion.joints)
@@ -215,8 +186,8 @@ def following(motion, frame):
     return moved
 
 
-def _middle(xyz):
-    """Return the mean (J, 3) over frames of what lies near the median: steadier than the median alone."""
+def _middle(xyz: NDArray) -> NDArray:
+    """Return the mean (J, 3) over frames near the median: steadier than the median alone."""
     known = np.isfinite(xyz).all(axis=2).any(axis=0)
     middle = np.full(xyz.shape[1:], np.nan)
     there = xyz[:, known]
@@ -227,23 +198,25 @@ def _middle(xyz):
     return middle
 
 
-def _carried(xyz, names, carried_by):
+def _carried(
+    xyz: NDArray, names: list[str], carried_by: Anchors
+) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Return origin, top, left and right wrist (..., 3) of joints (..., J, 3)."""
-    parts = []
-    for weights in (carried_by.origin, carried_by.top):
-        used = np.flatnonzero(weights)
-        parts.append(np.einsum("j,...jk->...k", weights[used], xyz[..., used, :]))
-    wrists = [xyz[..., names.index(f"{side}_wrist"), :] for side in tposes.SIDES]
-    return (*parts, *wrists)
+    origin, top = (
+        np.einsum("j,...jk->...k", weights[weights != 0], xyz[..., weights != 0, :])
+        for weights in (carried_by.origin, carried_by.top)
+    )
+    left, right = (xyz[..., names.index(f"{side}_wrist"), :] for side in tposes.SIDES)
+    return origin, top, left, right
 
 
-def _arms(middle, names, transform):
+def _arms(middle: NDArray, names: list[str], transform: Sim3) -> dict[str, float | None]:
     body = transform.points(middle)
     at = {name: body[names.index(name)] for name in tposes.JOINTS}
-    found = {}
+    found: dict[str, float | None] = {}
     for side in tposes.SIDES:
-        upper = transforms.unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
-        fore = transforms.unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
+        upper = unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
+        fore = unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
         found[f"elbow_{side}_deg"] = float(np.degrees(np.arccos(np.clip(upper @ fore, -1, 1))))
     across = at["left_wrist"] - at["right_wrist"]
     found["level_deg"] = float(np.degrees(np.arcsin(across[1] / np.linalg.norm(across))))
@@ -251,7 +224,9 @@ def _arms(middle, names, transform):
     return found
 
 
-def _spread(xyz, names, carried_by, rotation):
+def _spread(
+    xyz: NDArray, names: list[str], carried_by: Anchors, rotation: NDArray
+) -> dict[str, float | None]:
     points = _carried(xyz, names, carried_by)
     rotations, units_m = axes(*points)
     turned = Rotation.from_matrix(rotations @ rotation.T).magnitude()
@@ -265,16 +240,16 @@ def _spread(xyz, names, carried_by, rotation):
     }
 
 
-def _head_deg(body, names):
+def _head_deg(body: NDArray, names: list[str]) -> float | None:
     for head in HEADS:
         if all(name in names for name in head):
-            way = transforms.unit(np.mean([body[names.index(name)] for name in head], axis=0))
+            way = unit(np.mean([body[names.index(name)] for name in head], axis=0))
             if np.isfinite(way).all():
                 return float(np.degrees(np.arccos(np.clip(way[1], -1, 1))))
     return None
 
 
-def _forward(body, names):
+def _forward(body: NDArray, names: list[str]) -> float | None:
     """Return by how much toes and nose are in front, units; None where none is known."""
     pairs = [pair for pair in FORWARDS if all(name in names for name in pair)]
     ahead = np.array([body[names.index(b), 2] - body[names.index(a), 2] for a, b in pairs])
