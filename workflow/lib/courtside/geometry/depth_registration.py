@@ -72,8 +72,6 @@ def align(
     NaN where no depth pixel falls. `depth_m` is (h, w), `colour_from_depth` (3, 4).
     To align many pictures, compute `depth_rays` once, by `rays` of the depth camera.
 
-    Notes
-    -----
     A depth pixel covers every colour pixel whose centre lies within its projected square or
     `SLACK_PX` beside it, which closes gaps on slanted surfaces, and at least the colour pixel
     nearest to its own centre. Where several overlap, the nearest surface counts.

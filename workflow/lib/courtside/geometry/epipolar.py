@@ -54,8 +54,6 @@ def distance_px(matrix: NDArray, xy_a: NDArray, xy_b: NDArray) -> NDArray:
     To first order the least movement of both pixels together that lets their rays meet. Its
     standard deviation is that of one coordinate if both pixels have equal noise.
 
-    Notes
-    -----
     Hartley & Zisserman 2004, sec. 11.4.3.
     """
     in_b = xy_a @ matrix[:, :2].T + matrix[:, 2]

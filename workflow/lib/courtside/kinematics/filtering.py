@@ -23,8 +23,6 @@ def fill_gaps(points: Keypoints3D, max_gap_s: float) -> Keypoints3D:
 
     `points` has uniform times. Filled values have reason INTERPOLATED and no covariance.
 
-    Notes
-    -----
     A cubic Hermite spline through the neighbours (Fritsch & Butland 1984, as scipy's PCHIP), which
     does not overshoot.
     """
@@ -82,8 +80,6 @@ def runs(flags: NDArray) -> list[tuple[int, int]]:
 def corrected_cutoff(cutoff_hz: float, rate_hz: float, order: int) -> float:
     """Return the cut-off of one pass of this order so that two passes have -3 dB at `cutoff_hz`.
 
-    Notes
-    -----
     Filtering forwards and backwards squares the gain, which would lower the -3 dB frequency. The
     correction (sqrt 2 - 1)^(-1 / (2 order)) acts on the tangent of the digital frequency (Winter
     2009, sec. 2.2.4.4; Robertson & Dowling 2003).

@@ -52,8 +52,6 @@ def between(
 
     `covariances` are three (T, 3, 3) m2; the errors of the points are independent.
 
-    Notes
-    -----
     A point at distance l that moves across its line turns the line by 1 / l. This holds while the
     error is much smaller than the bend: near 0 and 180 degrees the angle folds, and noise only ever
     bends a straight line, by about sigma.

@@ -44,8 +44,6 @@ def differentiate(lines: NDArray, rate_hz: float) -> NDArray:
 
     Each run of known frames by itself; NaN in runs of fewer than 3 frames.
 
-    Notes
-    -----
     The splines' derivative is exact to 2 % up to a fifth of the frame rate and to 0.1 % up to a
     tenth, where central differences lose 24 and 6 %.
     """

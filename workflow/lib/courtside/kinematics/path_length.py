@@ -22,8 +22,6 @@ SPACE = slice(0, 3)
 def mean_norm(mean: NDArray, covariance: NDArray) -> NDArray:
     """Return the expected length (N,) of normal vectors of mean (N, d) and covariance (N, d, d).
 
-    Notes
-    -----
     |x| = (1 / sqrt pi) integral over t > 0 of (1 - exp(-t^2 |x|^2)) / t^2 dt, and the expectation
     of the exponential is prod_i (1 + 2 t^2 l_i)^(-1/2) exp(-t^2 m_i^2 / (1 + 2 t^2 l_i)) with the
     variances l_i and means m_i along the covariance's axes. With t = tan(angle) / size the
