@@ -53,10 +53,10 @@ VECTORS_RNG = np.random.default_rng(0)
 
 def test_rotation_vectors_become_scipys_matrices_and_come_back():
     vectors = VECTORS_RNG.normal(size=(4, 5, 3))
-    matrices = rotations.matrices_from_vectors(vectors)
+    matrices = rotations.rotation_from_rodrigues(vectors)
     assert matrices[1, 2] == pytest.approx(Rotation.from_rotvec(vectors[1, 2]).as_matrix())
-    assert rotations.matrices_from_vectors(
-        rotations.vectors_from_matrices(matrices)
+    assert rotations.rotation_from_rodrigues(
+        rotations.rodrigues_from_rotation(matrices)
     ) == pytest.approx(matrices)
 
 

@@ -45,7 +45,7 @@ def test_without_correction_it_is_forward_kinematics():
 def test_heading_turns_all_about_the_root():
     slow, fixed = parameters(0, 0.0)
     slow[:, MODEL.slow["heading"]] = 0.4
-    turn = rotations.matrices_from_vectors(0.4 * moved_bodies.UP)
+    turn = rotations.rotation_from_rodrigues(0.4 * moved_bodies.UP)
     wanted = XYZ[:, :1] + (XYZ[:, OBSERVED] - XYZ[:, :1]) @ turn.T
     assert MODEL.places(frames(), slow, fixed) == pytest.approx(wanted, abs=1e-12)
 

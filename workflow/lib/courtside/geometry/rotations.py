@@ -12,14 +12,14 @@ NEARLY_OPPOSITE = -1 + 1e-9  # ASSUME: cosine below which the plane of the swing
 NO_TURN = np.eye(3)
 
 
-def rotation_from_rodrigues(vector: ArrayLike) -> NDArray:
-    """Return the rotation matrix (3, 3) of a rotation vector (3,): axis times angle in radians."""
-    return Rotation.from_rotvec(vector).as_matrix()
+def rotation_from_rodrigues(vectors: ArrayLike) -> NDArray:
+    """Return the rotations (..., 3, 3) of rotation vectors (..., 3), axis times radians."""
+    return Rotation.from_rotvec(vectors).as_matrix()
 
 
-def rodrigues_from_rotation(rotation: ArrayLike) -> NDArray:
-    """Return the rotation vector (3,), axis times angle in radians, of a rotation matrix (3, 3)."""
-    return Rotation.from_matrix(rotation).as_rotvec()
+def rodrigues_from_rotation(rotations: ArrayLike) -> NDArray:
+    """Return the rotation vectors (..., 3), axis times radians, of rotations (..., 3, 3)."""
+    return Rotation.from_matrix(rotations).as_rotvec()
 
 
 def nearest_rotation(matrix: NDArray) -> NDArray:
@@ -52,20 +52,6 @@ def invert(b_from_a: NDArray) -> NDArray:
     return np.column_stack([rotation, -rotation @ b_from_a[:, 3]])
 
 
-def matrices_from_vectors(vectors: ArrayLike) -> NDArray:
-    """Return the rotations (..., 3, 3) of rotation vectors (..., 3), radians."""
-    vectors = np.asarray(vectors, float)
-    flat = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
-    return flat.reshape(*vectors.shape, 3)
-
-
-def vectors_from_matrices(rotations: ArrayLike) -> NDArray:
-    """Return the rotation vectors (..., 3), radians, of rotations (..., 3, 3)."""
-    rotations = np.asarray(rotations, float)
-    flat = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec()
-    return flat.reshape(rotations.shape[:-1])
-
-
 def cross_matrices(vectors: ArrayLike) -> NDArray:
     """Return the matrices (..., 3, 3) whose product with another vector is the cross product."""
     x, y, z = np.moveaxis(np.asarray(vectors, float), -1, 0)
@@ -94,8 +80,8 @@ def interpolate(time_s: NDArray, rotations: NDArray, wanted_s: NDArray) -> NDArr
     """
     before, share = interpolation_shares(time_s, wanted_s)
     start, stop = rotations[before], rotations[np.minimum(before + 1, len(time_s) - 1)]
-    step = vectors_from_matrices(np.swapaxes(start, -1, -2) @ stop)
-    return start @ matrices_from_vectors(step * share.reshape((-1,) + (1,) * (step.ndim - 1)))
+    step = rodrigues_from_rotation(np.swapaxes(start, -1, -2) @ stop)
+    return start @ rotation_from_rodrigues(step * share.reshape((-1,) + (1,) * (step.ndim - 1)))
 
 
 def interpolation_shares(time_s: NDArray, wanted_s: NDArray) -> tuple[NDArray, NDArray]:

@@ -85,13 +85,13 @@ class Fit:
             seen_s, device, self.seen.xyz, self.up, window_s=window
         )
         heading = self.alignment.heading_at(time_s)
-        turn = rotations.matrices_from_vectors(heading[:, None] * self.up)[:, None]
+        turn = rotations.rotation_from_rodrigues(heading[:, None] * self.up)[:, None]
         root = heading_drift.turn_path(xyz[:, 0], heading, self.up)
         placed = root[:, None] + (turn @ (xyz - xyz[:, :1])[..., None])[..., 0]
         self.translation = self.posed.translation.copy()
         self.centre = root.mean(axis=0)
         self.translation[:, 0] = root - self.centre
-        self.facing = rotations.matrices_from_vectors(facings(turn[:, 0] @ world[:, 0], self.up))
+        self.facing = rotations.rotation_from_rodrigues(facings(turn[:, 0] @ world[:, 0], self.up))
         self.local = self.facing.swapaxes(1, 2)[:, None] @ turn @ world
         observed = placed[:, self.model.observed] - self.centre
         self.velocity = np.gradient(observed, time_s, axis=0)

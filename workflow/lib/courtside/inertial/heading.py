@@ -56,7 +56,7 @@ def estimate(
         off = np.linalg.norm(np.nan_to_num(vision - turned), axis=2)
         weights = np.isfinite(vision_xyz).all(axis=2) / (1 + (off / HARSH_M) ** 2)
     heading = np.unwrap(heading)
-    rotation = rotation @ rotations.matrices_from_vectors(heading[0] * np.asarray(up))
+    rotation = rotation @ rotations.rotation_from_rodrigues(heading[0] * np.asarray(up))
     return Alignment(rotation, np.asarray(time_s), heading - heading[0])
 
 
@@ -101,7 +101,7 @@ def _headings(products: NDArray, up: NDArray) -> NDArray:
 
 
 def _about(up: NDArray, angles: NDArray) -> NDArray:
-    return rotations.matrices_from_vectors(np.asarray(angles)[:, None] * np.asarray(up))
+    return rotations.rotation_from_rodrigues(np.asarray(angles)[:, None] * np.asarray(up))
 
 
 def _nearest(product: NDArray) -> NDArray:

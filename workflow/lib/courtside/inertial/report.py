@@ -125,7 +125,7 @@ def _heading(fit: Fit) -> dict[str, Any]:
 def _changes(fit: Fit, before: PosedHierarchy, after: PosedHierarchy) -> dict[str, float]:
     """Return the median change of each joint about the root, in axes turned back by the heading."""
     old, new = (forward(posed)[0] for posed in (before, after))
-    turn = rotations.matrices_from_vectors(_total_heading(fit, after.time_s)[:, None] * fit.up)
+    turn = rotations.rotation_from_rodrigues(_total_heading(fit, after.time_s)[:, None] * fit.up)
     old = np.einsum("tij,tkj->tki", turn, old - old[:, :1])
     change = 1e3 * np.median(np.linalg.norm(new - new[:, :1] - old, axis=2), axis=0)
     return dict(zip(before.hierarchy.joints, _list(change, 1), strict=True))
@@ -133,7 +133,7 @@ def _changes(fit: Fit, before: PosedHierarchy, after: PosedHierarchy) -> dict[st
 
 def _vision_from_device(fit: Fit, after: PosedHierarchy) -> list[list[float]]:
     layout = fit.model.fixed
-    turned = rotations.matrices_from_vectors(fit.fixed[layout["tilt"]])
+    turned = rotations.rotation_from_rodrigues(fit.fixed[layout["tilt"]])
     rotation = fit.alignment.vision_from_device @ turned
     root = fit.translation[:, 0] + fit.slow_at(after.time_s)[:, fit.model.slow["shift"]]
     place = root @ turned.T + fit.fixed[layout["place"]] + fit.place

@@ -76,8 +76,8 @@ class Model:
     def orient(self, frames: Frames, slow: NDArray, fixed: NDArray) -> NDArray:
         """Return corrected world rotations (N, J, 3, 3)."""
         turn, mount, heading = self._turns(slow, fixed)
-        outer = (heading @ frames.facing)[:, None] @ rotations.matrices_from_vectors(turn)
-        found = outer @ frames.facing_from_joint @ rotations.matrices_from_vectors(mount)
+        outer = (heading @ frames.facing)[:, None] @ rotations.rotation_from_rodrigues(turn)
+        found = outer @ frames.facing_from_joint @ rotations.rotation_from_rodrigues(mount)
         for joint, owner in enumerate(self.owner):
             if owner != joint:
                 measured = frames.facing_from_joint[:, owner].swapaxes(1, 2)
@@ -92,7 +92,7 @@ class Model:
         turn = slow[:, self.slow["turn"]].reshape(len(slow), -1, 3)
         turn = np.einsum("jg,ngi->nji", self.segments.share, turn)
         mount = self.segments.share @ fixed[self.fixed["mount"]].reshape(-1, 3)
-        heading = rotations.matrices_from_vectors(slow[:, self.slow["heading"]] * self.up)
+        heading = rotations.rotation_from_rodrigues(slow[:, self.slow["heading"]] * self.up)
         return turn, mount, heading
 
     def places(self, frames: Frames, slow: NDArray, fixed: NDArray) -> NDArray:
@@ -106,7 +106,7 @@ class Model:
                 bone = factor[joint] * frames.translation[:, joint]
                 xyz[:, row] += _turned(world[:, parent], bone + offsets[row] * (joint == path[-1]))
         xyz += (frames.translation[:, self.paths[0][0]] + slow[:, self.slow["shift"]])[:, None]
-        tilt = rotations.matrices_from_vectors(fixed[self.fixed["tilt"]])
+        tilt = rotations.rotation_from_rodrigues(fixed[self.fixed["tilt"]])
         return xyz @ tilt.T + self._shift(fixed)
 
     def linear(
@@ -144,7 +144,7 @@ class Model:
         turn, mount, heading = self._turns(slow, fixed)
         facing = (heading @ frames.facing)[:, None]
         outer = facing @ rotations.left_jacobians(turn)
-        measured = facing @ rotations.matrices_from_vectors(turn) @ frames.facing_from_joint
+        measured = facing @ rotations.rotation_from_rodrigues(turn) @ frames.facing_from_joint
         return outer, measured @ rotations.left_jacobians(mount)
 
     def _add_turns(
@@ -167,7 +167,7 @@ class Model:
         self, frames: Frames, xyz: NDArray, by_slow: NDArray, by_fixed: NDArray, fixed: NDArray
     ) -> tuple[NDArray, NDArray, NDArray]:
         tilt = fixed[self.fixed["tilt"]]
-        turned = rotations.matrices_from_vectors(tilt)
+        turned = rotations.rotation_from_rodrigues(tilt)
         by_fixed[..., self.fixed["lag"]] = frames.velocity[..., None]
         xyz, by_slow, by_fixed = xyz @ turned.T, turned @ by_slow, turned @ by_fixed
         lever = rotations.left_jacobians(tilt)
