@@ -59,6 +59,19 @@ def test_the_rotation_is_scipys_and_the_fit_is_the_least_squares_one():
         assert cost(found.scale, found.translation + step) > least
 
 
+@pytest.mark.parametrize("mirror", [1, -1])
+def test_kabsch_gives_scipys_rotations_and_never_a_reflection(mirror):
+    rng = np.random.default_rng(2)
+    a, b = rng.normal(size=(2, 5, 8, 3))
+    products = np.einsum("nji,njk->nik", b * [1, 1, mirror], a)
+    found, trace = similarity.kabsch(products)
+    np.testing.assert_allclose(trace, np.einsum("nij,nij->n", found, products))
+    np.testing.assert_allclose(np.linalg.det(found), 1)
+    for rotation, x_in_a, x_in_b in zip(found, a, b * [1, 1, mirror], strict=True):
+        theirs, _ = Rotation.align_vectors(x_in_b, x_in_a)
+        np.testing.assert_allclose(rotation, theirs.as_matrix(), atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("x_in_a", "x_in_b"),
     [

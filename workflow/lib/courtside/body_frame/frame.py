@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 from courtside.events import tpose as tposes
 from courtside.events.tpose import TPose
 from courtside.geometry.rotations import unit
-from courtside.geometry.similarity import Sim3
+from courtside.geometry.similarity import Sim3, kabsch
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.study.errors import InputError
@@ -178,11 +178,9 @@ def following(motion: DeviceMotion, frame: BodyFrame) -> NDArray:
     moved = np.full(xyz.shape, np.nan)
     if known.any():
         middle, rest_middle = trunk[known].mean(axis=1, keepdims=True), rest.mean(axis=0)
-        left, _, right = np.linalg.svd(
-            np.einsum("ji,tjk->tik", rest - rest_middle, trunk[known] - middle)
-        )
-        left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
-        moved[known] = (xyz[known] - middle) @ (left @ right).transpose(0, 2, 1) + rest_middle
+        products = np.einsum("ji,tjk->tik", rest - rest_middle, trunk[known] - middle)
+        rotation, _ = kabsch(products)
+        moved[known] = (xyz[known] - middle) @ rotation.transpose(0, 2, 1) + rest_middle
     return moved
 
 

@@ -77,6 +77,18 @@ def umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, weight: ArrayLike | None = Non
     return Sim3(float(scale), rotation, translation)
 
 
+def kabsch(products: NDArray) -> tuple[NDArray, NDArray]:
+    """Return the rotations R nearest to matrices M (..., 3, 3), and the traces (...) of R'M.
+
+    For M = sum of b a' over centred points a and b, R turns a nearest to b (Kabsch 1976). Never a
+    reflection.
+    """
+    left, extent, right = np.linalg.svd(products)
+    sign = np.ones_like(extent)
+    sign[..., 2] = np.sign(np.linalg.det(left) * np.linalg.det(right))
+    return (left * sign[..., None, :]) @ right, (extent * sign).sum(axis=-1)
+
+
 def is_collinear(xyz: NDArray) -> bool:
     """Say whether points (N, 3) are fewer than three or on one line, to 0.1 % of their extent."""
     return len(xyz) < 3 or flatness(xyz)[1] < 1e-3
@@ -188,10 +200,7 @@ def _fit(x_in_a: NDArray, x_in_b: NDArray, weight: NDArray) -> tuple[NDArray, ND
     middle_a = (share * x_in_a).sum(axis=-2, keepdims=True)
     middle_b = (share * x_in_b).sum(axis=-2, keepdims=True)
     a, b = x_in_a - middle_a, x_in_b - middle_b
-    left, extent, right = np.linalg.svd(np.swapaxes(share * b, -1, -2) @ a)
-    sign = np.ones_like(extent)
-    sign[..., 2] = np.sign(np.linalg.det(left) * np.linalg.det(right))
-    rotation = (left * sign[..., None, :]) @ right
-    scale = (extent * sign).sum(axis=-1) / (share * a * a).sum(axis=(-1, -2))
+    rotation, trace = kabsch(np.swapaxes(share * b, -1, -2) @ a)
+    scale = trace / (share * a * a).sum(axis=(-1, -2))
     turned = (middle_a @ np.swapaxes(rotation, -1, -2))[..., 0, :]
     return scale, rotation, middle_b[..., 0, :] - scale[..., None] * turned

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from courtside.geometry import rotations
+from courtside.geometry.similarity import kabsch
 
 ROUNDS = 20  # ASSUME: of rotation and headings, each time
 STARTS = 5  # ASSUME: frames whose own rotation is a start
@@ -82,14 +83,12 @@ def _alternate(products: NDArray, up: NDArray) -> tuple[NDArray, NDArray]:
     chosen = np.linspace(0, len(products) - 1, STARTS).astype(int)
     highest = -np.inf
     for start in [products.sum(axis=0), *products[chosen]]:
-        rotation = _nearest(start)
+        rotation, _ = kabsch(start)
         for _ in range(ROUNDS):
             heading = _headings(rotation.T @ products, up)
-            aligned = np.einsum("tij,tkj->ik", products, _about(up, heading))
-            rotation = _nearest(aligned)
-        score = np.sum(rotation * aligned)
+            rotation, score = kabsch(np.einsum("tij,tkj->ik", products, _about(up, heading)))
         if score > highest:
-            highest, best = score, (rotation, heading)
+            highest, best = float(score), (rotation, heading)
     return best
 
 
@@ -102,8 +101,3 @@ def _headings(products: NDArray, up: NDArray) -> NDArray:
 
 def _about(up: NDArray, angles: NDArray) -> NDArray:
     return rotations.rotation_from_rodrigues(np.asarray(angles)[:, None] * np.asarray(up))
-
-
-def _nearest(product: NDArray) -> NDArray:
-    left, _, right = np.linalg.svd(product)
-    return left @ np.diag([1, 1, np.sign(np.linalg.det(left @ right))]) @ right
