@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from courtside.geometry import interpolation
+
 ROUNDING = 1e-4  # files print rotations with as few as six decimals
 SMALL = 1e-6  # radians: below, the first terms of the series
 NEARLY_OPPOSITE = -1 + 1e-9  # ASSUME: cosine below which the plane of the swing is not determined
@@ -78,17 +80,10 @@ def interpolate(time_s: NDArray, rotations: NDArray, wanted_s: NDArray) -> NDArr
 
     Times outside the increasing samples take the nearest one.
     """
-    before, share = interpolation_shares(time_s, wanted_s)
+    before, share = interpolation.shares(time_s, wanted_s)
     start, stop = rotations[before], rotations[np.minimum(before + 1, len(time_s) - 1)]
     step = rodrigues_from_rotation(np.swapaxes(start, -1, -2) @ stop)
     return start @ rotation_from_rodrigues(step * share.reshape((-1,) + (1,) * (step.ndim - 1)))
-
-
-def interpolation_shares(time_s: NDArray, wanted_s: NDArray) -> tuple[NDArray, NDArray]:
-    """Return the sample before each wanted time (N,) and the share of the way to the next (N,)."""
-    wanted_s = np.clip(wanted_s, time_s[0], time_s[-1])
-    before = np.clip(np.searchsorted(time_s, wanted_s, side="right") - 1, 0, len(time_s) - 2)
-    return before, (wanted_s - time_s[before]) / (time_s[before + 1] - time_s[before])
 
 
 def unit_vector(vector: NDArray) -> NDArray:

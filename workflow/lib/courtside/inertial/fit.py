@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import rotations
+from courtside.geometry.interpolation import linear
 from courtside.inertial import heading as heading_drift
 from courtside.inertial import splines
 from courtside.inertial.segments import Frames, Model, segments_of
@@ -79,7 +80,7 @@ class Fit:
         """Move vision's joints into the device's world; turn the device by its drifting heading."""
         xyz, world = forward(self.posed)
         time_s, seen_s = self.posed.time_s, self.seen.time_s
-        device = _linear(time_s, xyz[:, self.model.observed], seen_s)
+        device = linear(time_s, xyz[:, self.model.observed], seen_s)
         window = self.settings.window_s
         self.alignment = heading_drift.estimate(
             seen_s, device, self.seen.xyz, self.up, window_s=window
@@ -96,7 +97,7 @@ class Fit:
         observed = placed[:, self.model.observed] - self.centre
         self.velocity = np.gradient(observed, time_s, axis=0)
         vision = self.seen.xyz @ self.alignment.vision_from_device
-        self.place = np.nanmedian(vision - _linear(time_s, observed, seen_s), axis=(0, 1))
+        self.place = np.nanmedian(vision - linear(time_s, observed, seen_s), axis=(0, 1))
         self.vision = vision - self.place
 
     def _slow_prior(self) -> None:
@@ -164,8 +165,8 @@ class Fit:
         return Frames(
             rotations.interpolate(time_s, self.facing, wanted),
             rotations.interpolate(time_s, self.local, wanted),
-            _linear(time_s, self.translation, wanted),
-            _linear(time_s, self.velocity, wanted),
+            linear(time_s, self.translation, wanted),
+            linear(time_s, self.velocity, wanted),
         )
 
     def slow_at(self, time_s: NDArray) -> NDArray:
@@ -246,12 +247,6 @@ def facings(matrices: NDArray, up: NDArray) -> NDArray:
     quaternion = Rotation.from_matrix(matrices).as_quat()
     angle = 2 * np.arctan2(quaternion[:, :3] @ up, quaternion[:, 3])
     return np.unwrap(angle)[:, None] * up
-
-
-def _linear(time_s: NDArray, values: NDArray, wanted_s: NDArray) -> NDArray:
-    before, share = rotations.interpolation_shares(time_s, wanted_s)
-    share = share.reshape((-1,) + (1,) * (values.ndim - 1))
-    return values[before] * (1 - share) + values[before + 1] * share
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from courtside.geometry.interpolation import linear
 from courtside.kinematics.wrist_arcs import Arc
 from courtside.records.keypoints.body_motion import BodyMotion
 
@@ -73,7 +74,7 @@ def of_path(
     inside = (time_s >= start_s) & (time_s <= stop_s)
     if len(grid) < 5 or known[inside].sum() < max(2, 0.5 * inside.sum()):
         return np.nan
-    path = np.column_stack([np.interp(grid, time_s[known], line[known]) for line in xyz.T])
+    path = linear(time_s[known], xyz[known], grid)
     speed = np.linalg.norm(np.diff(path, axis=0), axis=1) * rate_hz
     return sparc(speed, rate_hz)
 
