@@ -155,11 +155,7 @@ class Solution:
 
 
 def solve(
-    blocks: NDArray,
-    right: NDArray,
-    border: NDArray,
-    border_matrix: NDArray,
-    border_right: NDArray,
+    blocks: NDArray, right: NDArray, border: NDArray, border_matrix: NDArray, border_right: NDArray
 ) -> Solution:
     """Solve the normal equations of splines and a few further (border) parameters.
 

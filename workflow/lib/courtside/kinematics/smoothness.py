@@ -16,11 +16,7 @@ PADDING = 4  # powers of two by which the spectrum is made finer
 
 
 def sparc(
-    speed: ArrayLike,
-    rate_hz: float,
-    *,
-    cutoff_hz: float = CUTOFF_HZ,
-    threshold: float = THRESHOLD,
+    speed: ArrayLike, rate_hz: float, *, cutoff_hz: float = CUTOFF_HZ, threshold: float = THRESHOLD
 ) -> float:
     """Return the spectral arc length of a speed profile (T,), no unit; nearer to 0 is smoother.
 

@@ -58,11 +58,7 @@ def pair(rows: pd.DataFrame, networks: tuple[str, str]) -> pd.DataFrame:
 
 
 def compare(
-    pairs: pd.DataFrame,
-    networks: tuple[str, str],
-    *,
-    min_subjects: int = 3,
-    min_repeats: int = 5,
+    pairs: pd.DataFrame, networks: tuple[str, str], *, min_subjects: int = 3, min_repeats: int = 5
 ) -> pd.DataFrame:
     """Compare two networks, measure by measure, in the `pairs` of `pair`.
 
