@@ -25,14 +25,8 @@ def common(
 ) -> dict[str, TPose]:
     """Choose the T-pose that all sources show best: for each source its own spell of it.
 
-    Parameters
-    ----------
-    happened : dict of str to Events
-        Of each source; the first is the reference.
-    clocks : dict of str to Clock
-        Against the reference.
-    motions : dict of str to DeviceMotion, optional
-        Where nobody performs a T-pose, their stored rest poses are used, if all have one.
+    The first source of `happened` is the reference, which `clocks` are against. Where nobody
+    performs a T-pose, the stored rest poses of `motions` are used, if all have one.
 
     Raises
     ------
@@ -111,14 +105,8 @@ def aligned(
 def counterpart(motion: DeviceMotion, carried_by: Anchors, tpose_s: NDArray) -> BodyFrame:
     """Return the body frame of the true motion at the T-pose of another source.
 
-    Parameters
-    ----------
-    motion : DeviceMotion
-        On the reference clock.
-    carried_by : Anchors
-        Of this motion's joints.
-    tpose_s : (2,) float
-        Start and end of the T-pose on the reference clock.
+    The motion, whose joints `carried_by` weighs, and the T-pose's start and end (2,) are on the
+    reference clock.
 
     Raises
     ------

@@ -99,19 +99,10 @@ def anchors(
 def axes(
     origin: NDArray, top: NDArray, left_wrist: NDArray, right_wrist: NDArray
 ) -> tuple[NDArray, NDArray]:
-    """Return the body's axes and unit, for each of any number of poses.
+    """Return the body's axes and unit, for points (..., 3) m of poses in the device's frame.
 
-    Parameters
-    ----------
-    origin, top, left_wrist, right_wrist : (..., 3) float
-        Metres, in the device's frame.
-
-    Returns
-    -------
-    body_from_device : (..., 3, 3) float
-        Rotation; its rows are x, y, z of the body in the device's frame.
-    unit_m : (...) float
-        Half the distance of the wrists, seen along y.
+    Axes (..., 3, 3): the rotation body_from_device, whose rows are x, y, z of the body in the
+    device's frame. Unit (...) m: half the distance of the wrists, seen along y.
     """
     y = unit(top - origin)
     across = left_wrist - right_wrist

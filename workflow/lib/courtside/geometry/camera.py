@@ -95,18 +95,10 @@ def projection_jacobian(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
 
 
 def undistort(camera: Camera, xy: ArrayLike) -> NDArray:
-    """Return the viewing directions of distorted pixels: the inverse of `project`.
+    """Return the viewing directions of distorted px (..., 2): the inverse of `project`.
 
-    Parameters
-    ----------
-    xy : (..., 2) float
-        Distorted px; NaN where missing.
-
-    Returns
-    -------
-    xy_normalised : (..., 2) float
-        On the z = 1 plane in front of the camera, no unit; NaN where missing, and where the lens
-        model has no direction for that pixel.
+    They lie on the z = 1 plane in front of the camera (..., 2), no unit. NaN where a pixel is
+    missing, and where the lens model has no direction for it.
     """
     xy = np.asarray(xy, dtype=float)
     distorted = (np.where(np.isfinite(xy), xy, np.nan) - camera.K[:2, 2]) / _focal(camera)
@@ -132,15 +124,8 @@ def _normalise(camera: Camera, xyz_in_world: ArrayLike) -> tuple[NDArray, NDArra
 def crop(camera: Camera, crop_px: Sequence[int]) -> Camera:
     """Return the camera of a video that shows only a part of the calibrated picture.
 
-    Parameters
-    ----------
-    crop_px : (x, y, width, height) of int
-        In px of the calibrated picture.
-
-    Returns
-    -------
-    camera : Camera
-        With that size and a shifted principal point; nothing is scaled.
+    `crop_px` is x, y, width, height in px of that picture. The principal point shifts; nothing is
+    scaled.
 
     Raises
     ------
@@ -174,15 +159,10 @@ def check_size(
 
 
 def read_toml(path: str | os.PathLike[str]) -> list[Camera]:
-    """Read cameras from a TOML file as this study, Pose2Sim and aniposelib write it.
+    """Read cameras, in metres, from a TOML file as this study, Pose2Sim and aniposelib write it.
 
-    The file holds one table per camera with `name size matrix distortions rotation translation`;
-    `[metadata]` may hold `unit`: m (where absent), cm or mm.
-
-    Returns
-    -------
-    cameras : list of Camera
-        In the file's order, in metres.
+    The file holds one table per camera with `name size matrix distortions rotation translation`, in
+    the order of the result; `[metadata]` may hold `unit`: m (where absent), cm or mm.
 
     Raises
     ------
@@ -203,17 +183,10 @@ def read_toml(path: str | os.PathLike[str]) -> list[Camera]:
 
 
 def build(where: str, name: str, table: Mapping[str, Any], metres: float) -> Camera:
-    """Build a camera from its table in a file.
+    """Build a camera from its table in a file; `where` begins error messages.
 
-    Parameters
-    ----------
-    where : str
-        File and camera, to begin error messages with.
-    table : mapping
-        `size matrix distortions rotation translation`, optionally `fisheye`; rotation as vector or
-        matrix. As a parser returns it, so of any type.
-    metres : float
-        Unit of the translation.
+    The parsed table, of any types, holds `size matrix distortions rotation translation`, optionally
+    `fisheye`; rotation as vector or matrix. `metres` is the unit of the translation.
     """
     if table.get("fisheye", False):
         raise InputError(
@@ -235,12 +208,8 @@ def write_toml(
 ) -> None:
     """Write cameras so that `read_toml`, Pose2Sim and aniposelib read them.
 
-    Parameters
-    ----------
-    source : str
-        How the cameras were found; kept in `[metadata]`.
-    unit : str
-        `camera_fields.UNSCALED` where lengths are not in metres: `read_toml` refuses such files.
+    `source`, how the cameras were found, goes into `[metadata]`. `unit` is `camera_fields.UNSCALED`
+    where lengths are not in metres: `read_toml` refuses such files.
     """
     camera_fields.check_distinct(path, cameras)
     digits = len(str(len(cameras) - 1))  # aniposelib sorts the tables by name
@@ -331,20 +300,10 @@ def fold_radius(dist: NDArray) -> float:
 def undistort_below_fold(
     dist: NDArray, fold: float, distorted: NDArray, tolerance: NDArray
 ) -> NDArray:
-    """Invert `distort` below the fold radius.
+    """Invert `distort` (..., 2) below the `fold_radius`.
 
-    Parameters
-    ----------
-    fold : float
-        From `fold_radius`.
-    distorted : (..., 2) float
-    tolerance : (...) float
-        Accepted error of `distort` at the result.
-
-    Returns
-    -------
-    normalised : (..., 2) float
-        NaN where missing, and where no point below the fold maps to that pixel.
+    `tolerance` (...) is the accepted error of `distort` at the result. NaN where missing, and where
+    no point below the fold maps to that pixel.
 
     Notes
     -----

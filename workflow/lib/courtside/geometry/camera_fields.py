@@ -25,21 +25,13 @@ EXPORT_AGAIN = "export the calibration again or mend the file"
 
 
 def numbers(where: str, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
-    """Return `value` as a finite float array of one of `shapes`.
-
-    Parameters
-    ----------
-    where : str
-        File and camera, to begin error messages with.
-    key : str
-        The field's name.
-    value : object
-        As the file holds it; None where it is missing.
+    """Return a field's `value`, None where missing, as a finite float array of one of `shapes`.
 
     Raises
     ------
     InputError
-        If it is anything else.
+        If it is anything else; the message begins with `where` (file and camera) and names the
+        `key`.
     """
     array: NDArray | None
     try:
@@ -70,22 +62,15 @@ def five_coefficients(where: str, value: object) -> NDArray:
 
 
 def pose(where: str, rotation: object, translation: object, metres: float) -> NDArray:
-    """Return `cam_from_world` (3, 4).
+    """Return `cam_from_world` (3, 4); `metres` is the unit of the translation (3,).
 
-    Parameters
-    ----------
-    where : str
-        File and camera, to begin error messages with.
-    rotation : (3,) or (3, 3) array_like
-        Rodrigues vector, radians, or matrix.
-    translation : (3,) array_like
-    metres : float
-        Unit of the translation.
+    The rotation is a Rodrigues vector (3,), radians, or a matrix (3, 3).
 
     Raises
     ------
     InputError
-        If a shape is wrong or the matrix is not a rotation.
+        If a shape is wrong or the matrix is not a rotation; `where` (file and camera) begins
+        messages.
     """
     rotation = numbers(where, "rotation", rotation, (3,), (3, 1), (1, 3), (3, 3))
     translation = numbers(where, "translation", translation, (3,), (3, 1), (1, 3))

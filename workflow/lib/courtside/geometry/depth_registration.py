@@ -28,23 +28,11 @@ def rays(camera: Camera) -> NDArray:
 def points_in_colour(
     depth_m: NDArray, depth_rays: NDArray, colour: Camera, colour_from_depth: NDArray
 ) -> tuple[NDArray, NDArray]:
-    """Project every depth pixel into the colour picture.
+    """Project every depth pixel (h, w) into the colour picture; its pose does not matter.
 
-    Parameters
-    ----------
-    depth_m : (h, w) float
-    depth_rays : (h, w, 2) float
-        From `rays` of the depth camera.
-    colour : Camera
-        Its pose in the world does not matter.
-    colour_from_depth : (3, 4) float
-
-    Returns
-    -------
-    xy : (h, w, 2) float
-        Px of the colour picture, not limited to it; NaN where there is no depth.
-    z : (h, w) float
-        Along the colour camera's axis, metres; NaN likewise.
+    `depth_rays` (h, w, 2) are `rays` of the depth camera, `colour_from_depth` is (3, 4). Return px
+    (h, w, 2) of the colour picture, not limited to it, and depths (h, w) along the colour camera's
+    axis; NaN where there is no depth.
     """
     depth_m = np.where(depth_m > 0, depth_m, np.nan)
     rotation, shift = colour_from_depth[:, :3], colour_from_depth[:, 3]
@@ -114,22 +102,11 @@ def sample(
     *,
     range_m: tuple[float, float] = (NEAREST_M, FARTHEST_M),
 ) -> NDArray:
-    """Return the depth at colour pixels, by following their rays through the depth image.
+    """Return the depth (N,) at colour px (N, 2), by following rays through the depth image (h, w).
 
-    Parameters
-    ----------
-    depth_m : (h, w) float
-    colour_from_depth : (3, 4) float
-    xy : (N, 2) float
-        Px of the colour picture; NaN where missing.
-    range_m : (float, float)
-        Where the rays begin and end, along the colour camera's axis.
-
-    Returns
-    -------
-    z : (N,) float
-        Along the colour camera's axis, metres, of the first depth pixel on the ray; NaN where there
-        is none, as for a ray that passes behind what the depth camera sees.
+    It lies along the colour camera's axis, as does `range_m`, where the rays begin and end. It is
+    that of the first depth pixel on the ray; NaN where there is none, as for a ray that passes
+    behind what the depth camera sees, or where xy is. `colour_from_depth` is (3, 4).
 
     Notes
     -----

@@ -44,14 +44,9 @@ class Sim3:
 
 
 def umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, weight: ArrayLike | None = None) -> Sim3:
-    """Fit the similarity `b_from_a` to corresponding points by weighted least squares.
+    """Fit `b_from_a` to the same points (N, 3) in both frames, by least squares.
 
-    Parameters
-    ----------
-    x_in_a, x_in_b : (N, 3) float
-        The same points in both frames.
-    weight : (N,) float, optional
-        Of the squared distances.
+    `weight` (N,) is that of the squared distances.
 
     Raises
     ------
@@ -102,12 +97,10 @@ def flatness(xyz: NDArray) -> NDArray:
 
 
 def robust(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3, NDArray]:
-    """Fit the similarity that most points agree on, and say which these are.
+    """Fit `b_from_a` to most of the same points (P, 3) in both frames, NaN where missing in one.
 
     Parameters
     ----------
-    x_in_a, x_in_b : (P, 3) float
-        The same points in both frames; NaN where missing in one.
     sigma : float or (P,) float
         Standard deviation of a point per axis, in units of b. If the points scatter more, all
         sigmas are scaled up by one factor.
@@ -127,8 +120,8 @@ def robust(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3
     -----
     Least median of squares (Rousseeuw & Leroy 1987) over all subsets of three points: no random
     numbers. Then weighted least squares on the inliers until they stay the same. Mirrored points
-    that all lie in one plane fit a rotation as well: only the positions of the cameras tell them
-    apart, which this function does not know.
+    that all lie in one plane fit a rotation as well: only the cameras' positions tell them apart,
+    which are not known here.
     """
     x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
     sigma = np.broadcast_to(np.asarray(sigma, float), len(x_in_a))

@@ -37,15 +37,9 @@ class Triangulated:
 def triangulate(xy: NDArray, weight: NDArray, cam_from_world: NDArray) -> NDArray:
     """Triangulate points (N, 3) by weighted DLT.
 
-    Parameters
-    ----------
-    xy : (C, N, 2) float
-        Points on the undistorted, normalised image plane (z = 1, no unit); NaN where unseen.
-    weight : (C, N) float
-        Weight of that camera's two rows; zero leaves the view out. Points with fewer than two
-        positive weights become NaN.
-    cam_from_world : (C, 3, 4) float
-        World to camera, translation in metres.
+    `xy` (C, N, 2) lie on the undistorted, normalised image plane (z = 1, no unit). `weight` (C, N)
+    is that of a camera's two rows; points with fewer than two positive weights become NaN.
+    `cam_from_world` is (C, 3, 4).
 
     Notes
     -----
@@ -327,16 +321,8 @@ def triangulate_plain(
 ) -> Triangulated:
     """Triangulate points by a DLT over all views that see them, without weights.
 
-    Parameters
-    ----------
-    score : (C, N) float
-        Selects views, does not weigh them. `accepted` are all views used.
-    sigma_px : float or (N,) float
-        Standard deviation per axis of a keypoint: scales the covariance only.
-    min_views : int
-        Fewest views of a point, at least 2.
-    min_score : float
-        Keypoints below it are not used.
+    The parameters are those of `triangulate_robust`, but `score` selects views and does not weigh
+    them: `accepted` are all views used, and `sigma_px` is that of every keypoint.
 
     Notes
     -----

@@ -42,15 +42,8 @@ SHORT_S = 0.1  # ASSUME: lag at which the memory is read
 class Fit:
     """State of the fit of one take.
 
-    Parameters
-    ----------
-    posed : PosedHierarchy
-        Performed frames only, times on the reference clock.
-    up : (3,) float
-    lag_s : float
-        Standard deviation of the clocks' offset.
-    offsets_m : dict of str to (3,) float
-        Known offsets of vision's joints.
+    Made of the performed frames only, on the reference clock; `up` (3,); the standard deviation of
+    the clocks' offset; and known offsets (3,) of vision's joints.
     """
 
     def __init__(
@@ -311,14 +304,10 @@ class Noise:
 
 
 def estimate_vision_noise(residual: NDArray, rate_hz: float, correlation_s: float) -> Noise:
-    """Estimate the noise of vision from residuals of a fit.
+    """Estimate the noise of vision from residuals (N, D, 3) of a fit, over the stated sigma.
 
-    Parameters
-    ----------
-    residual : (N, D, 3) float
-        Over the stated sigma; NaN where vision has no joint.
-    correlation_s : float
-        Least correlation time of a network's errors; the residuals may show a longer one.
+    NaN where vision has no joint. `correlation_s` is the least correlation time of a network's
+    errors; the residuals may show a longer one.
     """
     seen = np.isfinite(residual).all(axis=2)
     filled = np.where(seen[..., None], residual, 0.0)

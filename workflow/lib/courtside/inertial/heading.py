@@ -32,15 +32,9 @@ def estimate(
 ) -> Alignment:
     """Find the rotation between two skeletons whose vertical stays and whose heading drifts.
 
-    Parameters
-    ----------
-    device_xyz, vision_xyz : (N, D, 3) float
-        The same joints in both frames, metres; NaN where vision has none. Only the joints about
-        their mean in each frame count, not the place.
-    up : (3,) float
-        Vertical in the device's world.
-    window_s : float
-        Standard deviation of the window in time over which one heading is taken.
+    The same joints (N, D, 3) in both frames, metres; NaN where vision has none. Only the joints
+    about their mean in each frame count, not the place. `up` (3,) is the vertical in the device's
+    world; `window_s` the standard deviation of the window in time over which one heading is taken.
 
     Notes
     -----

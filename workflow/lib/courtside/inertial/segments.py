@@ -230,14 +230,9 @@ def path(hierarchy: Hierarchy, joint: int) -> list[int]:
 def segments_of(hierarchy: Hierarchy, where: str = "skeleton") -> Segments:
     """Find the segments of a skeleton that names its limbs' joints as the study does.
 
-    Parameters
-    ----------
-    hierarchy : Hierarchy
-        Holds the 12 limb joints (`skeleton.JOINTS`); between the root and the shoulders any number
-        of joints of the spine and clavicles. The spine's joints share the corrections of pelvis and
-        thorax by their place between them.
-    where : str
-        Begins error messages.
+    It holds the 12 limb joints (`skeleton.JOINTS`), and between the root and the shoulders any
+    number of joints of the spine and clavicles. The spine's joints share the corrections of pelvis
+    and thorax by their place between them. `where` begins error messages.
 
     Raises
     ------

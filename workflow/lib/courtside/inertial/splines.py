@@ -94,20 +94,10 @@ def gather(
 ) -> tuple[NDArray, NDArray]:
     """Sum the normal equations of every frame into those of the coefficients.
 
-    Parameters
-    ----------
-    first, values : (T,) int, (T, 4) float
-        From `Basis.at`.
-    per_frame : (T, P, P) float
-        Normal matrix of each frame in the values of the P functions there.
-    vector : (T, P, ...) float
-        Right-hand side, or the matrix to border parameters.
-
-    Returns
-    -------
-    blocks : (K, 4, P, P) float
-        Block (k, l): rows of coefficients k, columns of coefficients k + l.
-    right : (K, P, ...) float
+    `first` and `values` are of `Basis.at`; `per_frame` (T, P, P) is the normal matrix of each frame
+    in the values of the P functions there, `vector` (T, P, ...) its right-hand side or the matrix
+    to border parameters. Return blocks (K, 4, P, P), where block (k, l) has the rows of
+    coefficients k and the columns of coefficients k + l, and the right side (K, P, ...).
     """
     blocks = np.zeros((basis.n, REACH, *per_frame.shape[1:]))
     right = np.zeros((basis.n, *vector.shape[1:]))
@@ -159,14 +149,8 @@ def solve(
 ) -> Solution:
     """Solve the normal equations of splines and a few further (border) parameters.
 
-    Parameters
-    ----------
-    blocks : (K, 4, P, P) float
-        From `gather`, with the priors added; positive definite.
-    right : (K, P) float
-    border : (K, P, Q) float
-        Between the coefficients and the further parameters.
-    border_matrix, border_right : (Q, Q), (Q,) float
+    `blocks` and `right` (K, P) are of `gather`, with the priors added, positive definite; `border`
+    (K, P, Q) is between both kinds of parameters; the border's own are (Q, Q) and (Q,).
     """
     n, size = right.shape
     factor = cholesky_banded(to_band(blocks), lower=True, overwrite_ab=True)

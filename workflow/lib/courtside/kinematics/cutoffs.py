@@ -38,32 +38,22 @@ def candidates(rate_hz: float) -> NDArray:
 def choose_cutoff(
     xyz: NDArray, rate_hz: float, candidates_hz: ArrayLike | None = None, order: int = 4
 ) -> Choice:
-    """Choose a cut-off by residual analysis.
+    """Choose by residual analysis the lowest cut-off that removes no more motion than noise passes.
 
     Parameters
     ----------
     xyz : (T, ..., 3) float
-        Raw paths of one group of joints, short gaps filled; NaN in gaps.
+        Raw paths of one group of joints, short gaps filled; NaN in gaps. At least 30 known frames,
+        else InputError.
     candidates_hz : (N,) float, optional
-        Rising, below half the frame rate.
+        Rising, below half the frame rate; the lowest or highest is the result where none fits.
     order : int
         Effective order of the filter.
 
-    Returns
-    -------
-    choice : Choice
-        The lowest cut-off at which the filter removes no more of the motion than it passes of the
-        noise; the lowest or highest candidate where none fits.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than 30 frames.
-
     Notes
     -----
-    Winter 2009, sec. 2.2.4.3 plots the residual over the cut-off, fits a straight line to its tail,
-    and takes the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is
+    Winter 2009, sec. 2.2.4.3 fits a straight line to the tail of the residual over the cut-off and
+    takes the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is
     straight only by eye. For white noise of standard deviation s the squared residual in the tail
     is s^2 r(f), where the share r of the noise that the filter removes follows from its
     coefficients: a line through the origin, whose slope is the median of residual^2 / r over the

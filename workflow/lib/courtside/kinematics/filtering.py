@@ -92,25 +92,17 @@ def corrected_cutoff(cutoff_hz: float, rate_hz: float, order: int) -> float:
 def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D:
     """Remove noise with a zero-lag Butterworth low-pass filter, each joint with its own cut-off.
 
+    Times are uniform; runs of finite values are filtered one by one, and the same values stay
+    missing. `covariance_2d` is scaled by the share of white noise that the filter passes;
+    correlated noise passes more (`noise_propagation`).
+
     Parameters
     ----------
-    points : Keypoints3D
-        On uniform times; runs of finite values are filtered one by one.
     cutoff_hz : (J,) float
-        -3 dB frequency of the whole, forwards and backwards, filter.
+        -3 dB frequency of the whole, forwards and backwards, filter: below half the frame rate,
+        else InputError.
     order : int
-        Effective order of the whole filter; each pass has half of it, which makes it even.
-
-    Returns
-    -------
-    smoothed : Keypoints3D
-        The same values missing. `covariance_2d` is scaled by the share of white noise that the
-        filter passes; correlated noise passes more (`noise_propagation`).
-
-    Raises
-    ------
-    InputError
-        If a cut-off is not below half the frame rate, or the order is odd.
+        Effective order of the whole filter; each pass has half of it. Even, else InputError.
     """
     if order < 2 or order % 2:
         raise InputError(
@@ -147,19 +139,10 @@ def zero_lag_points(xyz: NDArray, rate_hz: float, cutoff_hz: float, order: int) 
 def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
     """Filter series (T, n) forwards and backwards, each run of known frames by itself.
 
-    Parameters
-    ----------
-    lines : (T, n) float
-        A frame is known, and filtered, where all its values are finite; NaN elsewhere in the
-        result. Runs of one or two frames stay as they are.
-    cutoff_hz : float
-        -3 dB frequency of the whole filter.
-    order : int
-        Effective order of the whole filter: twice that of each pass.
-
-    Notes
-    -----
-    Each end of a run is extended by its odd reflection over one period of the cut-off.
+    A frame is known where all its values are finite; the others become NaN. Runs of one or two
+    frames stay as they are. `cutoff_hz` is the -3 dB frequency of the whole filter, `order` its
+    effective order: twice that of each pass. Each end of a run is extended by its odd reflection
+    over one period of the cut-off.
     """
     sections = _sections(cutoff_hz, rate_hz, order // 2)
     pad = round(PAD_PERIODS * rate_hz / cutoff_hz)

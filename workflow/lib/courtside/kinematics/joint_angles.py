@@ -89,18 +89,10 @@ def trunk(
 ) -> tuple[Angle, Angle]:
     """Return the trunk's lean and its forward part, as `DICTIONARY` defines them.
 
-    Parameters
-    ----------
-    hips, shoulders : tuple of two (T, 3) float
-        Left, right.
-    covariances : tuple of four (T, 3, 3) float
-        Of the left and right hip, the left and right shoulder.
-
-    Notes
-    -----
-    Forwards is level and at right angles to the line of the hips. That line's own uncertainty is
-    left out: turned by 3 degrees, it changes a forward lean of 20 degrees by 0.03, and a sideways
-    lean of 20 degrees reads as 1 degree forward.
+    Points (T, 3) and covariances (T, 3, 3) are of the left and right hip, the left and right
+    shoulder. Forwards is level and at right angles to the line of the hips. That line's own
+    uncertainty is left out: turned by 3 degrees, it changes a forward lean of 20 degrees by 0.03,
+    and a sideways lean of 20 degrees reads as 1 degree forward.
     """
     along = (shoulders[0] + shoulders[1] - hips[0] - hips[1]) / 2
     parts = [np.broadcast_to(c, (len(along), 3, 3)) / 4 for c in covariances]
@@ -122,12 +114,7 @@ def trunk(
 def measure(xyz: NDArray, covariance: NDArray, joints: Sequence[str]) -> dict[str, Angle]:
     """Return all angles of a person by name, those of limbs with their side: `left_knee_flexion`.
 
-    Parameters
-    ----------
-    xyz, covariance : (T, J, 3) float, (T, J, 3, 3) float
-        Filtered joints, metres, and their covariance.
-    joints : sequence of str, length J
-        With the 12 limb joints.
+    `xyz` (T, J, 3) m are filtered joints, the 12 limb joints among them; `covariance` (T, J, 3, 3).
     """
     at = {joint: index for index, joint in enumerate(joints)}
     angles = {}

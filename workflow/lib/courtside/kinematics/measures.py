@@ -127,17 +127,9 @@ def measure(
 ) -> list[Person]:
     """Measure all persons of a take.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-        Raw, short gaps filled (`filtering.fill_gaps`), not filtered.
-    skeleton : str
-        Name of the skeleton of `points`.
-    sex_of : dict of str to {"m", "f", None}, optional
-        By person.
+    `points` are raw, short gaps filled (`filtering.fill_gaps`), of the named skeleton. `sex_of`
+    maps persons to "m", "f" or None.
 
-    Notes
-    -----
     All joints are filtered first; points are means of filtered joints, speeds and accelerations the
     derivatives of their cubic splines. The joints' errors are taken to be independent; what the
     filter removes of the motion is in no uncertainty.

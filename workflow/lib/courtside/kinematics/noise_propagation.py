@@ -128,18 +128,9 @@ def filtered_covariance(
 ) -> NDArray:
     """Return the covariance (T, 3, 3) of a filtered path or of its derivative.
 
-    Parameters
-    ----------
-    covariance : (T, 3, 3) float
-        Of the raw points; NaN where unknown.
-    known : (T,) bool
-        Frames that have a value, measured or filled in.
-
-    Returns
-    -------
-    filtered : (T, 3, 3) float
-        NaN where no frame within the filter's reach has a covariance. In filled gaps it is that of
-        the frames around them, which is too small.
+    `covariance` (T, 3, 3) is of the raw points, NaN where unknown; `known` (T,) says which frames
+    have a value, measured or filled in. The result is NaN where no frame within the filter's reach
+    has a covariance. In filled gaps it is that of the frames around them, which is too small.
 
     Notes
     -----
@@ -179,20 +170,11 @@ def _band_gains(rate_hz: float) -> tuple[NDArray, NDArray]:
 
 
 def estimate(xyz: NDArray, covariance: NDArray, rate_hz: float) -> Noise:
-    """Estimate the noise from the part of a raw path that is too fast for motion.
+    """Estimate the noise from the part of a raw path (T, 3) that is too fast for motion.
 
-    Parameters
-    ----------
-    xyz : (T, 3) float
-        Raw, short gaps filled.
-    covariance : (T, 3, 3) float
-        Stated for the raw points; NaN in filled frames.
-
-    Returns
-    -------
-    noise : Noise
-        White with a scale above 1 where there is more fast noise than the stated covariance can
-        explain; white of scale 1 where there are too few frames.
+    Short gaps are filled; `covariance` (T, 3, 3) is as stated for the raw points, NaN in filled
+    frames. The result is white with a scale above 1 where there is more fast noise than the stated
+    covariance can explain, and white of scale 1 where there are too few frames.
 
     Notes
     -----

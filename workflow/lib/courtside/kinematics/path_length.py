@@ -193,16 +193,9 @@ def true_velocity(velocity: NDArray, spread: NDArray) -> NDArray:
 def variance(velocity: NDArray, spread: NDArray, weight_s: NDArray, correlation: NDArray) -> float:
     """Return the variance, m2, of the length of a path.
 
-    Parameters
-    ----------
-    velocity : (N, d) float
-        Without noise.
-    spread : (N, d, d) float
-        Covariance of the velocity's noise.
-    weight_s : (N,) float
-        Time that each velocity stands for.
-    correlation : (L,) float
-        Of the velocity's noise at 0, 1, ... L - 1 frames; 1 first.
+    `velocity` (N, d) is without noise, `spread` (N, d, d) the covariance of its noise, `weight_s`
+    (N,) the time that each velocity stands for, and `correlation` (L,) that of the noise at 0, 1,
+    ... L - 1 frames; 1 first.
 
     Notes
     -----

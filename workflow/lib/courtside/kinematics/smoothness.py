@@ -20,22 +20,10 @@ def sparc(
 ) -> float:
     """Return the spectral arc length of a speed profile (T,), no unit; nearer to 0 is smoother.
 
-    -1.41 for a single minimum-jerk reach. Neither amplitude nor duration changes it, as long as the
-    spectrum ends below the cut-off.
-
-    Parameters
-    ----------
-    speed : (T,) float
-        Of one movement, from rest to rest; any unit.
-    cutoff_hz : float
-        Frequencies beyond do not count.
-    threshold : float
-        Share of the spectrum at 0 Hz: frequencies beyond the last that reaches it do not count.
-
-    Raises
-    ------
-    ValueError
-        If a value is missing, or nothing moves.
+    The speed, in any unit, is of one movement from rest to rest. A single minimum-jerk reach has
+    -1.41. Neither amplitude nor duration changes the value, as long as the spectrum ends below the
+    cut-off. Frequencies do not count beyond `cutoff_hz`, nor beyond the last that reaches
+    `threshold`, a share of the spectrum at 0 Hz. ValueError if a value is missing or nothing moves.
 
     Notes
     -----

@@ -21,15 +21,10 @@ YES, UNSURE, NO, UNKNOWN = "yes", "unsure", "no", "unknown"
 
 
 def pair(rows: pd.DataFrame, networks: tuple[str, str]) -> pd.DataFrame:
-    """Put the values of two networks from the same takes side by side.
+    """Put the values of two networks from the same takes side by side, as `PAIRS`.
 
-    `rows` are of `longitudinal.read`.
-
-    Returns
-    -------
-    pairs : pandas.DataFrame
-        `PAIRS`; `definition` is empty where both networks define the measure alike, and else names
-        both definitions.
+    `rows` are of `longitudinal.read`. `definition` is empty where both networks define the measure
+    alike, and else names both definitions.
 
     Raises
     ------
@@ -60,23 +55,17 @@ def pair(rows: pd.DataFrame, networks: tuple[str, str]) -> pd.DataFrame:
 def compare(
     pairs: pd.DataFrame, networks: tuple[str, str], *, min_subjects: int = 3, min_repeats: int = 5
 ) -> pd.DataFrame:
-    """Compare two networks, measure by measure, in the `pairs` of `pair`.
+    """Compare two networks, one row per measure of the `pairs` of `pair`.
 
-    At least `min_subjects` subjects with `min_repeats` repeats each are needed.
-
-    Returns
-    -------
-    table : pandas.DataFrame
-        One row per measure: bias, limits and their intervals (second minus first), standard
-        deviations, the smallest detectable change of the first network with its interval and that
-        of the second, the number of subjects and differences, and a verdict: `yes`, `unsure` (the
-        limits lie within the change, their intervals do not), `no`, `unknown` (too few values),
-        with a sentence.
+    bias, limits and their intervals (second minus first), standard deviations, the smallest
+    detectable change of the first network with its interval and that of the second, the number of
+    subjects and differences, and a verdict with a sentence: `yes`, `unsure` (the limits lie within
+    the change, their intervals do not), `no`, `unknown` (too few values).
 
     Raises
     ------
     InputError
-        If no measure has enough subjects with enough repeats.
+        If no measure has `min_subjects` subjects with `min_repeats` repeats each.
     """
     table = [
         _row(name, unit, part, networks, min_subjects, min_repeats)
@@ -178,12 +167,7 @@ class Limits:
 def limits(subject: ArrayLike, difference: ArrayLike) -> Limits:
     """Find limits of agreement from several differences of each subject, the true value varying.
 
-    Parameters
-    ----------
-    subject : (N,) array_like
-        Labels.
-    difference : (N,) float
-        Of the two methods, measured at the same time.
+    `subject` (N,) are labels; `difference` (N,) is of the two methods, measured at the same time.
 
     Raises
     ------
@@ -258,16 +242,9 @@ def smallest_detectable_change(
 ) -> tuple[float, tuple[float, float], int]:
     """Find the smallest change of one subject that repeats alone do not explain.
 
-    `subject` (N,) are labels, `value` (N,) those of one method.
-
-    Returns
-    -------
-    change : float
-        1.96 sqrt(2) times the standard error of measurement.
-    interval : (float, float)
-        Its 95 % confidence interval.
-    freedom : int
-        Degrees of freedom: repeats less subjects.
+    `subject` (N,) are labels, `value` (N,) those of one method. Return the change, 1.96 sqrt(2)
+    times the standard error of measurement; its 95 % confidence interval; and its degrees of
+    freedom, repeats less subjects.
 
     Notes
     -----

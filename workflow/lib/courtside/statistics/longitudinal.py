@@ -42,17 +42,10 @@ def of_subject(
     *,
     allow_mixed: bool = False,
 ) -> pd.DataFrame:
-    """Return the rows of one subject.
+    """Return the rows of `read` of one subject, of all measures or those named.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `read`.
-    measures : sequence of str, optional
-        All by default.
-    allow_mixed : bool
-        Whether values of different networks or kinds of calibration, or of one measure defined
-        differently, may stand in one table: `changes` marks them.
+    `allow_mixed` lets values of different networks or kinds of calibration, or of one measure
+    defined differently, stand in one table: `changes` marks them.
 
     Raises
     ------
@@ -100,12 +93,8 @@ def _refuse_mixed(rows: pd.DataFrame, subject: str) -> None:
 def over_sessions(rows: pd.DataFrame) -> pd.DataFrame:
     """Average the takes of each session, from rows of `of_subject`.
 
-    Returns
-    -------
-    values : pandas.DataFrame
-        `VALUES`, one row per measure, session and way of measuring: mean over the takes and their
-        standard deviation. `order` counts sessions by date where all have one, and else as they
-        come.
+    `VALUES`, one row per measure, session and way of measuring: mean over the takes and their
+    standard deviation. `order` counts sessions by date where all have one, and else as they come.
     """
     rows = rows.dropna(subset=["value"])
     order = _order(rows)
@@ -128,19 +117,12 @@ def _order(rows: pd.DataFrame) -> dict[str, int]:
 def errors_of_measurement(
     rows: pd.DataFrame, detectable: pd.DataFrame | None = None
 ) -> pd.DataFrame:
-    """Return each measure's standard error of measurement, from rows of `of_subject`.
+    """Return each measure's standard error of measurement: sem and freedom, by measure.
 
-    Parameters
-    ----------
-    detectable : pandas.DataFrame, optional
-        measure, detectable, n, n_subjects: smallest detectable changes of single takes from a study
-        of repeats, with n less n_subjects degrees of freedom.
-
-    Returns
-    -------
-    errors : pandas.DataFrame, index measure
-        sem, freedom. From `detectable` where it has the measure, and else from the takes within one
-        session: NaN where there are none.
+    From `detectable` where it has the measure, and else from the takes of `of_subject` within one
+    session: NaN where there are none. `detectable` (measure, detectable, n, n_subjects) holds
+    smallest detectable changes of single takes from a study of repeats, with n less n_subjects
+    degrees of freedom.
     """
     keys = ["measure", "session", "date", *CONDITIONS, "definition"]
     own = rows.dropna(subset=["value"]).groupby(keys, sort=False)["value"]
@@ -161,26 +143,14 @@ def errors_of_measurement(
 
 
 def changes(values: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
-    """Compare every session with the first one.
+    """Compare every session of `over_sessions` with the first one, by `errors_of_measurement`.
 
-    Parameters
-    ----------
-    values : pandas.DataFrame
-        Of `over_sessions`.
-    errors : pandas.DataFrame
-        Of `errors_of_measurement`.
+    `CHANGES`, one row per measure and later value. `detectable` is the smallest detectable change
+    of means over so many takes, t SEM sqrt(1/n + 1/n'), with Student's t (1.96 for many degrees of
+    freedom): 5 % of those who did not change exceed it. `verdict`: `real` beyond it, `within` it,
+    `untold` without repeats, `mixed` where the way of measuring changed, as `mixed` says: such a
+    change may be the network's or the calibration's.
 
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `CHANGES`, one row per measure and later value. `detectable` is the smallest detectable
-        change of means over so many takes, t SEM sqrt(1/n + 1/n'), with Student's t (1.96 for many
-        degrees of freedom): 5 % of those who did not change exceed it. `verdict`: `real` beyond it,
-        `within` it, `untold` without repeats, `mixed` where the way of measuring changed, as
-        `mixed` says: such a change may be the network's or the calibration's.
-
-    Notes
-    -----
     Repeats within a session do not contain what differs between sessions only (a new calibration,
     another hall): the smallest detectable change is a lower bound then.
     """
@@ -214,20 +184,11 @@ def _verdict(change: float, detectable: float, mixed: str) -> str:
 def read(
     paths: Sequence[str | os.PathLike[str]], labels: Sequence[Mapping[str, str]]
 ) -> pd.DataFrame:
-    """Read the summaries of takes into one table.
+    """Read the summaries of takes into one table of `COLUMNS`; `subject` is the person's pseudonym.
 
-    Parameters
-    ----------
-    paths : sequence of str or Path
-        CSV with a row for each person and measure: person, measure, value, unit; sigma and
-        definition optional.
-    labels : sequence of dict, one for each path
-        session, take, model, calibration; date (year-month-day) where known.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `COLUMNS`; `subject` is the person's pseudonym.
+    Each path is a CSV with a row for each person and measure: person, measure, value, unit; sigma
+    and definition optional. Its labels: session, take, model, calibration; date (year-month-day)
+    where known.
 
     Raises
     ------
@@ -281,18 +242,9 @@ class Skeletons(Protocol):
 def of_joints(points: Skeletons, label: Mapping[str, str]) -> pd.DataFrame:
     """Measure every joint of a take in ways that do not depend on position or direction.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-        Filtered: noise lengthens a path.
-    label : dict
-        As for `read`, without model.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `COLUMNS`: mean height above the floor (mm), mean speed (m/s, between neighbouring frames),
-        and mean distance to the middle of the hips (mm), over the frames that have them.
+    The points are filtered, because noise lengthens a path. `label` is as for `read`, without
+    model. `COLUMNS`: mean height above the floor (mm), mean speed (m/s, between neighbouring
+    frames), and mean distance to the middle of the hips (mm), over the frames that have them.
     """
     names = list(map(str, points.joints))
     middle = points.xyz[:, :, [names.index(hip) for hip in HIPS]].mean(axis=2, keepdims=True)
