@@ -163,6 +163,6 @@ def test_whitened_residuals_are_of_unit_size():
 def test_stated_noise_takes_every_frame_whole():
     residual = drawn(0.0)
     residual[5, 2] = np.nan
-    found = fit.stated(residual, RATE_HZ, 0.1)
+    found = fit.stated_vision_noise(residual, RATE_HZ, 0.1)
     assert found.weight.sum() == N * D - 1 and found.weight[5, 2] == 0
     assert found.covariance == pytest.approx(np.tile(np.eye(3), (D, 1, 1)))

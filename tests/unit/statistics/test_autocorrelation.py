@@ -17,13 +17,15 @@ def test_correlated_frames_count_as_the_theory_says():
     rng = np.random.default_rng(0)
     for stay in (0.5, 0.8, 0.95):
         rho = 2 * stay - 1
-        found = np.mean([autocorrelation.runs(chain(rng, 4000, stay)) for _ in range(20)])
+        found = np.mean(
+            [autocorrelation.frames_per_trial(chain(rng, 4000, stay)) for _ in range(20)]
+        )
         # The positive sequence errs towards too few trials, by some tenths at most.
         assert 0.95 < found / ((1 + rho) / (1 - rho)) < 1.25
 
 
 def test_frames_that_are_alike_count_as_the_least():
-    assert autocorrelation.runs(np.ones(90, bool)) == 1.0
+    assert autocorrelation.frames_per_trial(np.ones(90, bool)) == 1.0
     found = autocorrelation.share(np.ones(90, bool), least_frames=6)
     assert found["n_effective"] == pytest.approx(15)
     # Wilson's interval of k = n is n / (n + z^2) to 1.

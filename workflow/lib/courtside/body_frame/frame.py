@@ -38,7 +38,7 @@ FORWARDS = (  # pairs of joints, the second in front of the first
     ("right_ear", "nose"),
 )
 LEAST_FORWARD = 0.02  # ASSUME: units; less does not tell front from back
-NEAR = 4.0  # ASSUME: median distances from the median; further is an outlier
+OUTLIER_RATIO = 4.0  # ASSUME: median distances from the median; further is an outlier
 SMALLEST_M = 1e-9  # for joints that do not move at all
 
 
@@ -182,7 +182,7 @@ def _middle(xyz: NDArray) -> NDArray:
     there = xyz[:, known]
     median = np.nanmedian(there, axis=0)
     off = np.abs(there - median)
-    near = off <= NEAR * np.nanmedian(off, axis=0) + SMALLEST_M
+    near = off <= OUTLIER_RATIO * np.nanmedian(off, axis=0) + SMALLEST_M
     middle[known] = np.nanmean(np.where(near, there, np.nan), axis=0)
     return middle
 

@@ -31,7 +31,8 @@ class Camera:
 
     name: str
     size: tuple[int, int]  # width and height, px
-    K: NDArray  # (3, 3) px: first pixel's centre at (0, 0), no skew
+    # (3, 3) px: focal lengths, principal point (the first pixel's centre is (0, 0)); no skew.
+    K: NDArray
     dist: NDArray  # (5,): k1 k2 p1 p2 k3
     cam_from_world: NDArray  # (3, 4): rotation, and translation in metres
 

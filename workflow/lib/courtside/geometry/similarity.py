@@ -15,7 +15,9 @@ MOST_SUBSETS = 2000  # ASSUME: all subsets of up to 23 points, and an even choic
 # Of the length of a normal vector in three dimensions with standard deviation 1 per axis.
 MEDIAN = 1.538
 QUANTILE_99 = 3.368
-BETTER = 4.0  # ASSUME: points are mirrored if their mirror image fits this many times better
+MIRRORED_RATIO = (
+    4.0  # ASSUME: points are mirrored if their mirror image fits this many times better
+)
 MAX_ROUNDS = 20  # ASSUME: the inliers settle in a few
 
 
@@ -149,7 +151,7 @@ def _refuse_mirrored(b_from_a: Sim3, x_in_a: NDArray, x_in_b: NDArray, sigma: ND
     mirrored, agree = _select(flipped, x_in_b, sigma)
     as_found = _distance(b_from_a, x_in_a, x_in_b, sigma)[agree]
     as_mirrored = _distance(mirrored, flipped, x_in_b, sigma)[agree]
-    if np.sqrt(np.mean(as_found**2)) > BETTER * max(1, np.sqrt(np.mean(as_mirrored**2))):
+    if np.sqrt(np.mean(as_found**2)) > MIRRORED_RATIO * max(1, np.sqrt(np.mean(as_mirrored**2))):
         raise InputError(
             "court points: expected a right-handed world (x along the short side, y along the long "
             "side, z up), found the points of its mirror image; exchange the names of the left and "

@@ -1,7 +1,7 @@
 """Correction of an inertial suit by what cameras see: segments, heading, slow drift.
 
 correction: `correct` (the entry), `Settings`
-fit: `Fit`, `observe`, `Seen`, `Noise`, `estimate_vision_noise`, `stated`
+fit: `Fit`, `observe`, `Seen`, `Noise`, `estimate_vision_noise`, `stated_vision_noise`
 segments: `segments_of`, `Segments`, `Model`, `Frames`
 heading: `estimate`, `Alignment`, `turn_path`
 splines: `Basis`, `basis_over`, `precision`, `gather`, `solve`, `Solution`

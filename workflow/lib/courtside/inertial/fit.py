@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 CHUNK = 500  # frames whose derivatives are held at once: bounds the memory
 SAMPLES = 6  # ASSUME: draws, to tell how much of a correction the data determine
-SEED = 5
+SEED = 5  # any; fixed so that a fit is repeatable
 PRIOR_COEFFICIENTS = 5.0  # ASSUME: that the stated size of a correction counts for
-RANGE = (0.02, 4.0)  # ASSUME: of the stated size, that the estimated one may take
-PAD_S = 1.0  # of the splines beyond the recording: the clock may shift
+SIZE_RANGE = (0.02, 4.0)  # ASSUME: of the stated size, that the estimated one may take
+PAD_S = 1.0  # ASSUME: of the splines beyond the recording: the clock may shift
 FIRST_ROUNDS = 2  # ASSUME: with the stated sizes
 LEAST_FRAMES = 30  # ASSUME: with `LEAST_JOINTS` joints, to be fitted at all
 LEAST_JOINTS = 6  # ASSUME: half of the limb joints
@@ -139,7 +139,7 @@ class Fit:
         for number in range(1, self.settings.rounds + 1):
             self.round = number
             residual = (self.vision - before) / self.seen.sigma_m[..., None]
-            estimate = stated if number <= FIRST_ROUNDS else estimate_vision_noise
+            estimate = stated_vision_noise if number <= FIRST_ROUNDS else estimate_vision_noise
             self.noise = estimate(residual, self.rate_hz, self.settings.correlation_s)
             solution = self._step(before)
             if number > FIRST_ROUNDS:
@@ -232,7 +232,7 @@ class Fit:
             known = self.basis.n * len(columns) - free[columns].sum() / self.size[kind] ** 2
             squared = energy[columns].sum() + PRIOR_COEFFICIENTS * stated**2
             squared /= max(known, 0.0) + PRIOR_COEFFICIENTS
-            self.size[kind] = float(np.clip(np.sqrt(squared), *(stated * np.array(RANGE))))
+            self.size[kind] = float(np.clip(np.sqrt(squared), *(stated * np.array(SIZE_RANGE))))
 
 
 def facings(matrices: NDArray, up: NDArray) -> NDArray:
@@ -325,7 +325,7 @@ def estimate_vision_noise(residual: NDArray, rate_hz: float, correlation_s: floa
     return Noise(covariance, inflation, weight)
 
 
-def stated(residual: NDArray, rate_hz: float, correlation_s: float) -> Noise:
+def stated_vision_noise(residual: NDArray, rate_hz: float, correlation_s: float) -> Noise:
     """Return the noise as stated, every frame with its full weight, for the first rounds.
 
     Residuals of a skeleton that is not yet corrected would count as noise, and then no correction

@@ -11,7 +11,7 @@ from courtside.geometry.similarity import kabsch
 
 ROUNDS = 20  # ASSUME: of rotation and headings, each time
 STARTS = 5  # ASSUME: frames whose own rotation is a start
-HARSH_M = 0.1  # ASSUME: a joint this far off counts half
+HALF_WEIGHT_M = 0.1  # ASSUME: a joint this far off counts half
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ def estimate(
         rotation, heading = _alternate(smooth, up)
         turned = device @ _about(up, heading).swapaxes(1, 2) @ rotation.T
         off = np.linalg.norm(np.nan_to_num(vision - turned), axis=2)
-        weights = np.isfinite(vision_xyz).all(axis=2) / (1 + (off / HARSH_M) ** 2)
+        weights = np.isfinite(vision_xyz).all(axis=2) / (1 + (off / HALF_WEIGHT_M) ** 2)
     heading = np.unwrap(heading)
     rotation = rotation @ rotations.rotation_from_rodrigues(heading[0] * np.asarray(up))
     return Alignment(rotation, np.asarray(time_s), heading - heading[0])

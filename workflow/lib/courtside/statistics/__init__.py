@@ -2,5 +2,5 @@
 
 agreement: `pair`, `compare`, `verdict`, `limits`, `smallest_detectable_change`
 longitudinal: `read`, `of_subject`, `over_sessions`, `errors_of_measurement`, `changes`, `of_joints`
-autocorrelation: `share`, `interval`, `runs`, `covariance_of_sum`, `distinct`
+autocorrelation: `share`, `interval`, `frames_per_trial`, `covariance_of_sum`, `distinct`
 """

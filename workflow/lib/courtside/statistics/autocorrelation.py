@@ -8,7 +8,7 @@ LEVEL = 0.95  # of intervals, as is usual
 MOST_CORRELATED = 0.95  # beyond this a series is too short to tell from a drift
 
 
-def runs(hits: ArrayLike) -> float:
+def frames_per_trial(hits: ArrayLike) -> float:
     """Return how many frames in a row, of (T,) bool, count as one independent trial.
 
     1 + 2 * the sum of the autocorrelations up to the first pair of lags whose sum is not positive,
@@ -54,7 +54,7 @@ def share(hits: ArrayLike, least_frames: float = 1.0, level: float = LEVEL) -> d
     count = len(hits)
     if not count:
         return {"n_frames": 0, "n_effective": 0.0, "share": np.nan, "low": 0.0, "high": 1.0}
-    effective = count / min(max(runs(hits), least_frames), count)
+    effective = count / min(max(frames_per_trial(hits), least_frames), count)
     low, high = interval(hits.mean(), effective, level)
     found = {"n_frames": count, "n_effective": effective, "share": hits.mean()}
     return {**found, "low": low, "high": high}
