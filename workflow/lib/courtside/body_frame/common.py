@@ -58,7 +58,7 @@ def common(
 def _same(spell: TPose, happened: Events, clock: Clock) -> TPose | None:
     """Return a source's spell that overlaps the reference's most, or None."""
 
-    def overlap(other):
+    def overlap(other: TPose) -> float:
         return _overlap(spell, clock.to_reference([other.start_s, other.stop_s]))
 
     best = max(happened.tposes, key=overlap)
