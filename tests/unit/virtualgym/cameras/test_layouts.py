@@ -7,8 +7,8 @@ import pytest
 
 from courtside.calibration.court import court as courts
 from fixtures.cameras import scene
+from virtualgym import presets
 from virtualgym.cameras import layouts
-from virtualgym.session import presets
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
 COURT = courts.read(FOLDER / "badminton.yaml")

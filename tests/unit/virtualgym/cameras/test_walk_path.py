@@ -9,8 +9,8 @@ import pytest
 from courtside.calibration.court import court
 from courtside.geometry import rotations
 from fixtures.cameras import scene
+from virtualgym import presets
 from virtualgym.cameras import layouts, walk_path
-from virtualgym.session import presets
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 CENTRE = np.array([3.05, 6.7, 0.0])

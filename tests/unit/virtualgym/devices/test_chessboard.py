@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court
+from virtualgym import presets
 from virtualgym.cameras import layouts
 from virtualgym.devices import chessboard
-from virtualgym.session import presets
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 CRITERIA = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 50, 1e-4)

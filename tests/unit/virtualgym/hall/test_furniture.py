@@ -10,8 +10,8 @@ import pytest
 from courtside.calibration.court import court
 from virtualgym.cameras import layouts
 from virtualgym.hall import furniture, hall, painted_lines
+from virtualgym.presets import PLAIN, RICH
 from virtualgym.rendering import textured_quads
-from virtualgym.session.presets import PLAIN, RICH
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 ROOM_M = hall.room(COURT)
@@ -95,7 +95,7 @@ def test_posters_face_the_court_and_read_from_left_to_right():
 
 
 def test_posts_and_tape_are_where_the_net_says():
-    net = painted_lines.put_up(COURT, PLAIN, rng()).net
+    net = painted_lines.paint_court(COURT, PLAIN, rng()).net
     made = furniture.net(net)
     tops = [quad for quad in made if quad.light > 1 and np.allclose(quad.u[2] + quad.v[2], 0)]
     middles = np.array([top.origin + (top.u + top.v) / 2 for top in tops])

@@ -12,8 +12,8 @@ from courtside.geometry.camera import Camera
 from fixtures.cameras import scene as projection
 from virtualgym.cameras import layouts
 from virtualgym.hall import hall
+from virtualgym.presets import PLAIN, RICH
 from virtualgym.rendering.hall_renderer import Renderer
-from virtualgym.session.presets import PLAIN, RICH
 
 COURTS = Path(__file__).parents[4] / "config" / "courts"
 BADMINTON = courts.read(COURTS / "badminton.yaml")

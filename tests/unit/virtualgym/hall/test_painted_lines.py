@@ -8,7 +8,7 @@ import pytest
 
 from courtside.calibration.court import court as courts
 from virtualgym.hall import painted_lines
-from virtualgym.session.presets import PLAIN
+from virtualgym.presets import PLAIN
 
 COURTS = Path(__file__).parents[4] / "config" / "courts"
 BADMINTON = courts.read(COURTS / "badminton.yaml")
@@ -16,14 +16,14 @@ EXACT = dataclasses.replace(PLAIN, line_sigma_m=0.0, post_foot_sigma_m=0.0, post
 ROUGH = dataclasses.replace(PLAIN, line_sigma_m=0.002)
 
 
-def put_up(preset=ROUGH, seed=0, court=BADMINTON):
-    return painted_lines.put_up(court, preset, np.random.default_rng(seed))
+def paint_court(preset=ROUGH, seed=0, court=BADMINTON):
+    return painted_lines.paint_court(court, preset, np.random.default_rng(seed))
 
 
 @pytest.mark.parametrize("path", sorted(COURTS.glob("*.yaml")), ids=lambda path: path.stem)
 def test_without_errors_everything_is_in_its_place(path):
     court = courts.read(path)
-    made = put_up(EXACT, court=court)
+    made = paint_court(EXACT, court=court)
     np.testing.assert_allclose(made.court_xyz, court.xyz, atol=1e-12)
     x0, y0, x1, y1 = court.lines_m.T
     ordered = np.column_stack(
@@ -34,7 +34,7 @@ def test_without_errors_everything_is_in_its_place(path):
 
 
 def test_points_are_on_the_edges_that_they_name():
-    made = put_up()
+    made = paint_court()
     lines = made.lines_m
     at = dict(zip(BADMINTON.points, made.court_xyz, strict=True))
     # Lines in the order of the file: 0 1 outer side lines, 4 5 back boundaries, 6 7 long service, 8 9 short
@@ -59,7 +59,7 @@ def test_points_are_on_the_edges_that_they_name():
 
 
 def test_lines_keep_their_width_and_still_meet_at_corners():
-    lines = put_up().lines_m
+    lines = paint_court().lines_m
     sizes = np.abs(lines[:, 2:] - lines[:, :2])
     np.testing.assert_allclose(sizes.min(axis=1), 0.04, atol=1e-12)
     for side in (0, 1):  # the side lines end at the outer edges of the back boundary lines
@@ -73,7 +73,7 @@ def test_lines_keep_their_width_and_still_meet_at_corners():
 def test_posts_carry_their_points_and_errors_have_their_size():
     errors, tips = [], []
     for seed in range(200):
-        made = put_up(seed=seed)
+        made = paint_court(seed=seed)
         at = dict(zip(BADMINTON.points, made.court_xyz, strict=True))
         np.testing.assert_array_equal([at["p10"], at["p11"]], made.net.feet)
         np.testing.assert_array_equal([at["p17"], at["p18"]], made.net.tips)
@@ -84,6 +84,6 @@ def test_posts_carry_their_points_and_errors_have_their_size():
 
 
 def test_the_tape_hangs_from_both_tips():
-    net = put_up(EXACT).net
+    net = paint_court(EXACT).net
     np.testing.assert_allclose(net.tape([0, 1]), net.tips)
     np.testing.assert_allclose(net.tape([0.5]), [[3.05, 6.7, 1.524]])

@@ -33,13 +33,13 @@ def test_paint_covers_in_part_and_stays_inside():
 
 def test_contrast_is_scaled_about_the_mean_colour():
     texture = rng().integers(80, 160, (60, 60, 3)).astype(np.uint8)
-    weak = textures.faded(texture, 0.4)
+    weak = textures.scale_contrast(texture, 0.4)
     np.testing.assert_allclose(weak.mean((0, 1)), texture.mean((0, 1)), atol=0.1)
     np.testing.assert_allclose(weak.std((0, 1)), 0.4 * texture.std((0, 1)), rtol=0.01)
 
 
 def test_blotches_are_noise_about_zero():
-    values = textures.blotches((300, 400), (20, 50, 100), rng())
+    values = textures.multiscale_noise((300, 400), (20, 50, 100), rng())
     assert abs(values.mean()) < 0.03
     assert 0.3 < values.std() < 0.8
 

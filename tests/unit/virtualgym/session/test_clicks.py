@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from fixtures.cameras import scene
-from virtualgym.session import clicks, presets
+from virtualgym import presets
+from virtualgym.session import clicks
 
 POINTS = scene.points(500)
 CAMERAS = scene.ring(3, dist=(-0.1, 0.02, 1e-3, 1e-3, 0))

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from fixtures.cameras import scene
+from virtualgym import presets
 from virtualgym.session import clicks as racket_clicks
-from virtualgym.session import presets
 
 CAMERA = scene.ring(1)[0]
 SURE = replace(presets.PLAIN, click_sigma_px_at_3840=0.0, click_bias_px_at_3840=0.0, readout_s=0.04)

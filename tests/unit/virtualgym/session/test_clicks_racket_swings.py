@@ -7,8 +7,9 @@ import pytest
 
 from courtside.calibration.court import court
 from courtside.geometry import camera as cameras
+from virtualgym import presets
 from virtualgym.cameras import layouts
-from virtualgym.session import clicks, presets
+from virtualgym.session import clicks
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 LENGTH_M = 0.674

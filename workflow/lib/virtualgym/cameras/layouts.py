@@ -33,7 +33,7 @@ def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoo
     court : courtside.calibration.court.court.Court
     size_px : (int, int)
         Width and height of the pictures.
-    preset : virtualgym.session.presets.Preset
+    preset : virtualgym.presets.Preset
         How far the lenses differ from unit to unit.
     rng : numpy.random.Generator
     baseline_deg : float or None
@@ -82,7 +82,7 @@ def lens(size_px, preset, rng):
     ----------
     size_px : (int, int)
         Width and height of its pictures.
-    preset : virtualgym.session.presets.Preset
+    preset : virtualgym.presets.Preset
     rng : numpy.random.Generator
 
     Returns

@@ -136,7 +136,7 @@ def plan(fixed, court, size_px, preset, rng, *, speed_kmh=USUAL_KMH, stabiliser=
     court : courtside.calibration.court.court.Court
     size_px : (int, int)
         Width and height of the walked camera's pictures.
-    preset : virtualgym.session.presets.Preset
+    preset : virtualgym.presets.Preset
     rng : numpy.random.Generator
     speed_kmh : float
         A faster walk shakes more, in proportion.

@@ -1,21 +1,24 @@
-"""What stands and hangs in a virtual hall besides its walls and court."""
+"""Furniture of a virtual hall: gear, posters, stands, stage, ceiling beams and lamps, net."""
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
 from virtualgym.hall import painted_lines, quads, textures
+from virtualgym.presets import Preset
 
+# ASSUME: sizes, places and colours chosen to look like a sports hall; they change pictures only.
 BOX_TEXEL_M = 0.012
 POSTER_TEXEL_M = 0.006
 POSTER_OFF_M = 0.02  # from the wall
-LOW_M = 0.55  # gear round the court is lower
-VIEW_M = (
-    12.0,
-    1.9,
-)  # the nearest and lowest view of the court over gear: away from it, above the floor
-CLEAR_M = 1.2  # round the court, for the players
-RING_M = 7.0  # gear lies up to so far from the court
+LOW_M = 0.55  # greatest height of gear round the court
+# Nearest and lowest camera that must see the court over the gear: distance from it, height.
+VIEW_M = (12.0, 1.9)
+CLEAR_M = 1.2  # free floor round the court, for the players
+RING_M = 7.0  # greatest distance of gear from the court
 TALL_WITHIN_M = 0.8  # of a wall, gear may be as high as a person
 STAND_M = 2.6
 CURTAIN_BGR = (60, 44, 120)
@@ -24,13 +27,21 @@ STEEL_BGR = (150, 156, 160)
 TAPE_SEGMENTS = 12
 
 
-def sizes_px(edges, texel_m=BOX_TEXEL_M):
-    """Return (height, width) px of a texture for edges of these lengths: width, height in m."""
+def sizes_px(edges: Sequence[float], texel_m: float = BOX_TEXEL_M) -> tuple[int, int]:
+    """Return (height, width) px of a texture for a face of width and height `edges`, m."""
     return tuple(int(np.clip(round(length / texel_m), 4, 1200)) for length in edges[::-1])
 
 
-def crate(centre_xy, half_m, floor_m, height_m, yaw, preset, rng):
-    """Return a crate, list of Quad.
+def crate(
+    centre_xy: NDArray,
+    half_m: NDArray,
+    floor_m: float,
+    height_m: float,
+    yaw: float,
+    preset: Preset,
+    rng: np.random.Generator,
+) -> list[quads.Quad]:
+    """Return the faces of a crate.
 
     Parameters
     ----------
@@ -39,18 +50,16 @@ def crate(centre_xy, half_m, floor_m, height_m, yaw, preset, rng):
     half_m : (2,) float
         Half its width and depth.
     floor_m, height_m : float
-        Of what it stands on, and of the crate.
+        Height of its bottom above the floor, and of the crate.
     yaw : float
-        About the upright axis, radians.
-    preset : virtualgym.session.presets.Preset
-    rng : numpy.random.Generator
+        About the vertical axis, radians.
     """
     cos, sin = np.cos(yaw), np.sin(yaw)
     edges = np.diag([2 * half_m[0], 2 * half_m[1], height_m])
     edges[:2, :2] = edges[:2, :2] @ [[cos, sin], [-sin, cos]]
     corner = np.array([*centre_xy, floor_m]) - (edges[0] + edges[1]) / 2
     faces = [
-        textures.faded(textures.crate(sizes_px((2 * half, other)), rng), preset.contrast)
+        textures.scale_contrast(textures.crate(sizes_px((2 * half, other)), rng), preset.contrast)
         for half, other in (
             (half_m[0], height_m),
             (half_m[1], height_m),
@@ -60,22 +69,17 @@ def crate(centre_xy, half_m, floor_m, height_m, yaw, preset, rng):
     return quads.box(corner, edges, [faces[0], faces[1], faces[0], faces[1], faces[2], faces[2]])
 
 
-def gear(court, room_m, preset, rng):
-    """Return crates, bags and mats on the floor: low ones round the court, higher ones along the walls.
+def gear(
+    court: Court, room_m: NDArray, preset: Preset, rng: np.random.Generator
+) -> list[quads.Quad]:
+    """Return crates, bags and mats on the floor: low round the court, higher along the walls.
 
-    None is on the court, nor where people walk with a camera, nor between camera and court.
+    None is on the court, where people walk with a camera, or between camera and court.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
     room_m : (2, 3) float
         Lowest and highest corner of the hall.
-    preset : virtualgym.session.presets.Preset
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    quads : list of surfaces.Quad
     """
     made = []
     for _ in range(preset.n_gear):
@@ -97,21 +101,13 @@ def gear(court, room_m, preset, rng):
             continue
         made += crate(place, half, 0.0, height * share[0], yaw, preset, rng)
         if rng.uniform() < 0.35:
-            above = height * share
-            made += crate(place, half * 0.5, *above, yaw + 0.5, preset, rng)
+            floor_m, height_m = height * share
+            made += crate(place, half * 0.5, floor_m, height_m, yaw + 0.5, preset, rng)
     return made
 
 
-def posters(room_m, preset, rng):
-    """Return posters on the four walls, list of Quad.
-
-    Parameters
-    ----------
-    room_m : (2, 3) float
-        Lowest and highest corner of the hall.
-    preset : virtualgym.session.presets.Preset
-    rng : numpy.random.Generator
-    """
+def posters(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[quads.Quad]:
+    """Return posters on the four walls; `room_m` as in `gear`."""
     made = []
     centre = room_m.mean(axis=0)
     for wall in range(4):
@@ -124,25 +120,17 @@ def posters(room_m, preset, rng):
             offset = rng.uniform(-length / 2 + 1, length / 2 - 1 - width)
             bottom = rng.uniform(0.9, 3.6)
             image = textures.poster(sizes_px((width, height), POSTER_TEXEL_M), rng)
-            off_m = POSTER_OFF_M + 0.004 * number  # so that none lies in another
+            off_m = POSTER_OFF_M + 0.004 * number  # so that no two are in one plane
             at = centre + right * offset
             at[1 - axis] = room_m[side, 1 - axis] + inward[1 - axis] * off_m
             at[2] = bottom + height
-            image = textures.faded(image, preset.contrast)
-            made.append(quads.Quad(at, right * width, [0, 0, -height], image))
+            image = textures.scale_contrast(image, preset.contrast)
+            made.append(quads.Quad(at, right * width, np.array([0, 0, -height]), image))
     return made
 
 
-def stands(room_m, preset, rng):
-    """Return rows of seats along the wall at the highest x, list of Quad.
-
-    Parameters
-    ----------
-    room_m : (2, 3) float
-        Lowest and highest corner of the hall.
-    preset : virtualgym.session.presets.Preset
-    rng : numpy.random.Generator
-    """
+def stands(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[quads.Quad]:
+    """Return rows of seats along the wall at the highest x; `room_m` as in `gear`."""
     made, rows = [], 5
     south, north = room_m[0, 1] + 9, room_m[1, 1] - 7
     for row in range(rows):
@@ -153,22 +141,15 @@ def stands(room_m, preset, rng):
         top = textures.cloth(sizes_px((deep, north - south), 0.03), SEAT_BGR, rng, folds=6)
         end = textures.cloth(sizes_px((deep, high), 0.02), SEAT_BGR, rng)
         faces = [
-            textures.faded(face, preset.contrast) for face in (end, front, end, front, top, top)
+            textures.scale_contrast(face, preset.contrast)
+            for face in (end, front, end, front, top, top)
         ]
         made += quads.box(corner, edges, faces)
     return made
 
 
-def stage(room_m, preset, rng):
-    """Return a stage with curtains along the wall at the highest y, list of Quad.
-
-    Parameters
-    ----------
-    room_m : (2, 3) float
-        Lowest and highest corner of the hall.
-    preset : virtualgym.session.presets.Preset
-    rng : numpy.random.Generator
-    """
+def stage(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[quads.Quad]:
+    """Return a stage with curtains along the wall at the highest y; `room_m` as in `gear`."""
     centre_x, wall_y = room_m[:, 0].mean(), room_m[1, 1]
     made = []
     for corner, size, colour in (
@@ -176,25 +157,19 @@ def stage(room_m, preset, rng):
         ((centre_x - 8.5, wall_y - 1.2, 1.1), (3.2, 0.5, 5.0), CURTAIN_BGR),
         ((centre_x + 5.3, wall_y - 1.2, 1.1), (3.2, 0.5, 5.0), CURTAIN_BGR),
     ):
-        front = textures.faded(
+        front = textures.scale_contrast(
             textures.cloth(sizes_px((size[0], size[2]), 0.015), colour, rng), preset.contrast
         )
         made += quads.box(np.array(corner, dtype=float), np.diag(size).astype(float), front)
     return made
 
 
-def ceiling(room_m, preset, rng):
-    """Return beams and lamps, list of Quad.
-
-    Parameters
-    ----------
-    room_m : (2, 3) float
-        Lowest and highest corner of the hall.
-    preset : virtualgym.session.presets.Preset
-    rng : numpy.random.Generator
-    """
+def ceiling(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[quads.Quad]:
+    """Return ceiling beams and lamps; `room_m` as in `gear`."""
     low, high = room_m
-    steel = textures.faded(textures.cloth((64, 512), STEEL_BGR, rng, folds=30), preset.contrast)
+    steel = textures.scale_contrast(
+        textures.cloth((64, 512), STEEL_BGR, rng, folds=30), preset.contrast
+    )
     lamp = np.full((8, 32, 3), 250, np.uint8)
     made = []
     for y in np.arange(low[1] + 3, high[1], 5.0):
@@ -209,13 +184,8 @@ def ceiling(room_m, preset, rng):
     return made
 
 
-def net(fabric):
-    """Return two posts and the net's white tape, list of Quad; the mesh is left to the renderer.
-
-    Parameters
-    ----------
-    fabric : virtualgym.hall.painted_lines.Net
-    """
+def net(fabric: painted_lines.Net) -> list[quads.Quad]:
+    """Return two posts and the net's white tape; the renderer adds the mesh."""
     half = painted_lines.POST_M / 2
     steel, white = np.full((64, 4, 3), (70, 76, 82), np.uint8), np.full((4, 16, 3), 236, np.uint8)
     made = []
@@ -223,6 +193,7 @@ def net(fabric):
         edges = np.array([[2 * half, 0, 0], [0, 2 * half, 0], tip - foot])
         made += quads.box(foot - [half, half, 0], edges, steel)
     edge = fabric.tape(np.linspace(0, 1, TAPE_SEGMENTS + 1))
+    down = np.array([0, 0, -painted_lines.TAPE_M])
     for start, end in itertools.pairwise(edge):
-        made.append(quads.Quad(start, end - start, [0, 0, -painted_lines.TAPE_M], white))
+        made.append(quads.Quad(start, end - start, down, white))
     return made

@@ -1,26 +1,31 @@
-"""A virtual sports hall round a court: walls, floor with painted lines, and what stands in it."""
+"""A virtual sports hall round a court: walls, floor with painted lines, and furniture."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
 from virtualgym.hall import furniture, painted_lines, textures
-from virtualgym.hall import quads as surfaces
+from virtualgym.hall.quads import Quad
+from virtualgym.presets import Preset
 
+# ASSUME: sizes and colours of a large school hall, chosen by eye; no source is recorded.
 FLOOR_TEXEL_M = 0.008
 WALL_TEXEL_M = 0.014
 HEIGHT_M = 10.0
-NEAREST_M = 21.0  # from the court's centre to cameras, at least; farther for larger courts
+NEAREST_M = 21.0  # court's centre to cameras, as `layouts.SQUARE_ON_M`; more for larger courts
 BEHIND_CAMERAS_M = 2.0
 WHITE = (242, 245, 245)
-OTHER_BGR = ((120, 205, 225), (150, 90, 60), (80, 60, 170))  # other sports' lines
-COVER = 0.95
+OTHER_BGR = ((120, 205, 225), (150, 90, 60), (80, 60, 170))  # lines of other sports
+COVER = 0.95  # opacity of line paint
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """All that a picture of a hall may show.
+    """Everything that a picture of a hall may show.
 
     Attributes
     ----------
@@ -29,15 +34,15 @@ class Scene:
     room_m : (2, 3) float
         Lowest and highest corner of the hall, world, metres.
     gloss : float
-        Share of light that the floor reflects when seen from above.
+        Fraction of light that the floor reflects when seen from above.
     net : virtualgym.hall.painted_lines.Net or None
     court_xyz : (P, 3) float
-        Where the court's points really are, in the court's order, metres.
+        True places of the court's points, in the court's order, metres.
     lines_m : (L, 4) float
-        Where its lines really are: x0 y0 x1 y1.
+        True places of its lines: x0 y0 x1 y1.
     """
 
-    quads: list
+    quads: list[Quad]
     room_m: np.ndarray
     gloss: float
     net: painted_lines.Net | None
@@ -45,13 +50,17 @@ class Scene:
     lines_m: np.ndarray
 
 
-def build(preset, court, seed, *, floor_texel_m=FLOOR_TEXEL_M):
+def build(
+    preset: Preset,
+    court: Court,
+    seed: int | np.random.SeedSequence,
+    *,
+    floor_texel_m: float = FLOOR_TEXEL_M,
+) -> Scene:
     """Build a hall.
 
     Parameters
     ----------
-    preset : virtualgym.session.presets.Preset
-    court : courtside.calibration.court.court.Court
     seed : int or numpy.random.SeedSequence
         The same seed gives the same hall, bit by bit.
     floor_texel_m : float
@@ -60,12 +69,13 @@ def build(preset, court, seed, *, floor_texel_m=FLOOR_TEXEL_M):
     Returns
     -------
     scene : Scene
-        The hall is a square about the court's centre, so large that cameras which see the whole court fit.
+        The hall is a square about the court's centre, large enough for cameras that see the whole
+        court.
     """
     root = seed if isinstance(seed, np.random.SeedSequence) else np.random.SeedSequence(seed)
     state = np.random.SeedSequence(root.entropy, spawn_key=root.spawn_key)  # spawn leaves a trace
     paint, floor, shell, things = (np.random.default_rng(child) for child in state.spawn(4))
-    painted = painted_lines.put_up(court, preset, paint)
+    painted = painted_lines.paint_court(court, preset, paint)
     room_m = room(court)
     quads = [_floor(court, painted, room_m, preset, floor_texel_m, floor)]
     quads += _walls(room_m, preset, shell)
@@ -78,20 +88,28 @@ def build(preset, court, seed, *, floor_texel_m=FLOOR_TEXEL_M):
     return Scene(quads, room_m, preset.gloss, painted.net, painted.court_xyz, painted.lines_m)
 
 
-def room(court):
-    """Return the lowest and the highest corner of the hall for a court, (2, 3) m."""
+def room(court: Court) -> NDArray:
+    """Return the lowest and the highest corner of a court's hall, (2, 3) m."""
     short, long = sorted(court.size_m)
     half = max(NEAREST_M, short / 2 + long) + BEHIND_CAMERAS_M
     centre = court.size_m / 2
     return np.array([[*(centre - half), 0.0], [*(centre + half), HEIGHT_M]])
 
 
-def _floor(court, painted, room_m, preset, texel_m, rng):
+def _floor(
+    court: Court,
+    painted: painted_lines.PaintedCourt,
+    room_m: NDArray,
+    preset: Preset,
+    texel_m: float,
+    rng: np.random.Generator,
+) -> Quad:
     low, high = room_m[:, :2]
     texture = textures.planks(high - low, texel_m, preset.contrast, preset.n_scuffs, rng)
     per_m = np.array(texture.shape[1::-1]) / (high - low)
     for lines_m, colour in _other_lines(court):
-        # Weaker where textures are weak, but at full contrast these lines would be the plain hall's best.
+        # As weak as the other textures: at full contrast these lines would be the plain hall's best
+        # features.
         own = (
             np.array(textures.FLOOR_BGR) * (1 - preset.contrast)
             + np.array(colour) * preset.contrast
@@ -113,11 +131,11 @@ def _floor(court, painted, room_m, preset, texel_m, rng):
         place = (line.reshape(2, 2) - low).ravel() * np.tile(per_m, 2)
         textures.paint(texture, place, WHITE, cover=COVER)
     size = high - low
-    return surfaces.Quad(room_m[0], [size[0], 0, 0], [0, size[1], 0], texture)
+    return Quad(room_m[0], np.array([size[0], 0, 0]), np.array([0, size[1], 0]), texture)
 
 
-def _other_lines(court):
-    """Return other courts on the same floor: rectangles (n, 4) m and their colour, each."""
+def _other_lines(court: Court) -> Iterator[tuple[NDArray, tuple[int, int, int]]]:
+    """Yield the rectangles (n, 4) m and the colour of each other court on the same floor."""
     beside = court.size_m[0] + 2.6
     shift = np.array([beside, 0, beside, 0])
     yield court.lines_m + shift, OTHER_BGR[0]
@@ -127,7 +145,7 @@ def _other_lines(court):
         yield _outline(low, high, 0.05), colour
 
 
-def _outline(low, high, width):
+def _outline(low: NDArray, high: NDArray, width: float) -> NDArray:
     (x0, y0), (x1, y1) = low, high
     middle = (y0 + y1) / 2
     return np.array(
@@ -141,7 +159,7 @@ def _outline(low, high, width):
     )
 
 
-def _walls(room_m, preset, rng):
+def _walls(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[Quad]:
     """Return four walls and the ceiling."""
     low, high = room_m
     wide, deep, tall = high - low
@@ -157,10 +175,13 @@ def _walls(room_m, preset, rng):
             (length, tall), WALL_TEXEL_M, preset.contrast, preset.same_windows, rng
         )
         u = np.array([*along, 0.0]) * length
-        made.append(surfaces.Quad([*corner, tall], u, [0, 0, -tall], texture, light))
+        made.append(Quad(np.array([*corner, tall]), u, np.array([0, 0, -tall]), texture, light))
     shape = round(deep / 0.04), round(wide / 0.04)
-    top = 168 + (textures.blotches(shape, (9, 21, 60, 140), rng) * 22)[..., None] * np.ones(3)
+    top = 168 + (textures.multiscale_noise(shape, (9, 21, 60, 140), rng) * 22)[..., None] * np.ones(
+        3
+    )
     top[:: round(0.72 / 0.04)] -= 25
-    top = textures.faded(textures.to_bytes(top), preset.contrast)
-    made.append(surfaces.Quad([low[0], low[1], tall], [wide, 0, 0], [0, deep, 0], top, 0.72))
+    top = textures.scale_contrast(textures.to_bytes(top), preset.contrast)
+    edges = np.array([[wide, 0, 0], [0, deep, 0]])
+    made.append(Quad(np.array([low[0], low[1], tall]), *edges, top, 0.72))
     return made

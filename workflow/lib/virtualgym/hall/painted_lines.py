@@ -1,13 +1,16 @@
-"""Where the lines, posts and net of a painted court really are: millimetres from where they should be."""
+"""The true places of a court's lines, posts and net, millimetres off their nominal ones."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-ON_EDGE_M = 1e-6
-POST_M = 0.04
-TAPE_M = 0.075
-NET_DEPTH_M = 0.76
+from courtside.calibration.court.court import Court
+from virtualgym.presets import Preset
+
+ON_EDGE_M = 1e-6  # rounding only
+POST_M = 0.04  # ASSUME: the Laws of Badminton do not fix a post's width
+TAPE_M, NET_DEPTH_M = 0.075, 0.76  # Laws of Badminton, law 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,17 +20,17 @@ class Net:
     Attributes
     ----------
     feet, tips : (2, 3) float
-        Middle of each post's lowest and highest face; world, metres.
+        Centres of each post's bottom and top face; world, metres.
     sag_m : float
-        How much lower the tape is half way.
+        How much lower the tape is in the middle.
     """
 
     feet: np.ndarray
     tips: np.ndarray
     sag_m: float
 
-    def tape(self, share):
-        """Return the tape's upper edge at shares (n,) of the way between the tips, (n, 3) m."""
+    def tape(self, share: ArrayLike) -> NDArray:
+        """Return the tape's upper edge (n, 3) m at fractions (n,) of the way between the tips."""
         share = np.asarray(share, dtype=float)[:, None]
         return (
             self.tips[0]
@@ -37,7 +40,7 @@ class Net:
 
 
 @dataclass(frozen=True, eq=False)
-class Paintwork:
+class PaintedCourt:
     """A court as it was really painted and put up.
 
     Attributes
@@ -45,7 +48,7 @@ class Paintwork:
     lines_m : (L, 4) float
         Painted rectangles: x0 y0 x1 y1.
     court_xyz : (P, 3) float
-        Where the court's named points are, in the court's order.
+        The court's named points, in the court's order, metres.
     net : Net or None
     """
 
@@ -54,20 +57,10 @@ class Paintwork:
     net: Net | None
 
 
-def put_up(court, preset, rng):
+def paint_court(court: Court, preset: Preset, rng: np.random.Generator) -> PaintedCourt:
     """Paint a court and put up its net, each line and post with an error of its own.
 
-    A line is displaced across its width; lines that end at it follow it.
-
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    preset : virtualgym.session.presets.Preset
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    paintwork : Paintwork
+    Each line is displaced across its width; lines that end at it follow it.
     """
     low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
     high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
@@ -90,14 +83,21 @@ def put_up(court, preset, rng):
     net = _net(court.net, preset, rng) if court.net is not None else None
     if net is not None:
         _move_posts(court, net, xyz)
-    return Paintwork(moved.reshape(-1, 4), xyz, net)
+    return PaintedCourt(moved.reshape(-1, 4), xyz, net)
 
 
-def _shift(low, high, across, error, place, axis, besides=-1):
-    """Return the error along an axis of the line whose edge or middle a place is on; 0 if there is none."""
-    slack = (
-        0.6 * (high - low).min()
-    )  # an end of a line may lie on the other edge of the line it ends at
+def _shift(
+    low: NDArray,
+    high: NDArray,
+    across: NDArray,
+    error: NDArray,
+    place: NDArray,
+    axis: int,
+    besides: int = -1,
+) -> float:
+    """Return the error along an axis of the line whose edge or middle a place is on; else 0."""
+    # A line may end at the far edge of another line.
+    slack = 0.6 * (high - low).min()
     inside = (place >= low - slack) & (place <= high + slack)
     near = (across == axis) & inside.all(axis=1)
     if besides >= 0:
@@ -111,7 +111,7 @@ def _shift(low, high, across, error, place, axis, besides=-1):
     return error[nearest] if away[nearest] < ON_EDGE_M else 0.0
 
 
-def _net(table, preset, rng):
+def _net(table: dict, preset: Preset, rng: np.random.Generator) -> Net:
     feet = np.array([[x, table["y_m"], 0.0] for x in table["x_m"]])
     feet[:, :2] += rng.normal(0, preset.post_foot_sigma_m, (2, 2))
     upright = np.array([0, 0, table["post_height_m"]])
@@ -119,8 +119,8 @@ def _net(table, preset, rng):
     return Net(feet, tips, table["post_height_m"] - table["mid_height_m"])
 
 
-def _move_posts(court, net, xyz):
-    """Put the court's points on posts to where the posts are."""
+def _move_posts(court: Court, net: Net, xyz: NDArray) -> None:
+    """Move the court's points on posts to the true posts."""
     for post, x in enumerate(court.net["x_m"]):
         for height, true in ((0.0, net.feet[post]), (court.net["post_height_m"], net.tips[post])):
             named = np.array([x, court.net["y_m"], height])

@@ -1,10 +1,12 @@
-"""What a virtual scene is made of: textured parallelograms, and boxes of them."""
+"""The elements of a virtual scene: textured parallelograms, and boxes made of them."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-SUN = np.array([0.12, -0.08, 0.2])  # how much brighter a face is per unit of its outward normal
+# ASSUME: light chosen by eye, so that faces of a box differ; it changes pictures only.
+SUN = np.array([0.12, -0.08, 0.2])  # added light per unit of a face's outward normal
 AMBIENT = 0.82
 
 
@@ -17,11 +19,11 @@ class Quad:
     origin : (3,) float
         World, metres: the outer corner of the texture's first pixel.
     u, v : (3,) float
-        Edges from there, metres, along the texture's columns (to the right) and rows (down).
+        Edges from there, metres: u along a texture row (to the right), v along a column (down).
     texture : (h, w, 3) uint8
-        BGR. Quads that share one array share its place in memory.
+        BGR; quads may share one array.
     light : float
-        Factor on the texture's colour; lamps have more than 1.
+        Factor on the texture's colour; above 1 for lamps.
     """
 
     origin: np.ndarray
@@ -30,7 +32,7 @@ class Quad:
     texture: np.ndarray
     light: float = 1.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for field in ("origin", "u", "v"):
             object.__setattr__(self, field, np.array(getattr(self, field), dtype=float))
         if self.texture.dtype != np.uint8 or self.texture.ndim != 3 or self.texture.shape[2] != 3:
@@ -38,7 +40,9 @@ class Quad:
             raise ValueError(f"expected a texture (h, w, 3) of uint8, found {found}")
 
 
-def box(corner, edges, textures, *, light=1.0):
+def box(
+    corner: ArrayLike, edges: ArrayLike, textures: NDArray | list[NDArray], *, light: float = 1.0
+) -> list[Quad]:
     """Return the six outward faces of a box (or parallelepiped).
 
     Parameters
@@ -51,11 +55,7 @@ def box(corner, edges, textures, *, light=1.0):
         Of the faces at -second, +first, +second, -first edge, top and bottom; the upright ones have
         their first row at the top.
     light : float
-        Factor on all faces, besides that of the direction they face.
-
-    Returns
-    -------
-    quads : list of Quad, length 6
+        Factor on all faces, besides the shading by their direction.
     """
     first, second, up = np.asarray(edges, dtype=float)
     corner = np.asarray(corner, dtype=float)
@@ -70,13 +70,13 @@ def box(corner, edges, textures, *, light=1.0):
         (corner, first, second),
     ]
     _, across, down = (np.array(each) for each in zip(*faces, strict=True))
-    outward = np.cross(down, across)  # all at once: six calls take four times as long
+    outward = np.cross(down, across)  # one call: six calls take four times as long
     return [
         Quad(*face, texture, light * _facing(way))
         for face, texture, way in zip(faces, textures, outward, strict=True)
     ]
 
 
-def _facing(outward):
-    """Return the light on a face with this outward normal, of any length."""
+def _facing(outward: NDArray) -> float:
+    """Return the light on a face; its outward normal may have any length."""
     return float(AMBIENT + SUN @ outward / np.linalg.norm(outward))

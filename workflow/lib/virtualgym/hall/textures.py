@@ -1,8 +1,12 @@
-"""Procedural textures of a sports hall: floor, walls, posters, crates, cloth; from random generators."""
+"""Procedural textures of a sports hall: floor, walls, posters, crates, cloth."""
+
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+# ASSUME: sizes and colours chosen to look like a sports hall; they change pictures only.
 FLOOR_BGR = (98, 146, 188)
 PLANK_M = 0.075
 PLANK_LENGTH_M = (0.9, 2.4)
@@ -17,18 +21,19 @@ LETTERS = list("ABCDEFGHKLMNPRSTUVXYZ0123456789")
 FONTS = (cv2.FONT_HERSHEY_SIMPLEX, cv2.FONT_HERSHEY_DUPLEX, cv2.FONT_HERSHEY_TRIPLEX)
 
 
-def blotches(shape, cells, rng, *, decay=0.6):
-    """Return smooth noise of several scales, (h, w) float32, mean about 0 and deviation about 0.5.
+def multiscale_noise(
+    shape: tuple[int, int], cells: Sequence[int], rng: np.random.Generator, *, decay: float = 0.6
+) -> NDArray:
+    """Return smooth noise of several scales, (h, w) float32, mean about 0, std about 0.5.
 
     Parameters
     ----------
     shape : (int, int)
         Height and width.
     cells : sequence of int
-        How many cells of noise each scale has along the longer side.
-    rng : numpy.random.Generator
+        Number of noise cells along the longer side, for each scale.
     decay : float
-        Of the amplitude from one scale to the next.
+        Ratio of the amplitudes of one scale and the one before.
     """
     total = np.zeros(shape, np.float32)
     weights = decay ** np.arange(len(cells))
@@ -39,21 +44,21 @@ def blotches(shape, cells, rng, *, decay=0.6):
     return total
 
 
-def faded(texture, contrast):
-    """Return a texture with its contrast against its own mean colour multiplied."""
+def scale_contrast(texture: NDArray, contrast: float) -> NDArray:
+    """Return a texture with its contrast about its own mean colour multiplied."""
     mean = np.array(cv2.sumElems(texture)[:3]) / texture[..., 0].size
     levels = np.arange(256, dtype=np.float32)[:, np.newaxis]
     return cv2.LUT(texture, to_bytes(mean + (levels - mean) * contrast)[np.newaxis])
 
 
-def to_bytes(values):
+def to_bytes(values: NDArray) -> NDArray:
     """Return values rounded and limited to 0..255, uint8."""
     values = np.rint(values)
     return np.clip(values, 0, 255, out=values).astype(np.uint8)
 
 
-def paint(image, corners, colour, *, cover=1.0):
-    """Fill a rectangle with exact shares of the pixels on its edges, in place.
+def paint(image: NDArray, corners: ArrayLike, colour: ArrayLike, *, cover: float = 1.0) -> None:
+    """Fill a rectangle in place; pixels on its edges are mixed by the covered area.
 
     Parameters
     ----------
@@ -63,7 +68,7 @@ def paint(image, corners, colour, *, cover=1.0):
     colour : (3,) float
         BGR.
     cover : float
-        How much of what is below it hides.
+        Opacity.
     """
     low, high = np.minimum(corners[:2], corners[2:]), np.maximum(corners[:2], corners[2:])
     start = np.maximum(np.floor(low).astype(int), 0)
@@ -79,22 +84,17 @@ def paint(image, corners, colour, *, cover=1.0):
     part[:] = to_bytes(part * (1 - share) + np.asarray(colour, dtype=float) * share)
 
 
-def planks(size_m, texel_m, contrast, n_scuffs, rng):
-    """Return a wooden floor.
+def planks(
+    size_m: ArrayLike, texel_m: float, contrast: float, n_scuffs: int, rng: np.random.Generator
+) -> NDArray:
+    """Return a wooden floor, (h, w, 3) uint8.
 
     Parameters
     ----------
     size_m : (float, float)
-        Along the texture's columns, and along its rows, which is along the planks.
-    texel_m : float
-    contrast : float
+        Width (across the planks) and height (along them).
     n_scuffs : int
-        Dark marks.
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    texture : (h, w, 3) uint8
+        Number of dark scuff marks.
     """
     width, height = (round(length / texel_m) for length in size_m)
     plank = (np.arange(width) * texel_m / PLANK_M).astype(np.intp)
@@ -103,7 +103,7 @@ def planks(size_m, texel_m, contrast, n_scuffs, rng):
     tone[:, gap] -= 9
     grain = rng.standard_normal((height // 6 + 2, width), dtype=np.float32) * 7
     _add(tone, grain)
-    stains = blotches((height // 8 + 1, width // 8 + 1), (5, 11, 23, 47, 95, 190), rng) * 22
+    stains = multiscale_noise((height // 8 + 1, width // 8 + 1), (5, 11, 23, 47, 95, 190), rng) * 22
     _add(tone, stains)
     step = np.arange(-128, 128)[:, None] * contrast * np.array([0.8, 0.95, 1.0])
     palette = to_bytes(FLOOR_BGR + step)
@@ -113,21 +113,22 @@ def planks(size_m, texel_m, contrast, n_scuffs, rng):
         start = rng.uniform(0, (width, height))
         end = start + rng.normal(0, 0.15 / texel_m, 2)
         shade = np.array(FLOOR_BGR) * (1 - contrast * rng.uniform(0.3, 0.7))
-        ends = [tuple(map(int, point)) for point in (start, end)]
-        cv2.line(texture, *ends, shade.tolist(), int(rng.integers(1, 4)), cv2.LINE_AA)
+        first, last = (tuple(map(int, point)) for point in (start, end))
+        thickness = int(rng.integers(1, 4))
+        cv2.line(texture, first, last, shade.tolist(), thickness, cv2.LINE_AA)
     return texture
 
 
-def _add(tone, coarse):
-    """Add coarse noise, enlarged, to tones (h, w) int8, in place; a floor is too large for other types."""
+def _add(tone: NDArray, coarse: NDArray) -> None:
+    """Add enlarged coarse noise to tones (h, w) in place; int8, as a floor is large."""
     shifted = to_bytes(coarse + 128)
     fine = cv2.resize(shifted, tone.shape[::-1], interpolation=cv2.INTER_LINEAR)
     fine ^= 0x80
     tone += fine.view(np.int8)
 
 
-def _plank_tones(n_planks, height, texel_m, rng):
-    """Return each plank's tone along its length, (n_planks, height) int8: boards of random length."""
+def _plank_tones(n_planks: int, height: int, texel_m: float, rng: np.random.Generator) -> NDArray:
+    """Return the tone along each plank, (n_planks, height) int8: boards of random length."""
     tones = np.empty((n_planks, height), np.int8)
     for row in tones:
         start = -rng.uniform(0, PLANK_LENGTH_M[0]) / texel_m
@@ -140,31 +141,29 @@ def _plank_tones(n_planks, height, texel_m, rng):
     return tones
 
 
-def wall(size_m, texel_m, contrast, same_windows, rng):
-    """Return a wall: wooden panels below, paint above, a row of windows.
+def wall(
+    size_m: tuple[float, float],
+    texel_m: float,
+    contrast: float,
+    same_windows: bool,
+    rng: np.random.Generator,
+) -> NDArray:
+    """Return a wall (h, w, 3) uint8: wooden panels below, paint above, a row of windows.
 
     Parameters
     ----------
     size_m : (float, float)
         Width and height.
-    texel_m : float
-    contrast : float
     same_windows : bool
         Whether all windows look alike and all gaps are equal.
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    texture : (h, w, 3) uint8
-        First row at the top.
     """
     width, height = (round(length / texel_m) for length in size_m)
-    texture = WALL_BGR + (blotches((height, width), (6, 17, 41, 97), rng) * 26)[..., None]
+    texture = WALL_BGR + (multiscale_noise((height, width), (6, 17, 41, 97), rng) * 26)[..., None]
     panel_px = round(PANEL_TOP_M / texel_m)
     texture[-panel_px:] = _panels((panel_px, width), PANEL_WIDTH_M / texel_m, rng)
     course = max(3, round(0.5 / texel_m))
     texture[: height - panel_px : course] -= 14
-    texture = faded(to_bytes(texture), contrast)
+    texture = scale_contrast(to_bytes(texture), contrast)
     first = window((WINDOW_M[0], WINDOW_M[1]), texel_m, rng)
     x_m = WINDOW_SPACING_M / 2
     while x_m + WINDOW_M[0] < size_m[0]:
@@ -172,39 +171,34 @@ def wall(size_m, texel_m, contrast, same_windows, rng):
         top = height - round((WINDOW_SILL_M + WINDOW_M[1]) / texel_m)
         left = round(x_m / texel_m)
         if top > 0:
-            texture[top : top + pane.shape[0], left : left + pane.shape[1]] = faded(pane, contrast)
+            texture[top : top + pane.shape[0], left : left + pane.shape[1]] = scale_contrast(
+                pane, contrast
+            )
         x_m += WINDOW_SPACING_M * (1 if same_windows else rng.uniform(0.75, 1.25))
     return texture
 
 
-def _panels(shape, width_px, rng):
+def _panels(shape: tuple[int, int], width_px: float, rng: np.random.Generator) -> NDArray:
     """Return upright wooden panels with seams, (h, w, 3) float."""
     number = (np.arange(shape[1]) / width_px).astype(np.intp)
     tone = rng.normal(0, 9, number[-1] + 1)[number]
     tone = tone + cv2.resize(
-        rng.standard_normal((2 + shape[0] // 30, shape[1])), shape[::-1], interpolation=cv2.INTER_LINEAR
+        rng.standard_normal((2 + shape[0] // 30, shape[1])), shape[::-1],
+        interpolation=cv2.INTER_LINEAR
     ) * 8  # fmt: skip
-    tone += blotches(shape, (20, 60), rng) * 14
+    tone += multiscale_noise(shape, (20, 60), rng) * 14
     seams = np.flatnonzero(np.diff(number))
     tone[:, seams] -= 45
     tone[: max(1, shape[0] // 40)] -= 30
     return np.array(PANEL_BGR) + tone[..., None]
 
 
-def window(size_m, texel_m, rng):
-    """Return a window of several panes with a bright, clouded outside, (h, w, 3) uint8.
-
-    Parameters
-    ----------
-    size_m : (float, float)
-        Width and height.
-    texel_m : float
-    rng : numpy.random.Generator
-    """
+def window(size_m: tuple[float, float], texel_m: float, rng: np.random.Generator) -> NDArray:
+    """Return a window of several panes with a bright, cloudy outside, (h, w, 3) uint8."""
     width, height = (round(length / texel_m) for length in size_m)
-    sky = blotches((height, width), (2, 5, 11), rng) * 30
+    sky = multiscale_noise((height, width), (2, 5, 11), rng) * 30
     texture = np.array([236, 226, 214]) + sky[..., None] * np.array([0.4, 0.8, 1.0])
-    trees = height * (0.75 + 0.5 * blotches((1, width), (3, 9), rng)[0])
+    trees = height * (0.75 + 0.5 * multiscale_noise((1, width), (3, 9), rng)[0])
     texture[np.arange(height)[:, None] > trees] = (88, 118, 96)
     bar = max(1, round(0.06 / texel_m))
     for share in (0.0, 1 / 3, 2 / 3, 1.0):
@@ -216,15 +210,8 @@ def window(size_m, texel_m, rng):
     return to_bytes(texture)
 
 
-def poster(shape, rng):
-    """Return shapes and letters on a coloured ground, (h, w, 3) uint8.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Height and width.
-    rng : numpy.random.Generator
-    """
+def poster(shape: tuple[int, int], rng: np.random.Generator) -> NDArray:
+    """Return shapes and letters on a coloured ground, (h, w, 3) uint8."""
     height, width = shape
     image = np.empty((height, width, 3), np.uint8)
     image[:] = rng.integers(70, 240, 3)
@@ -247,11 +234,11 @@ def poster(shape, rng):
     return image
 
 
-def crate(shape, rng):
-    """Return the side of a box, bag or mat: one colour, stains, straps, perhaps a label; (h, w, 3) uint8."""
+def crate(shape: tuple[int, int], rng: np.random.Generator) -> NDArray:
+    """Return the side of a box, bag or mat: colour, stains, straps, at times a label."""
     height, width = shape
     colour = rng.uniform(50, 215) + rng.uniform(-45, 45, 3)
-    image = colour + (blotches(shape, (4, 9, 21), rng) * 30)[..., None]
+    image = colour + (multiscale_noise(shape, (4, 9, 21), rng) * 30)[..., None]
     for _ in range(rng.integers(0, 4)):
         strap = max(1, round(height * rng.uniform(0.03, 0.1)))
         y = int(rng.uniform(0, height - strap + 1))
@@ -267,20 +254,12 @@ def crate(shape, rng):
     return image
 
 
-def cloth(shape, colour, rng, *, folds=14):
-    """Return upright folds of one colour, as of curtains and rows of seats; (h, w, 3) uint8.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Height and width.
-    colour : (3,) float
-        BGR.
-    rng : numpy.random.Generator
-    folds : int
-        About how many, from side to side.
-    """
+def cloth(
+    shape: tuple[int, int], colour: ArrayLike, rng: np.random.Generator, *, folds: int = 14
+) -> NDArray:
+    """Return a cloth of one BGR colour with about so many vertical folds, (h, w, 3) uint8."""
     tone = (
-        blotches((1, shape[1]), (folds, 3 * folds), rng) * 45 + blotches(shape, (5, 15), rng) * 10
+        multiscale_noise((1, shape[1]), (folds, 3 * folds), rng) * 45
+        + multiscale_noise(shape, (5, 15), rng) * 10
     )
     return to_bytes(np.array(colour) + tone[..., None])

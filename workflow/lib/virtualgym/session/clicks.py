@@ -7,9 +7,9 @@ import numpy as np
 
 from courtside.geometry import camera as projection
 from courtside.study.execution.files import atomic
+from virtualgym import presets
 from virtualgym.body import mesh
 from virtualgym.rendering import rolling_shutter
-from virtualgym.session import presets
 
 FULL_WIDTH_PX = 3840  # clicking errors are stated for pictures of this width
 
@@ -97,7 +97,7 @@ def of_camera(athletes, cameras, times_s, preset, rng):
         The camera as it stands at each frame.
     times_s : (T,) float
         Mid-exposure of each frame's middle row, on the athletes' clock.
-    preset : virtualgym.session.presets.Preset
+    preset : virtualgym.presets.Preset
     rng : numpy.random.Generator
         For the person's habit in this camera, and each click.
 

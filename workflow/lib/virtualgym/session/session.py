@@ -10,12 +10,13 @@ from courtside.records.cameras import clicks as click_records
 from courtside.records.truth import session_truth
 from courtside.study.execution import log
 from courtside.video import writer
+from virtualgym import presets
 from virtualgym.cameras import layouts, walk_path
 from virtualgym.devices import chessboard
 from virtualgym.hall import bystanders, hall
 from virtualgym.rendering import background
 from virtualgym.rendering.hall_renderer import Renderer
-from virtualgym.session import clicks, parallel, presets
+from virtualgym.session import clicks, parallel
 
 WALK = "walk"
 STATIC_HZ = 5.0

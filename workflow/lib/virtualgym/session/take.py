@@ -9,11 +9,12 @@ import numpy as np
 from courtside.records.truth import take_truth
 from courtside.study.execution import log
 from courtside.video import writer
+from virtualgym import presets
 from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.cameras import camera_shake, layouts
 from virtualgym.movement import catalogue
 from virtualgym.rendering import player_renderer
-from virtualgym.session import clicks, parallel, presets, session, take_devices
+from virtualgym.session import clicks, parallel, session, take_devices
 
 PLAYER = {"body", "hand", "options"}
 CLOCK = {"offset_s", "drift_ppm"}
@@ -141,7 +142,7 @@ class Set:
     Parameters
     ----------
     take : TakeSettings
-    preset : virtualgym.session.presets.Preset
+    preset : virtualgym.presets.Preset
     court : courtside.calibration.court.court.Court
     body_folder : str or Path
     backdrops : dict of int to backdrop.Backdrop

@@ -7,11 +7,12 @@ import numpy as np
 from courtside.devices.realsense import writer
 from courtside.records.truth import take_truth
 from courtside.study.execution import log
+from virtualgym import presets
 from virtualgym.body import skinned_body
 from virtualgym.devices import depth_camera, inertial_suit
 from virtualgym.hall import hall
 from virtualgym.rendering.hall_renderer import Renderer
-from virtualgym.session import parallel, presets, session
+from virtualgym.session import parallel, session
 
 KINDS = {"rgbd": depth_camera.DepthCamera, "inertial": inertial_suit.InertialSuit}
 DEVICES = 4  # of a take's streams of random numbers, after those of `takes`

@@ -1,11 +1,11 @@
-"""What a virtual gymnasium and its cameras are like: kind (`rich`) or hostile (`plain`)."""
+"""Settings of a virtual gymnasium and its cameras: easy (`rich`) or hard (`plain`)."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Preset:
-    """Everything in which one kind of virtual session differs from another.
+    """The settings in which one kind of virtual session differs from another.
 
     Attributes
     ----------
@@ -13,41 +13,44 @@ class Preset:
     posters_per_m : float
         Posters along each metre of wall.
     n_gear : int
-        Boxes, benches, bags and mats that are tried on the floor; those in the way are left out.
+        Boxes, benches, bags and mats that are drawn for the floor; those in the way are left out.
     contrast : float
-        Of every texture but the court's lines, against its own mean colour; 1 is a well-lit old hall.
+        Factor on every texture except the court's lines, about its own mean colour; 1: a well-lit
+        old hall.
     n_scuffs : int
-        Marks on the floor.
+        Scuff marks on the floor.
     gloss : float
-        Share of light that the floor reflects when seen from above, 0..1; much more at grazing angles.
+        Share of light that the floor reflects when seen from above, 0..1; much more at grazing
+        angles.
     same_windows : bool
         Whether all windows show the same picture in the same spacing.
     noise_sigma : float
-        Of the sensor, in 8-bit levels.
+        Standard deviation of the sensor's noise, 8-bit levels.
     crf : int
-        Quality of H.264 coding, lower is better.
+        Constant rate factor of the H.264 coding; lower is better.
     readout_s : float
-        Between the first and the last row of the walked camera's rolling shutter.
+        Time from the first to the last row of the rolling shutter.
     exposure_s : float
-        Of the walked camera.
     jitter_scale : float
-        Size of the hand's movements against those of a careful walker.
+        Factor on the hand movements of the walked camera; 1: a careful walker.
     stabiliser_px : float
-        How far a stabiliser moves the principal point, standard deviation, px at 1280 px width.
+        Standard deviation of the principal point's shift by a stabiliser, px at 1280 px width.
     focal_spread : float
-        Difference between units of one model of camera: focal length, relative standard deviation.
+        Relative standard deviation of the focal length between cameras of one model.
     principal_point_px : float
-        The same for the principal point, px at 1280 px width, per axis.
+        Standard deviation of the principal point between them, per axis, px at 1280 px width.
     k1_spread, k2_spread, p_spread : float
-        The same for the coefficients of distortion; `p_spread` for p1 and p2.
+        Standard deviations of the distortion coefficients; `p_spread` of p1 and p2.
     n_people : int
-        Walking about while the walk is filmed.
+        Bystanders who walk about while the walk is filmed.
     line_sigma_m : float
-        How far each painted line is from its place.
+        Standard deviation of each painted line's displacement.
     post_foot_sigma_m, post_tip_sigma_m : float
-        How far a post's foot is from its place, and its tip from above the foot, per axis.
+        Standard deviations of a post's foot from its nominal place, and of its tip from above the
+        foot, per axis.
     click_sigma_px_at_3840, click_bias_px_at_3840 : float
-        Scatter of clicks per axis, and of what all clicks of one person have in common; px at 3840 px width.
+        Standard deviations per axis of single clicks, and of the error that all clicks of one
+        person in one picture share; px at 3840 px width.
     """
 
     name: str
@@ -76,6 +79,8 @@ class Preset:
     click_bias_px_at_3840: float
 
 
+# ASSUME: both sets of values were chosen as a good and a bad case of real halls and phone cameras;
+# no source is recorded.
 RICH = Preset(
     name="rich",
     posters_per_m=0.5,

@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from virtualgym.session.presets import PLAIN, PRESETS, RICH
+from virtualgym.presets import PLAIN, PRESETS, RICH
 
 
 def test_presets_are_found_by_name():
