@@ -1,1 +1,12 @@
-"""The player's body: MakeHuman's mesh, shapes, clothes, pose, racket."""
+"""The player's body: MakeHuman's mesh and rig, shapes, clothes, pose, racket.
+
+- athlete: `Athlete` (a body that moves, with or without a racket)
+- skinned_body: `Body`, `JOINTS`
+- shapes: `Shape`, `BODIES`, `figure`
+- stance: `Stance`, `Proportions`, `joints`, `mirrored`, `moved`
+- pose_bones: `pose`, `Skeleton`, `bent`, `grip`
+- makehuman: `Archive`, `Figure`
+- clothing: `dress`
+- racket: `build`, `place`
+- mesh: `Mesh`, `join`, `normals`, `volume`
+"""

@@ -1,14 +1,18 @@
-"""Dress a body: which triangle is shirt, shorts, sock, shoe, hair or skin, and how far cloth stands off."""
+"""Dress a body: which triangles are cloth, shoe, hair or skin, and how thick the cloth is."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from virtualgym.body import mesh
-from virtualgym.body.pose_bones import BONES
+from virtualgym.body.makehuman import Figure
+from virtualgym.body.pose_bones import BONES, Skeleton
+from virtualgym.body.shapes import Shape
 
-# Millimetres off the skin.
-OFF_M = {
+# ASSUME: thicknesses, borders and colours chosen to look like sports clothes; no source is
+# recorded.
+OFF_M = {  # distance of the cloth from the skin
     "shirt": 0.010,
     "trim": 0.010,
     "shorts": 0.015,
@@ -17,20 +21,17 @@ OFF_M = {
     "sole": 0.007,
 }
 HAIR_M = 0.011
-SLEEVE, SHORTS_END, SOCK_START, SHOE_START = (
-    0.55,
-    0.6,
-    0.72,
-    0.93,
-)  # shares of upper arm, thigh, shank
-HEM_M = 0.03  # below the hips' joints
+# Where they begin or end, as fractions of upper arm, thigh, shank and shank.
+SLEEVE, SHORTS_END, SOCK_START, SHOE_START = 0.55, 0.6, 0.72, 0.93
+HEM_M = 0.03  # below the hip joints
 SOLE_M = 0.018
-SKINS = {  # BGR at full light; the seed darkens or lightens them
+SKINS = {  # BGR at full light, varied by the seed
     "caucasian": (150, 175, 222),
     "asian": (140, 178, 220),
     "african": (62, 82, 122),
 }
-HAIRS = ((24, 26, 32), (40, 62, 92), (70, 120, 165))  # the first one for all but one origin
+# Only the first for origins other than caucasian.
+HAIRS = ((24, 26, 32), (40, 62, 92), (70, 120, 165))
 SHIRTS = (
     ((50, 45, 205), (240, 240, 240)),
     ((190, 95, 30), (235, 235, 235)),
@@ -47,25 +48,25 @@ SHORTS = ((45, 40, 35), (95, 45, 25), (225, 225, 225), (40, 40, 110))
 SHOES = ((240, 240, 240), (60, 60, 230), (220, 160, 40), (50, 50, 50))
 SOLES = ((60, 200, 240), (230, 230, 230), (70, 70, 70))
 EYE_WHITE, IRIS, LIPS = (225, 230, 232), (45, 55, 70), (110, 105, 175)
-MODELLED_M = 1.8  # the height at which the places in the face were read off
+MODELLED_M = 1.8  # body height for which the places in `_face` hold
 IRIS_DEEP_M = 0.0022
 TORSO = ("root", "spine", "clavicle")
 
 
 @dataclass(frozen=True, eq=False)
 class _Places:
-    """For each triangle of the bare body: its middle, and the bone that holds it."""
+    """For each triangle of the bare body: its centre, and the bone with the largest weight."""
 
     middle: np.ndarray
     bone: np.ndarray
-    heads: dict
+    heads: dict[str, np.ndarray]
 
-    def on(self, *names):
+    def on(self, *names: str) -> NDArray:
         held = [at for at, bone in enumerate(BONES) if bone.startswith(names)]
         return np.isin(self.bone, held)
 
-    def share(self, start, end):
-        """Return how far along a limb's bone each triangle is, from 0 at its start to 1; both sides."""
+    def share(self, start: str, end: str) -> NDArray:
+        """Return where each triangle is along a limb's bone, 0 at its start to 1; both sides."""
         along = np.zeros(len(self.middle))
         for suffix in (".L", ".R"):
             first, last = self.heads[start + suffix], self.heads[end + suffix]
@@ -75,26 +76,28 @@ class _Places:
         return along
 
 
-def dress(figure, skeleton, weights, shape):
+def dress(
+    figure: Figure, skeleton: Skeleton, weights: NDArray, shape: Shape
+) -> tuple[NDArray, NDArray]:
     """Dress a bare body.
 
     Parameters
     ----------
-    figure : virtualgym.body.makehuman.Figure
-    skeleton : virtualgym.body.pose_bones.Skeleton
+    figure : Figure
+    skeleton : Skeleton
     weights : (V, B) float
-        Of posing.BONES at each vertex.
-    shape : virtualgym.body.shapes.Shape
+        Skinning weights of `pose_bones.BONES`.
+    shape : Shape
 
     Returns
     -------
     vertices : (V, 3) float
-        Of the rest pose, cloth and hair pushed off the skin; nothing below the bare soles.
+        Rest pose, with cloth and hair pushed off the skin; nothing is below the bare soles.
     colours : (F, 3) uint8
         BGR.
     """
     corners = figure.triangles
-    quads = corners.reshape(-1, 6)  # MakeHuman's faces, two triangles each, so that hems are even
+    quads = corners.reshape(-1, 6)  # MakeHuman's faces are two triangles each; keep them whole
     held = np.repeat(weights[quads].sum(axis=1).argmax(axis=1), 2)
     middle = np.repeat(figure.vertices[quads].mean(axis=1), 2, axis=0)
     places = _Places(middle, held, skeleton.heads)
@@ -116,8 +119,8 @@ def dress(figure, skeleton, weights, shape):
     return vertices, np.clip(colours, 0, 255).astype(np.uint8)
 
 
-def _regions(places):
-    """Return which triangles each piece of cloth covers, (F,) bool by name; later ones lie over earlier."""
+def _regions(places: _Places) -> dict[str, NDArray]:
+    """Return the triangles of each piece of cloth, (F,) bool by name; later ones lie on top."""
     height = places.middle[:, 1]
     hips = places.heads["upperleg01.L"][1]
     torso = places.on(*TORSO)
@@ -140,8 +143,10 @@ def _regions(places):
     }
 
 
-def _face(colours, figure, places, palette):
-    """Paint eyes, brows and lips; return which triangles carry hair, (F,) bool, painted too."""
+def _face(
+    colours: NDArray, figure: Figure, places: _Places, palette: dict[str, ArrayLike]
+) -> NDArray:
+    """Paint eyes, brows, lips and hair in place; return which triangles carry hair, (F,) bool."""
     eye, size = figure.head("eye.L"), figure.height_m / MODELLED_M
     across = np.abs(places.middle[:, 0]) / size
     up, ahead = ((places.middle[:, axis] - eye[axis]) / size for axis in (1, 2))
@@ -160,8 +165,8 @@ def _face(colours, figure, places, palette):
     return hair
 
 
-def _palette(shape):
-    """Choose colours by the shape's seed; shirt, shorts and skin differ plainly in brightness or hue."""
+def _palette(shape: Shape) -> dict[str, ArrayLike]:
+    """Choose colours by the shape's seed; the shorts differ most from shirt and skin."""
     rng = np.random.default_rng(shape.seed)
     shirt, trim = SHIRTS[shape.seed % len(SHIRTS)]
     skin = np.array(SKINS[shape.origin]) * rng.uniform(0.85, 1.05)
@@ -181,5 +186,5 @@ def _palette(shape):
     }
 
 
-def _apart(first, second):
-    return np.linalg.norm(np.subtract(first, second))
+def _apart(first: ArrayLike, second: ArrayLike) -> float:
+    return float(np.linalg.norm(np.subtract(first, second)))

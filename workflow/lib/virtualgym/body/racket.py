@@ -1,31 +1,27 @@
 """A badminton racket: oval head, shaft and grip, as a mesh."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import rotations
 from virtualgym.body.mesh import Mesh, join
 
-LENGTH_M = 0.674
-HEAD_LENGTH_M, HEAD_WIDTH_M = 0.285, 0.226  # outer; the laws of badminton allow 290 and 230 mm
+LENGTH_M = 0.674  # the Laws of Badminton allow 680 mm
+HEAD_LENGTH_M, HEAD_WIDTH_M = 0.285, 0.226  # outer; the Laws of Badminton allow 290 and 230 mm
+# ASSUME: the other sizes are typical of rackets on sale; no source is recorded.
 GRIP_LENGTH_M = 0.175
 HELD_AT_M = 0.075  # from the butt to the middle of the hand
 FRAME_RADIUS_M, SHAFT_RADIUS_M = 0.0055, 0.004
 GRIP_RADII_M = 0.0155, 0.0125  # at the butt, and where the grip ends
-BUTT_M, TOP_ANGLE = 0.02, np.radians(22)  # marks at both ends, so that a person sees where they are
+BUTT_M, TOP_ANGLE = 0.02, np.radians(22)  # size of the coloured marks at both ends
 AROUND, ALONG, N_STRINGS = 8, 48, 9
 STRING_M = 0.0014
 FRAME_BGR, SHAFT_BGR, GRIP_BGR = (40, 40, 200), (60, 60, 60), (235, 235, 235)
 END_BGR, STRING_BGR = (40, 225, 250), (225, 235, 235)
 
 
-def build():
-    """Return the racket in its own frame.
-
-    Returns
-    -------
-    mesh : Mesh
-        Butt at the origin, y towards the top, x across the head, z out of the strings' plane.
-    """
+def build() -> Mesh:
+    """Return the racket: butt at the origin, y to the top, x across the head, z off the strings."""
     middle = LENGTH_M - HEAD_LENGTH_M / 2
     angle = np.linspace(0, 2 * np.pi, ALONG, endpoint=False) + np.pi / 2
     across, along = HEAD_WIDTH_M / 2 - FRAME_RADIUS_M, HEAD_LENGTH_M / 2 - FRAME_RADIUS_M
@@ -48,7 +44,7 @@ def build():
     return join(parts)
 
 
-def place(rest, butt, way, face):
+def place(rest: Mesh, butt: NDArray, way: NDArray, face: NDArray) -> Mesh:
     """Put the racket into the world.
 
     Parameters
@@ -60,19 +56,15 @@ def place(rest, butt, way, face):
     way : (3,) float
         Unit vector from butt to top.
     face : (3,) float
-        Where the strings face, roughly; not along `way`.
-
-    Returns
-    -------
-    mesh : Mesh
+        Approximate normal of the strings; not along `way`.
     """
     normal = rotations.unit_vector(face - (face @ way) * way)
     rotation = np.stack([rotations.cross3(way, normal), way, normal], axis=1)
     return Mesh(rest.vertices @ rotation.T.astype(np.float32) + butt, rest.triangles, rest.colours)
 
 
-def _tube(line, radii, colours, *, closed):
-    """Return a round tube along a line (n, 3) in the plane z = 0; open ones get lids."""
+def _tube(line: NDArray, radii: NDArray, colours: NDArray, *, closed: bool) -> Mesh:
+    """Return a round tube along a line (n, 3) in the plane z = 0; open tubes get end caps."""
     n = len(line)
     ahead = np.roll(line, -1, axis=0) - np.roll(line, 1, axis=0) if closed else line[-1:] - line[:1]
     ahead = np.broadcast_to(ahead / np.linalg.norm(ahead, axis=1, keepdims=True), line.shape)
@@ -101,7 +93,7 @@ def _tube(line, radii, colours, *, closed):
     return Mesh(vertices, triangles, colours.astype(np.uint8))
 
 
-def _strings(middle, across, along):
+def _strings(middle: float, across: float, along: float) -> list[Mesh]:
     """Return some strings as flat ribbons, seen from both sides."""
     ribbons = []
     for share in np.linspace(-0.8, 0.8, N_STRINGS):

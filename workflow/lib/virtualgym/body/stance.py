@@ -1,13 +1,15 @@
-"""A pose of the virtual athlete: where the pelvis is, how the trunk is turned, where each limb points."""
+"""A pose of the virtual athlete: pelvis position, trunk rotations, directions of the limbs."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 SIDES = ("left", "right")
 PARTS = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
 SEGMENTS = tuple(f"{side}_{part}" for side in SIDES for part in PARTS)
-LUMBAR_SHARE = 0.45  # of the trunk's length turns with the pelvis, the rest with the thorax
+# ASSUME: this share of the trunk's length turns with the pelvis, the rest with the thorax.
+LUMBAR_SHARE = 0.45
 OTHER = {"left": "right", "right": "left"}
 
 
@@ -30,7 +32,7 @@ class Proportions:
     ankle_height, toe_height : float
         Of the ankle and of the joint of the toes above the floor, foot flat.
     palm : float
-        From the wrist's centre to the surface of the palm: the wrists of clapping hands are twice that apart.
+        Wrist centre to the surface of the palm: clapping hands have their wrists twice that apart.
     """
 
     upper_arm: float
@@ -47,7 +49,7 @@ class Proportions:
     palm: float = 0.025
 
     @classmethod
-    def of_height(cls, height_m):
+    def of_height(cls, height_m: float) -> "Proportions":
         """Return the mean proportions of an adult of that height [Winter 2009, fig. 4.1].
 
         The widths are between joint centres, which lie inside the bony points measured there.
@@ -71,7 +73,7 @@ class Proportions:
 
 @dataclass(frozen=True, eq=False)
 class Stance:
-    """One pose, without lengths: a body of any proportions can take it.
+    """A pose without lengths: a body of any proportions can take it.
 
     Body axes, as columns of the rotations: x to the person's left, y up along the trunk, z forward.
 
@@ -82,11 +84,12 @@ class Stance:
     world_from_pelvis, world_from_thorax, world_from_head : (3, 3) float
         Rotations.
     directions : dict of str to (3,) float
-        For each of SEGMENTS, the unit vector in the world from its proximal to its distal joint (hand: wrist
-        to fingertips; foot: ankle to the joint of the toes, so a flat foot points a little downwards).
+        Unit vector in the world from the proximal to the distal joint of each of SEGMENTS (hand:
+        wrist to fingertips; foot: ankle to the joint of the toes, so a flat foot points slightly
+        down).
     palms : dict of str to (3,) float, or None
-        For "left" and "right", the unit vector out of the palm, orthogonal to the hand; None: as the arm
-        has it.
+        For "left" and "right", the unit vector out of the palm, orthogonal to the hand; None: it
+        follows the arm.
     racket : (3,) float or None
         Unit vector from butt to top of the racket in the world; None: no racket.
     racket_hand : str
@@ -97,32 +100,27 @@ class Stance:
     world_from_pelvis: np.ndarray
     world_from_thorax: np.ndarray
     world_from_head: np.ndarray
-    directions: dict
-    palms: dict | None = None
+    directions: dict[str, np.ndarray]
+    palms: dict[str, np.ndarray] | None = None
     racket: np.ndarray | None = None
     racket_hand: str = "right"
 
 
-def mid_shoulder(stance, proportions):
-    """Return the midpoint of the shoulder joints (3,), metres: the spine bends between pelvis and thorax."""
+def mid_shoulder(stance: Stance, proportions: Proportions) -> NDArray:
+    """Return the midpoint of the shoulder joints (3,) m; the trunk bends at LUMBAR_SHARE."""
     lumbar = LUMBAR_SHARE * stance.world_from_pelvis[:, 1]
     thoracic = (1 - LUMBAR_SHARE) * stance.world_from_thorax[:, 1]
     return stance.pelvis + proportions.trunk * (lumbar + thoracic)
 
 
-def joints(stance, proportions):
+def joints(stance: Stance, proportions: Proportions) -> dict[str, NDArray]:
     """Place the joint centres of a body in a stance, by forward kinematics.
-
-    Parameters
-    ----------
-    stance : Stance
-    proportions : Proportions
 
     Returns
     -------
     joints : dict of str to (3,) float
-        In the world, metres: {left,right}_{shoulder,elbow,wrist,hand,hip,knee,ankle,toe} (hand: fingertip;
-        toe: joint of the toes), and head (the centre of the skull).
+        In the world, metres: {left,right}_{shoulder,elbow,wrist,hand,hip,knee,ankle,toe} (hand:
+        fingertip; toe: joint of the toes), and head (centre of the skull).
     """
     placed = {}
     shoulders = mid_shoulder(stance, proportions)
@@ -143,7 +141,7 @@ def joints(stance, proportions):
     return placed
 
 
-def mirrored(stance, point, normal):
+def mirrored(stance: Stance, point: NDArray, normal: NDArray) -> Stance:
     """Return the stance in a mirror: left becomes right, and the racket changes hands.
 
     Parameters
@@ -151,13 +149,9 @@ def mirrored(stance, point, normal):
     stance : Stance
     point, normal : (3,) float
         A point of the mirror plane in the world, metres, and its unit normal.
-
-    Returns
-    -------
-    stance : Stance
     """
     mirror = np.eye(3) - 2 * np.outer(normal, normal)
-    keep = np.diag([-1.0, 1.0, 1.0])  # the axes stay right-handed, x to the new left
+    keep = np.diag([-1.0, 1.0, 1.0])  # keeps the axes right-handed, x to the new left
     rotations = {
         name: mirror @ getattr(stance, name) @ keep
         for name in ("world_from_pelvis", "world_from_thorax", "world_from_head")
@@ -172,19 +166,8 @@ def mirrored(stance, point, normal):
     )
 
 
-def moved(stance, rotation, shift):
-    """Return the stance elsewhere.
-
-    Parameters
-    ----------
-    stance : Stance
-    rotation, shift : (3, 3) float, (3,) float
-        A point x goes to `rotation @ x + shift`, metres.
-
-    Returns
-    -------
-    stance : Stance
-    """
+def moved(stance: Stance, rotation: NDArray, shift: NDArray) -> Stance:
+    """Return the stance moved rigidly: a point x goes to `rotation @ x + shift`, metres."""
     return Stance(
         pelvis=rotation @ stance.pelvis + shift,
         world_from_pelvis=rotation @ stance.world_from_pelvis,
@@ -197,7 +180,7 @@ def moved(stance, rotation, shift):
     )
 
 
-def _other(segment):
+def _other(segment: str) -> str:
     """Return the name of the same segment on the other side."""
     side, part = segment.split("_", 1)
     return f"{OTHER[side]}_{part}"

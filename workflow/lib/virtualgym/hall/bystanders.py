@@ -95,7 +95,7 @@ class _Body:
 
     def __init__(self, frame: NDArray, place: NDArray, height_m: float) -> None:
         self.frame, self.origin, self.height_m = frame, place, height_m
-        self.quads = []
+        self.quads: list[Quad] = []
 
     def hang(
         self,

@@ -29,7 +29,8 @@ TAPE_SEGMENTS = 12
 
 def sizes_px(edges: Sequence[float], texel_m: float = BOX_TEXEL_M) -> tuple[int, int]:
     """Return (height, width) px of a texture for a face of width and height `edges`, m."""
-    return tuple(int(np.clip(round(length / texel_m), 4, 1200)) for length in edges[::-1])
+    width, height = (int(np.clip(round(length / texel_m), 4, 1200)) for length in edges)
+    return height, width
 
 
 def crate(

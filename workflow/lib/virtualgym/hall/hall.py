@@ -182,6 +182,6 @@ def _walls(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[Qu
     )
     top[:: round(0.72 / 0.04)] -= 25
     top = textures.scale_contrast(textures.to_bytes(top), preset.contrast)
-    edges = np.array([[wide, 0, 0], [0, deep, 0]])
-    made.append(Quad(np.array([low[0], low[1], tall]), *edges, top, 0.72))
+    u, v = np.array([[wide, 0, 0], [0, deep, 0]])
+    made.append(Quad(np.array([low[0], low[1], tall]), u, v, top, 0.72))
     return made

@@ -80,9 +80,10 @@ def paint_court(court: Court, preset: Preset, rng: np.random.Generator) -> Paint
     for point in np.flatnonzero(xyz[:, 2] == 0):
         for axis in (0, 1):
             xyz[point, axis] += _shift(low, high, across, error, court.xyz[point, :2], axis)
-    net = _net(court.net, preset, rng) if court.net is not None else None
-    if net is not None:
-        _move_posts(court, net, xyz)
+    net = None
+    if court.net is not None:
+        net = _net(court.net, preset, rng)
+        _move_posts(court.net, court.xyz, net, xyz)
     return PaintedCourt(moved.reshape(-1, 4), xyz, net)
 
 
@@ -119,9 +120,9 @@ def _net(table: dict, preset: Preset, rng: np.random.Generator) -> Net:
     return Net(feet, tips, table["post_height_m"] - table["mid_height_m"])
 
 
-def _move_posts(court: Court, net: Net, xyz: NDArray) -> None:
+def _move_posts(table: dict, nominal: NDArray, net: Net, xyz: NDArray) -> None:
     """Move the court's points on posts to the true posts."""
-    for post, x in enumerate(court.net["x_m"]):
-        for height, true in ((0.0, net.feet[post]), (court.net["post_height_m"], net.tips[post])):
-            named = np.array([x, court.net["y_m"], height])
-            xyz[np.abs(court.xyz - named).max(axis=1) < ON_EDGE_M] = true
+    for post, x in enumerate(table["x_m"]):
+        for height, true in ((0.0, net.feet[post]), (table["post_height_m"], net.tips[post])):
+            named = np.array([x, table["y_m"], height])
+            xyz[np.abs(nominal - named).max(axis=1) < ON_EDGE_M] = true

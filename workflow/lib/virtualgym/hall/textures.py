@@ -1,6 +1,6 @@
 """Procedural textures of a sports hall: floor, walls, posters, crates, cloth."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
@@ -57,7 +57,9 @@ def to_bytes(values: NDArray) -> NDArray:
     return np.clip(values, 0, 255, out=values).astype(np.uint8)
 
 
-def paint(image: NDArray, corners: ArrayLike, colour: ArrayLike, *, cover: float = 1.0) -> None:
+def paint(
+    image: NDArray, corners: NDArray | Sequence[float], colour: ArrayLike, *, cover: float = 1.0
+) -> None:
     """Fill a rectangle in place; pixels on its edges are mixed by the covered area.
 
     Parameters
@@ -85,7 +87,11 @@ def paint(image: NDArray, corners: ArrayLike, colour: ArrayLike, *, cover: float
 
 
 def planks(
-    size_m: ArrayLike, texel_m: float, contrast: float, n_scuffs: int, rng: np.random.Generator
+    size_m: Iterable[float],
+    texel_m: float,
+    contrast: float,
+    n_scuffs: int,
+    rng: np.random.Generator,
 ) -> NDArray:
     """Return a wooden floor, (h, w, 3) uint8.
 
