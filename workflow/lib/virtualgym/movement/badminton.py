@@ -1,26 +1,31 @@
-"""Badminton: to a corner of the own half, a stroke there, and back to the base."""
+"""Badminton drills: run to a corner of the own half, play a stroke, return to the base."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from virtualgym.movement import footwork, upper_body
 from virtualgym.movement.footwork import Station
+from virtualgym.movement.player import Motion, Player
 
-BASE = (0.0, -0.53)  # of half the court's width, of the half court's length from the net
+# ASSUME: places, speeds and durations of a club player's drill; no source is recorded.
+BASE = (0.0, -0.53)  # as fractions of half the court's width, and of half its length from the net
 REAR_FEET = {"left": (0.27, 0.02, 0.35), "right": (-0.29, -0.02, -0.2)}
-SPEED_M_S = (1.35, 1.7)  # mean of a trip; the highest is half as much again
-LEAST_S = 0.75
-PLACE_M = 0.12  # scatter of where a corner is
+SPEED_M_S = (1.35, 1.7)  # mean speed of a trip; the highest is 1.5 times that
+LEAST_S = 0.75  # of a trip
+PLACE_M = 0.12  # scatter of the corners: two standard deviations
 SWING_S = (0.13, 0.15)  # from the cocked arm to the hit
-FOLLOW_SWINGS = 1.75  # from the hit to the end of the follow-through, in swings
-HALF_WINDOW_S = 8 / 30  # of the 17 frames at 30 fps from the start to the end of a hit
+FOLLOW_SWINGS = 1.75  # from the hit to the end of the follow-through, in swing durations
+HALF_WINDOW_S = 8 / 30  # half of a hit's 17 frames at 30 fps
 CADENCE_HZ = 3.8
 
 
 @dataclass(frozen=True)
 class Corner:
-    """Where a stroke is played: place as BASE, heading in degrees, which stroke."""
+    """Where a stroke is played: place in the units of BASE, heading in degrees, kind of stroke."""
 
     place: tuple
     heading_deg: float
@@ -38,29 +43,29 @@ CORNERS = {
 
 
 class Drill:
-    """A player's stations, poses and events, as they are added one after another.
+    """A player's stations, poses and events, added one after another.
 
     Parameters
     ----------
-    player : virtualgym.movement.player.Player
+    player : Player
     swing : float
-        Duration of strokes over that of real ones; above 1 they are only shown.
+        Duration of strokes over that of real ones; above 1 they are only indicated.
     """
 
-    def __init__(self, player, swing=1.0):
+    def __init__(self, player: Player, swing: float = 1.0) -> None:
         rng, self.half_m = player.rng, player.half_m
         self.player, self.rng, self.swing = player, rng, swing
         base = self._at(BASE)
         self.stations = [Station(0.0, rng.uniform(0.6, 0.9), base, rng.normal(0, 0.05))]
         self.keys = [(0.0, upper_body.READY), (self.time_s - 0.1, _low(rng))]
-        self.events = {}
+        self.events: dict[str, float] = {}
 
     @property
-    def time_s(self):
-        """When the player leaves the last station."""
+    def time_s(self) -> float:
+        """Time at which the player leaves the last station."""
         return self.stations[-1].leave_s
 
-    def visit(self, name):
+    def visit(self, name: str) -> None:
         """Go to a corner, play the stroke there, and come back to the base."""
         corner = CORNERS[name]
         heading = np.radians(corner.heading_deg + self.rng.normal(0, 4))
@@ -70,8 +75,8 @@ class Drill:
         getattr(self, f"_{corner.stroke}")(arrive, place, heading)
         self._return()
 
-    def finish(self):
-        """Return the motion: a rest at the base ends it."""
+    def finish(self) -> Motion:
+        """Return the motion, which ends with a rest at the base."""
         last = self.stations[-1]
         stop = last.arrive_s + 0.9
         self.stations[-1] = replace(last, leave_s=stop)
@@ -82,17 +87,23 @@ class Drill:
         course = upper_body.course(self.keys, self.rng)
         return self.player.motion(stop, route, feet, course, events=self.events)
 
-    def _net(self, arrive, place, heading, pose=upper_body.NET_REACH):
+    def _net(
+        self,
+        arrive: float,
+        place: NDArray,
+        heading: float,
+        pose: upper_body.Pose = upper_body.NET_REACH,
+    ) -> None:
         hit = arrive + self.rng.uniform(0.12, 0.2)
         leave = hit + self.rng.uniform(0.1, 0.2)
         self._stay(arrive, leave, place, heading, feet=footwork.LUNGE, settle_s=0.24)
         self.keys += [(arrive - 0.06, pose.but(height=0.82, lean=20)), (hit, pose), (leave, pose)]
         self._hit(hit)
 
-    def _side(self, arrive, place, heading):
+    def _side(self, arrive: float, place: NDArray, heading: float) -> None:
         self._net(arrive, place, heading, upper_body.SIDE_REACH)
 
-    def _overhead(self, arrive, place, heading):
+    def _overhead(self, arrive: float, place: NDArray, heading: float) -> None:
         swing = self.swing * self.rng.uniform(*SWING_S)
         prepared = arrive - 0.2
         hit = max(arrive + 0.32, prepared + 2.6 * swing) + self.rng.uniform(0, 0.12)
@@ -106,17 +117,19 @@ class Drill:
         ]
         self._hit(hit)
 
-    def _stay(self, arrive, leave, place, heading, **options):
+    def _stay(
+        self, arrive: float, leave: float, place: NDArray, heading: float, **options: Any
+    ) -> None:
         self.stations.append(Station(arrive, leave, place, heading, lead="right", **options))
 
-    def _hit(self, time_s):
+    def _hit(self, time_s: float) -> None:
         number = 1 + sum(name.endswith("_start") for name in self.events)
         self.events[f"hit_{number}"] = time_s
         self.events[f"hit_{number}_start"] = time_s - HALF_WINDOW_S
         self.events[f"hit_{number}_stop"] = time_s + HALF_WINDOW_S
 
-    def _return(self):
-        """Go back to the base, the right foot first, and get ready."""
+    def _return(self) -> None:
+        """Return to the base, the right foot first, and get ready."""
         place, start = self._at(BASE, 0.08), self.time_s
         arrive = start + self._lasts(place)
         steps = max(2, round((arrive - start) * CADENCE_HZ))
@@ -131,44 +144,33 @@ class Drill:
             (leave - 0.05, _low(self.rng)),
         ]
 
-    def _at(self, share, scatter_m=PLACE_M):
+    def _at(self, share: tuple[float, float], scatter_m: float = PLACE_M) -> NDArray:
         return np.array(share) * self.half_m + self.rng.normal(0, scatter_m / 2, 2)
 
-    def _lasts(self, place):
-        """Return the duration of the way from the last station."""
-        way = np.linalg.norm(place - self.stations[-1].place)
+    def _lasts(self, place: NDArray) -> float:
+        """Return the duration of the trip from the last station."""
+        way = float(np.linalg.norm(place - self.stations[-1].place))
         return max(LEAST_S, way / self.rng.uniform(*SPEED_M_S))
 
 
-def rounds(player, seconds, swing=1.0):
-    """Visit all corners in random order, again and again, for at least a time.
-
-    Parameters
-    ----------
-    player : virtualgym.movement.player.Player
-    seconds : float
-    swing : float
-        See `Drill`.
-
-    Returns
-    -------
-    motion : virtualgym.movement.player.Motion
-    """
-    drill, names = Drill(player, swing), []
+def rounds(player: Player, seconds: float, swing: float = 1.0) -> Motion:
+    """Visit all corners in random order, again and again, for at least `seconds`."""
+    drill = Drill(player, swing)
+    names: list[str] = []
     while drill.time_s < seconds:
         names = names or player.rng.permutation(list(CORNERS)).tolist()
         drill.visit(names.pop())
     return drill.finish()
 
 
-def visits(player, names):
-    """Return the motion of visiting corners in order, with strokes at full speed."""
+def visits(player: Player, names: Iterable[str]) -> Motion:
+    """Visit corners in this order, with strokes at full speed."""
     drill = Drill(player)
     for name in names:
         drill.visit(name)
     return drill.finish()
 
 
-def _low(rng):
+def _low(rng: np.random.Generator) -> upper_body.Pose:
     """Return the crouch from which a player starts."""
     return upper_body.READY.but(height=0.83 + rng.normal(0, 0.01), lean=25)

@@ -1,21 +1,25 @@
-"""Footwork: where and when the feet are planted, and how they move between."""
+"""Footwork: where and when the feet are planted, and how they move in between."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from virtualgym.body.stance import OTHER
+from virtualgym.body.stance import OTHER, Proportions
 from virtualgym.movement import easing, two_bone_ik
 
 OWN = {"left": 1.0, "right": -1.0}  # side on the body's x axis
-HALF_TRACK_M = 0.11  # of the feet from the way of the pelvis, walking
+# ASSUME: gait values chosen to look natural and to keep the legs apart; no source is recorded.
+HALF_TRACK_M = 0.11  # of a foot from the pelvis's path, walking
 GAP_M = 0.13  # a landing foot stays at least this far on its own side of the other
-FURTHEST_M = 0.32  # but is moved no further than that for it
-ROLL_SHARE = 0.45  # of a stand on the way, the last part is on the toes
-RAMP_S = 0.9  # the longest in which a walk gets up its speed
-TURN_SHARE = 0.7  # of a way, in which the body turns
+FURTHEST_M = 0.32  # but is moved no further than this to do so
+ROLL_SHARE = 0.45  # share of a stance phase, at its end, on the toes
+RAMP_S = 0.9  # longest time to reach walking speed
+TURN_SHARE = 0.7  # share of a trip in which the body turns
+# Feet at a station: left, forward (m) of the pelvis, yaw (rad).
 WIDE = {"left": (0.24, 0.05, 0.25), "right": (-0.24, -0.03, -0.25)}
 UPRIGHT = {"left": (0.10, 0.0, 0.12), "right": (-0.10, 0.0, -0.12)}
 LUNGE = {"left": (0.10, -0.55, 0.75), "right": (-0.10, 0.37, 0.0)}
@@ -23,7 +27,7 @@ LUNGE = {"left": (0.10, -0.55, 0.75), "right": (-0.10, 0.37, 0.0)}
 
 @dataclass(frozen=True)
 class Station:
-    """A stay: the pelvis rests, both feet stand.
+    """A stop: the pelvis rests, both feet stand.
 
     Attributes
     ----------
@@ -34,13 +38,13 @@ class Station:
     heading : float
         Radians, anticlockwise from above; 0 looks along y.
     feet : dict of str to (left, forward, yaw)
-        Of each foot in the body's heading, metres and radians.
+        Of each foot relative to the pelvis and the heading, metres and radians.
     lead : str
         The foot that lands last.
     settle_s : float
-        How long after the landing the pelvis still moves.
+        Time after the landing in which the pelvis still moves.
     steps : int or None
-        Footfalls on the way here; None: by the time that it takes.
+        Number of steps on the way here; None: from the duration.
     """
 
     arrive_s: float
@@ -55,11 +59,12 @@ class Station:
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """The pelvis over the floor: rest at each station, one smooth move to the next."""
+    """The pelvis over the floor: at rest at each station, one smooth move to the next."""
 
-    stations: tuple
+    stations: tuple[Station, ...]
+    _table: dict[str, NDArray] = field(init=False, repr=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         pairs = list(pairwise(self.stations))
         lasts = np.array([b.arrive_s + b.settle_s - a.leave_s for a, b in pairs])
         table = {
@@ -72,7 +77,7 @@ class Route:
         }
         object.__setattr__(self, "_table", table)
 
-    def at(self, time_s):
+    def at(self, time_s: float) -> tuple[NDArray, float]:
         """Return place (2,) m and heading (radians) at a time."""
         table, first = self._table, self.stations[0]
         x = (time_s - table["start"]) / table["lasts"]
@@ -81,8 +86,8 @@ class Route:
         return first.place + moved @ table["moves"], first.heading + turned @ table["turns"]
 
 
-def _turns_late(before, after):
-    """Return when on the way, a share, the turn begins: the body looks along its way as long as it can."""
+def _turns_late(before: Station, after: Station) -> float:
+    """Return the share of the trip after which the turn begins: the body faces its way longest."""
     way = after.place - before.place
     if np.linalg.norm(way) < 0.1:
         return (1 - TURN_SHARE) / 2
@@ -93,20 +98,25 @@ def _turns_late(before, after):
 
 @dataclass(frozen=True, eq=False)
 class Lap:
-    """The pelvis along a curve, looking where it goes; from rest to rest.
+    """The pelvis along a curve, facing forwards, from rest to rest.
 
     Attributes
     ----------
     corners : (n, 2) float
         The curve passes through them, metres.
     start_s, stop_s : float
+    length_m : float
+        Of the curve.
     """
 
     corners: np.ndarray
     start_s: float
     stop_s: float
+    length_m: float = field(init=False)
+    _curve: CubicSpline = field(init=False, repr=False)
+    _heading: CubicSpline = field(init=False, repr=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         chords = np.linalg.norm(np.diff(self.corners, axis=0), axis=1)
         rough = CubicSpline(np.append(0.0, chords.cumsum()), self.corners)
         fine = np.linspace(0, chords.sum(), 100 * len(self.corners))
@@ -117,53 +127,62 @@ class Lap:
         object.__setattr__(self, "_heading", CubicSpline(along, headings))
         object.__setattr__(self, "length_m", along[-1])
 
-    def at(self, time_s):
+    def at(self, time_s: float) -> tuple[NDArray, float]:
         """Return place (2,) m and heading (radians) at a time."""
         lasts = self.stop_s - self.start_s
         ramp = min(0.5, RAMP_S / lasts)
         along = self.length_m * easing.ease((time_s - self.start_s) / lasts, ramp)
         return self._curve(along), float(self._heading(along))
 
-    def ends(self, arrive_s, leave_s):
-        """Return the two stations at which it starts and stops, standing, between these times."""
+    def ends(self, arrive_s: float, leave_s: float) -> list[Station]:
+        """Return the stations, standing, before its start (from `arrive_s`) and after its end."""
         stations = []
-        for time_s, span in (
-            (self.start_s, (arrive_s, self.start_s)),
-            (self.stop_s, (self.stop_s, leave_s)),
+        for time_s, start_s, stop_s in (
+            (self.start_s, arrive_s, self.start_s),
+            (self.stop_s, self.stop_s, leave_s),
         ):
             place, heading = self.at(time_s)
-            stations.append(Station(*span, place, heading, feet=UPRIGHT, settle_s=0.0))
+            stations.append(Station(start_s, stop_s, place, heading, feet=UPRIGHT, settle_s=0.0))
         return stations
 
 
-def plan(stations, proportions, rng, *, cadence_hz=3.4, air=0.95, route=None):
-    """Let a body step from station to station.
+def plan(
+    stations: Sequence[Station],
+    proportions: Proportions,
+    rng: np.random.Generator,
+    *,
+    cadence_hz: float = 3.4,
+    air: float = 0.95,
+    route: Lap | None = None,
+) -> tuple[Route | Lap, dict[str, "Foot"]]:
+    """Plan the steps from station to station.
 
     Parameters
     ----------
     stations : sequence of Station
         In order of time.
-    proportions : virtualgym.body.stance.Proportions
+    proportions : Proportions
     rng : numpy.random.Generator
         Footfalls scatter by centimetres.
     cadence_hz : float
         Steps per second on the way.
     air : float
-        Duration of a swing over that of a step: below 1 both feet are down in between, above 1 none.
+        Duration of a swing over that of a step: below 1 both feet stand in between, above 1
+        neither.
     route : Lap or None
-        The way of the pelvis; None: straight from station to station.
+        The path of the pelvis; None: straight from station to station.
 
     Returns
     -------
     route : Route or Lap
-    feet : dict of str to footsteps.Foot
+    feet : dict of str to Foot
     """
-    route = route or Route(tuple(stations))
+    path = route or Route(tuple(stations))
     first = stations[0]
     falls = {side: [(first.arrive_s, *_beside(first, side))] for side in OTHER}
-    offs = {side: [] for side in OTHER}
+    offs: dict[str, list[tuple[float, float]]] = {side: [] for side in OTHER}
     for before, after in pairwise(stations):
-        _trip(route, before, after, (cadence_hz, air), (falls, offs), rng)
+        _trip(path, before, after, (cadence_hz, air), (falls, offs), rng)
     plants, rolls = {}, {}
     for side in OTHER:
         ends = [*(off for off, _ in offs[side]), stations[-1].leave_s]
@@ -172,11 +191,11 @@ def plan(stations, proportions, rng, *, cadence_hz=3.4, air=0.95, route=None):
             for (land, place, yaw), off in zip(falls[side], ends, strict=True)
         ]
         rolls[side] = [roll for _, roll in offs[side]]
-    return route, walk(plants, proportions, rolls=rolls)
+    return path, walk(plants, proportions, rolls=rolls)
 
 
-def _trip(route, before, after, gait, record, rng):
-    """Add the footfalls and take-offs of one trip to the record."""
+def _trip(route, before, after, gait, record, rng: np.random.Generator):
+    """Add the footfalls and toe-offs of one trip to the record."""
     cadence_hz, air = gait
     falls, offs = record
     lasts = after.arrive_s - before.leave_s
@@ -198,15 +217,17 @@ def _trip(route, before, after, gait, record, rng):
         falls[side].append((land, place, yaw))
 
 
-def _beside(station, side):
+def _beside(station: Station, side: str) -> tuple[NDArray, float]:
     """Return place and yaw of a foot at a station."""
     left, forward, yaw = station.feet[side]
     axes = two_bone_ik.facing(station.heading)[:2]
     return station.place + left * axes[:, 0] + forward * axes[:, 2], station.heading + yaw
 
 
-def _below(route, stand_s, side, rng):
-    """Return place and yaw of a foot that stands between two times: midway between the pelvis then."""
+def _below(
+    route: Route | Lap, stand_s: tuple[float, float], side: str, rng: np.random.Generator
+) -> tuple[NDArray, float]:
+    """Return place and yaw of a foot that stands between two times: below the pelvis's mean."""
     (first, _), (last, _) = (route.at(time_s) for time_s in stand_s)
     _, heading = route.at(sum(stand_s) / 2)
     left = two_bone_ik.facing(heading)[:2, 0]
@@ -214,28 +235,29 @@ def _below(route, stand_s, side, rng):
     return (first + last) / 2 + aside, heading + 0.12 * OWN[side]
 
 
-def _own_side(place, yaw, side, other):
-    """Move a footfall so that the legs do not cross: going sideways, a foot closes up to the other."""
+def _own_side(place: NDArray, yaw: float, side: str, other: NDArray) -> NDArray:
+    """Move a footfall so that the legs do not cross in sideways steps."""
     own = OWN[side] * two_bone_ik.facing(yaw)[:2, 0]
     return place + np.clip(GAP_M - (place - other) @ own, 0.0, FURTHEST_M) * own
 
 
-SLAP_S = 0.07  # from the heel's landing until the toes are down
-CLEARANCE_M = 0.19  # between the middles of a swinging foot and a standing one
+# ASSUME: chosen to look natural, as above.
+SLAP_S = 0.07  # from heel strike until the toes are down
+CLEARANCE_M = 0.19  # between the centres of a swinging and a standing foot
 
 
 @dataclass(frozen=True)
 class Plant:
-    """One stand of one foot.
+    """One stance phase of one foot.
 
     Attributes
     ----------
     land_s, off_s : float
-        The foot carries from landing until its toes leave the floor.
+        Landing, and toe-off.
     place : (2,) float
         Of the ankle while the foot is flat, metres.
     yaw : float
-        Where the toes point, as a heading, radians.
+        Heading of the toes, radians.
     """
 
     land_s: float
@@ -246,27 +268,28 @@ class Plant:
 
 @dataclass(frozen=True, eq=False)
 class Foot:
-    """The way of one foot, from its plants.
+    """The path of one foot, from its plants.
 
     Attributes
     ----------
     plants : tuple of Plant
     roll_s : (n - 1,) float
-        How long before each take-off the heel begins to rise.
+        Time before each toe-off at which the heel begins to rise.
     aside : (n - 1, 2) float
         Detour of each swing round the standing foot, metres.
     ankle_m, length_m, toe_m : float
         Height of the ankle, length from ankle to the joint of the toes, height of that joint.
     """
 
-    plants: tuple
+    plants: tuple[Plant, ...]
     roll_s: np.ndarray
     aside: np.ndarray
     ankle_m: float
     length_m: float
     toe_m: float
+    _table: dict[str, NDArray] = field(init=False, repr=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         before, after = self.plants[:-1], self.plants[1:]
         steps = np.array([b.place - a.place for a, b in zip(before, after, strict=True)])
         steps = steps.reshape(-1, 2)
@@ -282,8 +305,8 @@ class Foot:
         }
         object.__setattr__(self, "_table", table)
 
-    def at(self, time_s):
-        """Return the ankle (3,) m, the direction ankle to toes (3,) and the lift m at a time."""
+    def at(self, time_s: float) -> tuple[NDArray, NDArray, float]:
+        """Return the ankle (3,) m, the direction to the toes (3,) and the lift m at a time."""
         table = self._table
         first, swing = self.plants[0], table["land"] - table["off"]
         x = (time_s - table["off"]) / swing if len(swing) else swing
@@ -300,44 +323,42 @@ class Foot:
         down = flat + heel - toe
         return ankle, np.append(np.cos(down) * forward, -np.sin(down)), lift
 
-    def standing(self):
-        """Return the spans (n, 2) s during which the foot is flat and its ankle still."""
+    def standing(self) -> NDArray:
+        """Return the intervals (n, 2) s in which the foot is flat and its ankle still."""
         early = [
             *(plant.off_s - roll for plant, roll in zip(self.plants, self.roll_s, strict=False))
         ]
         stops = [*early, self.plants[-1].off_s]
         return np.array([(p.land_s, stop) for p, stop in zip(self.plants, stops, strict=True)])
 
-    def _flat_slope(self):
-        """Return by how much a flat foot points down, radians."""
+    def _flat_slope(self) -> float:
+        """Return the angle by which a flat foot points down, radians."""
         return np.arcsin((self.ankle_m - self.toe_m) / self.length_m)
 
-    def _heel(self, time_s, x, swing):
-        """Return how far the heel is up at each step: it rises round the toes, and falls in the swing."""
+    def _heel(self, time_s: float, x: NDArray, swing: NDArray) -> NDArray:
+        """Return the heel's rise 0..1 at each step: up round the toes, down in the swing."""
         start = self._table["off"] - self.roll_s
         rise = easing.step((time_s - start) / (self.roll_s + 0.25 * swing))
         return rise * (1 - easing.step((x - 0.25) / 0.6))
 
-    def _toe(self, time_s, x, swing):
-        """Return how far the toes are up at each step, about the ankle: as the heel lands first."""
+    def _toe(self, time_s: float, x: NDArray, swing: NDArray) -> NDArray:
+        """Return the rise 0..1 of the toes about the ankle at each step: the heel lands first."""
         fall = easing.step((time_s - self._table["land"]) / SLAP_S)
         return easing.step((x - 0.5) / 0.45) * (1 - fall)
 
 
-def walk(plants, proportions, *, rolls):
+def walk(
+    plants: dict[str, list[Plant]], proportions: Proportions, *, rolls: dict[str, list[float]]
+) -> dict[str, Foot]:
     """Make both feet from their plants.
 
     Parameters
     ----------
     plants : dict of str to list of Plant
         For "left" and "right", in order of time.
-    proportions : virtualgym.body.stance.Proportions
+    proportions : Proportions
     rolls : dict of str to list of float
-        For each swing, how long before it the heel begins to rise, seconds; cut to what the stand allows.
-
-    Returns
-    -------
-    feet : dict of str to Foot
+        Time before each swing at which the heel begins to rise, s; limited by the stance phase.
     """
     feet = {}
     for side, other in (("left", "right"), ("right", "left")):
@@ -358,8 +379,8 @@ def walk(plants, proportions, *, rolls):
     return feet
 
 
-def _detour(before, after, others, side):
-    """Return by how much (2,) m a swing bows to its own side, so as not to pass through the standing leg."""
+def _detour(before: Plant, after: Plant, others: list[Plant], side: str) -> NDArray:
+    """Return the detour (2,) m of a swing to its own side, past the standing leg."""
     middle = (before.off_s + after.land_s) / 2
     standing = min(others, key=lambda plant: abs((plant.land_s + plant.off_s) / 2 - middle))
     way = after.place - before.place

@@ -1,31 +1,40 @@
-"""A motion of a virtual player: route, feet and poses put together into a stance at any time."""
+"""A virtual player's motion: route, feet and poses, combined into a stance at any time."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import convolve1d, minimum_filter1d
 
+from courtside.calibration.court.court import Court
 from virtualgym.body import stance
 from virtualgym.body.stance import SIDES, Stance
 from virtualgym.movement import two_bone_ik
+from virtualgym.movement.footwork import Foot, Lap, Route
+from virtualgym.movement.tpose_clap import Arms
+from virtualgym.movement.upper_body import Course, Moment
 
+# ASSUME: coupling of arms, trunk and pelvis to the steps, chosen to look natural; no source is
+# recorded.
 MOST_REACH = 0.994  # of a leg's length, so that no knee is ever locked
 STANDING_REACH = 0.999
-SOFT_S, GRID_S = 0.12, 0.02  # the pelvis's height is smooth over that; sampled at that
+SOFT_S, GRID_S = 0.12, 0.02  # smoothing and sampling of the pelvis's height
 SWING = 0.85  # radians of an arm per leg length between the feet, forward
 COUNTER = 0.22  # radians of the pelvis per leg length between the feet; the thorax turns against it
-PELVIS_SHARE = 0.35  # of the lean and of the twist of the thorax, the pelvis takes part
+PELVIS_SHARE = 0.35  # pelvis's share of the thorax's lean and twist
 DROP = 0.35  # radians of roll of the pelvis per metre of a foot's lift
-SWAY = 0.18  # of a foot's lift, the pelvis moves over the other
-NARROWEST = 0.35  # of a leg's length: the lowest a hip comes over its ankle
+SWAY = 0.18  # shift of the pelvis over the standing foot per lift of the other
+NARROWEST = 0.35  # of a leg's length: least height of a hip over its ankle
 
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """Feet (ankle, direction, lift), stride, body axes when upright, of the pelvis, and its place (2,)."""
+    """Feet (ankle, direction, lift), stride, upright body axes, pelvis axes, pelvis place (2,)."""
 
-    feet: dict
+    feet: dict[str, tuple[NDArray, NDArray, float]]
     stride: float
     upright: np.ndarray
     pelvis: np.ndarray
@@ -40,38 +49,40 @@ class Motion:
     ----------
     seconds : float
     events : dict of str to float
-        True times of what happens, s.
-    proportions : stance.Proportions
+        True times of events, s.
+    proportions : Proportions
         Of the body for which the feet were planted.
-    route : footwork.Route
-    feet : dict of str to footsteps.Foot
-    course : poses.Course
-    arms : clapping.Arms or None
-        Takes over both arms in its span.
+    route : Route or Lap
+    feet : dict of str to Foot
+    course : Course
+    arms : tpose_clap.Arms or None
+        Controls both arms during claps.
     racket : bool
     reach : float
-        The longest a leg gets, in leg lengths.
+        Greatest distance from hip to ankle, in leg lengths.
     frame : (3, 3) float, (3,) float
-        The player's half of the court in the world: origin on the floor below the middle of the net, y
-        towards the net.
+        The player's half of the court in the world: origin on the floor below the middle of the
+        net, y towards the net.
     left_handed : bool
-        Performed in the mirror of the court's long middle line.
+        Mirrored at the court's long centre line.
     """
 
     seconds: float
-    events: dict
+    events: dict[str, float]
     proportions: stance.Proportions
-    route: object
-    feet: dict
-    course: object
-    arms: object = None
+    route: Route | Lap
+    feet: dict[str, Foot]
+    course: Course
+    arms: Arms | None = None
     racket: bool = True
     reach: float = MOST_REACH
-    frame: tuple = (np.eye(3), np.zeros(3))
+    frame: tuple[NDArray, NDArray] = (np.eye(3), np.zeros(3))
     left_handed: bool = False
+    _height: CubicSpline = field(init=False, repr=False)
 
-    def __post_init__(self):
-        # The lowest of the next and the last SOFT_S, averaged over as long: smooth, and never too high.
+    def __post_init__(self) -> None:
+        # The minimum over SOFT_S before and after, averaged over the same window: smooth, never too
+        # high.
         times = np.arange(-2 * SOFT_S, self.seconds + 2 * SOFT_S, GRID_S)
         highest = [self._highest(time_s) for time_s in times]
         lowest = minimum_filter1d(highest, 2 * round(SOFT_S / GRID_S) + 1)
@@ -79,33 +90,32 @@ class Motion:
         smooth = convolve1d(lowest, kernel / kernel.sum())
         object.__setattr__(self, "_height", CubicSpline(times, smooth))
 
-    def stance(self, time_s):
-        """Return the `stance.Stance` at a time, s; before 0 and after the end it stays as there."""
+    def stance(self, time_s: float) -> Stance:
+        """Return the stance at a time, clipped to the motion's duration."""
         time_s = float(np.clip(time_s, 0.0, self.seconds))
         local = self._local(time_s)
         if self.left_handed:
             local = stance.mirrored(local, np.zeros(3), np.array([1.0, 0.0, 0.0]))
         return stance.moved(local, *self.frame)
 
-    def planted(self, side):
-        """Return the spans (n, 2) s during which a foot stands flat and still."""
+    def planted(self, side: str) -> NDArray:
+        """Return the intervals (n, 2) s in which a foot stands flat and still."""
         own = stance.OTHER[side] if self.left_handed else side
         return self.feet[own].standing()
 
-    def _body(self, moment, time_s):
-        """Return what the legs and the trunk do, apart from the pelvis's height."""
+    def _body(self, moment: Moment, time_s: float) -> _Body:
+        """Return the state of legs and trunk, without the pelvis's height."""
         place, heading = self.route.at(time_s)
         feet = {side: self.feet[side].at(time_s) for side in SIDES}
         stride = self._stride(feet, heading)
         upright = two_bone_ik.facing(heading)
-        drop = (
-            feet["right"][2] - feet["left"][2]
-        )  # over the standing foot, and down on the other side
+        # Over the standing foot, and down on the other side.
+        drop = feet["right"][2] - feet["left"][2]
         turned = PELVIS_SHARE * moment.twist - COUNTER * stride
         pelvis = two_bone_ik.turn(turned, PELVIS_SHARE * moment.lean, DROP * drop)
         return _Body(feet, stride, upright, upright @ pelvis, place + SWAY * drop * upright[:2, 0])
 
-    def _local(self, time_s):
+    def _local(self, time_s: float) -> Stance:
         moment = self.course.at(time_s)
         body = self._body(moment, time_s)
         thorax = two_bone_ik.turn(
@@ -127,21 +137,21 @@ class Motion:
             racket=thorax @ racket if self.racket else None,
         )
 
-    def _stride(self, feet, heading):
-        """Return how far the right foot is ahead of the left, in leg lengths, limited."""
+    def _stride(self, feet: dict[str, tuple[NDArray, NDArray, float]], heading: float) -> float:
+        """Return the right foot's lead over the left in leg lengths, limited to +-1."""
         forward = np.array([-np.sin(heading), np.cos(heading)])
         ahead = (feet["right"][0] - feet["left"][0])[:2] @ forward
         return np.tanh(ahead / self._leg())
 
-    def _leg(self):
+    def _leg(self) -> float:
         return self.proportions.thigh + self.proportions.shank
 
-    def _hips(self, pelvis):
+    def _hips(self, pelvis: NDArray) -> dict[str, NDArray]:
         half = self.proportions.hip_width / 2
         return {side: sign * half * pelvis[:, 0] for side, sign in (("left", 1), ("right", -1))}
 
-    def _highest(self, time_s):
-        """Return how high the pelvis may be, m: as the pose wants it, but both feet within reach."""
+    def _highest(self, time_s: float) -> float:
+        """Return the pelvis's height, m: that of the pose, or less to keep both feet in reach."""
         moment = self.course.at(time_s)
         body = self._body(moment, time_s)
         leg, lowest = self._leg(), self.proportions.ankle_height
@@ -153,8 +163,8 @@ class Motion:
             heights.append(ankle[2] + rise - hip[2])
         return min(heights)
 
-    def _legs(self, middle, body):
-        directions = {}
+    def _legs(self, middle: NDArray, body: _Body) -> dict[str, NDArray]:
+        directions: dict[str, NDArray] = {}
         lengths = self.proportions.thigh, self.proportions.shank
         for side, hip in self._hips(body.pelvis).items():
             ankle, foot, _ = body.feet[side]
@@ -164,7 +174,9 @@ class Motion:
             directions |= {f"{side}_thigh": thigh, f"{side}_shank": shank, f"{side}_foot": foot}
         return directions
 
-    def _arms(self, moment, stride, time_s):
+    def _arms(
+        self, moment: Moment, stride: float, time_s: float
+    ) -> tuple[dict[str, NDArray], dict[str, NDArray], NDArray]:
         """Return directions and palms of the arms and the racket, in the axes of the thorax."""
         rows = {}
         for k, (side, sign) in enumerate((("left", 1.0), ("right", -1.0))):
@@ -173,7 +185,8 @@ class Motion:
         racket = swung @ moment.racket
         if self.arms is not None:
             rows = self.arms.blend(rows, time_s)
-        directions, palms = {}, {}
+        directions: dict[str, NDArray] = {}
+        palms = {}
         for side, (upper, fore, hand, palm) in rows.items():
             directions |= {
                 f"{side}_upper_arm": upper,
@@ -186,37 +199,35 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Player:
-    """Who performs: a body, on a half of a court, from one source of chance.
-
-    Attributes
-    ----------
-    proportions : stance.Proportions
-    court : courtside.calibration.court.court.Court
-    rng : numpy.random.Generator
-    hand : str
-        "right" or "left".
-    half : str
-        "near" (y below the net's) or "far".
-    """
+    """Who performs: a body on one half ("near": y below the net's, or "far") of a court."""
 
     proportions: stance.Proportions
-    court: object
+    court: Court
     rng: np.random.Generator
     hand: str = "right"
     half: str = "near"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.hand not in SIDES or self.half not in ("near", "far"):
             found = f"{self.hand}, {self.half}"
             raise ValueError(f"expected hand left or right and half near or far, found {found}")
 
     @property
-    def half_m(self):
+    def half_m(self) -> NDArray:
         """Half the court's width and length (2,), m."""
         return np.asarray(self.court.size_m, float) / 2
 
-    def motion(self, seconds, route, feet, course, *, events=None, **options):
-        """Return the `Motion` of a route, feet and poses planned in the frame of the player's half."""
+    def motion(
+        self,
+        seconds: float,
+        route: Route | Lap,
+        feet: dict[str, Foot],
+        course: Course,
+        *,
+        events: Mapping[str, float] | None = None,
+        **options: Any,
+    ) -> Motion:
+        """Return the motion of a route, feet and poses in the frame of the player's half."""
         turned = np.diag([1.0, 1.0, 1.0] if self.half == "near" else [-1.0, -1.0, 1.0])
         return Motion(
             seconds=float(seconds),

@@ -1,16 +1,19 @@
-"""T-pose and clap: arms straight out to the sides, straight to the front until the palms meet, and down."""
+"""T-pose and clap: straight arms out to the sides, to the front until the palms meet, and down."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from virtualgym.body.stance import Proportions
 from virtualgym.movement import easing, two_bone_ik
 
+# ASSUME: durations and speeds chosen to look natural; no source is recorded.
 RAISE_S, STILL_S = (0.8, 1.1), (1.2, 1.8)
 CLOSE_S, HOLD_S, LOWER_S = (0.45, 0.65), (0.27, 0.38), (0.8, 1.1)
 CONTACT_M_S = (1.0, 1.6)  # speed of each wrist when the palms touch
-GIVE_S = 0.008  # from first touch until the palms are pressed together and still
-REBOUND = (0.55, 0.7)  # speed after a contact over that before
+GIVE_S = 0.008  # from first touch until the palms are at rest
+REBOUND = (0.55, 0.7)  # speed after a contact over that before it
 OUT_S = (0.13, 0.18), (0.08, 0.12)  # between contacts
 OPEN_RAD, OPEN_S = 0.5, 0.35
 OUT_TO_SIDE = {"left": 1.0, "right": -1.0}
@@ -23,9 +26,9 @@ class Clap:
     Attributes
     ----------
     raise_s, still_s, close_s, lower_s, end_s : float
-        Arms begin to rise; are out and still; begin to close; to be lowered; hang.
+        The arms begin to rise; are out and still; begin to close; begin to drop; hang.
     contacts_s : tuple of float
-        When the palms touch for the first time, and after each rebound.
+        Times of the palms' first touch, and of one after each rebound.
     azimuth : easing.Glide
         Of the arms, from the side (0) to the front (pi / 2) and beyond, radians.
     """
@@ -35,11 +38,11 @@ class Clap:
     close_s: float
     lower_s: float
     end_s: float
-    contacts_s: tuple
+    contacts_s: tuple[float, ...]
     azimuth: easing.Glide
 
-    def weight(self, time_s):
-        """Return how much of the arms this clap has, 0..1."""
+    def weight(self, time_s: float) -> float:
+        """Return the weight 0..1 of this clap in the arms' pose."""
         rise = easing.step((time_s - self.raise_s) / (self.still_s - self.raise_s))
         return rise - easing.step((time_s - self.lower_s) / (self.end_s - self.lower_s))
 
@@ -48,10 +51,10 @@ class Clap:
 class Arms:
     """Both arms during claps, in the axes of the thorax."""
 
-    claps: tuple
+    claps: tuple[Clap, ...]
 
-    def blend(self, rows, time_s):
-        """Return rows (4, 3) of both arms (see `upper_body.ARM_ROWS`), taken over by the claps."""
+    def blend(self, rows: dict[str, NDArray], time_s: float) -> dict[str, NDArray]:
+        """Return rows (4, 3) of both arms (see `upper_body.ARM_ROWS`), blended with the claps'."""
         for clap in self.claps:
             weight = clap.weight(time_s)
             if weight > 0:
@@ -60,10 +63,10 @@ class Arms:
         return rows
 
 
-def straight(azimuth):
-    """Return rows (4, 3) of both arms, level and straight, at an angle from the side to the front.
+def straight(azimuth: float) -> dict[str, NDArray]:
+    """Return rows (4, 3) of both arms, level and straight, at an angle from side to front, radians.
 
-    The palms face down in the T-pose and one another where the arms are in front.
+    The palms face down in the T-pose, and each other where the arms are in front.
     """
     rows = {}
     turn = easing.step(2 * azimuth / np.pi) * np.pi / 2
@@ -75,22 +78,10 @@ def straight(azimuth):
     return rows
 
 
-def perform(start_s, proportions, rng, *, bouncing=False):
-    """Time one T-pose and clap.
-
-    Parameters
-    ----------
-    start_s : float
-        The arms begin to rise.
-    proportions : virtualgym.body.stance.Proportions
-    rng : numpy.random.Generator
-    bouncing : bool
-        The hands rebound and touch three times.
-
-    Returns
-    -------
-    clap : Clap
-    """
+def perform(
+    start_s: float, proportions: Proportions, rng: np.random.Generator, *, bouncing: bool = False
+) -> Clap:
+    """Schedule a T-pose and clap from `start_s`; if bouncing, the hands touch three times."""
     still_s = start_s + rng.uniform(*RAISE_S)
     close_s = still_s + rng.uniform(*STILL_S)
     times, speeds, contacts = _closing(close_s, proportions, rng)
@@ -113,8 +104,8 @@ def perform(start_s, proportions, rng, *, bouncing=False):
     )
 
 
-def events(clap, number):
-    """Return the true times of a clap: the T-pose's start and stop, and each contact."""
+def events(clap: Clap, number: int) -> dict[str, float]:
+    """Return the true times of a clap by name: the T-pose's start and stop, and each contact."""
     named = {f"tpose_{number}_start": clap.still_s, f"tpose_{number}_stop": clap.close_s}
     named[f"clap_{number}"] = clap.contacts_s[0]
     for k, time_s in enumerate(clap.contacts_s[1:], 1):
@@ -122,14 +113,16 @@ def events(clap, number):
     return named
 
 
-def closed(proportions):
-    """Return the angle (radians) from the side at which straight arms press the palms together."""
+def closed(proportions: Proportions) -> float:
+    """Return the angle from the side, radians, at which the palms of straight arms meet."""
     arm = proportions.upper_arm + proportions.forearm
     return np.pi / 2 + np.arcsin((proportions.shoulder_width / 2 - proportions.palm) / arm)
 
 
-def _closing(close_s, proportions, rng):
-    """Return knots of the arms' speed up to the first contact, and that contact's time."""
+def _closing(
+    close_s: float, proportions: Proportions, rng: np.random.Generator
+) -> tuple[list[float], list[float], list[float]]:
+    """Return times and speeds of the arms up to the first contact, and that contact's time."""
     lasts = rng.uniform(*CLOSE_S)
     touching = rng.uniform(*CONTACT_M_S) / (proportions.upper_arm + proportions.forearm)
     way = closed(proportions) - touching * GIVE_S / 2
@@ -138,8 +131,10 @@ def _closing(close_s, proportions, rng):
     return [close_s, close_s + lasts / 2, contact], [0.0, fastest, touching], [contact]
 
 
-def _rebound(times, speeds, contacts, rng):
-    """Add rebounds: pressed to a stop, thrown apart, drawn together to the next contact."""
+def _rebound(
+    times: list[float], speeds: list[float], contacts: list[float], rng: np.random.Generator
+) -> None:
+    """Add rebounds in place: stop, apart, together until the next contact."""
     for out_s in OUT_S:
         speed = speeds[-1]
         stop = contacts[-1] + GIVE_S
@@ -149,6 +144,6 @@ def _rebound(times, speeds, contacts, rng):
         speeds += [0.0, -slower, slower]
 
 
-def _mixed(rows, own, weight):
+def _mixed(rows: NDArray, own: NDArray, weight: float) -> NDArray:
     mixed = (1 - weight) * rows + weight * own
     return np.array([two_bone_ik.unit(row) for row in mixed])

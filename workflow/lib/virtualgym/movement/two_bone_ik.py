@@ -1,10 +1,11 @@
-"""Rotations of the body and the bend of a limb of two segments between two points."""
+"""Body rotations, and inverse kinematics of a limb of two segments."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 
-def facing(heading):
-    """Return the body axes (3, 3) of one who stands upright: columns left, up, forward.
+def facing(heading: float) -> NDArray:
+    """Return the body axes (3, 3) of an upright body: columns left, up, forward.
 
     The heading is in radians, anticlockwise seen from above; 0 looks along the world's y.
     """
@@ -12,18 +13,8 @@ def facing(heading):
     return np.array([[-cos, 0.0, -sin], [-sin, 0.0, cos], [0.0, 1.0, 0.0]])
 
 
-def turn(twist=0.0, pitch=0.0, roll=0.0):
-    """Turn to the left, then lean forward, then to the right, about the body's own axes.
-
-    Parameters
-    ----------
-    twist, pitch, roll : float
-        Radians.
-
-    Returns
-    -------
-    rotation : (3, 3) float
-    """
+def turn(twist: float = 0.0, pitch: float = 0.0, roll: float = 0.0) -> NDArray:
+    """Return the rotation (3, 3): turn left, lean forward, lean right, about own axes, radians."""
     st, ct, sp, cp = np.sin(twist), np.cos(twist), np.sin(pitch), np.cos(pitch)
     sr, cr = np.sin(roll), np.cos(roll)
     twisted = np.array([[ct, 0, st], [0, 1, 0], [-st, 0, ct]])
@@ -32,17 +23,19 @@ def turn(twist=0.0, pitch=0.0, roll=0.0):
     return twisted @ pitched @ rolled
 
 
-def bend(start, end, lengths, pole):
+def bend(
+    start: NDArray, end: NDArray, lengths: tuple[float, float], pole: NDArray
+) -> tuple[NDArray, NDArray]:
     """Bend a limb of two segments so that it spans two points.
 
     Parameters
     ----------
     start, end : (3,) float
-        Of the limb, metres. An end out of reach is approached along the straight line.
+        Ends of the limb, metres. An end out of reach is approached along the straight line.
     lengths : (float, float)
         Of the two segments, metres.
     pole : (3,) float
-        Towards which side the joint between them bends; not along the limb.
+        Direction in which the joint between them bends; not along the limb.
 
     Returns
     -------
@@ -62,12 +55,12 @@ def bend(start, end, lengths, pole):
     return upper, lower / np.linalg.norm(lower)
 
 
-def unit(vector):
-    """Return the vector at length 1."""
+def unit(vector: ArrayLike) -> NDArray:
+    """Return the unit vector."""
     vector = np.asarray(vector, float)
     return vector / np.linalg.norm(vector)
 
 
-def across(vector, axis):
-    """Return the unit vector nearest to a vector among those orthogonal to a unit axis."""
+def across(vector: NDArray, axis: NDArray) -> NDArray:
+    """Return the unit vector along a vector's part orthogonal to a unit axis."""
     return unit(vector - (vector @ axis) * axis)

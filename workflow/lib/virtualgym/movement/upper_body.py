@@ -1,31 +1,37 @@
 """Upper-body poses of a right-handed player, and smooth courses through them.
 
-Vectors are in the axes of the thorax (left, up, forward) and need not have length 1.
+Vectors are in the axes of the thorax (left, up, forward) and need not be unit vectors. ASSUME: the
+poses below were written by hand to look like badminton; no source is recorded.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from virtualgym.movement import two_bone_ik
 
+Vector = tuple[float, float, float]
 ARM_ROWS = ("upper_arm", "forearm", "hand", "palm")
-SCATTER = 0.05  # of the vectors of a performed pose, about the scripted one
-SCATTER_DEG = 3.0
+# ASSUME: standard deviations of a performed pose about the scripted one, of unit vectors and of
+# angles.
+SCATTER, SCATTER_DEG = 0.05, 3.0
 
 
 @dataclass(frozen=True)
 class Arm:
-    """Where an arm points: upper arm, forearm, hand (None: as the forearm), and out of the palm."""
+    """Directions of an arm: upper arm, forearm, hand (None: as the forearm), out of the palm."""
 
-    upper_arm: tuple
-    forearm: tuple
-    palm: tuple
-    hand: tuple | None = None
+    upper_arm: Vector
+    forearm: Vector
+    palm: Vector
+    hand: Vector | None = None
 
-    def rows(self):
-        """Return (4, 3) in the order of ARM_ROWS, of length 1."""
+    def rows(self) -> NDArray:
+        """Return unit vectors (4, 3) in the order of ARM_ROWS."""
         hand = self.forearm if self.hand is None else self.hand
         ways = (self.upper_arm, self.forearm, hand, self.palm)
         return np.array([two_bone_ik.unit(way) for way in ways])
@@ -41,57 +47,76 @@ class Pose:
     racket : (3,) float
         From butt to top.
     twist, lean, roll : float
-        Of the thorax against the pelvis to the left, against the vertical forward and to the right, degrees.
+        Of the thorax: to the left from the pelvis, forward and to the right from the vertical,
+        degrees.
     look : (float, float)
-        Of the head: to the left against the heading, and down, degrees.
+        Of the head: to the left from the heading, and down, degrees.
     height : float
         Of the hip joints over the ankles, in leg lengths; legs that must reach further lower it.
     swing : (float, float)
-        How much left and right arm swing with the opposite leg, 0..1.
+        Swing of left and right arm with the opposite leg, 0..1.
     """
 
     left: Arm
     right: Arm
-    racket: tuple
+    racket: Vector
     twist: float = 0.0
     lean: float = 0.0
     roll: float = 0.0
-    look: tuple = (0.0, 0.0)
+    look: tuple[float, float] = (0.0, 0.0)
     height: float = 0.9
-    swing: tuple = (0.6, 0.3)
+    swing: tuple[float, float] = (0.6, 0.3)
 
-    def vector(self):
-        """Return all numbers (36,): angles in radians."""
+    def vector(self) -> NDArray:
+        """Return all values (35,): nine unit vectors, five angles in radians, height and swing."""
         angles = np.radians([self.twist, self.lean, self.roll, *self.look])
         arms = np.vstack([self.left.rows(), self.right.rows(), two_bone_ik.unit(self.racket)])
         return np.concatenate([arms.ravel(), angles, [self.height, *self.swing]])
 
-    def but(self, **changes):
+    def but(self, **changes: Any) -> "Pose":
         """Return the pose with some attributes changed."""
         return replace(self, **changes)
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A smooth course through poses; before the first and after the last it stays."""
+    """A smooth course through poses, constant before the first and after the last.
+
+    Attributes
+    ----------
+    times_s : (n,) float
+        Increasing, at least two.
+    vectors : (n, 35) float
+        `Pose.vector` at these times.
+    """
 
     times_s: np.ndarray
     vectors: np.ndarray
+    _curve: CubicHermiteSpline = field(init=False, repr=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if len(self.times_s) == 1 or np.min(np.diff(self.times_s)) <= 0:
             raise ValueError(f"expected two or more increasing times, found {self.times_s}")
         slopes = _slopes(self.times_s, self.vectors)
         object.__setattr__(self, "_curve", CubicHermiteSpline(self.times_s, self.vectors, slopes))
 
-    def at(self, time_s):
-        """Return the pose at a time, a `Moment`."""
+    def at(self, time_s: float) -> "Moment":
+        """Return the pose at a time."""
         clipped = np.clip(time_s, self.times_s[0], self.times_s[-1])
         values = self._curve(clipped)
         ways = values[:27].reshape(9, 3)
         ways = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        twist, lean, roll = values[27:30]
         return Moment(
-            ways[:4], ways[4:8], ways[8], *values[27:30], values[30:32], values[32], values[33:]
+            ways[:4],
+            ways[4:8],
+            ways[8],
+            twist,
+            lean,
+            roll,
+            values[30:32],
+            values[32],
+            values[33:],
         )
 
 
@@ -110,8 +135,10 @@ class Moment:
     swing: np.ndarray
 
 
-def course(keys, rng, *, scatter=1.0):
-    """Go through poses, each performed a little differently.
+def course(
+    keys: Sequence[tuple[float, Pose]], rng: np.random.Generator, *, scatter: float = 1.0
+) -> Course:
+    """Return a course through poses, each performed with random deviations.
 
     Parameters
     ----------
@@ -119,11 +146,7 @@ def course(keys, rng, *, scatter=1.0):
         In order of time.
     rng : numpy.random.Generator
     scatter : float
-        Of the performed poses, in usual scatters; 0: exactly as scripted.
-
-    Returns
-    -------
-    course : Course
+        Factor on the usual deviations; 0: exactly as scripted.
     """
     vectors = np.array([pose.vector() for _, pose in keys])
     spread = np.full(vectors.shape[1], SCATTER)
@@ -136,8 +159,8 @@ def course(keys, rng, *, scatter=1.0):
     return Course(np.array([time for time, _ in keys], float), vectors + noise)
 
 
-def _slopes(times_s, vectors):
-    """Return the slope at each key (n, d): of the parabola through three; 0 at ends and holds."""
+def _slopes(times_s: NDArray, vectors: NDArray) -> NDArray:
+    """Return the slopes (n, d) at the keys: of the parabola through three; 0 at ends and holds."""
     lasts = np.diff(times_s)[:, None]
     chords = np.diff(vectors, axis=0) / lasts
     slopes = np.zeros_like(vectors)
@@ -147,15 +170,13 @@ def _slopes(times_s, vectors):
     return slopes
 
 
-def _mirror(arm):
+def mirror(arm: Arm) -> Arm:
     """Return the same arm of the other side."""
-    return Arm(
-        *(
-            None if way is None else (-way[0], *way[1:])
-            for way in (arm.upper_arm, arm.forearm, arm.palm)
-        ),
-        hand=None if arm.hand is None else (-arm.hand[0], *arm.hand[1:]),
+    upper_arm, forearm, palm = (
+        (-way[0], way[1], way[2]) for way in (arm.upper_arm, arm.forearm, arm.palm)
     )
+    hand = None if arm.hand is None else (-arm.hand[0], arm.hand[1], arm.hand[2])
+    return Arm(upper_arm, forearm, palm, hand)
 
 
 HANGING = Arm((0.17, -0.98, 0.02), (0.12, -0.96, 0.22), (-1.0, -0.1, 0.0))
@@ -166,9 +187,9 @@ TUCKED = Arm((0.45, -0.8, 0.35), (-0.55, 0.1, 0.8), (-0.7, -0.2, -0.6))
 OUT_BEHIND = Arm((0.75, -0.35, -0.55), (0.8, -0.1, -0.45), (0.1, -1.0, 0.0))
 GUARD = Arm((-0.42, -0.8, 0.42), (0.25, 0.3, 0.92), (0.9, -0.2, -0.2))
 
-STAND = Pose(HANGING, _mirror(HANGING), (0, -0.4, 0.9), height=0.995, swing=(1.0, 1.0))
+STAND = Pose(HANGING, mirror(HANGING), (0, -0.4, 0.9), height=0.995, swing=(1.0, 1.0))
 WALK = Pose(HANGING, CARRYING, (0.15, 0.55, 0.8), lean=3, height=0.985, swing=(1.0, 0.35))
-FREE_WALK = Pose(HANGING, _mirror(HANGING), (0, -0.4, 0.9), lean=3, height=0.985, swing=(1.0, 0.9))
+FREE_WALK = Pose(HANGING, mirror(HANGING), (0, -0.4, 0.9), lean=3, height=0.985, swing=(1.0, 0.9))
 READY = Pose(
     BALANCE, GUARD, (0.3, 0.75, 0.6), lean=22, look=(0, -6), height=0.88, swing=(0.5, 0.25)
 )

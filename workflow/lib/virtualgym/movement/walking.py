@@ -1,21 +1,29 @@
 """Walking: a round, or up and down a lane past another player."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from virtualgym.movement import footwork, upper_body
 from virtualgym.movement.footwork import Lap, Station
+from virtualgym.movement.player import Motion, Player
+from virtualgym.movement.upper_body import Pose
 
+# ASSUME: usual walking speeds and durations; no source is recorded.
 WALK_M_S = (1.0, 1.25)
 WALK_HZ, WALK_AIR = 2.0, 0.78
 REST_S = (0.5, 0.8)
 LANE_M = 0.5  # of each of two crossing players from the line between them
-LANE_SHARE = 0.6, 0.5  # of half the court's width, of a quarter of its length: to a lane's end
-LANE_M_S = (0.98, 1.06)  # the players stay in step with one another
+# End of a lane, as fractions of half the court's width and of a quarter of its length.
+LANE_SHARE = 0.6, 0.5
+LANE_M_S = (0.98, 1.06)  # a narrow range, so that the players keep meeting
 TURN_S, TURN_STEPS = 2.2, 4
 
 
-def large_round(player):
-    """Return a motion: a walk round the player's half, racket in hand."""
+def large_round(player: Player) -> Motion:
+    """Walk round the player's half, racket in hand."""
     rng, half_m = player.rng, player.half_m
     angles = rng.uniform(-0.3, 0.3) + np.linspace(-0.42, 0.42, 7) * 2 * np.pi
     reach = rng.uniform(0.5, 0.65, len(angles))[:, None]
@@ -28,18 +36,8 @@ def large_round(player):
     return along(player, lap, lap.stop_s + rest[1], upper_body.WALK, scatter=0.6)
 
 
-def small_round(player, start_s, lasts_s):
-    """Plan a round in the middle of the player's half that ends where it began, towards the net.
-
-    Parameters
-    ----------
-    player : virtualgym.movement.player.Player
-    start_s, lasts_s : float
-
-    Returns
-    -------
-    lap : virtualgym.movement.footwork.Lap
-    """
+def small_round(player: Player, start_s: float, lasts_s: float) -> Lap:
+    """Plan a round in the middle of the player's half; it ends where it began, facing the net."""
     rng = player.rng
     middle = np.array([0.0, -0.55 * player.half_m[1]]) + rng.uniform(-0.4, 0.4, 2)
     side = rng.choice([-1.0, 1.0])
@@ -58,52 +56,39 @@ def small_round(player, start_s, lasts_s):
     return Lap(middle + round_m * np.array(shape) * [side, 1.0], start_s, start_s + lasts_s)
 
 
-def along(player, lap, stop_s, walking, *, scatter, **options):
+def along(
+    player: Player, lap: Lap, stop_s: float, walking: Pose, *, scatter: float, **options: Any
+) -> Motion:
     """Walk along a curve.
 
     Parameters
     ----------
-    player : virtualgym.movement.player.Player
-    lap : virtualgym.movement.footwork.Lap
+    player : Player
+    lap : Lap
     stop_s : float
-        The motion ends; from the lap's end until then the player stands.
-    walking : virtualgym.movement.upper_body.Pose
+        End of the motion; from the lap's end until then the player stands.
+    walking : Pose
     scatter : float
         See `upper_body.course`.
     **options
         Of `player.Motion`.
-
-    Returns
-    -------
-    motion : virtualgym.movement.player.Motion
     """
     return _walk(player, lap.ends(0.0, stop_s), walking, scatter, lap, **options)
 
 
-def up_and_down(player, lane, n_turns):
-    """Walk straight along a lane, turn on the spot, walk back, and so on.
-
-    Parameters
-    ----------
-    player : virtualgym.movement.player.Player
-    lane : int
-        0 or 1.
-    n_turns : int
-
-    Returns
-    -------
-    motion : virtualgym.movement.player.Motion
-    """
+def up_and_down(player: Player, lane: int, n_turns: int) -> Motion:
+    """Walk straight along a lane (0 or 1), turn on the spot, walk back, and so on."""
     rng, half_m = player.rng, player.half_m
     sign = 1 if lane == 0 else -1
     end = sign * np.array(LANE_SHARE) * half_m * [1.0, 0.5]
-    beside = LANE_M * np.array([end[1], -end[0]]) / np.linalg.norm(end)  # on the own right
+    length_m = float(2 * np.linalg.norm(end))
+    beside = LANE_M * np.array([end[1], -end[0]]) / np.linalg.norm(end)  # to the own right
     middle = np.array([0.0, -0.5 * half_m[1]]) + beside
     heading = np.arctan2(-end[0], end[1])
     places = [middle - end, middle + end]
     stations = [_stand(0.0, rng.uniform(*REST_S), places[0], heading)]
     for k in range(n_turns + 1):
-        time_s = stations[-1].leave_s + 2 * np.linalg.norm(end) / rng.uniform(*LANE_M_S)
+        time_s = stations[-1].leave_s + length_m / rng.uniform(*LANE_M_S)
         place = places[(k + 1) % 2] + rng.normal(0, 0.03, 2)
         stations.append(_stand(time_s, time_s + rng.uniform(0.1, 0.2), place, heading))
         if k < n_turns:
@@ -116,13 +101,22 @@ def up_and_down(player, lane, n_turns):
     return _walk(player, stations, upper_body.WALK, 0.6, None)
 
 
-def _stand(arrive_s, leave_s, place, heading, steps=None):
+def _stand(
+    arrive_s: float, leave_s: float, place: NDArray, heading: float, steps: int | None = None
+) -> Station:
     return Station(
         arrive_s, leave_s, place, heading, feet=footwork.UPRIGHT, settle_s=0.0, steps=steps
     )
 
 
-def _walk(player, stations, walking, scatter, lap, **options):
+def _walk(
+    player: Player,
+    stations: Sequence[Station],
+    walking: Pose,
+    scatter: float,
+    lap: Lap | None,
+    **options: Any,
+) -> Motion:
     route, feet = footwork.plan(
         stations, player.proportions, player.rng, cadence_hz=WALK_HZ, air=WALK_AIR, route=lap
     )
