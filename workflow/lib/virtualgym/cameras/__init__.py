@@ -1,1 +1,6 @@
-"""Fixed layouts, the walked camera's path, camera shake."""
+"""Cameras of a virtual session: layouts of fixed ones, the walked one's path, camera shake.
+
+- layouts: `fixed_cameras`, `LAYOUTS`, `lens`, `look_at`, `court_centre`
+- walk_path: `plan`, `Walk`, `way`
+- camera_shake: `Shake`, `Shaking`, `Warp`, `turned`
+"""

@@ -1,16 +1,21 @@
-"""Where the fixed cameras of a virtual session stand, and what their lenses are."""
+"""Places and lenses of the fixed cameras of a virtual session."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from courtside.calibration.court.court import Court
 from courtside.geometry import camera, rotations
+from virtualgym.presets import Preset
 
-FOCAL_WIDTHS = 0.875  # a phone's main camera: 60 degrees across
-LENS = np.array([-0.045, 0.011, 1e-4, 1e-4, 0.0])  # k1 k2 p1 p2 k3 of that model of camera
-AIM_M = 1.3  # above the court's centre
-ROLL_DEG = 0.3  # a tripod set up by eye
+# ASSUME: a phone's main camera and places as in a large hall; where no source stands, none is
+# recorded.
+FOCAL_WIDTHS = 0.875  # focal length in picture widths: 60 degrees across
+LENS = np.array([-0.045, 0.011, 1e-4, 1e-4, 0.0])  # k1 k2 p1 p2 k3
+AIM_M = 1.3  # height at the court's centre at which cameras are aimed
+ROLL_DEG = 0.3  # a tripod levelled by eye
 SQUARE_ON_M = 21.0  # layout a: distance from the court's centre
 BEHIND_M = 18.0  # layout b: from the court's centre to the line on which the cameras stand
-BESIDE_M = 20.0  # layout b: between the cameras
+BESIDE_M = 20.0  # layout b: between neighbouring cameras
 VIEW = 0.5  # tangent of the half angle of view that the court may fill
 HEIGHTS_M = {"side": 1.9, "back": 2.1, "oblique": 1.9, "mirror": 2.0, "front": 2.2}
 LAYOUTS = {  # in the order in which a walk passes them
@@ -21,24 +26,33 @@ LAYOUTS = {  # in the order in which a walk passes them
 }
 
 
-def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoom=1.0):
+def fixed_cameras(
+    layout: str,
+    court: Court,
+    size_px: tuple[int, int],
+    preset: Preset,
+    rng: np.random.Generator,
+    *,
+    baseline_deg: float | None = None,
+    zoom: float = 1.0,
+) -> list[camera.Camera]:
     """Set up the fixed cameras of a layout.
 
     Parameters
     ----------
     layout : str
-        A key of `LAYOUTS`. In "a" two cameras look along the world's x (`side`) and y (`back`). In "b"
-        one stands straight behind the court (`back`), one beside it on a line parallel to x
+        A key of `LAYOUTS`. In "a" two cameras look along the world's x (`side`) and y (`back`). In
+        "b" one stands straight behind the court (`back`), one beside it on a line parallel to x
         (`oblique`); then the mirror image of that one (`mirror`); then one that faces the players.
-    court : courtside.calibration.court.court.Court
+    court : Court
     size_px : (int, int)
         Width and height of the pictures.
-    preset : virtualgym.presets.Preset
-        How far the lenses differ from unit to unit.
+    preset : Preset
+        Gives the spread of the lenses.
     rng : numpy.random.Generator
     baseline_deg : float or None
-        For layout "a" only: the angle between the cameras, seen from the court's centre, instead of 90;
-        `back` stays where it is.
+        For layout "a" only: the angle between the cameras, seen from the court's centre, instead of
+        90; `back` stays where it is.
     zoom : float
         Focal length over that with which the court fills about half of the picture.
 
@@ -50,7 +64,7 @@ def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoo
     Raises
     ------
     ValueError
-        If the layout is unknown or an angle is asked of another layout than "a".
+        If the layout is unknown, or an angle is given for another layout than "a".
     """
     if layout not in LAYOUTS:
         raise ValueError(f"expected a layout of {sorted(LAYOUTS)}, found {layout!r}")
@@ -70,20 +84,15 @@ def fixed_cameras(layout, court, size_px, preset, rng, *, baseline_deg=None, zoo
     return made
 
 
-def court_centre(court):
-    """Return the middle of the court on the floor, (3,) m."""
+def court_centre(court: Court) -> NDArray:
+    """Return the centre of the court on the floor, (3,) m."""
     return np.array([court.size_m[0] / 2, court.size_m[1] / 2, 0.0])
 
 
-def lens(size_px, preset, rng):
-    """Draw the lens of one physical camera.
-
-    Parameters
-    ----------
-    size_px : (int, int)
-        Width and height of its pictures.
-    preset : virtualgym.presets.Preset
-    rng : numpy.random.Generator
+def lens(
+    size_px: tuple[int, int], preset: Preset, rng: np.random.Generator
+) -> tuple[NDArray, NDArray]:
+    """Draw the lens of one camera at random; `size_px` is (width, height).
 
     Returns
     -------
@@ -107,15 +116,11 @@ def lens(size_px, preset, rng):
     return matrix, LENS + np.append(spreads * draws[3:], 0.0)
 
 
-def look_at(place, target, roll_deg=0.0):
-    """Return cam_from_world (3, 4) of a camera that looks from one point (3,) m at another, z up.
+def look_at(place: ArrayLike, target: ArrayLike, roll_deg: float = 0.0) -> NDArray:
+    """Return cam_from_world (3, 4) of a camera at `place` (3,) m that looks at `target` (3,) m.
 
-    Parameters
-    ----------
-    place, target : (3,) float
-        Metres.
-    roll_deg : float
-        The camera's turn about its optical axis, clockwise as it sees the world.
+    At roll 0 the picture's x is horizontal; `roll_deg` turns the camera about its optical axis,
+    clockwise as it sees the world.
     """
     forward = np.subtract(target, place)
     forward = forward / np.linalg.norm(forward)
@@ -127,10 +132,12 @@ def look_at(place, target, roll_deg=0.0):
     return np.column_stack([rotation, -rotation @ np.asarray(place, dtype=float)])
 
 
-def _places(layout, court, baseline_deg):
+def _places(
+    layout: str, court: Court, baseline_deg: float | None
+) -> dict[str, tuple[float, float]]:
     """Return (x, y) m of each camera, from the court's centre."""
     short, long = sorted(court.size_m)
-    # So far that the court fills no more than the view, whichever side it is seen from.
+    # From here the court fills no more than VIEW, whichever side it is seen from.
     needed_m = short / 2 + long / 2 / VIEW
     if layout == "a":
         away_m = max(SQUARE_ON_M, needed_m)

@@ -1,27 +1,32 @@
-"""The walked camera: a person carries it past the fixed cameras and aims it at the court's centre."""
+"""The walked camera: carried past the fixed cameras, aimed at the court's centre."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
+from courtside.calibration.court.court import Court
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
 from virtualgym.cameras import layouts
+from virtualgym.presets import Preset
 
-BESIDE_M = 0.8  # how near the walk comes to each fixed camera
+# ASSUME: path, speed and shake of a person who films carefully with a phone; no source is recorded.
+BESIDE_M = 0.8  # distance of the path from each fixed camera
 SAMPLE_M = 0.05
 ROUNDING_M = 1.0  # people cut corners
-ARC_BELOW = (
-    0.85  # a straight way that comes this much nearer to the court than its ends is walked round
-)
+# Where the straight path comes nearer to the court's centre than this factor times its nearer end,
+# the path goes round instead.
+ARC_BELOW = 0.85
 HEIGHT_M, AIM_M = 1.62, 1.25
-USUAL_KMH = 2.0  # at this speed the amplitudes below hold
-STEP_HZ = 0.9  # a stride: left and right step; the body bobs at twice that
-STABILISED = 1 / 5  # what a stabiliser leaves of the rotations of walking
-DIFFERENCE_S = 1e-4
+USUAL_KMH = 2.0  # the amplitudes below hold at this speed
+STEP_HZ = 0.9  # of strides (left and right step); the body bobs at twice that
+STABILISED = 1 / 5  # what a stabiliser leaves of the rotations by walking
+DIFFERENCE_S = 1e-4  # half the interval of the numerical derivative
 # Slow changes (amplitude, period s) of place along x, y, z and of aim along x, y, z, metres.
 SWAY = (((0.35, 23.0), (0.15, 9.0)), ((0.35, 19.0), (0.15, 11.0)), ((0.05, 13.0),))
 WANDER = (((0.5, 11.0),), ((0.5, 8.0),), ((0.25, 7.0),))
@@ -46,18 +51,18 @@ class Waves:
     hertz: np.ndarray
     phase: np.ndarray
 
-    def at(self, time_s):
+    def at(self, time_s: float) -> NDArray:
         """Return the value (D,) at a time."""
         return (self.amplitude * np.sin(2 * np.pi * self.hertz * time_s + self.phase)).sum(axis=1)
 
-    def scaled(self, factor):
+    def scaled(self, factor: float) -> "Waves":
         """Return the same waves with `factor` times the amplitude."""
         return replace(self, amplitude=self.amplitude * factor)
 
 
 @dataclass(frozen=True, eq=False)
 class Walk:
-    """One walk with the mobile camera; all of it is a smooth function of time.
+    """One walk with the mobile camera, a smooth function of time.
 
     Attributes
     ----------
@@ -67,25 +72,27 @@ class Walk:
     K, dist : (3, 3) float, (5,) float
         The lens, without the stabiliser's shift of the principal point.
     route : scipy.interpolate.CubicSpline
-        Time -> (x, y) m of the mean way.
+        Time -> (x, y) m of the mean path.
     aim_at : (3,) float
-        What the camera is aimed at, m.
-    sway, wander, shake, shift : Waves
-        Of place (3) m; of aim (3) m; of the camera's own turns (3) rad; of the principal point (2) px.
+        Point at which the camera is aimed, m.
+    sway, shake : tuple of Waves
+        Of place (3) m; of the camera's own rotation (3) rad. Each is summed.
+    wander, shift : Waves
+        Of the aim (3) m; of the principal point (2) px.
     """
 
     duration_s: float
-    size: tuple
+    size: tuple[int, int]
     K: np.ndarray
     dist: np.ndarray
     route: CubicSpline
     aim_at: np.ndarray
-    sway: tuple
+    sway: tuple[Waves, ...]
     wander: Waves
-    shake: tuple
+    shake: tuple[Waves, ...]
     shift: Waves
 
-    def pose(self, time_s):
+    def pose(self, time_s: float) -> NDArray:
         """Return cam_from_world (3, 4) at a time, metres."""
         place = np.append(self.route(time_s), HEIGHT_M)
         place = place + sum(waves.at(time_s) for waves in self.sway)
@@ -94,14 +101,14 @@ class Walk:
         rotation = rotations.rotation_from_rodrigues(turn) @ upright
         return np.column_stack([rotation, -rotation @ place])
 
-    def twist(self, time_s):
-        """Return how the camera moves at a time.
+    def twist(self, time_s: float) -> tuple[NDArray, NDArray]:
+        """Return the velocity of the camera at a time.
 
         Returns
         -------
         angular_rad_s : (3,) float
-            About the camera's own axes: after a short dt, world_from_cam is multiplied from the right
-            by the rotation of vector angular_rad_s * dt.
+            About the camera's own axes: after a short dt, world_from_cam is multiplied from the
+            right by the rotation of vector angular_rad_s * dt.
         velocity_m_s : (3,) float
             Of the camera's centre, in the world.
         """
@@ -111,37 +118,46 @@ class Walk:
         moved = rotations.invert(after)[:, 3] - rotations.invert(before)[:, 3]
         return angular, moved / (2 * DIFFERENCE_S)
 
-    def principal_point_px(self, time_s):
+    def principal_point_px(self, time_s: float) -> NDArray:
         """Return the principal point (2,) px at a time."""
         return self.K[:2, 2] + self.shift.at(time_s)
 
-    def camera(self, time_s):
-        """Return the `Camera`, named "walk", as it is at a time."""
+    def camera(self, time_s: float) -> Camera:
+        """Return the camera, named "walk", at a time."""
         matrix = self.K.copy()
         matrix[:2, 2] = self.principal_point_px(time_s)
         return Camera("walk", self.size, matrix, self.dist, self.pose(time_s))
 
-    def grid(self, n_frames):
-        """Return `n_frames` times, evenly from start to end, s."""
+    def grid(self, n_frames: int) -> NDArray:
+        """Return `n_frames` times, s, evenly from start to end."""
         return np.linspace(0.0, self.duration_s, n_frames)
 
 
-def plan(fixed, court, size_px, preset, rng, *, speed_kmh=USUAL_KMH, stabiliser=True):
+def plan(
+    fixed: Sequence[Camera],
+    court: Court,
+    size_px: tuple[int, int],
+    preset: Preset,
+    rng: np.random.Generator,
+    *,
+    speed_kmh: float = USUAL_KMH,
+    stabiliser: bool = True,
+) -> Walk:
     """Plan a walk past fixed cameras.
 
     Parameters
     ----------
-    fixed : list of Camera
+    fixed : sequence of Camera
         In the order of the walk, at least two.
-    court : courtside.calibration.court.court.Court
+    court : Court
     size_px : (int, int)
         Width and height of the walked camera's pictures.
-    preset : virtualgym.presets.Preset
+    preset : Preset
     rng : numpy.random.Generator
     speed_kmh : float
-        A faster walk shakes more, in proportion.
+        Shake is proportional to it.
     stabiliser : bool
-        Whether the camera damps its rotations to a fifth, at the price of a moving principal point.
+        Whether the camera damps its rotations to a fifth and, in turn, moves its principal point.
 
     Returns
     -------
@@ -170,7 +186,7 @@ def plan(fixed, court, size_px, preset, rng, *, speed_kmh=USUAL_KMH, stabiliser=
     shift = _waves((SHIFT, SHIFT), rng, period=True)
     return Walk(
         duration_s=float(time_s[-1]),
-        size=tuple(size_px),
+        size=(size_px[0], size_px[1]),
         K=matrix,
         dist=dist,
         route=CubicSpline(time_s, points),
@@ -182,12 +198,12 @@ def plan(fixed, court, size_px, preset, rng, *, speed_kmh=USUAL_KMH, stabiliser=
     )
 
 
-def way(places, centre):
-    """Return the mean way past the cameras' places on the floor.
+def way(places: Sequence[NDArray], centre: NDArray) -> NDArray:
+    """Return the mean path past the cameras' places on the floor.
 
     Parameters
     ----------
-    places : list of (2,) float
+    places : sequence of (2,) float
         Metres, in the order of the walk.
     centre : (2,) float
         Of the court, m.
@@ -195,8 +211,8 @@ def way(places, centre):
     Returns
     -------
     points : (N, 2) float
-        About every 5 cm, smooth; from 0.8 m beside the first place to 0.8 m beside the last, and 0.8 m
-        inside of those between. Round the court where the straight way would come too near to it.
+        About every 5 cm, smooth; from 0.8 m beside the first place to 0.8 m beside the last, 0.8 m
+        inside of those between; round the court where the straight path would come too near to it.
     """
     nodes = [np.subtract(place, centre) for place in places]
     for at in range(1, len(nodes) - 1):
@@ -214,39 +230,44 @@ def way(places, centre):
     return centre + _resample(smooth, *ends_m)
 
 
-def _round(start, end):
-    """Return corners of the way round the court, every two degrees; none where it may be straight."""
+def _round(start: NDArray, end: NDArray) -> list[NDArray]:
+    """Return points of the path round the court, every two degrees; none if it may be straight."""
     nearest = min(np.linalg.norm(start), np.linalg.norm(end))
     if np.linalg.norm((start + end) / 2) > ARC_BELOW * nearest:
         return []
     from_deg, to_deg = (np.degrees(np.arctan2(point[1], point[0])) for point in (start, end))
     turn_deg = (to_deg - from_deg + 180) % 360 - 180
-    # From a place farther out the walk first comes in to the circle.
+    # From a place farther out, the path first goes in to the circle.
     enter = 0.2 if np.linalg.norm(start) > 1.1 * nearest else 0.0
     angles = np.radians(from_deg + turn_deg * np.linspace(enter, 1, max(3, int(abs(turn_deg) / 2))))
     return list(nearest * np.column_stack([np.cos(angles), np.sin(angles)])[1:-1])
 
 
-def _prolonged(points):
-    """Return points with a straight piece before and behind, so that smoothing leaves the ends."""
+def _prolonged(points: NDArray) -> NDArray:
+    """Return points with a straight extension at both ends, so that smoothing keeps the ends."""
     reach = 5 * ROUNDING_M / SAMPLE_M
     head, tail = points[0] - points[1], points[-1] - points[-2]
     return np.vstack([points[0] + reach * head, points, points[-1] + reach * tail])
 
 
-def _lengths(points):
+def _lengths(points: NDArray) -> NDArray:
     return np.append(0.0, np.linalg.norm(np.diff(points, axis=0), axis=1).cumsum())
 
 
-def _resample(points, start_m=0.0, stop_m=None):
+def _resample(points: NDArray, start_m: float = 0.0, stop_m: float | None = None) -> NDArray:
     lengths = _lengths(points)
     stop_m = lengths[-1] if stop_m is None else stop_m
     wanted = np.linspace(start_m, stop_m, max(2, round((stop_m - start_m) / SAMPLE_M) + 1))
     return np.column_stack([np.interp(wanted, lengths, column) for column in points.T])
 
 
-def _waves(table, rng, *, period=False):
-    """Return waves of (amplitude, multiple of the stride's frequency or period in s), phases at random."""
+def _waves(
+    table: Sequence[Sequence[tuple[float, float]]],
+    rng: np.random.Generator,
+    *,
+    period: bool = False,
+) -> Waves:
+    """Return waves of (amplitude, multiple of STEP_HZ, or period in s), with random phases."""
     amplitude = np.zeros((len(table), max(map(len, table))))
     hertz, phase = np.zeros_like(amplitude), rng.uniform(0, 2 * np.pi, amplitude.shape)
     for row, sines in enumerate(table):

@@ -1,14 +1,18 @@
-"""An empty hall as one fixed camera sees it: its picture, and how far away what stands in it is."""
+"""An empty hall as one fixed camera sees it: picture and depth."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from courtside.geometry import camera as cameras
 from courtside.geometry import camera_fields
+from courtside.geometry.camera import Camera
 from courtside.records import npz
 from courtside.study.errors import InputError
 from virtualgym.rendering import rays, shading, textured_quads
+from virtualgym.rendering.hall_renderer import Renderer
 
 FORM = "courtside backdrops 1"
 SPEC = {
@@ -18,7 +22,7 @@ SPEC = {
     "net_m": ("float", ("C", "H", "W")),
     "floor": ("bool", ("C", "H", "W")),
 }
-BAND_RAYS = 1 << 16  # at a time: what fits the processor's cache
+BAND_RAYS = 1 << 16  # per batch: fits the processor's cache
 NOTHING = np.float16(np.inf)
 
 
@@ -28,15 +32,15 @@ class Backdrop:
 
     Attributes
     ----------
-    camera : courtside.geometry.camera.Camera
+    camera : Camera
         Of this picture, which may be `margin_px` wider than the films on each side.
     margin_px : int
     picture : (H, W, 3) uint8
         BGR, without noise.
     solid_m : (H, W) float16
-        How far in front of the camera (along its axis) what stands in the hall is; inf where floor.
+        Depth along the camera's axis of walls and furniture; inf where the floor is seen.
     net_m : (H, W) float16
-        The same of the net's mesh; inf where there is none.
+        Depth of the net's mesh; inf where there is none.
     floor : (H, W) bool
         Where the floor is seen.
     """
@@ -49,33 +53,23 @@ class Backdrop:
     floor: np.ndarray
 
     @property
-    def filmed(self):
+    def filmed(self) -> cameras.Camera:
         """The camera of the films: this one without the margin."""
         return widened(self.camera, -self.margin_px)
 
 
-def widened(camera, margin_px):
-    """Return the camera of a picture that shows more (or less) on each side, by whole px."""
+def widened(camera: Camera, margin_px: int) -> cameras.Camera:
+    """Return the camera of a picture that is larger (or smaller) on each side by whole px."""
     middle = np.zeros((3, 3))
     middle[:2, 2] = margin_px
     size = tuple(length + 2 * margin_px for length in camera.size)
     return replace(camera, size=size, K=camera.K + middle)
 
 
-def look(renderer, camera, margin_px=0):
-    """Take a picture of an empty hall, and measure it.
+def look(renderer: "Renderer", camera: Camera, margin_px: int = 0) -> Backdrop:
+    """Render picture and depth of an empty hall for the films' camera.
 
-    Parameters
-    ----------
-    renderer : virtualgym.rendering.hall_renderer.Renderer
-    camera : courtside.geometry.camera.Camera
-        Of the films.
-    margin_px : int
-        How much more is needed on each side, for a camera that shakes.
-
-    Returns
-    -------
-    backdrop : Backdrop
+    A camera that shakes needs `margin_px` more on each side.
     """
     wide = widened(camera, margin_px) if margin_px else camera
     picture = renderer.render(wide)
@@ -103,34 +97,21 @@ def look(renderer, camera, margin_px=0):
     )
 
 
-def write(path, backdrops):
-    """Keep what cameras of one size see of an empty hall, for all takes in it.
-
-    Parameters
-    ----------
-    path : str or Path
-        An npz file, of the form SPEC.
-    backdrops : list of Backdrop
-        Without a margin.
-    """
+def write(path: str | Path, backdrops: Sequence[Backdrop]) -> None:
+    """Write backdrops of cameras of one size, without margins, for all takes of a session."""
     arrays = {
         name: [getattr(each, name) for each in backdrops] for name in SPEC if name != "camera"
     }
     npz.write(path, FORM, SPEC, {"camera": [each.camera.name for each in backdrops], **arrays})
 
 
-def read(path, filming):
-    """Return the `Backdrop` of each camera, a list, as `write` kept it.
-
-    Parameters
-    ----------
-    path : str or Path
-    filming : list of courtside.geometry.camera.Camera
+def read(path: str | Path, filming: Iterable[cameras.Camera]) -> list[Backdrop]:
+    """Return the backdrop of each camera, in order, from a file by `write`.
 
     Raises
     ------
     InputError
-        If the file is not such a file, or not of these cameras.
+        If the file is damaged, or lacks one of these cameras at this size.
     """
     kept = npz.read(path, FORM, SPEC)
     found = {name: at for at, name in enumerate(kept.pop("camera").tolist())}
@@ -138,8 +119,9 @@ def read(path, filming):
     for camera in filming:
         if camera.name not in found or tuple(camera.size) != size:
             raise InputError(
-                f"{path}: expected camera {camera.name} with {camera_fields.times(camera.size)} px, found "
-                f"{sorted(found)} with {camera_fields.times(size)}; make it again"
+                f"{path}: expected camera {camera.name} "
+                f"with {camera_fields.times(camera.size)} px, "
+                f"found {sorted(found)} with {camera_fields.times(size)}; make it again"
             )
     return [
         Backdrop(camera, 0, **{name: part[found[camera.name]] for name, part in kept.items()})

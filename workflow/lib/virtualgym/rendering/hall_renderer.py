@@ -1,47 +1,55 @@
 """Pictures of a virtual hall, by ray casting with exact geometry."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from courtside.geometry.camera import Camera
+from virtualgym.hall.hall import Scene
+from virtualgym.hall.quads import Quad
 from virtualgym.rendering import rays, sensor, shading, textured_quads
 
-NEAR_M = 0.1  # the middle of the hall is taken to be no nearer than this
-GRIDS = 4  # cameras whose ray grids are kept
+NEAR_M = 0.1  # least depth of the hall's centre, for the motion blur
+GRIDS = 4  # cameras whose ray grids are cached
 
 
 class Renderer:
-    """A scene made ready for pictures.
+    """A scene, ready to be rendered."""
 
-    Parameters
-    ----------
-    scene : virtualgym.hall.hall.Scene
-    """
-
-    def __init__(self, scene):
+    def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.surfaces = textured_quads.Surfaces(scene.quads)
-        self._grids, self._extra = {}, None
+        self._grids: dict[tuple, NDArray] = {}
+        self._extra: textured_quads.Surfaces | None = None
 
     def render(
-        self, camera, *, twist=None, readout_s=0.0, exposure_s=0.0, extra=None, noise=0.0, rng=None
-    ):
-        """Take a picture.
+        self,
+        camera: Camera,
+        *,
+        twist: tuple[ArrayLike, ArrayLike] | None = None,
+        readout_s: float = 0.0,
+        exposure_s: float = 0.0,
+        extra: list[Quad] | None = None,
+        noise: float = 0.0,
+        rng: np.random.Generator | None = None,
+    ) -> NDArray:
+        """Render a picture.
 
         Parameters
         ----------
-        camera : courtside.geometry.camera.Camera
+        camera : Camera
             Its pose is that at mid-exposure of the middle row.
         twist : ((3,) float, (3,) float) or None
-            How the camera moves. First its angular velocity w in its own frame, rad/s: after a short time t,
-            world_from_cam = world_from_cam(0) exp([w t]x), so that positive w about y (down) turns the view
-            to the right. Then the velocity of its centre in the world, m/s.
+            The camera's angular velocity w in its own frame, rad/s: after a short time t,
+            world_from_cam = world_from_cam(0) exp([w t]x), so that positive w about y (down) turns
+            the view to the right; and the velocity of its centre in the world, m/s.
         readout_s : float
             Rolling shutter: row v is exposed at ((v + 0.5) / H - 0.5) * readout_s.
         exposure_s : float
             Of each row, for motion blur.
-        extra : list of surfaces.Quad or None
-            More of the scene for this picture only, such as people.
+        extra : list of Quad or None
+            Additional surfaces for this picture only, such as people.
         noise : float
-            Of the sensor, standard deviation in 8-bit levels.
+            Standard deviation of the sensor's noise, 8-bit levels.
         rng : numpy.random.Generator or None
             For the noise.
 
@@ -65,7 +73,7 @@ class Renderer:
             rng=rng,
         )
 
-    def _grid(self, camera):
+    def _grid(self, camera: Camera) -> NDArray:
         key = (camera.name, camera.size, camera.K.tobytes(), camera.dist.tobytes())
         if key not in self._grids:
             while len(self._grids) >= GRIDS:
@@ -73,11 +81,13 @@ class Renderer:
             self._grids[key] = rays.grid(camera)
         return self._grids[key]
 
-    def _motion_px(self, camera, twist, exposure_s):
-        """Return how far the picture moves during the exposure."""
+    def _motion_px(
+        self, camera: Camera, twist: tuple[ArrayLike, ArrayLike] | None, exposure_s: float
+    ) -> tuple[float, float]:
+        """Return the picture's movement during the exposure, px to the right and down."""
         if twist is None or exposure_s <= 0:
             return 0.0, 0.0
-        # ASSUME: everything moves as the middle of the hall does; roll and parallax are left out.
+        # ASSUME: everything moves as the hall's centre does; roll and parallax are neglected.
         middle = np.mean(self.scene.room_m, axis=0) * [1, 1, 0.2]
         angular, velocity = (np.asarray(part, dtype=float) for part in twist)
         rotation = camera.cam_from_world[:, :3]
@@ -85,4 +95,5 @@ class Renderer:
         rate = -np.cross(angular, at) - rotation @ velocity
         depth = max(at[2], NEAR_M)
         focal = np.diag(camera.K)[:2]
-        return tuple(focal * (rate[:2] - at[:2] / depth * rate[2]) / depth * exposure_s)
+        across, down = focal * (rate[:2] - at[:2] / depth * rate[2]) / depth * exposure_s
+        return across, down

@@ -1,37 +1,31 @@
-"""Which ray each pixel of a picture sees, also while the camera moves."""
+"""The rays of a picture's pixels, also while the camera moves."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BarycentricInterpolator
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations as transforms
+from courtside.geometry.camera import Camera
 
-NODES = 28  # per axis: the lens is smooth, so that a polynomial through so many is exact to 1e-9 px
+NODES = 28  # per axis: the lens is smooth, so this interpolation is exact to 1e-9 px
 
 
-def grid(camera):
-    """Return where each pixel's centre looks, on the normalised image plane.
-
-    Parameters
-    ----------
-    camera : courtside.geometry.camera.Camera
-
-    Returns
-    -------
-    xy : (2, H, W) float32
-        On the z = 1 plane in front of the camera.
+def grid(camera: Camera) -> NDArray:
+    """Return the point (2, H, W) float32 on the z = 1 plane that each pixel's centre sees.
 
     Raises
     ------
     ValueError
-        If the lens model shows nothing in a part of the picture.
+        If the lens model does not cover the picture.
 
     Notes
     -----
-    `camera.undistort` at Chebyshev nodes, a polynomial between them.
+    `camera.undistort` at Chebyshev nodes, and a polynomial between them.
     """
     nodes = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
     places = [(nodes + 1) / 2 * length - 0.5 for length in camera.size]
@@ -59,13 +53,13 @@ class Rays:
     eye : (3,) float
         The camera's centre at mid-exposure of the middle row; world, metres.
     velocity : (3,) float or None
-        Of the centre, m/s; None where the camera stands still.
+        Of the centre, m/s; None if the camera stands still.
     world_from_cam : (H or 1, 3, 3) float32
         Rotation of each row, or of all.
     time_s : (H,) float32
-        When each row is exposed, from the middle one.
+        Exposure time of each row, from that of the middle one.
     steps : (2, 3) float
-        Change of a direction in the world by one pixel to the right, and by one down.
+        Change of a direction in the world per pixel to the right, and per pixel down.
     """
 
     xy: np.ndarray
@@ -76,19 +70,21 @@ class Rays:
     steps: np.ndarray
 
     @property
-    def moving(self):
-        """Whether rows differ."""
+    def moving(self) -> bool:
+        """Whether the camera moves during the readout."""
         return self.velocity is not None
 
-    def of_band(self, start, stop):
-        """Return directions (3, n) and times (n,) or None of all pixels of the rows start..stop-1."""
+    def of_band(self, start: int, stop: int) -> tuple[NDArray, NDArray | None]:
+        """Return directions (3, n) and times (n,) or None of all pixels of rows start to stop-1."""
         x, y = self.xy[:, start:stop]
         row = np.arange(start, stop)
         direction = _turn(self._turns(row)[..., None], x, y).reshape(3, -1)
         return direction, self._times(np.repeat(row, x.shape[1]))
 
-    def near(self, pixel, offsets=((0.0, 0.0),)):
-        """Return directions, for each offset (3, n), and times (n,) or None of some pixels.
+    def near(
+        self, pixel: NDArray, offsets: Sequence[tuple[float, float]] | NDArray = ((0.0, 0.0),)
+    ) -> tuple[Iterator[NDArray], NDArray | None]:
+        """Return directions (3, n) for each offset, and times (n,) or None, of some pixels.
 
         Parameters
         ----------
@@ -115,11 +111,11 @@ class Rays:
         beside = (centre + (dx * across + dy * down).astype(np.float32) for dx, dy in offsets)
         return (_turn(turn, *xy) for xy in beside), self._times(row)
 
-    def halved(self):
-        """Return the rays of a picture of half the size: each the mean of four."""
+    def halved(self) -> "Rays":
+        """Return the rays of a picture of half the size, each the mean of four."""
         height, width = (2 * (length // 2) for length in self.xy.shape[1:])
         xy = self.xy[:, :height, :width]
-        left, right = xy[..., ::2], xy[..., 1::2]  # not `mean` over two axes: ten times as long
+        left, right = xy[..., ::2], xy[..., 1::2]  # `mean` over two axes takes ten times as long
         four = (left[:, ::2] + right[:, ::2]) + (left[:, 1::2] + right[:, 1::2])
         rows = slice(0, height, 2) if self.moving else slice(None)
         return Rays(
@@ -131,26 +127,28 @@ class Rays:
             self.steps * 2,
         )
 
-    def origins(self, time_s):
-        """Return where rays of these times begin, (n, 3) or (3,) float32."""
+    def origins(self, time_s: NDArray | None) -> NDArray:
+        """Return the origins (n, 3), or (3,) for all, float32, of rays of these times."""
         eye = self.eye.astype(np.float32)
-        if time_s is None:
+        if time_s is None or self.velocity is None:
             return eye
         start = np.empty((len(time_s), 3), np.float32)
         for axis, speed in enumerate(self.velocity.astype(np.float32)):
             np.add(time_s * speed, eye[axis], out=start[:, axis])
         return start
 
-    def _turns(self, row):
-        """Return the rotations of rows (n,), (3, 3, n), or one for all (3, 3, 1)."""
+    def _turns(self, row: NDArray) -> NDArray:
+        """Return the rotations (3, 3, n) of rows (n,), or one for all (3, 3, 1)."""
         rotations = self.world_from_cam.transpose(1, 2, 0)
         return rotations[:, :, row] if self.moving else rotations
 
-    def _times(self, row):
+    def _times(self, row: NDArray) -> NDArray | None:
         return self.time_s[row] if self.moving else None
 
 
-def of_camera(camera, xy, twist, readout_s):
+def of_camera(
+    camera: Camera, xy: NDArray, twist: tuple[ArrayLike, ArrayLike] | None, readout_s: float
+) -> Rays:
     """Return the rays of a picture.
 
     Parameters
@@ -160,13 +158,10 @@ def of_camera(camera, xy, twist, readout_s):
     xy : (2, H, W) float32
         From `grid`.
     twist : ((3,) float, (3,) float) or None
-        Angular velocity in the camera's own frame, rad/s, and velocity of its centre in the world, m/s.
+        Angular velocity in the camera's own frame, rad/s, and velocity of its centre in the world,
+        m/s.
     readout_s : float
-        From the first row's exposure to the one after the last row's.
-
-    Returns
-    -------
-    rays : Rays
+        H times the delay from one row to the next.
     """
     world_from_cam = camera.cam_from_world[:, :3].T
     height = xy.shape[1]
@@ -180,6 +175,6 @@ def of_camera(camera, xy, twist, readout_s):
     return Rays(xy, eye, velocity, rotation.astype(np.float32), time_s.astype(np.float32), steps)
 
 
-def _turn(rotation, x, y):
-    """Turn rays (x, y, 1) by rotations (3, 3, ...) that broadcast with them; (3, ...)."""
+def _turn(rotation: NDArray, x: NDArray, y: NDArray) -> NDArray:
+    """Rotate rays (x, y, 1) by rotations (3, 3, ...) that broadcast with them; (3, ...)."""
     return np.stack([right * x + down * y + ahead for right, down, ahead in rotation])

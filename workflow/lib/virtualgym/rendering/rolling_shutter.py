@@ -1,43 +1,56 @@
-"""Moving surfaces as a rolling shutter sees them: each point at the time at which its row is exposed."""
+"""Moving surfaces seen by a rolling shutter: each point at the exposure time of its row."""
+
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera as distortion
+from courtside.geometry.camera import Camera
 from virtualgym.body import mesh
+from virtualgym.body.mesh import Mesh
 
-ROUNDS = (
-    6  # at most, of finding the row that sees a point: each leaves 2 % of the error at 1000 px/s
+# Limit of the iteration for the row that sees a point: each leaves 2 % of the error at 1000 px/s.
+ROUNDS = 6
+ENOUGH_PX = 0.05  # the iteration stops at changes below this
+FAST_M = (
+    0.05  # surfaces that move farther during one picture are sampled at five moments, not three
 )
-ENOUGH_PX = 0.05  # no more rounds where the last one changed nothing by more
-FAST_M = 0.05  # what goes farther during one picture is followed through five moments
-SLACK = (
-    0.04  # of the picture's height, within which an athlete is where the middle row's time has it
-)
-SHADES = np.array(
-    [0.14, -0.10, 0.30]
-)  # how much brighter a surface is per unit of its outward normal
+SLACK = 0.04  # margin, in picture heights, for the rows that show an athlete
+# ASSUME: light chosen by eye; it changes pictures only. Added light per unit of the outward normal,
+# and base.
+SHADES = np.array([0.14, -0.10, 0.30])
 AMBIENT = 0.76
+Box = tuple[int, int, int, int]  # first column, first row, and one beyond the last of each
+
+
+class HasMesh(Protocol):
+    """Whatever moves: its surface at each time, always of the same triangles."""
+
+    def mesh(self, time_s: float) -> Mesh:
+        """Return the surface at a time, world, metres."""
+        ...
 
 
 class Moving:
-    """A surface during one picture: every point on a polynomial in time, through three moments or five.
+    """A surface during one picture: each vertex on a polynomial through three or five moments.
 
     Parameters
     ----------
-    athlete : object
-        Its `mesh(time_s)` gives a `mesh.Mesh`, always of the same triangles.
+    athlete : HasMesh
     time_s : float
         The moment in the middle.
     half_s : float
         From there to the first and to the last moment.
     """
 
-    def __init__(self, athlete, time_s, half_s):
+    def __init__(self, athlete: HasMesh, time_s: float, half_s: float) -> None:
         now = athlete.mesh(time_s)
         self.time_s, self.half_s = time_s, half_s
         self.triangles, self.colours = now.triangles, now.colours
         self.vertices = np.asarray(now.vertices, dtype=float)
-        self._powers = [self.vertices]
+        self._powers: Sequence[NDArray] | NDArray = [self.vertices]
         if half_s > 0:
             places = {0.0: self.vertices}
             places |= {x: _vertices(athlete, time_s + x * half_s) for x in (-1.0, 1.0)}
@@ -46,8 +59,8 @@ class Moving:
             through = np.linalg.inv(np.vander(list(places), increasing=True))
             self._powers = np.tensordot(through, list(places.values()), axes=1)
 
-    def at(self, time_s):
-        """Return the vertices (V, 3) m at a time, or each at its own (V,)."""
+    def at(self, time_s: float | NDArray) -> NDArray:
+        """Return the vertices (V, 3) m at one time, or each at its own time (V,)."""
         if len(self._powers) == 1:
             return self.vertices
         since = ((np.asarray(time_s, dtype=float) - self.time_s) / self.half_s)[..., None]
@@ -56,27 +69,16 @@ class Moving:
             xyz = xyz * since + power
         return xyz
 
-    def light(self):
-        """Return how light the surface is at each vertex, (V,) float32."""
+    def light(self) -> NDArray:
+        """Return the light at each vertex, (V,) float32."""
         normals = mesh.normals(self.vertices, self.triangles)
         return (AMBIENT + normals @ SHADES).astype(np.float32)
 
 
-def follow(athlete, camera, time_s, readout_s, exposure_s):
-    """Return an athlete's surface while the rows that show it are exposed.
-
-    Parameters
-    ----------
-    athlete : object
-        As `Moving` takes it.
-    camera : courtside.geometry.camera.Camera
-    time_s, readout_s, exposure_s : float
-        As `Screen` takes them.
-
-    Returns
-    -------
-    moving : Moving
-    """
+def follow(
+    athlete: HasMesh, camera: Camera, time_s: float, readout_s: float, exposure_s: float
+) -> Moving:
+    """Return an athlete's surface while the rows that show it are exposed; times as in `Screen`."""
     height = camera.size[1]
     rows = shown(camera, _vertices(athlete, time_s))[1]
     low, high = np.clip([np.nanmin(rows, initial=height), np.nanmax(rows, initial=0)], 0, height)
@@ -85,7 +87,7 @@ def follow(athlete, camera, time_s, readout_s, exposure_s):
     return Moving(athlete, middle_s, half_s)
 
 
-def _vertices(athlete, time_s):
+def _vertices(athlete: HasMesh, time_s: float) -> NDArray:
     return np.asarray(athlete.mesh(time_s).vertices, dtype=float)
 
 
@@ -95,7 +97,7 @@ class Screen:
     Parameters
     ----------
     moving : Moving
-    camera : courtside.geometry.camera.Camera
+    camera : Camera
     time_s : float
         Mid-exposure of the middle row.
     readout_s : float
@@ -104,7 +106,9 @@ class Screen:
         Of each row.
     """
 
-    def __init__(self, moving, camera, time_s, readout_s, exposure_s):
+    def __init__(
+        self, moving: Moving, camera: Camera, time_s: float, readout_s: float, exposure_s: float
+    ) -> None:
         self.moving, self.camera = moving, camera
         self._time_s, self._readout_s = time_s, readout_s
         middle = self._rolled(self._shown(moving.time_s)[1], 0.0)
@@ -114,13 +118,13 @@ class Screen:
             self._shape += [ends[1] - ends[0], 2 * (ends[0] + ends[1] - 2 * middle)]
 
     @property
-    def blur_px(self):
-        """How far each vertex moves during the exposure, (V,); NaN where the camera sees nothing."""
+    def blur_px(self) -> NDArray:
+        """Path of each vertex during the exposure, (V,); NaN where the camera sees nothing."""
         if len(self._shape) == 1:
             return np.zeros(self._shape[0].shape[1])
         return np.hypot(*self._shape[1][:2])
 
-    def at(self, share):
+    def at(self, share: float) -> NDArray:
         """Return the vertices at a moment of the exposure.
 
         Parameters
@@ -131,20 +135,21 @@ class Screen:
         Returns
         -------
         vertices : (V, 3) float
-            Px across, px down, and metres along the camera's axis; NaN where the camera sees nothing.
+            Px across, px down, and metres along the camera's axis; NaN where the camera sees
+            nothing.
         """
         if len(self._shape) == 1:
             return self._shape[0].T
         middle, slope, bend = self._shape
         return (middle + share * (slope + share * bend)).T
 
-    def box(self, pad_px):
-        """Return the part of the picture that shows the surface, as `Box` has it; None where none does."""
+    def box(self, pad_px: int) -> Box | None:
+        """Return the part of the picture that shows the surface, or None."""
         ends = np.hstack([self.at(share).T[:2] for share in (-0.5, 0.0, 0.5)])
         return bounds(ends.T, self.camera.size, pad_px)
 
-    def _rolled(self, row, later_s):
-        """Return what rows see that are exposed so much later than they are, (3, V)."""
+    def _rolled(self, row: NDArray, later_s: float) -> NDArray:
+        """Return the vertices (3, V) as seen `later_s` after the exposure of their rows."""
         height = self.camera.size[1]
         for _ in range(ROUNDS):
             own_s = self._time_s + ((row + 0.5) / height - 0.5) * self._readout_s + later_s
@@ -155,28 +160,22 @@ class Screen:
                 break
         return seen
 
-    def _shown(self, time_s):
+    def _shown(self, time_s: float | NDArray) -> NDArray:
         return shown(self.camera, self.moving.at(time_s))
 
 
-def shown(camera, xyz):
-    """Return where a camera sees points, and how far in front of it.
-
-    Parameters
-    ----------
-    camera : courtside.geometry.camera.Camera
-    xyz : (V, 3) float
-        World, metres.
+def shown(camera: Camera, xyz: NDArray) -> NDArray:
+    """Return where a camera sees points (V, 3) m, and their depth.
 
     Returns
     -------
     seen : (3, V) float
-        Px across and down as `camera.project` has them, to the last bit (NaN where the camera sees
-        nothing), and metres along the camera's axis.
+        Px across and down, bit by bit as from `camera.project` (NaN where the camera sees nothing),
+        and metres along the camera's axis.
 
     Notes
     -----
-    Coordinates stay apart, each in a row of its own: NumPy takes several times as long on pairs and triples.
+    Coordinates are separate rows: NumPy takes several times as long on pairs and triples.
     """
     pose = camera.cam_from_world
     seen = np.empty((3, len(xyz)))
@@ -194,8 +193,8 @@ def shown(camera, xyz):
     return seen
 
 
-def bounds(xy, size, pad_px):
-    """Return the box of pixels round points, or None where it has none.
+def bounds(xy: NDArray, size: tuple[int, int], pad_px: int) -> Box | None:
+    """Return the box of pixels round points with a margin, or None outside of the picture.
 
     Parameters
     ----------
@@ -204,12 +203,7 @@ def bounds(xy, size, pad_px):
     size : (int, int)
         Width and height of the picture.
     pad_px : int
-        More on each side.
-
-    Returns
-    -------
-    box : (int, int, int, int) or None
-        First column, first row, and one beyond the last of each.
+        Margin on each side.
     """
     x, y = np.asarray(xy).T
     known = np.isfinite(x) & np.isfinite(y)
@@ -219,4 +213,4 @@ def bounds(xy, size, pad_px):
     first, last = np.transpose(ends)
     low = np.clip(np.floor(first) - pad_px, 0, size).astype(int)
     high = np.clip(np.ceil(last) + pad_px + 1, 0, size).astype(int)
-    return (*low.tolist(), *high.tolist()) if (high > low).all() else None
+    return (int(low[0]), int(low[1]), int(high[0]), int(high[1])) if (high > low).all() else None

@@ -1,28 +1,36 @@
-"""What a lens and a sensor do to a picture: motion blur, blur, vignette, noise, eight bits."""
+"""Effects of lens and sensor: motion blur, optical blur, vignette, noise, quantisation."""
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-VIGNETTE = 0.25  # darker in the corners
-OPTICS_PX = 0.5  # standard deviation of the lens's blur
+VIGNETTE = 0.25  # ASSUME: loss of light in the corners, of a phone's camera
+OPTICS_PX = 0.5  # ASSUME: standard deviation of the lens's blur, of a phone's camera
 SHARP_PX = 0.25  # shorter motion leaves no visible blur
 
 
-def develop(picture, xy, *, motion_px=(0.0, 0.0), noise=0.0, rng=None):
-    """Turn light into a picture as a camera delivers it.
+def develop(
+    picture: NDArray,
+    xy: NDArray,
+    *,
+    motion_px: tuple[float, float] = (0.0, 0.0),
+    noise: float = 0.0,
+    rng: np.random.Generator | None = None,
+) -> NDArray:
+    """Turn light into a camera's picture.
 
     Parameters
     ----------
     picture : (H, W, 3) float32
         0..255, changed in place.
     xy : (2, H, W) float32
-        Where pixels look, on the z = 1 plane.
+        Point of the z = 1 plane that each pixel sees.
     motion_px : (2,) float
-        How far the picture moves during the exposure, px to the right and down.
+        Movement of the picture during the exposure, px to the right and down.
     noise : float
         Standard deviation, 8-bit levels.
     rng : numpy.random.Generator or None
-        Needed where there is noise.
+        Needed for noise.
 
     Returns
     -------
@@ -34,7 +42,7 @@ def develop(picture, xy, *, motion_px=(0.0, 0.0), noise=0.0, rng=None):
     square = xy[0] ** 2 + xy[1] ** 2
     square *= -VIGNETTE / square.max()
     square += 1
-    for channel in range(3):  # a third of the time of all at once
+    for channel in range(3):  # in a third of the time of all at once
         picture[..., channel] *= square
     if noise > 0:
         if rng is None:
@@ -46,14 +54,8 @@ def develop(picture, xy, *, motion_px=(0.0, 0.0), noise=0.0, rng=None):
     return np.clip(picture, 0, 255, out=picture).astype(np.uint8)
 
 
-def line_kernel(motion_px):
-    """Return the weights (k, k) float32 of a point that moves evenly along a straight line about the centre.
-
-    Parameters
-    ----------
-    motion_px : (2,) float
-        From the line's start to its end, px to the right and down.
-    """
+def line_kernel(motion_px: tuple[float, float]) -> NDArray:
+    """Return the blur kernel (k, k) float32 of a straight, even motion (2,), px right and down."""
     half = int(np.ceil(np.abs(motion_px).max() / 2))
     n_points = int(16 * np.hypot(*motion_px)) + 2
     share = (np.arange(n_points) + 0.5) / n_points - 0.5

@@ -1,45 +1,52 @@
-"""One picture in the making: what rays hit, what a glossy floor mirrors, and the net before it."""
+"""Shading of one picture: what rays hit, reflections in a glossy floor, and the net."""
+
+from collections.abc import Callable, Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from virtualgym.hall import painted_lines
+from virtualgym.hall.hall import Scene
 from virtualgym.rendering import textured_quads
+from virtualgym.rendering.rays import Rays
 
-BAND_RAYS = 1 << 16  # at a time: what fits the processor's cache
+BAND_RAYS = 1 << 16  # per batch: fits the processor's cache
+# Rotated grid supersampling: four rays with distinct rows and columns.
 SUBPIXELS = np.array([[-0.375, -0.125], [0.125, -0.375], [0.375, 0.125], [-0.125, 0.375]])
-ROUGHNESS = 2.0  # levels by which the floor blurs what it mirrors
-# Pixels of half the picture's size, to the right and down, for edges that the floor mirrors.
-SMEAR = (3, 7)
-GRAZING = 3.5  # how much more the floor mirrors at grazing angles
-MOST = 0.6  # of the light that it may mirror
-LIFT_M = 1e-3  # mirrored rays begin so far above the floor
+# ASSUME: gloss of a varnished wooden floor and cover of a net, chosen by eye; they change pictures
+# only.
+ROUGHNESS = 2.0  # texture levels by which the floor blurs reflections
+SMEAR = (3, 7)  # blur of reflected edges, px at half the picture's size, right and down
+GRAZING = 3.5  # added reflectance at grazing angles, relative to that from above (Schlick's form)
+MOST = 0.6  # greatest fraction of reflected light
+LIFT_M = 1e-3  # reflected rays start this far above the floor
 NET_BGR = np.array([35, 40, 45], np.float32)
-NET_COVER = 0.28  # share of the view that the threads hide
-FLOOR = 0  # the first quad of a scene
-DOWN = np.array([1.0, 1.0, -1.0])  # a mirror image in the floor
+NET_COVER = 0.28  # fraction of the view that the threads hide
+FLOOR = 0  # index of the floor, the first quad of a scene
+DOWN = np.array([1.0, 1.0, -1.0])  # reflection at the floor
 
 
 class Exposure:
-    """A picture in the making.
+    """One picture while it is shaded.
 
     Parameters
     ----------
-    scene : virtualgym.hall.hall.Scene
-    parts : list of virtualgym.rendering.textured_quads.Surfaces
-        The scene's own, then others that are there for this picture only.
-    seen : virtualgym.rendering.rays.Rays
+    scene : Scene
+    parts : list of Surfaces
+        The scene's own, then those of this picture only.
+    seen : Rays
     """
 
-    def __init__(self, scene, parts, seen):
+    def __init__(self, scene: Scene, parts: Sequence[textured_quads.Surfaces], seen: Rays) -> None:
         self.scene = scene
         self.rays = seen
         self.eye = _Eye(parts, seen.eye, seen.steps, seen.velocity)
         self.parts = parts
         self.height, self.width = seen.xy.shape[1:]
 
-    def picture(self):
-        """Return the picture (H, W, 3) float32, BGR 0..255 or somewhat more."""
+    def picture(self) -> NDArray:
+        """Return the picture (H, W, 3) float32, BGR, 0..255 or slightly more."""
         ids = np.empty((self.height, self.width), np.intp)
         hidden = np.empty((self.height, self.width), bool)
         colour = np.empty((self.height, self.width, 3), np.float32)
@@ -62,8 +69,8 @@ class Exposure:
         flat[edges] = self._supersampled(edges, mirrored)
         return colour
 
-    def _supersampled(self, pixel, mirrored):
-        """Return the mean colour of some pixels over several rays each, (n, 3)."""
+    def _supersampled(self, pixel: NDArray, mirrored: NDArray | None) -> NDArray:
+        """Return the mean colour (n, 3) of some pixels over SUBPIXELS."""
         total = np.zeros((len(pixel), 3), np.float32)
         directions, time_s = self.rays.near(pixel, SUBPIXELS)
         for direction in directions:
@@ -73,8 +80,10 @@ class Exposure:
             total += colour
         return total / len(SUBPIXELS)
 
-    def _sample(self, direction, time_s):
-        """Return what rays hit (n,), its colour (n, 3) but for gloss, whether the net is before it (n,)."""
+    def _sample(
+        self, direction: NDArray, time_s: NDArray | None
+    ) -> tuple[NDArray, NDArray, NDArray]:
+        """Return hit quads (n,), colours (n, 3) without gloss, whether the net is in front (n,)."""
         origin = self.rays.origins(time_s)
         index = self.eye.trace(origin, direction, time_s)
         colour = self.eye.colour(index, direction, time_s)
@@ -90,11 +99,9 @@ class Exposure:
             colour[crossed] += NET_COVER * NET_BGR
         return index, colour, hidden
 
-    def _mirrored(self, ids):
-        """Return what the floor mirrors in each pixel on and next to it, (H * W, 3) float32.
-
-        # ASSUME: worked out for two by two pixels together, as the floor blurs what it mirrors.
-        """
+    def _mirrored(self, ids: NDArray) -> NDArray:
+        """Return the floor's reflection in each pixel on and next to it, (H * W, 3) float32."""
+        # ASSUME: half the resolution is enough, as the floor blurs its reflections.
         half = self.rays.halved()
         height, width = half.xy.shape[1:]
         floor = (ids[: 2 * height, : 2 * width] == FLOOR).astype(np.uint8)
@@ -123,26 +130,32 @@ class Exposure:
             light = cv2.copyMakeBorder(light, 0, odd[0], 0, odd[1], cv2.BORDER_REPLICATE)
         return light.reshape(-1, 3)
 
-    def _share(self, index, direction):
-        """Return the share of mirrored light in what rays see, (n,) float32: 0 where they see no floor."""
+    def _share(self, index: NDArray, direction: NDArray) -> NDArray:
+        """Return the fraction (n,) float32 of reflected light in each ray; 0 off the floor."""
         upright = np.abs(direction[2]) / np.sqrt(np.einsum("in,in->n", direction, direction))
         share = np.float32(self.scene.gloss) * (1 + np.float32(GRAZING) * (1 - upright) ** 5)
         return np.minimum(share, np.float32(MOST)) * (index == FLOOR)
 
 
 class _Eye:
-    """Several sets of surfaces as one eye sees them, numbered through."""
+    """Several sets of surfaces seen from one point, with consecutive indices."""
 
-    def __init__(self, parts, eye, steps, velocity):
+    def __init__(
+        self,
+        parts: Sequence[textured_quads.Surfaces],
+        eye: NDArray,
+        steps: NDArray,
+        velocity: NDArray | None,
+    ) -> None:
         self.parts = parts
         self.views = [textured_quads.View(part, eye, steps, velocity) for part in parts]
         self.first = np.cumsum([0] + [len(part.quads) for part in parts])
 
-    def trace(self, origin, direction, time_s):
+    def trace(self, origin: NDArray, direction: NDArray, time_s: NDArray | None) -> NDArray:
         """Return the nearest quad of all parts that each ray (3, n) hits, (n,) intp."""
         rays = np.ascontiguousarray(direction.T)
         index = self.parts[0].hit(origin, rays)
-        for missed in np.flatnonzero(index < 0):  # between quads that only touch: rare
+        for missed in np.flatnonzero(index < 0):  # rare: between quads that only touch
             index[missed] = index[missed - 1]
         for part, first in zip(self.parts[1:], self.first[1:], strict=False):
             other = part.hit(origin, rays)
@@ -153,15 +166,25 @@ class _Eye:
             index[found[nearer]] = other[nearer]
         return index
 
-    def distance(self, index, direction, time_s):
-        """Return how many times its direction each ray goes to its quad, (n,) float32."""
+    def distance(self, index: NDArray, direction: NDArray, time_s: NDArray | None) -> NDArray:
+        """Return the distance to each ray's quad, (n,) float32, in units of its direction."""
         return self._each(textured_quads.View.distance, (), index, direction, time_s)
 
-    def colour(self, index, direction, time_s, **detail):
+    def colour(
+        self, index: NDArray, direction: NDArray, time_s: NDArray | None, **detail: float
+    ) -> NDArray:
         """Return the colours (n, 3) float32 that rays see on their quads."""
         return self._each(textured_quads.shade, (3,), index, direction, time_s, **detail)
 
-    def _each(self, function, shape, index, direction, time_s, **detail):
+    def _each(
+        self,
+        function: Callable[..., NDArray],
+        shape: tuple[int, ...],
+        index: NDArray,
+        direction: NDArray,
+        time_s: NDArray | None,
+        **detail: float,
+    ) -> NDArray:
         last = self.first[1]
         if len(self.parts) == 1 or not len(index) or index.max() < last:
             return function(self.views[0], index, direction, time_s, **detail)
@@ -174,19 +197,21 @@ class _Eye:
         return result
 
 
-def cross(net, origin, direction):
-    """Return which rays cross the net's mesh, and after how many times their direction, each (m,).
+def cross(net: painted_lines.Net, origin: NDArray, direction: NDArray) -> tuple[NDArray, NDArray]:
+    """Return the rays that cross the net's mesh, and their distances to it, each (m,).
+
+    Distances are in units of the rays' directions.
 
     Parameters
     ----------
-    net : virtualgym.hall.painted_lines.Net
+    net : Net
     origin, direction : (..., 3) float, (3, n) float
         Of the rays, metres; one origin may serve all.
     """
     start, end = net.feet
     along = end - start
     normal = np.array([along[1], -along[0], 0.0])
-    # Not `@`: it takes five times as long for rows of three.
+    # `@` takes five times as long for rows of three.
     away = sum((start[axis] - origin[..., axis]) * normal[axis] for axis in (0, 1))
     speed = direction[0] * np.float32(normal[0]) + direction[1] * np.float32(normal[1])
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -203,14 +228,14 @@ def cross(net, origin, direction):
     return ahead[inside], share[inside]
 
 
-def _mix(colour, other, share):
-    """Replace a share (...) of colours (..., 3) by another, channel by channel: a third of the time."""
+def _mix(colour: NDArray, other: NDArray, share: NDArray) -> None:
+    """Blend colours (..., 3) in place; one channel at a time takes a third of the time."""
     for channel in range(3):
         own = colour[..., channel]
         own += share * (other[..., channel] - own)
 
 
-def _edges(*maps):
+def _edges(*maps: NDArray) -> NDArray:
     """Return the pixels that differ from a neighbour in any of the maps (H, W), (n,) intp."""
     edge = np.zeros(maps[0].shape, bool)
     for values in maps:

@@ -1,13 +1,18 @@
-"""Soft shadows that athletes cast on the floor, under the many lamps of a hall."""
+"""Soft shadows of athletes on the floor, under the many lamps of a hall."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
+# ASSUME: lamps and softness of shadows as in a hall, chosen by eye; they change pictures only.
 CELL_M = 0.05
-MOST_TRIANGLES = 20000  # of larger meshes only some cast shadows, each for its neighbours too
-LAMPS = np.array(  # direction (x, y) per metre of height, and share of the floor's light
+MOST_TRIANGLES = (
+    20000  # of larger meshes, only every n-th triangle casts a shadow, n times as strong
+)
+LAMPS = np.array(  # direction (x, y) per metre of height, and fraction of the floor's light
     [
         [0.0, 0.0, 0.24],
         [0.5, 0.35, 0.09],
@@ -16,10 +21,10 @@ LAMPS = np.array(  # direction (x, y) per metre of height, and share of the floo
         [-0.4, -0.45, 0.09],
     ]
 )
-LAYERS_M = 0.0, 0.12, 0.35, 0.8, 1.5  # heights whose shadows are equally soft
-SOFT_M = 0.05  # of the lowest; standard deviation
-SOFTER = 0.11  # per metre of height: the size of a lamp as the floor sees it
-BEYOND_M = 0.4, 0.6  # of the surface a shadow reaches so far; and more per metre of height
+LAYERS_M = 0.0, 0.12, 0.35, 0.8, 1.5  # lower limits of layers whose shadows are equally soft
+SOFT_M = 0.05  # standard deviation of the blur at the floor
+SOFTER = 0.11  # its increase per metre of height: angular size of a lamp
+BEYOND_M = 0.4, 0.6  # reach of a shadow beyond the surface, and its increase per metre of height
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,60 +34,46 @@ class Shadow:
     Attributes
     ----------
     corner_m : (2,) float
-        World x and y of the middle of the first cell.
+        World x and y of the first cell's centre.
     light : (rows along y, columns along x) float32
-        Share of the light that is left.
+        Remaining fraction of the light.
     """
 
     corner_m: np.ndarray
     light: np.ndarray
 
-    def outline(self):
-        """Return points round the part of the floor, (4, 3) m."""
+    def outline(self) -> NDArray:
+        """Return the corners of the part of the floor, (4, 3) m."""
         rows, columns = self.light.shape
         x, y = self.corner_m[:, None] + np.array([[0, 0], [columns, rows]]).T * CELL_M
         return np.array([[x[i], y[j], 0.0] for i in (0, 1) for j in (0, 1)])
 
-    def seen(self, eye, direction):
-        """Return the light (H, W) float32 where rays meet the floor.
+    def seen(self, eye: NDArray, direction: NDArray) -> NDArray:
+        """Return the light (H, W) float32 where rays from `eye` meet the floor.
 
-        Parameters
-        ----------
-        eye : (3,) float
-        direction : (3, H, W) float32
-            World; rays that do not go down see light everywhere.
+        Rays (3, H, W) that do not point down see full light.
         """
         down = np.minimum(direction[2], np.float32(-1e-6))
-        places = [
+        x, y = (
             (
                 np.float32(eye[axis] - self.corner_m[axis])
                 - np.float32(eye[2]) * direction[axis] / down
             )
             * np.float32(1 / CELL_M)
             for axis in (0, 1)
-        ]
+        )
         return cv2.remap(
-            self.light, *places, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=1.0
+            self.light, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=1.0
         )
 
 
-def cast(vertices, triangles):
-    """Work out the shadow of a closed surface.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float
-        World, metres.
-    triangles : (F, 3) int
-
-    Returns
-    -------
-    shadow : Shadow
+def cast(vertices: NDArray, triangles: NDArray) -> Shadow:
+    """Return the shadow of a closed surface: vertices (V, 3) m, triangles (F, 3).
 
     Notes
     -----
-    A lamp sees nothing of the floor that two layers of the surface cover, front and back, blurred by the size
-    of the lamps.
+    A lamp does not light cells of the floor that two layers of the surface, front and back, cover
+    as seen from it; the result is blurred by the size of the lamps.
     """
     every = -(-len(triangles) // MOST_TRIANGLES)
     middle, spread = _faces(vertices, triangles[::every])
@@ -102,16 +93,16 @@ def cast(vertices, triangles):
     return Shadow(low + CELL_M / 2, light)
 
 
-def _faces(vertices, triangles):
-    """Return the middles (3, F) of triangles, and twice their areas as vectors (F, 3)."""
+def _faces(vertices: NDArray, triangles: NDArray) -> tuple[NDArray, NDArray]:
+    """Return the centres (3, F) of triangles, and their area vectors times two (F, 3)."""
     a, b, c = (np.take(np.ascontiguousarray(vertices.T), corner, axis=1) for corner in triangles.T)
     middle = (a + b + c) / 3
     (ux, uy, uz), (wx, wy, wz) = b - a, c - a
     return middle, np.stack([uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx], axis=1)
 
 
-def _covered(place, layer, cover, shape):
-    """Return by how many layers of surface cells are covered (rows, columns), the higher the softer."""
+def _covered(place: Sequence[NDArray], layer: NDArray, cover: NDArray, shape: NDArray) -> NDArray:
+    """Return the number of surface layers over each cell (rows, columns), softer from higher up."""
     (x, y), size = place, shape[0] * shape[1]
     inside = (x >= 0) & (x < shape[0]) & (y >= 0) & (y < shape[1])
     if not inside.all():

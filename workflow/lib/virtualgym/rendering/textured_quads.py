@@ -1,28 +1,32 @@
-"""Textured quads: one atlas of all textures, and its lookup at ray hits."""
+"""Textured quads: one atlas of all textures, looked up at ray hits."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import ArrayLike, NDArray
+
+from virtualgym.hall.quads import Quad
 
 MAX_TAPS = 8  # along the longer side of a pixel's footprint
-LOOKUP_WIDTH = 1024  # cv2.remap wants a picture, not a line
-TINY = np.float32(1e-6)
+LOOKUP_WIDTH = 1024  # row length for cv2.remap, which needs a picture, not a line
+TINY = np.float32(1e-6)  # against division by zero
 
 
 class Surfaces:
-    """Quads made ready for rays: an acceleration structure, planes, and an atlas of textures.
+    """Quads, ready for rays: an acceleration structure, planes, and an atlas of textures.
 
     Parameters
     ----------
-    quads : list of surfaces.Quad
+    quads : iterable of Quad
     earlier : Surfaces or None
-        Of the picture before: where its textures are the same, so is the atlas.
+        Those of the last picture, whose atlas is used again if the textures are the same.
     """
 
-    def __init__(self, quads, earlier=None):
+    def __init__(self, quads: Iterable[Quad], earlier: "Surfaces | None" = None) -> None:
         self.quads = list(quads)
         origin, u, v = (
             np.array([getattr(q, name) for q in self.quads]) for name in ("origin", "u", "v")
@@ -30,17 +34,19 @@ class Surfaces:
         normal = np.cross(u, v)
         self.origin = origin
         self.normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-        # Kept, so that no other texture gets the identity of one of them.
+        # Keep the textures, so that no new array gets the id of one of them.
         self.textures = {id(quad.texture): quad.texture for quad in self.quads}
         order = {key: index for index, key in enumerate(self.textures)}
-        same = earlier is not None and list(earlier.textures) == list(self.textures)
-        packed = earlier.packed if same else pack(list(self.textures.values()))
+        if earlier is not None and list(earlier.textures) == list(self.textures):
+            packed = earlier.packed
+        else:
+            packed = pack(list(self.textures.values()))
         of_quad = np.array([order[id(quad.texture)] for quad in self.quads])
         sizes = packed.sizes[of_quad]
-        # Dual vectors: texel = dual . (point - origin), also where u and v are not at right angles.
+        # Dual vectors: texel = dual . (point - origin), also if u and v are not orthogonal.
         self.u_dual = _dual(u, v, self.normal) * sizes[:, :1]
         self.v_dual = _dual(v, u, self.normal) * sizes[:, 1:]
-        self.packed = packed
+        self.packed: Atlas = packed
         self.width, self.height = np.ascontiguousarray(sizes.T.astype(np.float32))
         flat = packed.places[of_quad].reshape(-1, 4)
         self.place = np.ascontiguousarray(flat.T)  # indexed by quad * LEVELS + level
@@ -51,34 +57,31 @@ class Surfaces:
         self._scene = EmbreeScene()
         self._mesh = TriangleMesh(self._scene, np.ascontiguousarray(triangles))
 
-    def hit(self, origin, direction):
+    def hit(self, origin: NDArray, direction: NDArray) -> NDArray:
         """Return the index of the nearest quad that each ray hits, -1 for none.
 
         Parameters
         ----------
         origin : (n, 3) or (3,) float32
         direction : (n, 3) float32
-            Not of unit length.
-
-        Returns
-        -------
-        index : (n,) intp
+            Need not have unit length.
         """
         origin = np.broadcast_to(origin, direction.shape)
         triangle = self._scene.run(origin, direction, query="INTERSECT")
         return (triangle >> 1).astype(np.intp)
 
 
-def _dual(along, other, normal):
+def _dual(along: NDArray, other: NDArray, normal: NDArray) -> NDArray:
     across = np.cross(other, normal)
     return across / np.einsum("ij,ij->i", across, along)[:, None]
 
 
 class View:
-    """The scene's planes as one eye sees them: homographies from ray directions to texels.
+    """The scene's planes seen from one point: homographies from ray directions to texels.
 
-    A ray of direction d from the eye meets quad q at the texel (U d, V d) / (N d) and at N d / depth; if the
-    eye moves with a constant velocity, U, V and depth are linear in time, exactly.
+    A ray of direction d from the eye meets quad q at the texel (U d, V d) / (N d) and at the
+    distance depth / (N d), in units of d. If the eye moves with a constant velocity, U, V and depth
+    are exactly linear in time.
 
     Parameters
     ----------
@@ -86,12 +89,14 @@ class View:
     eye : (3,) float
         World, metres.
     steps : (2, 3) float
-        Change of the direction by one pixel to the right, and by one down.
+        Change of the direction per pixel to the right, and per pixel down.
     velocity : (3,) float or None
         Of the eye, m/s.
     """
 
-    def __init__(self, surfaces, eye, steps, velocity=None):
+    def __init__(
+        self, surfaces: Surfaces, eye: ArrayLike, steps: ArrayLike, velocity: NDArray | None = None
+    ) -> None:
         self.surfaces = surfaces
         self.eye = np.asarray(eye, dtype=float)
         self.velocity = velocity
@@ -115,23 +120,18 @@ class View:
                 ]
             )
 
-    def distance(self, quad, direction, time_s):
-        """Return how many times its direction each ray goes to its quad, (n,) float32.
-
-        Parameters
-        ----------
-        quad : (n,) intp
-        direction : (3, n) float32
-        time_s : (n,) float32 or None
-        """
+    def distance(self, quad: NDArray, direction: NDArray, time_s: NDArray | None) -> NDArray:
+        """Return the distance to each ray's quad, (n,) float32, in units of its direction."""
         away = _take(self.depth, quad)
         if time_s is not None:
             away += _take(self.depth_rate, quad) * time_s
         below = _dot(self.rows[2], quad, direction)
         return away / _nonzero(below)
 
-    def texels(self, quad, direction, time_s):
-        """Return where rays meet their quads and how large their pixels are there.
+    def texels(
+        self, quad: NDArray, direction: NDArray, time_s: NDArray | None
+    ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+        """Return where rays meet their quads, and the footprints of their pixels there.
 
         Parameters
         ----------
@@ -161,18 +161,19 @@ class View:
             [(_take(self.steps[i, s], quad) - at[i] * slope) * below for i in (0, 1)]
             for s, slope in ((s, _take(self.steps[2, s], quad)) for s in (0, 1))
         ]
-        return (*at, *_footprint(sides))
+        major, minor = _footprint(sides)
+        return at[0], at[1], major, minor
 
 
-def _columns(rows):
+def _columns(rows: Sequence[NDArray]) -> NDArray:
     return np.ascontiguousarray(np.stack(rows).transpose(0, 2, 1), dtype=np.float32)
 
 
-def _take(table, index):
+def _take(table: NDArray, index: NDArray) -> NDArray:
     return table.take(index, mode="clip")  # "clip" is three times as fast as checking
 
 
-def _dot(columns, quad, direction):
+def _dot(columns: NDArray, quad: NDArray, direction: NDArray) -> NDArray:
     total = _take(columns[0], quad)
     total *= direction[0]
     for axis in (1, 2):
@@ -182,12 +183,12 @@ def _dot(columns, quad, direction):
     return total
 
 
-def _nonzero(value):
+def _nonzero(value: NDArray) -> NDArray:
     value[np.abs(value) < TINY] = TINY
     return value
 
 
-def _footprint(sides):
+def _footprint(sides: Sequence[Sequence[NDArray]]) -> tuple[NDArray, NDArray]:
     (ux, vx), (uy, vy) = sides
     square_x, square_y = ux * ux + vx * vx, uy * uy + vy * vy
     down = square_y > square_x
@@ -196,8 +197,16 @@ def _footprint(sides):
     return major, np.abs(ux * vy - uy * vx) / length
 
 
-def shade(view, quad, direction, time_s=None, *, coarser=0.0, taps=MAX_TAPS):
-    """Return the colour that rays see on their quads.
+def shade(
+    view: View,
+    quad: NDArray,
+    direction: NDArray,
+    time_s: NDArray | None = None,
+    *,
+    coarser: float = 0.0,
+    taps: int = MAX_TAPS,
+) -> NDArray:
+    """Return the colours that rays see on their quads, with anisotropic filtering.
 
     Parameters
     ----------
@@ -207,9 +216,9 @@ def shade(view, quad, direction, time_s=None, *, coarser=0.0, taps=MAX_TAPS):
     time_s : (n,) float32 or None
         Of each ray, where the eye moves.
     coarser : float
-        How many levels (powers of two) smaller the textures are taken than pixels ask for.
+        Levels (powers of two) added to the texture level that the pixels need.
     taps : int
-        At most so many lookups along a footprint.
+        Greatest number of lookups along a footprint.
 
     Returns
     -------
@@ -218,8 +227,8 @@ def shade(view, quad, direction, time_s=None, *, coarser=0.0, taps=MAX_TAPS):
 
     Notes
     -----
-    Lookups of one footprint alternate between the two nearest levels in the right proportion, which has the
-    mean of trilinear interpolation at half its cost.
+    Lookups of one footprint alternate between the two nearest levels in the right proportion: the
+    same mean as trilinear interpolation at half its cost.
     """
     surfaces = view.surfaces
     u, v, major, minor = view.texels(quad, direction, time_s)
@@ -240,12 +249,21 @@ def shade(view, quad, direction, time_s=None, *, coarser=0.0, taps=MAX_TAPS):
         sums[chosen] = _total(surfaces, n_taps, *parts).view(np.uint64).ravel()
         light[chosen] /= n_taps
     colour = np.empty((len(u), 3), np.float32)
-    for channel in range(3):  # a third of the time of all at once
+    for channel in range(3):  # in a third of the time of all at once
         np.multiply(sums.view(np.uint16)[channel::4], light, out=colour[:, channel])
     return colour
 
 
-def _total(surfaces, n_taps, u, v, du, dv, level, quad):
+def _total(
+    surfaces: Surfaces,
+    n_taps: int,
+    u: NDArray,
+    v: NDArray,
+    du: NDArray,
+    dv: NDArray,
+    level: NDArray,
+    quad: NDArray,
+) -> NDArray:
     """Add up lookups along each footprint, (n, 4) of 16 bits."""
     total = np.zeros((len(u), 4), np.uint16)
     first = quad * LEVELS
@@ -260,8 +278,8 @@ def _total(surfaces, n_taps, u, v, du, dv, level, quad):
     return total
 
 
-def lookup(image, x, y):
-    """Return the colours of an image at any number of points, bilinear.
+def lookup(image: NDArray, x: NDArray, y: NDArray) -> NDArray:
+    """Return the colours of an image at points, bilinear.
 
     Parameters
     ----------
@@ -276,11 +294,12 @@ def lookup(image, x, y):
     short = -len(x) % LOOKUP_WIDTH
     places = np.zeros((2, len(x) + short), np.float32)
     places[0, : len(x)], places[1, : len(x)] = x, y
-    found = cv2.remap(image, *places.reshape(2, -1, LOOKUP_WIDTH), cv2.INTER_LINEAR)
+    across, down = places.reshape(2, -1, LOOKUP_WIDTH)
+    found = cv2.remap(image, across, down, cv2.INTER_LINEAR)
     return found.reshape(-1, 4)[: len(x)]
 
 
-LEVELS = 10
+LEVELS = 10  # enough to halve 512 texels to one
 BORDER = 1  # bilinear lookups reach half a texel beyond the edge
 LARGEST = 32766  # cv2.remap counts source pixels in 16 bits
 
@@ -292,10 +311,10 @@ class Atlas:
     Attributes
     ----------
     image : (h, w, 4) uint8
-        BGR and an unused channel: four are twice as fast to look up as three.
+        BGR and an unused channel: four channels are twice as fast to look up as three.
     places : (T, LEVELS, 4) float32
-        x, y in the image of each texture's first corner at each level, minus half a pixel; and that level's
-        size over the full one, in x and y. Levels beyond the last repeat it.
+        x, y in the image of each texture's first corner at each level, minus half a pixel; and the
+        level's size over the full one, in x and y. Levels beyond the last repeat it.
     sizes : (T, 2) float
         Width and height of the textures, texels.
     """
@@ -305,18 +324,8 @@ class Atlas:
     sizes: np.ndarray
 
 
-def pack(textures):
-    """Pack textures with their smaller levels.
-
-    Parameters
-    ----------
-    textures : list of (h, w, 3) uint8
-
-    Returns
-    -------
-    atlas : Atlas
-        In the order given.
-    """
+def pack(textures: Sequence[NDArray]) -> "Atlas":
+    """Pack textures (h, w, 3) uint8 and their smaller levels into an atlas, in this order."""
     chains = [_chain(texture) for texture in textures]
     blocks = np.array([_block_size(chain) for chain in chains])
     corners, (width, height) = _shelves(blocks)
@@ -330,8 +339,8 @@ def pack(textures):
     return Atlas(image, places, sizes)
 
 
-def _chain(texture):
-    """Return the texture and its halves, quarters ..., each averaged from the one before."""
+def _chain(texture: NDArray) -> list[NDArray]:
+    """Return the texture and its smaller levels, each averaged from the one before."""
     chain = [texture]
     while max(chain[-1].shape[:2]) > 1 and len(chain) < LEVELS:
         height, width = chain[-1].shape[:2]
@@ -340,15 +349,15 @@ def _chain(texture):
     return chain
 
 
-def _block_size(chain):
-    """Return width and height of a chain laid out as level 0 with a column of the others to its right."""
+def _block_size(chain: Sequence[NDArray]) -> tuple[int, int]:
+    """Return the (width, height) of level 0 with a column of the other levels to its right."""
     sizes = np.array([level.shape[1::-1] for level in chain]) + 2 * BORDER
     right = sizes[1:].max(axis=0, initial=0)[0]
     return sizes[0, 0] + right, max(sizes[0, 1], sizes[1:, 1].sum())
 
 
-def _shelves(blocks):
-    """Place blocks (T, 2) on shelves, tallest first; return their corners (T, 2) and the size used."""
+def _shelves(blocks: NDArray) -> tuple[NDArray, tuple[int, int]]:
+    """Place blocks (T, 2) in rows, tallest first; return their corners (T, 2) and the size used."""
     width = int(max(blocks[:, 0].max(), min(8192, np.sqrt(blocks.prod(axis=1).sum()) * 1.2)))
     corners = np.empty_like(blocks)
     x = y = tallest = 0
@@ -361,12 +370,12 @@ def _shelves(blocks):
     return corners, (width, int(y + tallest))
 
 
-def _fill(image, chain, corner, place):
+def _fill(image: NDArray, chain: Sequence[NDArray], corner: NDArray, place: NDArray) -> None:
     x, y = corner
     full_height, full_width = chain[0].shape[:2]
     for level, texture in enumerate(chain):
         height, width = texture.shape[:2]
-        framed = cv2.copyMakeBorder(texture, *[BORDER] * 4, cv2.BORDER_REPLICATE)
+        framed = cv2.copyMakeBorder(texture, BORDER, BORDER, BORDER, BORDER, cv2.BORDER_REPLICATE)
         image[y : y + height + 2 * BORDER, x : x + width + 2 * BORDER, :3] = framed
         ratio = width / full_width, height / full_height
         place[level:] = x + BORDER - 0.5, y + BORDER - 0.5, *ratio
