@@ -9,7 +9,7 @@ from virtualgym.session import parallel
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_results_come_in_the_order_of_the_calls(threads):
-    with parallel.crew(Worker, (100,), threads) as call:
+    with parallel.workers(Worker, (100,), threads) as call:
         assert list(call("add", [(3,), (1,), (2, 10)])) == [103, 101, 112]
         with pytest.raises(ValueError, match="no negative"):
             list(call("add", [(1,), (-1,)]))

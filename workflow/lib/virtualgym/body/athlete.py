@@ -1,5 +1,6 @@
 """A virtual athlete: a body that moves, with or without a racket."""
 
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
@@ -18,7 +19,10 @@ KEPT = 1024  # cached times; 20 kB each, so 20 MB per athlete
 class Moving(Protocol):
     """A motion: the stance at each time, and the times of named events."""
 
-    events: dict[str, float]
+    @property
+    def events(self) -> Mapping[str, float]:
+        """Times of named events, s."""
+        ...
 
     def stance(self, time_s: float) -> Stance:
         """Return the pose at a time."""

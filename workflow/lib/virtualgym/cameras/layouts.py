@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.calibration.court.court import Court
-from courtside.geometry import camera, rotations
+from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
 from virtualgym.presets import Preset
 
 # ASSUME: a phone's main camera and places as in a large hall; where no source stands, none is
@@ -35,7 +36,7 @@ def fixed_cameras(
     *,
     baseline_deg: float | None = None,
     zoom: float = 1.0,
-) -> list[camera.Camera]:
+) -> list[Camera]:
     """Set up the fixed cameras of a layout.
 
     Parameters
@@ -80,7 +81,7 @@ def fixed_cameras(
         place = centre + np.array([*places[name], HEIGHTS_M[name]])
         roll_deg = rng.uniform(-ROLL_DEG, ROLL_DEG)
         pose = look_at(place, centre + np.array([0, 0, AIM_M]), roll_deg)
-        made.append(camera.Camera(name, size_px, matrix, dist, pose))
+        made.append(Camera(name, size_px, matrix, dist, pose))
     return made
 
 

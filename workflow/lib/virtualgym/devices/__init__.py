@@ -1,1 +1,10 @@
-"""Simulated devices: depth camera, chessboard, inertial suit and its errors."""
+"""Simulated devices: depth camera, chessboard, inertial suit.
+
+- depth_camera: `DepthCamera`, `Recorder`, `of_hall`, `of_athletes`
+- depth_noise: `DepthErrors`, `Sensor`
+- inertial_suit: `InertialSuit`, `record`, `Recording`
+- inertial_errors: `Errors`, `STRENGTHS`, `wandering`, `disturbance`
+- inertial_estimate: `guess`, `Turns`
+- mocopi_skeleton: `Rig`, `SHARED`
+- chessboard: `simulate`, `picture`, `poses`, `corners_m`
+"""

@@ -1,14 +1,17 @@
-"""Pictures of a chessboard held before a fixed camera, exact through its lens."""
+"""Pictures of a chessboard before a fixed camera, exact through its lens."""
 
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
 from courtside.video import reader
 
+# ASSUME: a board as people print it; no source is recorded.
 INNER_CORNERS = (7, 4)  # along the board's x and y
 SQUARE_M = 0.06
 BORDER_M = 0.03  # white, around the squares
@@ -16,32 +19,28 @@ DARK, BRIGHT = 28.0, 218.0
 SUBSAMPLES = 4  # per pixel and axis
 OPTICAL_BLUR_PX = 0.5
 TILT_DEG = 35.0
+# Of the board's centre, as fractions of width and height: together they cover the picture.
+PLACES: tuple[tuple[float, float], ...]
 PLACES = ((0.5, 0.5), (0.2, 0.22), (0.8, 0.22), (0.8, 0.78), (0.2, 0.78), (0.5, 0.2), (0.5, 0.8))
 PLACES += ((0.17, 0.5), (0.83, 0.5), (0.35, 0.4), (0.65, 0.6), (0.5, 0.5))
 
 
-def corners_m():
-    """Return the inner corners (28, 3) on the board, row by row, metres; the first is the origin."""
+def corners_m() -> NDArray:
+    """Return the inner corners (28, 3) of the board, row by row, m; the first is the origin."""
     columns, rows = INNER_CORNERS
     grid = np.mgrid[:rows, :columns][::-1].reshape(2, -1).T * SQUARE_M
     return np.column_stack([grid, np.zeros(len(grid))])
 
 
-def poses(camera, n_boards, rng):
-    """Choose how a board is held, so that the pictures together fill the field of view.
-
-    Parameters
-    ----------
-    camera : Camera
-    n_boards : int
-    rng : numpy.random.Generator
+def poses(camera: Camera, n_boards: int, rng: np.random.Generator) -> NDArray:
+    """Draw poses of a board that together fill the field of view.
 
     Returns
     -------
     cam_from_board : (n_boards, 3, 4) float
-        Metres; the board is wholly in the picture, from a third to over half as wide as it.
+        Metres; the whole board is visible, with 0.3 to 0.55 of the picture's width.
     """
-    found = []
+    found: list[NDArray] = []
     middle = np.append(corners_m()[:, :2].mean(axis=0), 0.0)
     while len(found) < n_boards:
         place = np.array(PLACES[len(found) % len(PLACES)]) + rng.uniform(-0.03, 0.03, 2)
@@ -56,17 +55,24 @@ def poses(camera, n_boards, rng):
     return np.array(found)
 
 
-def picture(camera, cam_from_board, background, rng, *, noise):
+def picture(
+    camera: Camera,
+    cam_from_board: NDArray,
+    background: NDArray,
+    rng: np.random.Generator,
+    *,
+    noise: float,
+) -> NDArray:
     """Draw the board in front of a background.
 
     Parameters
     ----------
     camera : Camera
-        Its lens; its pose does not matter.
+        Gives the lens; its pose does not matter.
     cam_from_board : (3, 4) float
         Metres.
     background : (H, W, 3) uint8
-        What the camera sees without a board.
+        The camera's picture without a board.
     rng : numpy.random.Generator
     noise : float
         Standard deviation of the sensor's noise, grey levels.
@@ -78,8 +84,8 @@ def picture(camera, cam_from_board, background, rng, *, noise):
 
     Notes
     -----
-    Each sample's ray is cut with the board's plane; the rays follow the lens exactly at pixel centres
-    and linearly within a pixel (below 1e-5 px off for phone lenses).
+    The ray of each sample is intersected with the board's plane. Rays follow the lens exactly at
+    pixel centres and linearly within a pixel (error below 1e-5 px for phone lenses).
     """
     left, top, right, bottom = _box(camera, cam_from_board)
     xy = np.stack(np.meshgrid(np.arange(left, right), np.arange(top, bottom)), axis=-1)
@@ -103,16 +109,24 @@ def picture(camera, cam_from_board, background, rng, *, noise):
     return np.clip(np.rint(image), 0, 255).astype(np.uint8)
 
 
-def simulate(camera, folder, background, rng, *, n_boards=12, noise=2.0):
+def simulate(
+    camera: Camera,
+    folder: str | Path,
+    background: NDArray,
+    rng: np.random.Generator,
+    *,
+    n_boards: int = 12,
+    noise: float = 2.0,
+) -> NDArray:
     """Write pictures of a board as numbered PNG files.
 
     Parameters
     ----------
     camera : Camera
     folder : str or Path
-        Made where missing.
+        Created if missing.
     background : (H, W, 3) uint8
-        What the camera sees without a board.
+        The camera's picture without a board.
     rng : numpy.random.Generator
     n_boards : int
     noise : float
@@ -121,7 +135,7 @@ def simulate(camera, folder, background, rng, *, n_boards=12, noise=2.0):
     Returns
     -------
     cam_from_board : (n_boards, 3, 4) float
-        How the board was held, metres.
+        Poses of the board, metres.
     """
     held = poses(camera, n_boards, rng)
     for at, pose in enumerate(held):
@@ -130,14 +144,14 @@ def simulate(camera, folder, background, rng, *, n_boards=12, noise=2.0):
     return held
 
 
-def _outline_m():
+def _outline_m() -> NDArray:
     """Return the board's four outer corners (4, 3), border included."""
     reach = SQUARE_M + BORDER_M
     x0, y0, x1, y1 = -reach, -reach, *((np.array(INNER_CORNERS) - 1) * SQUARE_M + reach)
     return np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]])
 
 
-def _outline_px(camera, cam_from_board):
+def _outline_px(camera: Camera, cam_from_board: NDArray) -> NDArray:
     edges = _outline_m()
     dense = np.concatenate(
         [np.linspace(a, b, 8) for a, b in zip(edges, np.roll(edges, -1, axis=0), strict=True)]
@@ -146,21 +160,21 @@ def _outline_px(camera, cam_from_board):
     return cameras.project(seen, dense)
 
 
-def _inside(camera, cam_from_board):
+def _inside(camera: Camera, cam_from_board: NDArray) -> bool:
     xy = _outline_px(camera, cam_from_board)
     return bool(((xy > 2) & (xy < np.array(camera.size) - 3)).all())
 
 
-def _box(camera, cam_from_board):
+def _box(camera: Camera, cam_from_board: NDArray) -> tuple[int, int, int, int]:
     """Return left, top, right, bottom (the last two exclusive) of the board in the picture."""
     xy = _outline_px(camera, cam_from_board)
     low = np.maximum(np.floor(xy.min(axis=0)) - 3, 0)
     high = np.minimum(np.ceil(xy.max(axis=0)) + 4, camera.size)
-    return (*low.astype(int).tolist(), *high.astype(int).tolist())
+    return int(low[0]), int(low[1]), int(high[0]), int(high[1])
 
 
-def _pattern(cam_from_board, rays):
-    """Return the grey level times cover, and the cover (0 or 1), where rays (..., 2) meet the board."""
+def _pattern(cam_from_board: NDArray, rays: NDArray) -> tuple[NDArray, NDArray]:
+    """Return grey level times coverage, and coverage (0 or 1), of rays (..., 2)."""
     # A board point (u, v, 0) lies on the ray: (r1 r2 t) (u v 1)^T ~ (x y 1)^T.
     board_from_ray = np.linalg.inv(cam_from_board[:, [0, 1, 3]])
     place = rays @ board_from_ray[:, :2].T + board_from_ray[:, 2]

@@ -1,20 +1,21 @@
-"""What a stereo depth camera makes of true depth: noise that grows with its square, steps, and holes."""
+"""Errors of a stereo depth camera: noise that grows with depth squared, steps, and holes."""
 
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter
 
-FIELD_PX = 256  # by how much the field of noise is larger than the picture
-JUMP_PX = 1.0  # of disparity between neighbours: an edge
+FIELD_PX = 256  # size of the noise field beyond the picture's
+JUMP_PX = 1.0  # ASSUME: a larger difference of disparity between neighbours is a depth edge
 MOST = np.iinfo(np.uint16).max
-BLOTCH_PX = 1.5  # standard deviation of the window that makes holes hang together
+BLOTCH_PX = 1.5  # ASSUME: size of connected holes, standard deviation of a smoothing window
 
 
 @dataclass(frozen=True)
 class DepthErrors:
-    """How a depth camera errs; see `depth_camera.DepthCamera`.
+    """The error model of a depth camera; see `depth_camera.DepthCamera`.
 
     Attributes
     ----------
@@ -28,18 +29,18 @@ class DepthErrors:
     subpixel_px: float
     correlation_px: float
     unit_m: float
-    range_m: tuple
+    range_m: tuple[float, float]
     edge_px: float
     edge_holes: float
     holes: float
 
-    def sigma_m(self, depth_m):
+    def sigma_m(self, depth_m: ArrayLike) -> NDArray:
         """Return the standard deviation of depth, z^2 s / (f b), metres."""
         return np.asarray(depth_m) ** 2 * self.subpixel_px / self.focal_baseline
 
 
 class Sensor:
-    """Turns true depth into frames.
+    """Turns true depth into measured frames.
 
     Parameters
     ----------
@@ -47,17 +48,19 @@ class Sensor:
     size : (int, int)
         Width and height of the frames.
     rng : numpy.random.Generator
-        Of two fields, of which each frame takes other windows: noise, and where holes are.
+        Of two fields, noise and holes, of which each frame gets random windows.
     """
 
-    def __init__(self, errors, size, rng):
+    def __init__(
+        self, errors: DepthErrors, size: tuple[int, int], rng: np.random.Generator
+    ) -> None:
         self.errors = errors
         shape = size[1] + FIELD_PX, size[0] + FIELD_PX
         self._noise = _field(rng, shape, errors.correlation_px)
         rank = np.argsort(np.argsort(_field(rng, shape, BLOTCH_PX), axis=None))
         self._chance = (rank.reshape(shape) / rank.size).astype(np.float32)
 
-    def measured(self, depth_m, rng):
+    def measured(self, depth_m: NDArray, rng: np.random.Generator) -> NDArray:
         """Measure a frame.
 
         Parameters
@@ -70,7 +73,7 @@ class Sensor:
         Returns
         -------
         depth : (h, w) uint16
-            In units of the camera; 0: a hole.
+            In the camera's units; 0: a hole.
         """
         errors = self.errors
         disparity = np.float32(errors.focal_baseline) / depth_m
@@ -87,39 +90,29 @@ class Sensor:
         return np.where(steps > MOST, 0, steps).astype(np.uint16)
 
 
-def hidden(disparity_px):
-    """Return what the right imager does not see, for something nearer is before it there.
+def hidden(disparity_px: NDArray) -> NDArray:
+    """Return where nearer surfaces hide points from the right imager.
 
     Parameters
     ----------
     disparity_px : (h, w) float
-        By how much each point of the left picture is farther left in the right one.
+        Column in the left picture minus column in the right one.
 
     Returns
     -------
     hidden : (h, w) bool
-        Beside the left edges of near things, and along the left edge of the picture.
+        Beside the left edges of near surfaces, and along the left edge of the picture.
     """
     column = np.arange(disparity_px.shape[1], dtype=np.float32) - disparity_px
-    # Of points further to the right, the leftmost place in the right picture.
+    # The leftmost column in the right picture of this point and all points to its right.
     later = np.minimum.accumulate(column[:, ::-1], axis=1)[:, ::-1]
     covered = np.zeros(disparity_px.shape, bool)
     covered[:, :-1] = column[:, :-1] >= later[:, 1:]
     return covered | (column < -0.5)
 
 
-def edges(disparity_px, reach_px):
-    """Return where depth jumps within a reach.
-
-    Parameters
-    ----------
-    disparity_px : (h, w) float
-    reach_px : float
-
-    Returns
-    -------
-    edges : (h, w) bool
-    """
+def edges(disparity_px: NDArray, reach_px: float) -> NDArray:
+    """Return the pixels (h, w) within `reach_px` of a depth edge, bool."""
     jumps = np.zeros(disparity_px.shape, np.uint8)
     across = np.abs(np.diff(disparity_px, axis=1)) > JUMP_PX
     down = np.abs(np.diff(disparity_px, axis=0)) > JUMP_PX
@@ -133,14 +126,14 @@ def edges(disparity_px, reach_px):
     return cv2.dilate(jumps, disc).astype(bool)
 
 
-def _field(rng, shape, sigma_px):
-    """Return noise (H, W) float32 of mean 0 and deviation 1 that is alike over a window."""
+def _field(rng: np.random.Generator, shape: tuple[int, int], sigma_px: float) -> NDArray:
+    """Return noise (H, W) float32, mean 0, standard deviation 1, smoothed by a Gaussian window."""
     field = rng.standard_normal(shape, dtype=np.float32)
     if sigma_px > 0:
         field = gaussian_filter(field, sigma_px, mode="wrap")
     return (field - field.mean()) / field.std()
 
 
-def _window(field, shape, rng):
+def _window(field: NDArray, shape: tuple[int, ...], rng: np.random.Generator) -> NDArray:
     top, left = rng.integers(0, FIELD_PX + 1, 2)
     return field[top : top + shape[0], left : left + shape[1]]

@@ -1,55 +1,59 @@
-"""What is wrong with a virtual inertial suit: how much of each error, and how errors wander over time.
+"""Errors of a virtual inertial suit: their sizes, and how they drift over time.
 
-Six sensors feel how a segment is turned: head, hips, both forearms (at the wrist), both shanks (at the
-ankle). Everything else is guessed by the app. `inertial` says how each number acts.
+Six sensors measure the orientation of a segment: head, hips, both forearms (at the wrist), both
+shanks (at the ankle). The app estimates everything else. `inertial_suit` and `inertial_estimate`
+apply the errors.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Sizes of errors; standard deviations unless said otherwise.
+    """Sizes of errors: standard deviations, or exact values where noted.
+
+    `heading_s`, `tilt_s`, `swivel_s`, `guess_s` and `drift_s` are correlation times (to 1/e).
 
     Attributes
     ----------
     stature, bone : float
-        Of all lengths together, and of each kind of bone (left and right alike), relative.
+        Relative, of all lengths together, and of each kind of bone (left and right alike).
     mount_deg : float
-        How far each sensor sits turned on its segment, per axis.
+        Misalignment of each sensor on its segment, per axis.
     drift_deg_min, heading_deg, heading_s : float
-        Steady drift of each sensor's heading, half of it common to all; what it wanders beside, and its
-        memory. All headings are right at the start.
+        Steady drift of each sensor's heading, with half of the variance common to all; random
+        wander of heading. All headings are correct at the start.
     tilt_deg, tilt_s : float
-        What a sensor's vertical wanders, per axis, and its memory.
+        Random wander of a sensor's vertical, per axis.
     noise_deg : float
         Of each sensor and frame, per axis, before smoothing.
     smooth_s : float
-        Of the Gaussian window over which the app smooths all.
+        Standard deviation of the Gaussian window over which the app smooths all.
     latency_s : float
-        By how much it shows everything late (exactly).
+        Delay of everything shown (exact).
     elbow, knee : float
-        Share of the joint's bend that the app does not see (exactly).
+        Fraction of the joint's bend that the app misses (exact).
     swivel_deg, swivel_s : float
-        Turn of elbow or knee about the line from end to end of the limb, and its memory.
+        Rotation of elbow or knee about the line from end to end of the limb.
     guess_deg, guess_s : float
-        Of the turn of guessed segments (upper arms, thighs, feet, collar bones, thorax) per axis, and its
-        memory.
+        Rotation of estimated segments (upper arms, thighs, feet, clavicles, thorax), per axis.
     trunk, girdle : float
-        Share of the bend between hips and thorax, and of the collar bones' movement, that the app does not
-        see (exactly).
+        Fraction of the bend between hips and thorax, and of the clavicles' movement, that the app
+        misses (exact).
     skate : float
-        Share of the guessed legs' errors that goes into feet that slide, not into the body's place (exactly).
+        Fraction of the estimated legs' errors that makes feet slide instead of moving the body
+        (exact).
     drift_m_s, drift_s : float
-        Speed per axis at which the place wanders away, and its memory.
+        Velocity, per axis, at which the position drifts.
     disturbed_deg, disturbed_every_s : float
-        Change of heading of one or several sensors near iron, which comes and goes; mean time between.
+        Temporary change of heading of one or several sensors near iron; mean time between.
     leak : float
-        Share of the hips' horizontal acceleration that their sensor takes for gravity (exactly).
+        Fraction of the hips' horizontal acceleration that their sensor takes for gravity (exact).
     slip : float
-        Share of the trunk's bend by which the hips' sensor tilts along with it on the belt (exactly).
+        Fraction of the trunk's bend by which the hips' sensor tilts on the belt (exact).
     """
 
     stature: float = 0.0
@@ -137,10 +141,10 @@ STRONG = Errors(
     skate=0.35,
     drift_m_s=0.015,
 )
-# FROZEN. These numbers were set before any correction was run on what they make, and are not to be changed to
-# suit one: a method that needs other numbers is reported as failing with these. `disturbed` is the form that
-# a slowly varying correction does not model: headings that jump for seconds, and a pelvis whose tilt follows
-# acceleration and the trunk.
+# ASSUME, and FROZEN: these values were set before any correction ran on the simulated recordings.
+# Do not change them to suit a correction: a method that needs other values is reported as failing
+# with these. `disturbed` holds errors that a slowly varying correction does not model: headings
+# that jump for seconds, and a pelvis whose tilt follows acceleration and the trunk.
 STRENGTHS = {
     "none": Errors(),
     "mild": MILD,
@@ -148,61 +152,49 @@ STRENGTHS = {
     "strong": STRONG,
     "disturbed": replace(MILD, disturbed_deg=18.0, disturbed_every_s=7.0, leak=0.4, slip=0.25),
 }
-BOUT_S = 1.0, 4.0  # how long a sensor stays near iron
-JUMP_S = 0.3  # of its way into the field and out
-NEAR = 0.35  # chance of each sensor to be near the same iron
-LEFT_SHARE, LEFT_S = (
-    0.3,
-    3.0,
-)  # of a jump, the filter still has after the field is left, and how long
+BOUT_S = 1.0, 4.0  # duration near iron
+JUMP_S = 0.3  # duration of entering and of leaving the disturbed field
+NEAR = 0.35  # probability of each other sensor to be near the same iron
+# Part of a jump that the filter keeps after leaving the field, and its time constant.
+LEFT_SHARE, LEFT_S = 0.3, 3.0
 
 
-def wandering(rng, n, shape, dt_s, memory_s, *, from_zero=False):
-    """Draw numbers that wander about 0 with standard deviation 1 (Ornstein-Uhlenbeck).
+def wandering(
+    rng: np.random.Generator,
+    n: int,
+    shape: tuple[int, ...],
+    dt_s: float,
+    memory_s: float,
+    *,
+    from_zero: bool = False,
+) -> NDArray:
+    """Draw Ornstein-Uhlenbeck processes of standard deviation 1, (n, *shape) float.
 
     Parameters
     ----------
     rng : numpy.random.Generator
     n : int
-        Times.
+        Number of times.
     shape : tuple of int
-        Of independent numbers.
+        Of independent processes.
     dt_s : float
         Between times.
     memory_s : float
-        After which the correlation has fallen to 1/e.
+        Lag at which the correlation is 1/e.
     from_zero : bool
-        All begin at 0, and reach their spread after some memories.
-
-    Returns
-    -------
-    values : (n, *shape) float
+        All start at 0, and reach their spread after several `memory_s`.
     """
     keep = np.exp(-dt_s / memory_s)
     steps = rng.standard_normal((n, *shape)) * np.sqrt(1 - keep**2)
     steps[0] = 0.0 if from_zero else steps[0] / np.sqrt(1 - keep**2)
-    # Here, for only suits need it: loading it takes as long as a second of film.
+    # Imported here, as only suits need it: the import takes as long as a second of film.
     from scipy import signal
 
     return signal.lfilter([1.0], [1.0, -keep], steps, axis=0)
 
 
-def disturbance(rng, time_s, sensors, errors):
-    """Draw what iron nearby does to headings: jumps that stay for seconds, and fade afterwards.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-    time_s : (T,) float
-        Increasing.
-    sensors : int
-    errors : Errors
-
-    Returns
-    -------
-    heading : (T, sensors) float
-        Radians.
-    """
+def disturbance(rng: np.random.Generator, time_s: NDArray, sensors: int, errors: Errors) -> NDArray:
+    """Draw heading errors (T, sensors), radians, near iron: jumps for seconds, then a decay."""
     heading = np.zeros((len(time_s), sensors))
     if not errors.disturbed_deg:
         return heading
@@ -219,6 +211,6 @@ def disturbance(rng, time_s, sensors, errors):
     return heading
 
 
-def _smooth(x):
+def _smooth(x: NDArray) -> NDArray:
     x = np.clip(x, 0, 1)
     return x * x * (3 - 2 * x)

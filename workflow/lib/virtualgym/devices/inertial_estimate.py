@@ -1,8 +1,9 @@
-"""From the true turns of a body's segments to those that six drifting sensors and an app's guesses give."""
+"""The orientations of a body's segments, from six drifting sensors and an app's estimates."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
@@ -13,32 +14,24 @@ from virtualgym.devices.mocopi_skeleton import TORSO
 SENSED = ("root", "head", "l_low_arm", "r_low_arm", "l_low_leg", "r_low_leg")
 UP = np.array([0.0, 1.0, 0.0])
 GRAVITY_M_S2 = 9.81
-LEAK_S = 0.15  # over which a sensor takes acceleration for gravity
-LEAST_SINE = 1e-6
+LEAK_S = 0.15  # ASSUME: smoothing of the acceleration that a sensor takes for gravity
+LEAST_SINE = 1e-6  # against division by zero in straight limbs
 
 
 @dataclass(frozen=True, eq=False)
 class Turns:
-    """A body in motion: every joint's turn in the world of the suit.
-
-    Attributes
-    ----------
-    hierarchy : courtside.records.devices.hierarchy.Hierarchy
-    world : (T, J, 3, 3) float
-    root : (T, 3) float
-        Metres.
-    """
+    """A body in motion: rotations (T, J, 3, 3) in the suit's world, and root positions (T, 3) m."""
 
     hierarchy: Hierarchy
     world: np.ndarray
     root: np.ndarray
 
-    def of(self, joint):
-        """Return the turns (T, 3, 3) of a joint by its name."""
+    def of(self, joint: str) -> NDArray:
+        """Return the rotations (T, 3, 3) of a joint by its name."""
         return self.world[:, self.hierarchy.joints.index(joint)]
 
-    def hung(self, hierarchy):
-        """Return where joints are from the root (T, J, 3), with the bones of a hierarchy, metres."""
+    def hung(self, hierarchy: Hierarchy) -> NDArray:
+        """Return the joints (T, J, 3) m relative to the root, with the bones of a hierarchy."""
         parents = hierarchy.parents
         local = self.world.copy()
         local[:, 1:] = _inverse(self.world[:, parents[1:]]) @ self.world[:, 1:]
@@ -47,23 +40,17 @@ class Turns:
         return forward(PosedHierarchy(hierarchy, np.arange(len(local)), shifts, local))[0]
 
 
-def guess(true, step_s, errors, rng):
-    """Return what the app makes of a motion, before smoothing.
-
-    Parameters
-    ----------
-    true : Turns
-    step_s : float
-        Between frames.
-    errors : virtualgym.devices.inertial_errors.Errors
-    rng : numpy.random.Generator
+def guess(
+    true: Turns, step_s: float, errors: inertial_errors.Errors, rng: np.random.Generator
+) -> tuple[Turns, NDArray]:
+    """Return the app's estimate of a motion, before smoothing.
 
     Returns
     -------
     felt : Turns
         With the true path of the root.
     heading : (T,) float
-        What the hips' heading is wrong by, radians.
+        Heading error of the hips, radians.
     """
     felt, heading = _sensors(true, step_s, errors, rng)
     guesses = _Guesses(true, felt, step_s, errors, rng)
@@ -78,8 +65,10 @@ def guess(true, step_s, errors, rng):
     return Turns(true.hierarchy, world, true.root), heading
 
 
-def _sensors(true, step_s, errors, rng):
-    """Return the turns that sensors feel, by joint, and the heading error of the first, the hips'."""
+def _sensors(
+    true: Turns, step_s: float, errors: inertial_errors.Errors, rng: np.random.Generator
+) -> tuple[dict[str, NDArray], NDArray]:
+    """Return the sensors' orientations by joint, and the heading error of the first, the hips'."""
     n, count = len(true.root), len(SENSED)
     time_s = np.arange(n) * step_s
     rate = rng.standard_normal(count) * np.sqrt(0.5) + rng.standard_normal() * np.sqrt(0.5)
@@ -99,8 +88,8 @@ def _sensors(true, step_s, errors, rng):
     return felt, heading[:, 0]
 
 
-def _leaked(true, step_s, errors):
-    """Return the tilt (T, 3) of the hips' sensor that takes their acceleration for gravity."""
+def _leaked(true: Turns, step_s: float, errors: inertial_errors.Errors) -> NDArray:
+    """Return the tilt (T, 3) of the hips' sensor, which takes acceleration for gravity."""
     if not errors.leak:
         return np.zeros_like(true.root)
     path = gaussian_filter1d(true.root, LEAK_S / step_s, axis=0, mode="nearest")
@@ -108,20 +97,27 @@ def _leaked(true, step_s, errors):
     return errors.leak * np.cross(UP, along / GRAVITY_M_S2)
 
 
-def _slipped(true, errors):
-    """Return the tilt (T, 3) of the hips' sensor that the belt drags along with the trunk."""
+def _slipped(true: Turns, errors: inertial_errors.Errors) -> NDArray:
+    """Return the tilt (T, 3) of the hips' sensor, which the trunk drags along with the belt."""
     return errors.slip * _vector(true.of(TORSO[-1]) @ _inverse(true.of("root")))
 
 
 class _Guesses:
-    """The turns of all joints, as they are made one after the other."""
+    """The estimated rotations of all joints, filled in one after the other."""
 
-    def __init__(self, true, felt, step_s, errors, rng):
+    def __init__(
+        self,
+        true: Turns,
+        felt: dict[str, NDArray],
+        step_s: float,
+        errors: inertial_errors.Errors,
+        rng: np.random.Generator,
+    ) -> None:
         self.true, self.made = true, dict(felt)
         self.step_s, self.errors, self.rng = step_s, errors, rng
 
-    def trunk(self):
-        """Bend the spine too little between hips and thorax; hang neck and collar bones from it."""
+    def trunk(self) -> None:
+        """Estimate the spine, which bends too little, and neck and clavicles from it."""
         root, wrong = self.true.of("root"), self._wandered()
         for rank, joint in enumerate(TORSO, start=1):
             bend = (1 - self.errors.trunk) * _vector(_inverse(root) @ self.true.of(joint))
@@ -134,18 +130,18 @@ class _Guesses:
             moved = (1 - self.errors.girdle) * _vector(_inverse(thorax) @ self.true.of(joint))
             self.made[joint] = self.made[TORSO[-1]] @ _turn(moved) @ _turn(self._wandered())
 
-    def limb(self, upper, lower, end, missed):
-        """Guess the upper segment of a limb whose lower one carries a sensor.
+    def limb(self, upper: str, lower: str, end: str, missed: float) -> None:
+        """Estimate the upper segment of a limb whose lower one carries a sensor.
 
-        It follows the lower one, with part of the bend between them missed, turned about the line
-        from the limb's start to its end, and wandering.
+        It follows the lower one, with part of the bend between them missed, a rotation about the
+        line from the limb's start to its end, and random wander.
         """
         shape, lead = self.true.hierarchy, self.made[lower] @ _inverse(self.true.of(lower))
         bones = [shape.offsets[shape.joints.index(joint)] for joint in (lower, end)]
         first = lead @ self.true.of(upper)
         ways = [turns @ bone for turns, bone in zip((first, self.made[lower]), bones, strict=True)]
         units = [way / np.linalg.norm(way, axis=-1, keepdims=True) for way in ways]
-        hinge = np.cross(*units)
+        hinge = np.cross(units[0], units[1])
         sine = np.linalg.norm(hinge, axis=-1, keepdims=True)
         bend = np.arctan2(sine, (units[0] * units[1]).sum(axis=-1, keepdims=True))
         straighten = _turn(missed * bend * hinge / np.maximum(sine, LEAST_SINE))
@@ -156,30 +152,30 @@ class _Guesses:
         swivelled = _turn(np.radians(errors.swivel_deg) * swivel * span)
         self.made[upper] = swivelled @ straighten @ first @ _turn(self._wandered())
 
-    def follow(self, joint, parent, share):
-        """Let a joint keep its true turn against its parent, with that share of a guess's error."""
+    def follow(self, joint: str, parent: str, share: float) -> None:
+        """Keep a joint's true rotation from its parent, with a share of an estimate's error."""
         own = _inverse(self.true.of(parent)) @ self.true.of(joint)
         self.made[joint] = self.made[parent] @ own @ _turn(share * self._wandered())
 
-    def _wandered(self):
-        """Return the error (T, 3) of one guessed segment, a rotation vector."""
+    def _wandered(self) -> NDArray:
+        """Return the error (T, 3) of one estimated segment, a rotation vector."""
         errors = self.errors
         n = len(self.true.root)
         wander = inertial_errors.wandering(self.rng, n, (3,), self.step_s, errors.guess_s)
         return np.radians(errors.guess_deg) * wander
 
 
-def _inverse(turns):
+def _inverse(turns: NDArray) -> NDArray:
     return np.swapaxes(turns, -1, -2)
 
 
-def _turn(vectors):
+def _turn(vectors: NDArray) -> NDArray:
     """Return rotations (..., 3, 3) of rotation vectors (..., 3)."""
     shape = np.shape(vectors)
     flat = np.reshape(vectors, (-1, 3))
     return Rotation.from_rotvec(flat).as_matrix().reshape(*shape, 3)
 
 
-def _vector(turns):
+def _vector(turns: NDArray) -> NDArray:
     """Return rotation vectors (T, 3) of rotations."""
     return Rotation.from_matrix(turns).as_rotvec()

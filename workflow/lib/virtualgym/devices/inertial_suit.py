@@ -1,25 +1,27 @@
-"""A virtual inertial suit like mocopi: what its app would write of a performed motion.
+"""A virtual inertial suit like mocopi: the recording that its app would write of a motion.
 
-The true turns of the segments go through the errors of `inertial_errors`: sensors drift, what carries no
-sensor is guessed, bones have wrong lengths, feet hold the body's place only so well, and all is smoothed.
+The errors of `inertial_errors` act on the true rotations of the segments: sensors drift, segments
+without a sensor are estimated, bones have wrong lengths, feet slide, and all is smoothed.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
 from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy
 from virtualgym.body import pose_bones
+from virtualgym.body.athlete import Athlete
 from virtualgym.devices import inertial_errors, inertial_estimate, mocopi_skeleton
+from virtualgym.devices.inertial_errors import Errors
 from virtualgym.devices.inertial_estimate import Turns
+from virtualgym.devices.mocopi_skeleton import Rig
 
-PAD_S = (
-    0.25  # before and after, for what the app smooths over; four times the widest window and more
-)
-SUPPORT_M = 0.02  # a foot so much lower than the other carries most of the body
-KINDS = {  # bones that are wrong by the same factor
+PAD_S = 0.25  # before and after, for the smoothing: over four times its widest standard deviation
+SUPPORT_M = 0.02  # ASSUME: a foot this much lower than the other carries 73 % of the body
+KINDS = {  # groups of joints whose bones have the same length error
     "trunk": ("torso", "neck", "head"),
     "collar": ("shoulder", "up_arm"),
     "upper_arm": ("low_arm",),
@@ -33,46 +35,48 @@ KINDS = {  # bones that are wrong by the same factor
 
 @dataclass(frozen=True)
 class InertialSuit:
-    """What makes a suit.
+    """Settings of a suit.
 
     Attributes
     ----------
     strength : str
         A key of `inertial_errors.STRENGTHS`.
     rate_hz : float
-        Rows per second by its own clock: the app knows 30, 50 and 60.
+        Rows per second by its own clock: the app offers 30, 50 and 60.
     subject : str or None
-        Who wears it; None: the first player.
+        The person who wears it; None: the first player.
     """
 
     strength: str = "usual"
     rate_hz: float = 60.0
     subject: str | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.strength not in inertial_errors.STRENGTHS or not self.rate_hz > 0:
             expected = list(inertial_errors.STRENGTHS)
             raise ValueError(
-                f"expected a strength of {expected} and rate_hz > 0, found {self.strength}, {self.rate_hz}"
+                f"expected a strength of {expected} and rate_hz > 0, "
+                f"found {self.strength}, {self.rate_hz}"
             )
 
-    def errors(self):
-        """Return the `inertial_errors.Errors`."""
+    def errors(self) -> Errors:
+        """Return its error sizes."""
         return inertial_errors.STRENGTHS[self.strength]
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What an inertial suit recorded.
+    """A recording of an inertial suit, and its truth.
 
     Attributes
     ----------
-    posed : courtside.records.devices.hierarchy.PosedHierarchy
-        By mocopi's names, metres; by the suit's own clock, from 0. The first row is the rest pose.
+    posed : PosedHierarchy
+        Mocopi's joint names, metres; times by the suit's own clock, from 0. The first row is the
+        rest pose.
     device_from_world : (3, 4) float
-        As it is when the recording starts: later the suit's heading and place drift.
+        At the start of the recording; later the suit's heading and position drift.
     latency_s : float
-        By how much the suit shows everything late, beside its clock's offset.
+        Delay of everything shown, besides its clock's offset.
     """
 
     posed: PosedHierarchy
@@ -80,22 +84,20 @@ class Recording:
     latency_s: float
 
 
-def record(athlete, time_s, rate_hz, errors, rng):
+def record(
+    athlete: Athlete, time_s: NDArray, rate_hz: float, errors: Errors, rng: np.random.Generator
+) -> Recording:
     """Record a motion.
 
     Parameters
     ----------
-    athlete : virtualgym.body.athlete.Athlete
+    athlete : Athlete
     time_s : (T,) float
         Of each row of the file, on the athlete's clock.
     rate_hz : float
         Rows per second by the suit's own clock.
-    errors : inertial_errors.Errors
+    errors : Errors
     rng : numpy.random.Generator
-
-    Returns
-    -------
-    recording : Recording
     """
     step_s = 1 / rate_hz
     pad = int(np.ceil(PAD_S * rate_hz)) if errors.smooth_s else 0
@@ -113,8 +115,8 @@ def record(athlete, time_s, rate_hz, errors, rng):
     return Recording(posed, device_from_world, errors.latency_s)
 
 
-def _scaled(shape, errors, rng):
-    """Return the hierarchy with bones of wrong lengths, left and right alike."""
+def _scaled(shape: Hierarchy, errors: Errors, rng: np.random.Generator) -> Hierarchy:
+    """Return the hierarchy with length errors, left and right alike."""
     whole = np.exp(errors.stature * rng.standard_normal())
     factors = whole * np.exp(errors.bone * rng.standard_normal(len(KINDS)))
     offsets = shape.offsets.copy()
@@ -123,17 +125,17 @@ def _scaled(shape, errors, rng):
         offsets[rows] *= factor
     at = {name: row for row, name in enumerate(shape.joints)}
     legs = [at[name] for name in ("l_up_leg", "l_low_leg", "l_foot")]
-    offsets[0, 1] += shape.offsets[legs, 1].sum() - offsets[legs, 1].sum()  # stands on the floor
+    offsets[0, 1] += shape.offsets[legs, 1].sum() - offsets[legs, 1].sum()  # it stands on the floor
     return Hierarchy(shape.joints, shape.parents, offsets, shape.ends)
 
 
-def _kind(joint):
+def _kind(joint: str) -> str:
     plain = joint[2:] if joint[1] == "_" else joint
     return plain.split("_")[0] if plain.startswith(("torso", "neck")) else plain
 
 
-def _true(athlete, rig, time_s, start):
-    """Return the suit's world at a frame, and the true turns in it."""
+def _true(athlete: Athlete, rig: Rig, time_s: NDArray, start: int) -> tuple[NDArray, Turns]:
+    """Return device_from_world at a frame, and the true rotations in the device's world."""
     bones = [pose_bones.pose(athlete.body.skeleton, athlete.motion.stance(t)) for t in time_s]
     world = np.array([rig.turns(each) for each in bones])
     root = np.array([rig.place(each) for each in bones])
@@ -146,8 +148,16 @@ def _true(athlete, rig, time_s, start):
     return np.column_stack([turn, shift]), true
 
 
-def _placed(true, felt, shape, heading, step_s, errors, rng):
-    """Return where the app thinks the root is (T, 3): it walks on the feet that stand."""
+def _placed(
+    true: Turns,
+    felt: Turns,
+    shape: Hierarchy,
+    heading: NDArray,
+    step_s: float,
+    errors: Errors,
+    rng: np.random.Generator,
+) -> NDArray:
+    """Return the app's root positions (T, 3): it moves as the standing foot demands."""
     names = list(shape.joints)
     feet = [names.index(name) for name in ("l_foot", "r_foot")]
     real, ours = true.hung(true.hierarchy)[:, feet], felt.hung(shape)[:, feet]
@@ -163,12 +173,12 @@ def _placed(true, felt, shape, heading, step_s, errors, rng):
     wander = inertial_errors.wandering(rng, len(moved), (3,), step_s, errors.drift_s)
     moved += errors.drift_m_s * step_s * wander
     root = true.root[0] + np.concatenate([np.zeros((1, 3)), np.cumsum(moved, axis=0)])
-    # The floor keeps the height: the lower ankle is as high as it should be.
+    # The floor fixes the height: the lower ankle has its true height.
     root[:, 1] = true.root[:, 1] - (carries * (ours - real)).sum(axis=1)[:, 1]
     return root
 
 
-def _smoothed(world, root, sigma):
+def _smoothed(world: NDArray, root: NDArray, sigma: float) -> tuple[NDArray, NDArray]:
     if not sigma:
         return world, root
     mean = gaussian_filter1d(world, sigma, axis=0, mode="nearest")
@@ -176,8 +186,8 @@ def _smoothed(world, root, sigma):
     return left @ right, gaussian_filter1d(root, sigma, axis=0, mode="nearest")
 
 
-def _posed(shape, world, root, time_s):
-    """Return the turns against one another, with the rest pose in the first row."""
+def _posed(shape: Hierarchy, world: NDArray, root: NDArray, time_s: NDArray) -> PosedHierarchy:
+    """Return the local rotations, with the rest pose in the first row."""
     parents = shape.parents
     local = world.copy()
     local[:, 1:] = np.swapaxes(world[:, parents[1:]], -1, -2) @ world[:, 1:]

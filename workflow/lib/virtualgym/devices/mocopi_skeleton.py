@@ -1,23 +1,26 @@
-"""The 27 joints that mocopi knows, in a virtual body: how they hang together, and how they really turn.
+"""Mocopi's 27 joints in a virtual body: hierarchy, and true rotations.
 
-Names, order and axes are those of the app's BVH files [Homma2023, appendix A]: y up, x to the left of who
-faces z; at rest the arms are straight out to the sides and no joint is turned.
+Names, order and axes are those of the app's BVH files [Homma2023, appendix A]: y up, x to the left
+of a person who faces z; at rest the arms are straight out to the sides and all rotations are the
+identity.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import rotations
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy
 from virtualgym.body import pose_bones
+from virtualgym.body.pose_bones import Posed, Skeleton
 from virtualgym.body.stance import SIDES
 
-TIP_M = 0.001  # of the last bones, as in the app's files
-# From the middle of the hips, metres. The app's root is 4 cm higher: there the virtual body's spine bends.
+TIP_M = 0.001  # length of the last bones, as in the app's files
+# From mid-hip, metres. The app's root is 4 cm higher, but there the virtual body's spine bends.
 ROOT_M = np.array([0.0, 0.0, -0.02])
-# Joint, the bone that carries it, and how far it is from that bone's head to the next one's. As in the app,
-# the last of the torso is just below the neck.
+# Joint, the bone that carries it, the next bone, and the joint's place between their heads, 0 to 1.
+# As in the app, the last joint of the torso is just below the neck.
 SPINE = (
     ("torso_1", "spine05", "spine04", 0.0),
     ("torso_2", "spine05", "spine04", 0.5),
@@ -44,7 +47,7 @@ LEG = (
     ("foot", "low_leg", "foot", "foot"),
     ("toes", "foot", pose_bones.TOES, None),
 )
-SHARED = {  # joints that are the same points as joints of the virtual body
+SHARED = {  # joints at the same points as joints of the virtual body
     f"{side[0]}_{part}": f"{name.format(side)}"
     for side in SIDES
     for part, name in {
@@ -65,10 +68,10 @@ class Rig:
 
     Attributes
     ----------
-    hierarchy : courtside.records.devices.hierarchy.Hierarchy
+    hierarchy : Hierarchy
         At rest, metres; the root's offset is its height when standing.
     bones : tuple of str
-        For each joint the bone of `pose_bones.BONES` that carries it.
+        The bone of `pose_bones.BONES` that carries each joint.
     bone_from_joint : (J, 3, 3) float
         A joint's axes at rest in the axes of the bone's own rest pose.
     root : (3,) float
@@ -76,13 +79,13 @@ class Rig:
     """
 
     hierarchy: Hierarchy
-    bones: tuple
+    bones: tuple[str, ...]
     bone_from_joint: np.ndarray
     root: np.ndarray
 
     @classmethod
-    def of(cls, skeleton):
-        """Find the joints in a `pose_bones.Skeleton`."""
+    def of(cls, skeleton: Skeleton) -> "Rig":
+        """Find the joints in a body's skeleton."""
         parents, bones, places = _joints(skeleton)
         names = list(parents)
         turned = np.array([_at_rest(skeleton, name, bones[name]) for name in names])
@@ -94,7 +97,8 @@ class Rig:
                 continue
             way = places[name] - places[parent]
             offsets.append(turned[names.index(parent)].T @ way)
-        at = [NO_PARENT if parents[n] is None else names.index(parents[n]) for n in names]
+        above = [parents[name] for name in names]
+        at = [NO_PARENT if parent is None else names.index(parent) for parent in above]
         ends = {"head": [0, TIP_M, 0], "l_hand": [TIP_M, 0, 0], "r_hand": [-TIP_M, 0, 0]}
         ends |= {f"{side[0]}_toes": [0, 0, TIP_M] for side in SIDES}
         shape = Hierarchy(
@@ -105,20 +109,21 @@ class Rig:
         )
         return cls(shape, tuple(bones.values()), turned, places["root"])
 
-    def turns(self, posed):
-        """Return how each joint is turned in the world (J, 3, 3), for bones from `pose_bones.pose`."""
+    def turns(self, posed: Posed) -> NDArray:
+        """Return each joint's rotation (J, 3, 3) in the world, for posed bones."""
         return np.array([posed.rotation[bone] for bone in self.bones]) @ self.bone_from_joint
 
-    def place(self, posed):
-        """Return where the root is in the world (3,), metres."""
+    def place(self, posed: Posed) -> NDArray:
+        """Return the root's place in the world, (3,) m."""
         return posed.at("root", self.root)
 
 
-def _joints(skeleton):
-    """Return for each joint, in the app's order, its parent, its bone and its place at rest."""
+def _joints(skeleton: Skeleton) -> tuple[dict[str, str | None], dict[str, str], dict[str, NDArray]]:
+    """Return each joint's parent, bone and place at rest, in the app's order."""
     heads = skeleton.heads
     root = skeleton.hips + ROOT_M
-    parents, bones, places = {"root": None}, {"root": "root"}, {"root": root}
+    parents: dict[str, str | None] = {"root": None}
+    bones, places = {"root": "root"}, {"root": root}
     above = "root"
     for name, bone, towards, share in SPINE:
         parents[name], bones[name] = above, bone
@@ -134,8 +139,8 @@ def _joints(skeleton):
     return parents, bones, places
 
 
-def _at_rest(skeleton, name, bone):
-    """Return a joint's axes at rest (3, 3) in its bone's rest pose: arms of that pose hang aslant."""
+def _at_rest(skeleton: Skeleton, name: str, bone: str) -> NDArray:
+    """Return a joint's axes at rest (3, 3) in the body's rest pose, whose arms are not level."""
     side = {"l": "left", "r": "right"}.get(name[0]) if name[1] == "_" else None
     part, heads = name[2:], skeleton.heads
     if side is None or part not in ("up_arm", "low_arm", "hand"):

@@ -12,6 +12,7 @@ half : str
     Half of the court: "near" (y below the net's) or "far".
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -219,7 +220,7 @@ def crossing(
     )
 
 
-MOTIONS = {
+MOTIONS: dict[str, Callable[..., Motion]] = {
     "footwork": six_corners,
     "shot": shot,
     "lunge": lunge,

@@ -1,35 +1,48 @@
-"""Clicks of court points and racket ends, as a person would make them."""
+"""Clicks of court points and racket ends, with a person's errors."""
 
 import csv
 import zlib
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
 from courtside.geometry import camera as projection
+from courtside.geometry.camera import Camera
 from courtside.study.execution.files import atomic
 from virtualgym import presets
 from virtualgym.body import mesh
+from virtualgym.body.athlete import Athlete
 from virtualgym.rendering import rolling_shutter
 
 FULL_WIDTH_PX = 3840  # clicking errors are stated for pictures of this width
 
 
-def simulate(cameras, points_xyz, *, sigma_px_at_3840, bias_px_at_3840, rng):
+def simulate(
+    cameras: Iterable[Camera],
+    points_xyz: NDArray,
+    *,
+    sigma_px_at_3840: float,
+    bias_px_at_3840: float,
+    rng: np.random.Generator,
+) -> dict[str, NDArray]:
     """Click points as one person would.
 
     Parameters
     ----------
-    cameras : list of Camera
+    cameras : iterable of Camera
     points_xyz : (P, 3) float
-        Where the points really are, metres.
+        True places of the points, metres.
     sigma_px_at_3840 : float
         Standard deviation per axis of one click, px, in a picture 3840 px wide; it scales with the
         width, as a person zooms in on the same content.
     bias_px_at_3840 : float
-        Standard deviation per axis of the person's own habit: one vector, the same for every click.
+        Standard deviation per axis of the person's bias: one vector, the same for every click.
     rng : numpy.random.Generator
-        Draws the same numbers whatever the cameras see, so that a click depends on nothing but its
-        place in the order.
+        It draws the same numbers whatever the cameras see, so that an error depends only on the
+        click's place in the order.
 
     Returns
     -------
@@ -46,19 +59,27 @@ def simulate(cameras, points_xyz, *, sigma_px_at_3840, bias_px_at_3840, rng):
     return clicks
 
 
-def draws(cameras, points_xyz, *, n_draws, seed, preset, session):
-    """Yield the clicks of several persons, the same for every method and every number of images of a session.
+def draws(
+    cameras: Iterable[Camera],
+    points_xyz: NDArray,
+    *,
+    n_draws: int,
+    seed: int,
+    preset: str,
+    session: str,
+) -> Iterator[dict[str, NDArray]]:
+    """Yield the clicks of `n_draws` persons, the same for all methods and numbers of images.
 
     Parameters
     ----------
-    cameras : list of Camera
+    cameras : iterable of Camera
     points_xyz : (P, 3) float
-        Where the points really are, metres.
+        True places of the points, metres.
     n_draws, seed : int
     preset : str
-        A key of `presets.PRESETS`, which says how well people click.
+        A key of `presets.PRESETS`, which gives the click errors.
     session : str
-        Other sessions get other numbers.
+        Name; other sessions get other random numbers.
     """
     made = presets.PRESETS[preset]
     for draw in range(n_draws):
@@ -79,32 +100,38 @@ ENDS = ("top", "butt")
 class _Ends:
     """The ends of an athlete's racket, as a surface without triangles."""
 
-    def __init__(self, athlete):
+    def __init__(self, athlete: Athlete) -> None:
         self.athlete = athlete
 
-    def mesh(self, time_s):
+    def mesh(self, time_s: float) -> mesh.Mesh:
         none = np.zeros((0, 3))
         return mesh.Mesh(self.athlete.racket(time_s), none.astype(np.int32), none.astype(np.uint8))
 
 
-def of_camera(athletes, cameras, times_s, preset, rng):
-    """Click both ends of every racket in every frame of a camera, also where a body hides one.
+def of_camera(
+    athletes: Iterable[Athlete],
+    cameras: Sequence[Camera],
+    times_s: NDArray,
+    preset: presets.Preset,
+    rng: np.random.Generator,
+) -> list[tuple[str, int, str, NDArray]]:
+    """Click both ends of every racket in every frame of a camera, also where a body hides them.
 
     Parameters
     ----------
-    athletes : list of athlete.Athlete
-    cameras : list of Camera, length T
-        The camera as it stands at each frame.
+    athletes : iterable of Athlete
+    cameras : sequence of Camera, length T
+        The camera at each frame.
     times_s : (T,) float
         Mid-exposure of each frame's middle row, on the athletes' clock.
-    preset : virtualgym.presets.Preset
+    preset : Preset
     rng : numpy.random.Generator
-        For the person's habit in this camera, and each click.
+        For the person's bias in this camera, and each click.
 
     Returns
     -------
     clicks : list of (str, int, str, (2,) float)
-        Camera, frame_idx, end, px; without those beside the picture.
+        Camera, frame_idx, end, px; without those outside of the picture.
     """
     per_px = cameras[0].size[0] / FULL_WIDTH_PX
     habit = rng.standard_normal(2) * preset.click_bias_px_at_3840
@@ -122,16 +149,8 @@ def of_camera(athletes, cameras, times_s, preset, rng):
     return clicks
 
 
-def write(path, take, clicks):
-    """Write clicked ends of rackets as a CSV file, whole or not at all.
-
-    Parameters
-    ----------
-    path : str or Path
-    take : str
-    clicks : iterable of (str, int, str, (2,) float)
-        As `of_camera` returns them.
-    """
+def write(path: str | Path, take: str, clicks: Iterable[tuple[str, int, str, NDArray]]) -> None:
+    """Write clicks from `of_camera` as a CSV file, atomically."""
     with atomic(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)
@@ -139,30 +158,30 @@ def write(path, take, clicks):
             table.writerow([take, camera, frame_idx, end, f"{x:.3f}", f"{y:.3f}"])
 
 
-FRAMES, BELOW = 21, 10  # of the published scene, and how many of them are below the net's height
-START_M, END_M = (
-    (0.75, 1.1),
-    (2.1, 2.6),
-)  # heights of the racket's middle in the first and last frame
-REACH_M = (0.4, 0.8)  # from the player's axis to the racket's middle, on the floor
+# Of the published scene: number of frames, and how many of them are below the net's height.
+FRAMES, BELOW = 21, 10
+# ASSUME: ranges of a stroke's geometry, from a low to a high racket; no source is recorded.
+START_M, END_M = (0.75, 1.1), (2.1, 2.6)  # height of the racket's middle, first and last frame
+REACH_M = (0.4, 0.8)  # horizontal distance of the racket's middle from the player's axis
 MARGIN_M = (1.0, 1.5)  # of the player from the edges of the court, and from the net
 TURN_DEG = (30.0, 120.0)  # about the player's axis, to either side, from first to last frame
 RISE_DEG = ((-60.0, 0.0), (20.0, 100.0))  # of the racket above the horizontal, first and last frame
 
 
-def draw(court, length_m, *, seed, run):
-    """Return the `swing` of one run, the same for every session.
-
-    Parameters
-    ----------
-    court, length_m
-        As for `swing`.
-    seed, run : int
-    """
+def draw(court: Court, length_m: float, *, seed: int, run: int) -> NDArray:
+    """Return the `swing` of one run, the same for every session."""
     return swing(court, length_m, _generator(seed, run, "swing"))
 
 
-def click(cameras, ends, *, sigma_px_at_3840, again, seed, run):
+def click(
+    cameras: Iterable[Camera],
+    ends: NDArray,
+    *,
+    sigma_px_at_3840: float,
+    again: bool,
+    seed: int,
+    run: int,
+) -> dict[str, NDArray]:
     """Click both ends of a racket in every frame of every camera.
 
     Parameters
@@ -171,11 +190,10 @@ def click(cameras, ends, *, sigma_px_at_3840, again, seed, run):
     ends : (F, 2, 3) float
         Top and butt, m.
     sigma_px_at_3840 : float
-        Standard deviation per axis of one click, px, in a picture 3840 px wide. The errors of one run
-        are the same but for their size. A person's habit, common to all clicks, is left out: it shifts
-        both ends alike.
+        Standard deviation per axis of one click, px, in a picture 3840 px wide. The errors of one
+        run differ only by this factor. There is no bias, which would shift both ends alike.
     again : bool
-        Whether this is a second time, with new errors.
+        Whether these are repeated clicks, with new errors.
     seed, run : int
 
     Returns
@@ -193,17 +211,17 @@ def click(cameras, ends, *, sigma_px_at_3840, again, seed, run):
     )
 
 
-def _generator(seed, run, what):
+def _generator(seed: int, run: int, what: str) -> np.random.Generator:
     return np.random.default_rng([seed, zlib.crc32(f"racket {what}".encode()), run])
 
 
-def swing(court, length_m, rng):
+def swing(court: Court, length_m: float, rng: np.random.Generator) -> NDArray:
     """Move a racket as in a part of a stroke, in the half of the court at y = 0.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-        With a net: its `mid_height_m` is passed between frames `BELOW` and `BELOW` + 1.
+    court : Court
+        With a net: the racket passes its `mid_height_m` between frames `BELOW` and `BELOW` + 1.
     length_m : float
         From top to butt.
     rng : numpy.random.Generator
@@ -215,10 +233,12 @@ def swing(court, length_m, rng):
 
     Notes
     -----
-    The player stands anywhere in that half; the racket's middle rises without turning back and goes
-    round the player, while the racket turns from hanging or level to raised. Directions differ from run
-    to run: the error of a length depends on how it lies to the lines of sight.
+    The player's place in that half is random. The racket's middle rises steadily and moves round
+    the player, while the racket turns from hanging or level to raised. Directions are random, as
+    the error of a measured length depends on its angle to the lines of sight.
     """
+    if court.net is None:
+        raise ValueError("expected a court with a net, found one without")
     at = np.arange(1, FRAMES + 1)
     part = (at - 1) / (FRAMES - 1)
     low_m, high_m = rng.uniform(*START_M), rng.uniform(*END_M)
@@ -231,7 +251,7 @@ def swing(court, length_m, rng):
     reach_m = rng.uniform(*REACH_M)
     round_player = np.stack([np.cos(heading), np.sin(heading)], axis=1)
     middle = np.column_stack([stand + reach_m * round_player, height_m])
-    yaw = heading + rng.uniform(-np.pi / 2, np.pi / 2)  # the wrist's, about the vertical
+    yaw = heading + rng.uniform(-np.pi / 2, np.pi / 2)  # of the wrist, about the vertical
     along = np.stack([np.cos(rise) * np.cos(yaw), np.cos(rise) * np.sin(yaw), np.sin(rise)], axis=1)
     half = length_m / 2 * along
     return np.stack([middle + half, middle - half], axis=1)

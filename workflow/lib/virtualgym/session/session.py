@@ -1,11 +1,15 @@
-"""Film one virtual session: videos of the fixed cameras and of a walk, clicks, and the truth."""
+"""Film a virtual session: videos of the fixed cameras and of a walk, clicks, and the truth."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
+from courtside.geometry.camera import Camera
 from courtside.records.cameras import clicks as click_records
 from courtside.records.truth import session_truth
 from courtside.study.execution import log
@@ -19,16 +23,16 @@ from virtualgym.rendering.hall_renderer import Renderer
 from virtualgym.session import clicks, parallel
 
 WALK = "walk"
-STATIC_HZ = 5.0
-TREMBLE_PX = 0.03  # of a tripod, standard deviation per axis at 1280 px width
-# Independent streams of random numbers, so that a change of one part leaves the others as they are.
+STATIC_HZ = 5.0  # ASSUME: frame rate of the fixed cameras' short videos
+TREMBLE_PX = 0.03  # ASSUME: tremor of a tripod, standard deviation per axis, px at 1280 px width
+# Independent streams of random numbers, so that a change of one part does not affect the others.
 HALL, LENSES, STATIC, CLICKS, BOARDS = range(5)  # of the scene's seed
 PATH, PEOPLE, GRAIN = range(5, 8)  # of the walk's seed
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What makes one virtual session.
+    """Settings of a virtual session.
 
     Attributes
     ----------
@@ -41,10 +45,10 @@ class Settings:
     size_px : (int, int)
         Width and height of every video, even numbers.
     walk_frames : int
-        Frames that the walk's video has, at least two: no more is filmed than the study's grid needs; 0 for
-        a session without a walk.
+        Frames of the walk's video, at least two: only those that the study samples are rendered. 0:
+        no walk.
     walk_seed : int
-        Of the walk, its camera, its noise, and the people.
+        Of the walk, its camera, its noise, and the bystanders.
     speed_kmh : float
         Of the walk.
     stabiliser : bool
@@ -52,19 +56,19 @@ class Settings:
     static_frames : int
         Frames of each fixed camera's video.
     baseline_deg : float or None
-        Angle between the fixed cameras of layout "a", if not 90.
+        Angle between the fixed cameras of layout "a"; None: 90.
     zoom : float
         Of the fixed cameras' lenses; the walked camera has none.
     boards : bool
         Whether each fixed camera also takes pictures of a chessboard.
     people : int or None
-        How many walk about during the walk, if not the preset's number.
+        Number of bystanders during the walk; None: the preset's.
     """
 
     preset: str
     layout: str
     seed: int
-    size_px: tuple
+    size_px: tuple[int, int]
     walk_frames: int
     walk_seed: int = 0
     speed_kmh: float = walk_path.USUAL_KMH
@@ -75,7 +79,7 @@ class Settings:
     boards: bool = False
     people: int | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "size_px", tuple(self.size_px))
         if self.preset not in presets.PRESETS:
             expected = sorted(presets.PRESETS)
@@ -86,21 +90,9 @@ class Settings:
 
 
 class Studio:
-    """The hall of a session and everything in it, ready for pictures.
+    """The hall of a session and everything in it, ready to be rendered."""
 
-    Parameters
-    ----------
-    settings : Settings
-    court : courtside.calibration.court.court.Court
-
-    Attributes
-    ----------
-    fixed : list of Camera
-    walk : walk.Walk
-    people : list of bystanders.Person
-    """
-
-    def __init__(self, settings, court):
+    def __init__(self, settings: Settings, court: Court) -> None:
         self.settings, self.preset = settings, presets.PRESETS[settings.preset]
         self.fixed, self.walk = plan(settings, court)
         count = self.preset.n_people if settings.people is None else settings.people
@@ -109,15 +101,15 @@ class Studio:
             hall.build(self.preset, court, parallel.stream(settings.seed, HALL))
         )
 
-    def court_xyz(self):
-        """Return where the court's points really are, (P, 3) m."""
+    def court_xyz(self) -> NDArray:
+        """Return the true places of the court's points, (P, 3) m."""
         return self._renderer.scene.court_xyz
 
-    def backdrop(self, index, margin_px=0):
-        """Return what fixed camera `index` sees without people, and how far away that is."""
+    def backdrop(self, index: int, margin_px: int = 0) -> background.Backdrop:
+        """Return picture and depth of the empty hall from fixed camera `index`."""
         return background.look(self._renderer, self.fixed[index], margin_px)
 
-    def walk_picture(self, index):
+    def walk_picture(self, index: int) -> NDArray:
         """Return frame `index` of the walk."""
         settings, preset = self.settings, self.preset
         time_s = self.walk.grid(settings.walk_frames)[index]
@@ -132,14 +124,8 @@ class Studio:
         )
 
 
-def plan(settings, court):
-    """Return the fixed cameras (list of Camera) and the `walk_path.Walk` of a session, without its hall.
-
-    Parameters
-    ----------
-    settings : Settings
-    court : courtside.calibration.court.court.Court
-    """
+def plan(settings: Settings, court: Court) -> tuple[list[Camera], walk_path.Walk]:
+    """Return the fixed cameras and the walk of a session."""
     preset = presets.PRESETS[settings.preset]
     fixed = layouts.fixed_cameras(
         settings.layout,
@@ -162,29 +148,36 @@ def plan(settings, court):
     return fixed, walked
 
 
-def simulate(settings, court, folder, *, backdrops_npz=None, threads=1):
+def simulate(
+    settings: Settings,
+    court: Court,
+    folder: str | Path,
+    *,
+    backdrops_npz: str | Path | None = None,
+    threads: int = 1,
+) -> None:
     """Film a session.
 
     Parameters
     ----------
     settings : Settings
-    court : courtside.calibration.court.court.Court
+    court : Court
     folder : str or Path
-        Gets `{camera}.mp4` for each camera of the layout, `court_points.csv`, `truth.npz`, and `walk.mp4`
-        and `boards/{camera}/*.png` where asked for; each file appears under its name only when whole.
+        Receives `{camera}.mp4` for each camera of the layout, `court_points.csv`, `truth.npz`, and,
+        if asked for, `walk.mp4` and `boards/{camera}/*.png`; each file appears only when complete.
     backdrops_npz : str, Path or None
-        Where to keep the empty hall for takes, `background.write`, if at all.
+        File for the empty hall, for takes; None: not written.
     threads : int
-        Processes that render; the files do not depend on it.
+        Number of rendering processes; the files do not depend on it.
 
     Raises
     ------
     InputError
-        If the disk refuses a file.
+        If a file cannot be written.
     """
     folder = Path(folder)
     fixed, walked = plan(settings, court)
-    with parallel.crew(Studio, (settings, court), threads) as call:
+    with parallel.workers(Studio, (settings, court), threads) as call:
         court_xyz = next(call("court_xyz", [()]))
         empty = list(call("backdrop", [(at,) for at in range(len(fixed))]))
         for at, (camera, seen) in enumerate(zip(fixed, empty, strict=True)):
@@ -207,19 +200,30 @@ def simulate(settings, court, folder, *, backdrops_npz=None, threads=1):
     session_truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz)
 
 
-def backdrops(settings, court, margins, *, kept_npz=None, threads=1):
-    """Return what fixed cameras see of the empty hall, a dict of int to `background.Backdrop`.
+def backdrops(
+    settings: Settings,
+    court: Court,
+    margins: Mapping[int, int],
+    *,
+    kept_npz: str | Path | None = None,
+    threads: int = 1,
+) -> dict[int, background.Backdrop]:
+    """Return the empty hall as fixed cameras see it.
 
     Parameters
     ----------
     settings : Settings
-    court : courtside.calibration.court.court.Court
+    court : Court
     margins : dict of int to int
-        For each camera, by its place in the layout, how much more is needed on each side, px.
+        Margin on each side, px, of each camera, by its index in the layout.
     kept_npz : str, Path or None
-        What `simulate` kept of this session, which has no margins; without it the hall is built.
+        The file by `simulate`, whose backdrops have no margins; None: the hall is built again.
     threads : int
-        Processes that render what is not kept.
+        Number of processes that render missing backdrops.
+
+    Returns
+    -------
+    seen : dict of int to Backdrop
 
     Raises
     ------
@@ -227,19 +231,21 @@ def backdrops(settings, court, margins, *, kept_npz=None, threads=1):
         If that file is damaged or of other cameras.
     """
     kept = [at for at, margin in margins.items() if kept_npz is not None and not margin]
-    seen = {}
-    if kept:
+    seen: dict[int, background.Backdrop] = {}
+    if kept and kept_npz is not None:
         fixed = plan(settings, court)[0]
         seen = dict(zip(kept, background.read(kept_npz, [fixed[at] for at in kept]), strict=True))
     others = [(at, margin) for at, margin in margins.items() if at not in seen]
     if others:
-        with parallel.crew(Studio, (settings, court), min(threads, len(others))) as call:
+        with parallel.workers(Studio, (settings, court), min(threads, len(others))) as call:
             looks = call("backdrop", others)
             seen |= {at: look for (at, _), look in zip(others, looks, strict=True)}
     return seen
 
 
-def _film_fixed(settings, folder, at, camera, picture):
+def _film_fixed(
+    settings: Settings, folder: Path, at: int, camera: Camera, picture: NDArray
+) -> None:
     """Write the recording of a fixed camera, and its pictures of a chessboard."""
     preset = presets.PRESETS[settings.preset]
     rng = parallel.generator(settings.seed, STATIC, at)
@@ -252,14 +258,16 @@ def _film_fixed(settings, folder, at, camera, picture):
         chessboard.simulate(camera, place, picture, rng, noise=preset.noise_sigma)
 
 
-def _film_walk(settings, folder, walked, frames):
-    rate_hz = (settings.walk_frames - 1) / walked.duration_s  # frame k is at the grid's time k
+def _film_walk(
+    settings: Settings, folder: Path, walked: walk_path.Walk, frames: Iterable[NDArray]
+) -> None:
+    rate_hz = (settings.walk_frames - 1) / walked.duration_s  # frame k is at grid time k
     frames = log.progress(frames, settings.walk_frames, f"{WALK}: frames")
     crf = presets.PRESETS[settings.preset].crf
     writer.write_video(folder / f"{WALK}.mp4", frames, rate_hz, crf=crf)
 
 
-def _trembled(picture, noise, rng):
+def _trembled(picture: NDArray, noise: float, rng: np.random.Generator) -> NDArray:
     shift_px = rng.standard_normal(2) * TREMBLE_PX * picture.shape[1] / 1280
     moved = cv2.warpAffine(
         picture.astype(np.float32),
@@ -272,7 +280,7 @@ def _trembled(picture, noise, rng):
     return np.clip(np.rint(moved), 0, 255).astype(np.uint8)
 
 
-def _true_walk(walked, n_frames):
+def _true_walk(walked: walk_path.Walk, n_frames: int) -> session_truth.Walk:
     time_s = walked.grid(n_frames)
     return session_truth.Walk(
         time_s=time_s,

