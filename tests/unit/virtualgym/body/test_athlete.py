@@ -66,7 +66,7 @@ def test_the_mesh_ends_where_top_and_butt_are():
     assert surface.triangles.shape == surface.colours.shape
 
 
-def test_without_a_racket_there_is_none():
+def test_an_athlete_without_a_racket_has_nan_ends_and_open_hands():
     for found in (
         athlete.Athlete(mannequin.dressed(), Turning(), racket=False),
         player(has_racket=False),

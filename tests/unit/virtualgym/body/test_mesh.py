@@ -60,6 +60,6 @@ def test_joined_meshes_keep_corners_and_colours():
         (np.zeros((3, 3)), [[0, 1, 2]], np.zeros((1, 3))),
     ],
 )
-def test_what_is_no_mesh_is_refused(vertices, triangles, colours):
+def test_invalid_meshes_are_refused(vertices, triangles, colours):
     with pytest.raises(ValueError, match="expected"):
         mesh.Mesh(vertices, np.array(triangles), colours)

@@ -39,7 +39,7 @@ def test_both_ends_are_marked_and_nothing_else(built):
     assert ((height < 0.03) | (height > 0.62)).all()
 
 
-def test_it_is_placed_by_its_butt_and_its_way(built):
+def test_a_racket_is_placed_by_its_butt_and_direction(built):
     butt, way = np.array([1.0, 2, 3]), np.array([0.6, 0, 0.8])
     face = np.array([0.8, 0.1, -0.6])
     placed = racket.place(built, butt, way, face)

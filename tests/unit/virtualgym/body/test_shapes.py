@@ -11,9 +11,9 @@ from fixtures.people import mannequin
 from virtualgym.body import makehuman, shapes
 
 NAMES = sorted(shapes.BODIES)
-# Shares of the stature. Thigh, shank, forearm, hand and height of the ankle: Drillis & Contini 1966, as drawn
-# by Winter 2009, fig. 4.1. Upper arm: from joint centre to joint centre, de Leva 1996, table 4 (275.1 mm of
-# 1.735 m, 281.7 mm of 1.741 m); Winter's 0.186 starts at the acromion.
+# Shares of the stature. Thigh, shank, forearm, hand and height of the ankle: Drillis & Contini
+# 1966, as drawn by Winter 2009, fig. 4.1. Upper arm: from joint centre to joint centre, de Leva
+# 1996, table 4 (275.1 mm of 1.735 m, 281.7 mm of 1.741 m); Winter's 0.186 starts at the acromion.
 SHARES = {"thigh": 0.245, "shank": 0.246, "forearm": 0.146, "hand": 0.108, "ankle_height": 0.039}
 UPPER_ARM = {"f": 0.1586, "m": 0.1618}
 TOLERANCE = 0.13
@@ -29,7 +29,7 @@ def test_height_and_mass_are_as_stated(name):
 
 
 def sliced_m3(figure, n=100):
-    """Integrate the areas of horizontal cuts: by Green, from the segments that planes cut of triangles."""
+    """Integrate the areas of horizontal cuts, by Green's theorem on the cuts of triangles."""
     corners = figure.vertices[figure.skin]
     levels = (np.arange(n) + 0.5) / n * figure.height_m
     total = 0.0

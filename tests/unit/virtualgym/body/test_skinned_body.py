@@ -72,7 +72,7 @@ def test_joints_are_where_the_stance_puts_them(seed):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_joints_agree_with_the_stick_figure_of_the_same_proportions(name):
-    """Motions are planned on `stance.joints`: the body may differ by what its shoulder girdle moves."""
+    """Motions are planned on `stance.joints`; only the shoulder girdle may differ from it."""
     dressed = mannequin.dressed(name)
     wanted = random(1)
     planned = stance.joints(wanted, dressed.proportions)

@@ -1,4 +1,4 @@
-"""Where fixed cameras stand: against the layouts' definitions, with OpenCV's projection beside it."""
+"""Places of fixed cameras, against the layouts' definitions and OpenCV's projection."""
 
 from pathlib import Path
 
@@ -110,7 +110,7 @@ def test_the_same_generator_gives_the_same_cameras():
     assert not any((a.K == b.K).all() for a, b in zip(one, other, strict=True))
 
 
-def test_other_layouts_are_refused():
+def test_unknown_layouts_and_impossible_baselines_are_refused():
     with pytest.raises(ValueError, match="expected a layout of"):
         cameras("c")
     with pytest.raises(ValueError, match="baseline_deg"):

@@ -1,4 +1,4 @@
-"""Pictures of a chessboard: OpenCV finds the corners where OpenCV projects them, and the lens with them."""
+"""Pictures of a chessboard: OpenCV finds its corners and calibrates the lens with them."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What a stereo depth camera makes of true depth: noise by its formula, steps, range, shadows, edges."""
+"""Errors of a stereo depth camera: noise by its formula, steps, range, shadows, edges."""
 
 from dataclasses import replace
 
@@ -10,8 +10,8 @@ from virtualgym.devices.depth_noise import DepthErrors
 
 SIZE = (320, 240)
 SOME = DepthErrors(
-    focal_baseline=600 * 0.055, subpixel_px=0.08, correlation_px=0.0, unit_m=1e-4, range_m=(0.3, 20.0),
-    edge_px=1.5, edge_holes=0.0, holes=0.0,
+    focal_baseline=600 * 0.055, subpixel_px=0.08, correlation_px=0.0, unit_m=1e-4,
+    range_m=(0.3, 20.0), edge_px=1.5, edge_holes=0.0, holes=0.0,
 )  # fmt: skip
 
 
@@ -48,7 +48,7 @@ def test_errors_are_alike_in_neighbours_as_block_matching_makes_them():
         assert alike == pytest.approx(expected, abs=0.05)
 
 
-def test_frames_differ_and_repeat():
+def test_noise_differs_between_frames_and_repeats_with_the_generator():
     sensor = depth_noise.Sensor(SOME, SIZE, np.random.default_rng(0))
     one, two, again = (
         seen(sensor.measured(wall(2.0), np.random.default_rng(k))) for k in (1, 2, 1)

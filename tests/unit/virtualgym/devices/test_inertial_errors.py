@@ -1,4 +1,4 @@
-"""Errors of a virtual inertial suit: how they wander, when iron is near, and that strengths are in order."""
+"""Errors of a virtual inertial suit: random wander, iron nearby, order of the strengths."""
 
 from dataclasses import asdict
 
@@ -18,7 +18,7 @@ def test_wandering_has_its_spread_and_memory():
     assert later.mean() == pytest.approx(np.exp(-1), abs=0.08)
 
 
-def test_what_begins_at_zero_reaches_its_spread():
+def test_wander_from_zero_reaches_its_spread():
     rng = np.random.default_rng(1)
     values = inertial_errors.wandering(rng, 300, (2000,), 0.1, 5.0, from_zero=True)
     assert (values[0] == 0).all()
@@ -37,7 +37,7 @@ def test_iron_turns_some_headings_for_seconds():
     assert np.degrees(rate.max()) < 2 * 1.5 * 4 * 20 / 0.3, "it takes its time"
 
 
-def test_without_iron_nothing_turns():
+def test_without_iron_headings_are_undisturbed():
     time_s = np.arange(0, 10, 0.02)
     assert not inertial_errors.disturbance(np.random.default_rng(0), time_s, 6, Errors()).any()
 

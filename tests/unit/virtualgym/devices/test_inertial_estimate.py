@@ -31,7 +31,7 @@ def angles_deg(found, true):
     return np.degrees(Rotation.from_matrix(relative.reshape(-1, 3, 3)).magnitude())
 
 
-def test_nothing_wrong_changes_nothing(still):
+def test_an_estimate_without_errors_is_the_true_motion(still):
     felt, heading = inertial_estimate.guess(still, STEP_S, Errors(), np.random.default_rng(0))
     np.testing.assert_allclose(felt.world, still.world, atol=1e-9)
     assert not heading.any()

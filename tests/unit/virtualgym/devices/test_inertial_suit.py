@@ -1,4 +1,4 @@
-"""The virtual inertial suit: exact without errors; with them, each error does what its table says."""
+"""The virtual inertial suit: exact without errors; each error acts as documented."""
 
 import numpy as np
 import pytest
@@ -77,7 +77,7 @@ def test_the_same_seed_gives_the_same_and_another_seed_another():
     assert np.abs(other.posed.translation - first.posed.translation).max() > 1e-3
 
 
-def test_stronger_is_worse():
+def test_joint_errors_grow_with_the_strength():
     medians = []
     for name in ("mild", "usual", "strong"):
         drawn = [suits.record(TIMES, STRENGTHS[name], seed=seed) for seed in range(2)]

@@ -1,4 +1,4 @@
-"""mocopi's joints in a virtual body: names, rest pose, and the same points as the body's own joints."""
+"""Mocopi's joints in a virtual body: names, rest pose, and places of the body's own joints."""
 
 from pathlib import Path
 

@@ -87,7 +87,7 @@ def test_the_same_generator_gives_the_same_people():
     assert (shirts[0] == shirts[1]).all() and (shirts[0] != shirts[2]).any()
 
 
-def test_more_people_leave_the_first_as_they_are():
+def test_more_bystanders_leave_the_first_as_they_are():
     few, many = crowd(2), crowd(7)
     np.testing.assert_array_equal(few[1].place(9.0), many[1].place(9.0))
     assert len(many) == 7 and bystanders.quads([], 0.0) == []

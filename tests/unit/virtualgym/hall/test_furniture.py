@@ -1,4 +1,4 @@
-"""Furniture: nothing stands in the way of players, walkers or views, and posters are not mirrored."""
+"""Furniture: clear of players, walkers and views; posters are not mirrored."""
 
 import dataclasses
 import itertools

@@ -33,7 +33,7 @@ def close_up(place, target):
 
 
 def edge_m(picture, camera, start, along, outward):
-    """Return how far outward of a place the white line's edge is in a picture, m: mean over a stretch."""
+    """Return the mean distance of a white line's edge outward of a place in a picture, m."""
     steps, stretch = np.arange(-0.02, 0.02, 0.0002), np.linspace(0.08, 0.3, 60)
     xyz = start + stretch[:, None, None] * along + steps[:, None] * outward
     xy = projection.opencv_projection(camera, xyz.reshape(-1, 3)).astype(np.float32)

@@ -37,8 +37,8 @@ def test_points_are_on_the_edges_that_they_name():
     made = paint_court()
     lines = made.lines_m
     at = dict(zip(BADMINTON.points, made.court_xyz, strict=True))
-    # Lines in the order of the file: 0 1 outer side lines, 4 5 back boundaries, 6 7 long service, 8 9 short
-    # service, 10 11 centre lines.
+    # Lines in the order of the file: 0 1 outer side lines, 4 5 back boundaries, 6 7 long service,
+    # 8 9 short service, 10 11 centre lines.
     expected = {
         "p01": (lines[0, 0], lines[4, 1]),
         "p02": (lines[1, 2], lines[4, 1]),

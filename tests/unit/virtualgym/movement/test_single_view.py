@@ -1,4 +1,4 @@
-"""Free motion before a camera: claps in their places, a body that stays, faces the camera, and moves."""
+"""Free motion before a camera: claps in place; the body stays, faces the camera, and moves."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def minute():
     return motion, *sampled(motion)
 
 
-def test_it_lasts_as_long_as_asked_with_a_clap_at_each_end(minute):
+def test_a_single_view_motion_lasts_as_long_as_asked_with_a_clap_at_each_end(minute):
     motion, *_ = minute
     assert {"clap_1", "clap_2", "tpose_1_start", "tpose_2_stop"} < set(motion.events)
     assert motion.events["clap_1"] < 6 and motion.seconds - motion.events["clap_2"] < 5
@@ -66,7 +66,7 @@ def test_arms_elbows_knees_and_feet_all_move(minute):
     assert np.ptp([each.pelvis[2] for each in stances]) > 0.15, "squats"
 
 
-def test_nothing_jumps(minute):
+def test_a_free_motion_has_no_jumps(minute):
     motion, *_ = minute
     _, _, fine = sampled(motion, 0.02)
     for joint, limit in (("left_wrist", 4.5), ("right_ankle", 3.5), ("head", 1.5)):

@@ -22,7 +22,7 @@ def test_scripted_elbows_and_wrists_bend_as_human_ones(name):
         assert np.degrees(np.arccos(np.clip(fore @ hand, -1, 1))) < 60
 
 
-def test_there_are_poses_to_check():
+def test_at_least_ten_poses_are_checked():
     assert len(NAMED) >= 10
 
 
@@ -57,7 +57,7 @@ def test_performances_differ_by_degrees():
         assert off.max() < 20
 
 
-def test_times_must_increase():
+def test_a_course_of_equal_times_is_refused():
     with pytest.raises(ValueError, match="increasing times"):
         upper_body.course(
             [(0.0, upper_body.READY), (0.0, upper_body.RUN)], np.random.default_rng(0)

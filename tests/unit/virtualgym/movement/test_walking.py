@@ -43,7 +43,7 @@ def test_more_turns_cross_more_often():
     assert perform("crossing", n_turns=3).seconds > 1.8 * perform("crossing", n_turns=1).seconds
 
 
-def test_there_are_two_lanes():
+def test_a_third_lane_is_refused():
     with pytest.raises(ValueError, match="lane 0 or 1"):
         perform("crossing", lane=2)
 

@@ -1,4 +1,4 @@
-"""What rays see of moving surfaces: cover, blur, occlusion; against areas and places from geometry."""
+"""Coverage, blur and occlusion of moving surfaces, against areas and places by geometry."""
 
 import cv2
 import numpy as np

@@ -1,4 +1,4 @@
-"""Pictures against projected truth: corners, rows of a rolling shutter, motion blur, repeatability."""
+"""Pictures against projected truth: corners, rolling shutter, motion blur, repeatability."""
 
 import dataclasses
 
@@ -33,7 +33,7 @@ def moved(camera, time_s):
 
 
 def found_corners(picture, camera):
-    """Return errors (N, 2) px of chessboard corners in a picture, of those that are large enough in it."""
+    """Return errors (N, 2) px of those chessboard corners that are large enough in a picture."""
     xyz = small_hall.corners()
     in_cam = xyz @ camera.cam_from_world[:, :3].T + camera.cam_from_world[:, 3]
     xyz = xyz[(in_cam[:, 2] > 0.5) & (np.abs(in_cam[:, :2]).max(axis=1) < in_cam[:, 2])]
@@ -48,7 +48,7 @@ def found_corners(picture, camera):
 
 
 def square_px(point, camera):
-    """Return how thin a square of the chessboard looks there; in thin ones no corner can be found."""
+    """Return how thin a square of the chessboard looks; thin ones have no detectable corner."""
     edges = np.eye(3)[~np.isclose(point % small_hall.ROOM_M[1], 0)] * small_hall.SQUARE_M / 2
     ends = [projection.opencv_projection(camera, point + sign * edges) for sign in (1, -1)]
     return np.linalg.svd(ends[0] - ends[1])[1][1]

@@ -82,7 +82,7 @@ def test_blur_is_speed_times_exposure():
     np.testing.assert_allclose(blurs[1], np.hypot(*(ends[1] - ends[0]).T), atol=1e-3)
 
 
-def test_what_is_behind_the_camera_is_nowhere():
+def test_points_behind_the_camera_have_no_place_in_the_picture():
     athlete = balls.Ball(CAMERA.centre_in_world, radius_m=1.5)
     screen = rolling_shutter.Screen(
         rolling_shutter.follow(athlete, CAMERA, 0, 0.01, 0.01), CAMERA, 0, 0.01, 0.01

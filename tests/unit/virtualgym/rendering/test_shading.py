@@ -78,7 +78,7 @@ def test_a_glossy_floor_mirrors_and_a_dull_one_does_not():
     np.testing.assert_allclose(looked_at(light[0.2], above), [200, 40], atol=0.5)
 
 
-def test_people_are_mirrored_too():
+def test_the_floor_mirrors_surfaces_of_one_picture_only():
     scene = small_hall.scene(texture=DARK, gloss=0.2)
     with_plate = take(scene, [upright(6, BRIGHT, z=(0.6, 1.2))])
     assert looked_at(with_plate, [[4, 6, -0.9]])[0] > looked_at(take(scene), [[4, 6, -0.9]])[0] + 20

@@ -1,4 +1,4 @@
-"""Workers in one process or several: the same results in the same order; independent random numbers."""
+"""Workers in one process or several give the same results in order; random streams differ."""
 
 import numpy as np
 import pytest

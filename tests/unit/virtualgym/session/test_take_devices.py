@@ -1,4 +1,4 @@
-"""Devices of a take: settings, files and clocks; that recordings show the truth at each device's own time."""
+"""Devices of a take: settings, files, clocks; recordings show the truth, which covers all."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +12,7 @@ from courtside.devices.realsense import recording
 from courtside.geometry import camera
 from courtside.records.devices.hierarchy import forward
 from courtside.records.truth import take_truth
+from courtside.records.truth.take_truth import DeviceTruth
 from fixtures.people import mannequin
 from virtualgym.body import skinned_body
 from virtualgym.devices import depth_camera, inertial_suit
@@ -30,7 +31,7 @@ TAKE = take.TakeSettings(
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """A take with a depth camera and a suit, filmed by two processes; its hall has a coarse floor."""
+    """A take with a depth camera and a suit, filmed by two processes, in a coarse hall."""
     folder = tmp_path_factory.mktemp("take") / "claps"
     worn = take.simulate_take(SESSION, TAKE, COURT, mannequin.folder(), folder, threads=2)
     return folder, worn, take_truth.read(folder / "truth.npz")
@@ -135,3 +136,53 @@ def test_impossible_devices_are_refused(settings, message):
     with pytest.raises(ValueError, match=message) as fault:
         take_devices.build("d", settings, {"p1": {}})
     assert "\n" not in str(fault.value)
+
+
+# The truth of a take covers what everything records, by the first clock's steps.
+
+
+class Walker:
+    """Every joint is where the time says."""
+
+    class motion:
+        events = {"clap_1": 2.5}  # noqa: RUF012
+
+    def joints(self, time_s):
+        return np.full((len(skinned_body.JOINTS), 3), time_s)
+
+    def racket(self, time_s):
+        return np.full((2, 3), np.nan)
+
+
+def truth(**change):
+    settings = {
+        "motion": "single_view",
+        "seconds": 2.0,
+        "players": {"p1": {"body": "m1"}},
+        "seed": 0,
+        "rate_hz": 25.0,
+        "start_s": 0.5,
+        "devices": {"a": {"kind": "inertial"}, "b": {"kind": "inertial", "rate_hz": 50}},
+        "clocks": {"b": {"offset_s": 0.3, "drift_ppm": -200.0}},
+    }
+    made = take.TakeSettings(**settings | change)
+    devices = {
+        name: DeviceTruth("inertial", "p1", 0.0, 0.0, 0.0, np.eye(3, 4)) for name in made.devices
+    }
+    return take_devices.of_take(made, {}, {"p1": Walker()}, devices)
+
+
+def test_the_truth_begins_with_the_first_device_and_ends_with_the_last():
+    found = truth()
+    # `b` starts 0.3 s before the reference, `a` ends 1 / 60 s before 2 s.
+    np.testing.assert_allclose(found.time_s, np.arange(-8, 51) / 25)
+    np.testing.assert_allclose(found.xyz[0, :, 3, 1], found.time_s + 0.5)
+    assert found.events == {"p1": {"clap_1": 2.0}}
+    assert (found.offset_s, found.drift_ppm, list(found.devices)) == ({}, {}, ["a", "b"])
+
+
+@pytest.mark.parametrize("offset_s", [0.0, -1.0])
+def test_a_late_clock_makes_the_truth_longer(offset_s):
+    found = truth(clocks={"b": {"offset_s": offset_s}})
+    assert found.time_s[-1] == pytest.approx(2.0 - offset_s, abs=0.03)
+    assert found.time_s[0] == 0
