@@ -10,9 +10,8 @@ from scipy.spatial.transform import Rotation
 from courtside.geometry import camera as cameras
 from courtside.geometry.camera import Camera
 
-WAVES = (
-    7  # ASSUME: sines of a tremor per axis, and their range of frequencies, of a tripod on a floor
-)
+# ASSUME: number of sines of a tremor per axis, and their frequencies, for a tripod on a floor.
+WAVES = 7
 WAVES_HZ = 0.5, 8.0
 NODES = 16  # per axis: for small turns the interpolation is exact to 1e-4 px
 

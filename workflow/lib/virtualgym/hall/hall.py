@@ -177,9 +177,8 @@ def _walls(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[Qu
         u = np.array([*along, 0.0]) * length
         made.append(Quad(np.array([*corner, tall]), u, np.array([0, 0, -tall]), texture, light))
     shape = round(deep / 0.04), round(wide / 0.04)
-    top = 168 + (textures.multiscale_noise(shape, (9, 21, 60, 140), rng) * 22)[..., None] * np.ones(
-        3
-    )
+    noise = textures.multiscale_noise(shape, (9, 21, 60, 140), rng) * 22
+    top = 168 + noise[..., None] * np.ones(3)
     top[:: round(0.72 / 0.04)] -= 25
     top = textures.scale_contrast(textures.to_bytes(top), preset.contrast)
     u, v = np.array([[wide, 0, 0], [0, deep, 0]])

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 T = TypeVar("T", float, NDArray)
-RAMP = (
-    0.35  # ASSUME: share of a move's duration in which it accelerates, and in which it slows down
-)
+# ASSUME: share of a move's duration in which it accelerates, and in which it slows down.
+RAMP = 0.35
 
 
 def ease(x: T, ramp: T | float = RAMP) -> T:

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 from virtualgym.body.stance import OTHER, Proportions
 from virtualgym.movement import easing, two_bone_ik
 
+Footfall = tuple[float, NDArray, float]  # time of landing, place (2,) m, yaw
 OWN = {"left": 1.0, "right": -1.0}  # side on the body's x axis
 # ASSUME: gait values chosen to look natural and to keep the legs apart; no source is recorded.
 HALF_TRACK_M = 0.11  # of a foot from the pelvis's path, walking
@@ -179,6 +180,7 @@ def plan(
     """
     path = route or Route(tuple(stations))
     first = stations[0]
+    falls: dict[str, list[Footfall]]
     falls = {side: [(first.arrive_s, *_beside(first, side))] for side in OTHER}
     offs: dict[str, list[tuple[float, float]]] = {side: [] for side in OTHER}
     for before, after in pairwise(stations):
@@ -194,7 +196,14 @@ def plan(
     return path, walk(plants, proportions, rolls=rolls)
 
 
-def _trip(route, before, after, gait, record, rng: np.random.Generator):
+def _trip(
+    route: Route | Lap,
+    before: Station,
+    after: Station,
+    gait: tuple[float, float],
+    record: tuple[dict[str, list[Footfall]], dict[str, list[tuple[float, float]]]],
+    rng: np.random.Generator,
+) -> None:
     """Add the footfalls and toe-offs of one trip to the record."""
     cadence_hz, air = gait
     falls, offs = record

@@ -14,13 +14,10 @@ from virtualgym.body.mesh import Mesh
 # Limit of the iteration for the row that sees a point: each leaves 2 % of the error at 1000 px/s.
 ROUNDS = 6
 ENOUGH_PX = 0.05  # the iteration stops at changes below this
-FAST_M = (
-    0.05  # surfaces that move farther during one picture are sampled at five moments, not three
-)
+FAST_M = 0.05  # surfaces that move farther during one picture: five moments instead of three
 SLACK = 0.04  # margin, in picture heights, for the rows that show an athlete
-# ASSUME: light chosen by eye; it changes pictures only. Added light per unit of the outward normal,
-# and base.
-SHADES = np.array([0.14, -0.10, 0.30])
+# ASSUME: light chosen by eye; it changes pictures only.
+SHADES = np.array([0.14, -0.10, 0.30])  # added light per unit of the outward normal
 AMBIENT = 0.76
 Box = tuple[int, int, int, int]  # first column, first row, and one beyond the last of each
 

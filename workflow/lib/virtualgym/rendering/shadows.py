@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 # ASSUME: lamps and softness of shadows as in a hall, chosen by eye; they change pictures only.
 CELL_M = 0.05
-MOST_TRIANGLES = (
-    20000  # of larger meshes, only every n-th triangle casts a shadow, n times as strong
-)
+# Of larger meshes, only every n-th triangle casts a shadow, n times as strong.
+MOST_TRIANGLES = 20000
 LAMPS = np.array(  # direction (x, y) per metre of height, and fraction of the floor's light
     [
         [0.0, 0.0, 0.24],
