@@ -57,7 +57,7 @@ def test_the_order_of_groups_is_the_one_given(tmp_path):
 
 
 def test_places_are_those_of_drawn_blobs(tmp_path):
-    """A blob's middle, in pixels whose first has its centre at (0, 0), is 0.5 less than COLMAP's place."""
+    """A blob's middle, with the first pixel's centre at (0, 0), is 0.5 less than COLMAP's place."""
     rng = np.random.default_rng(0)
     grid = np.stack(np.meshgrid(np.arange(30, 300, 40), np.arange(30, 220, 40)), axis=-1).reshape(
         -1, 2

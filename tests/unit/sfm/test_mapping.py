@@ -240,7 +240,7 @@ def bent(found, by):
 
 
 def test_models_are_made_until_two_agree(synthetic, tmp_path, monkeypatch):
-    """The first model is bent by more than models of one session differ, without a trace in its pixels."""
+    """The first model is bent by more than models of one session differ, with perfect pixels."""
     path, truth = synthetic
     monkeypatch.setattr(mapping, "SOUND_PX", np.inf)
     asked = spoil(monkeypatch, lambda number, found: bent(found, 0.2) if number == 1 else found)

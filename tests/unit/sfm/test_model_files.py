@@ -1,4 +1,4 @@
-"""Models that COLMAP wrote are whole; cut, longer or miscounted ones are not, and are known at once."""
+"""Models that COLMAP wrote are complete; cut, longer or miscounted ones are refused."""
 
 import struct
 

@@ -1,4 +1,4 @@
-"""Frames that are blurred, dark or duplicates are found; motion is measured to a fraction of a pixel."""
+"""Blurred, dark or duplicate frames are found; motion is measured to a fraction of a pixel."""
 
 import cv2
 import numpy as np

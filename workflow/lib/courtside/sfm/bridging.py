@@ -5,41 +5,52 @@ knows where the camera was.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.sfm.pairs import STRIDES
 from courtside.study.errors import InputError
 
 OFFSETS = 3  # offsets of the taken images, in thirds of their spacing
-COARSE = 0.4  # places are multiples of a power of two that is at most this share of the spacing
-CLEARLY = 1.25  # times as sharp as the nearest usable frame: worth moving there
-GAP_COST = 1e6  # of a gap wider than that: taken only where no other choice is left
+# ASSUME: places are multiples of a power of two that is at most this share of the spacing: a
+# multiple is then always nearer than the next image.
+COARSE = 0.4
+CLEARLY = 1.25  # ASSUME: times as sharp as the nearest usable frame: worth moving there
+GAP_COST = 1e6  # of a gap above `STRIDES`: above the sum of all other costs of a walk's grid
 
 
-def choose(kept_idx, n_grid, n, offset_idx, sharpness, rule="even", *, walk="walk"):
+def choose(
+    kept_idx: ArrayLike,
+    n_grid: int,
+    n: int,
+    offset_idx: int,
+    sharpness: ArrayLike,
+    rule: str = "even",
+    *,
+    walk: str = "walk",
+) -> NDArray:
     """Choose the bridging images among the usable frames of a walk's grid.
+
+    "even" places images on multiples of q, the largest power of two up to 0.4 of the spacing (or
+    1), so that `courtside.sfm.pairs.pair_list` holds all neighbours. Each wanted place goes to the
+    nearest usable multiple; one within q of it wins that is the sharpest and clearly (1.25 times)
+    sharper. Places are then settled together: none twice, where another choice exists no gap above
+    8 q and both ends less than a spacing from the grid's, and otherwise as near to the preferred as
+    can be. "interval" ignores q: ask `courtside.sfm.pairs.missing_pairs`.
 
     Parameters
     ----------
-    kept_idx : (K,) int
-        Places of the usable frames in the grid, ascending.
-    n_grid : int
-        Frames of the grid, G.
-    n : int
-        Images wanted, at least 2.
-    offset_idx : int
-        0, 1 or 2: the images start this many thirds of their spacing late.
-    sharpness : (G,) float
-        Sharpness of every frame of the grid.
-    rule : {"even", "interval"}
-        "even": evenly spaced over the grid, sharper neighbours preferred. "interval": every d-th usable
-        frame, d = floor(K / n), as published.
-    walk : str
-        Its name, for the message.
+    kept_idx : (K,) int; places of the usable frames in the grid, ascending
+    n_grid : frames of the grid, G
+    n : images wanted, at least 2
+    offset_idx : 0, 1 or 2: the images start this many thirds of their spacing late
+    sharpness : (G,) float; of every frame of the grid
+    rule : "even": evenly spaced over the grid, sharper neighbours preferred; or "interval": every
+        d-th usable frame, d = floor(K / n), as published
+    walk : its name, for the message
 
     Returns
     -------
-    place_idx : (n,) int
-        Places in the grid, strictly increasing.
+    place_idx : (n,) int; places in the grid, strictly increasing
 
     Raises
     ------
@@ -47,15 +58,6 @@ def choose(kept_idx, n_grid, n, offset_idx, sharpness, rule="even", *, walk="wal
         If there are fewer than n usable frames.
     ValueError
         If an argument is out of its range.
-
-    Notes
-    -----
-    "even" places images on multiples of q, the largest power of two up to 0.4 of the spacing (or 1), so
-    that `courtside.sfm.pairs.pair_list` holds all neighbours. Each wanted place goes to the nearest usable
-    multiple; one within q of it wins that is the sharpest and clearly (1.25 times) sharper. Places are then
-    settled together: none twice, where another choice exists no gap above 8 q and both ends less than a
-    spacing from the grid's, and otherwise as near to the preferred as can be.
-    "interval" ignores q: ask `courtside.sfm.pairs.missing_pairs`.
     """
     kept_idx = np.asarray(kept_idx, dtype=int)
     if n < 2 or not 0 <= offset_idx < OFFSETS or rule not in ("even", "interval"):
@@ -73,7 +75,7 @@ def choose(kept_idx, n_grid, n, offset_idx, sharpness, rule="even", *, walk="wal
     return _choose_even(kept_idx, n_grid, n, offset_idx, np.asarray(sharpness, dtype=float))
 
 
-def _choose_even(kept_idx, n_grid, n, offset_idx, sharpness):
+def _choose_even(kept_idx, n_grid, n, offset_idx, sharpness) -> NDArray:
     step = (n_grid - 1) / (n - 1)
     q = 1
     while 2 * q <= COARSE * step:
@@ -93,7 +95,7 @@ def _choose_even(kept_idx, n_grid, n, offset_idx, sharpness):
     return q * _settle(costs)
 
 
-def _prefer(place, usable, sharpness):
+def _prefer(place: int, usable: NDArray, sharpness: NDArray) -> int:
     """Return the usable place nearest to a wanted one, or a clearly sharper one beside that."""
     places = np.flatnonzero(usable)
     nearest = places[np.argmin(np.abs(places - place))]
@@ -104,10 +106,11 @@ def _prefer(place, usable, sharpness):
     return sharpest if sharpness[sharpest] > CLEARLY * sharpness[nearest] else nearest
 
 
-def _settle(costs):
+def _settle(costs: NDArray) -> NDArray:
     """Assign each image a place, strictly increasing, at the least total cost: costs (n, places).
 
-    A gap above `STRIDES` costs `GAP_COST` besides. Solved exactly, image after image, over all places.
+    A gap above `STRIDES` costs `GAP_COST` besides. Solved exactly, image after image, over all
+    places.
     """
     places = np.arange(costs.shape[1])
     total, came_from = costs[0], []

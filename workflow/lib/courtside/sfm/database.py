@@ -1,9 +1,10 @@
-"""COLMAP databases as single, finished files: an open one keeps part of itself in a log beside it."""
+"""COLMAP databases as single, finished files: an open one has a write-ahead log beside it."""
 
 import contextlib
 import shutil
 import sqlite3
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pycolmap
@@ -15,18 +16,10 @@ pycolmap.logging.minloglevel = pycolmap.logging.Level.ERROR.value
 
 
 @contextlib.contextmanager
-def new(path, source=None):
-    """Give a database to write; it appears at `path`, complete, when the block ends well.
+def new(path: str | Path, source: str | Path | None = None) -> Iterator[Path]:
+    """Yield a database to write; it appears at `path`, complete, when the block succeeds.
 
-    Parameters
-    ----------
-    path : str or Path
-    source : str or Path, optional
-        A finished database to start from; empty without.
-
-    Yields
-    ------
-    temporary : Path
+    It starts as a copy of the finished database `source`, empty without.
     """
     with atomic(path) as temporary, working_copy(source) as database:
         yield database
@@ -35,8 +28,8 @@ def new(path, source=None):
 
 
 @contextlib.contextmanager
-def working_copy(source=None):
-    """Give a copy of a finished database that pycolmap may write to; it is deleted in the end."""
+def working_copy(source: str | Path | None = None) -> Iterator[Path]:
+    """Yield a copy of a finished database that pycolmap may write to; it is deleted in the end."""
     with tempfile.TemporaryDirectory(prefix="courtside-") as folder:
         database = Path(folder) / "database.db"
         if source is None:
@@ -47,19 +40,19 @@ def working_copy(source=None):
         yield database
 
 
-def fold(path):
+def fold(path: str | Path) -> None:
     """Fold the write-ahead log into the database file, and give free pages back."""
     with contextlib.closing(sqlite3.connect(path)) as connection:
         connection.execute("PRAGMA journal_mode=DELETE")
         connection.execute("VACUUM")
 
 
-def image_ids(path):
-    """Return the id of each image by name, in the order of the ids; `InputError` where a file is damaged."""
+def image_ids(path: str | Path) -> dict[str, int]:
+    """Return the id of each image by name, in order of ids; `InputError` if a file is damaged."""
     return _ids(path, path)
 
 
-def _ids(path, where):
+def _ids(path: str | Path, where: str | Path) -> dict[str, int]:
     with (
         reading(where, "a COLMAP database", "delete it and run the study again"),
         contextlib.closing(pycolmap.Database.open(path)) as database,

@@ -1,7 +1,10 @@
-"""Features of all images of a session, once, in a COLMAP database with stable image ids."""
+"""Extract features of all images of a session once, into a COLMAP database with stable ids."""
 
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import pycolmap
 
@@ -17,42 +20,42 @@ class Group:
 
     Attributes
     ----------
-    name : str
-        Of the camera or the walk.
-    images : tuple of str
-        Paths from the image root, in the order of their names.
+    name : of the camera or the walk
+    images : paths from the image root, in the order of their names
     """
 
     name: str
-    images: tuple
+    images: tuple[str, ...]
 
 
-def extract(path, image_root, groups, *, max_features, first_octave, focal_factor, threads=1):
+def extract(
+    path: str | Path,
+    image_root: str | Path,
+    groups: Sequence[Group],
+    *,
+    max_features: int,
+    first_octave: int,
+    focal_factor: float,
+    threads: int = 1,
+) -> tuple[dict[str, int], list[str]]:
     """Extract SIFT features and write them to a new COLMAP database.
 
     Parameters
     ----------
-    path : str or Path
-        Of the database.
-    image_root : str or Path
-        The folder that the names of images start from.
-    groups : list of Group
-        Camera k of the database is group k - 1, image ids count through the groups in order, within one in
-        the order of the names (COLMAP sorts them): both are the same whatever the number of threads.
-    max_features : int
-        Per image.
-    first_octave : int
-        0: the picture as it is; -1: doubled first, which finds finer features at four times the cost.
-    focal_factor : float
-        Focal length to start from, in picture widths, of images without EXIF data.
-    threads : int
+    path : of the database
+    image_root : the folder that the names of images start from
+    groups : camera k of the database is group k - 1, image ids count through the groups in order,
+        within one in the order of the names (COLMAP sorts them): both are the same whatever the
+        number of threads
+    max_features : per image
+    first_octave : 0: the picture as it is; -1: doubled first, which finds finer features at four
+        times the cost
+    focal_factor : focal length to start from, in picture widths, of images without EXIF data
 
     Returns
     -------
-    n_features : dict of str to int
-        By image.
-    guessed : list of str
-        Groups whose images do not state a focal length.
+    n_features : by image
+    guessed : groups whose images do not state a focal length
 
     Raises
     ------
@@ -72,7 +75,10 @@ def extract(path, image_root, groups, *, max_features, first_octave, focal_facto
     with database.new(path) as temporary:
         for group in groups:
             # Extraction alone would number the images in the order in which its threads end.
-            options = {"camera_mode": pycolmap.CameraMode.SINGLE, "image_names": group.images}
+            options: dict[str, Any] = {
+                "camera_mode": pycolmap.CameraMode.SINGLE,
+                "image_names": group.images,
+            }
             pycolmap.import_images(temporary, image_root, options=reader, **options)
             _check_imported(temporary, image_root, group)
             pycolmap.extract_features(
@@ -86,18 +92,19 @@ def extract(path, image_root, groups, *, max_features, first_octave, focal_facto
         return _content(temporary, groups)
 
 
-def _check_imported(path, image_root, group):
+def _check_imported(path: Path, image_root: str | Path, group: Group) -> None:
     there = database.image_ids(path)
     missing = [name for name in group.images if name not in there]
     if missing:
         raise InputError(
-            f"{image_root}/{missing[0]}: expected a picture of the size of the others of {group.name}, "
-            f"found {len(missing)} of {len(group.images)} that differ or cannot be read; film or export them "
-            "again, or declare pictures of another size as a walk of their own"
+            f"{image_root}/{missing[0]}: expected a picture of the size of the others of "
+            f"{group.name}, found {len(missing)} of {len(group.images)} that differ or cannot be "
+            "read; film or export them again, or declare pictures of another size as a walk of "
+            "their own"
         )
 
 
-def _content(path, groups):
+def _content(path: Path, groups: Sequence[Group]) -> tuple[dict[str, int], list[str]]:
     with closing(pycolmap.Database.open(path)) as opened:
         images = sorted(opened.read_all_images(), key=lambda image: image.image_id)
         counts = {i.name: opened.num_keypoints_for_image(i.image_id) for i in images}

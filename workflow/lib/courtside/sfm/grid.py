@@ -1,9 +1,12 @@
-"""The grid of a session's walks: all frames that may bridge, in order, as COLMAP's database names them."""
+"""The grid of a session's walks: all frames that may bridge, in order, by their image names."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.records.cameras import frame_table, image_names
 from courtside.sfm import bridging, pairs
@@ -16,44 +19,31 @@ class Grid:
     Attributes
     ----------
     walks : (G,) str
-    names : (G,) str
-        Of the images, from the image root.
-    kept : (G,) bool
-        Whether a frame may become a bridging image.
+    names : (G,) str; of the images, from the image root
+    kept : (G,) bool; whether a frame may become a bridging image
     sharpness : (G,) float
     """
 
-    walks: np.ndarray
-    names: np.ndarray
-    kept: np.ndarray
-    sharpness: np.ndarray
+    walks: NDArray
+    names: NDArray
+    kept: NDArray
+    sharpness: NDArray
 
-    def of_walk(self, walk):
+    def of_walk(self, walk: str) -> tuple[str, ...]:
         """Return the names of a walk's usable frames, in order."""
         return tuple(self.names[(self.walks == walk) & self.kept].tolist())
 
-    def choose(self, n_images, offset_idx, rule):
+    def choose(self, n_images: int, offset_idx: int, rule: str) -> list[str]:
         """Return the names of the bridging images; see `bridging.choose`."""
-        usable = np.flatnonzero(self.kept)
+        usable, n_grid = np.flatnonzero(self.kept), len(self.names)
+        walk = ", ".join(dict.fromkeys(self.walks.tolist()))
         chosen = bridging.choose(
-            usable,
-            len(self.names),
-            n_images,
-            offset_idx,
-            self.sharpness,
-            rule,
-            walk=", ".join(dict.fromkeys(self.walks.tolist())),
+            usable, n_grid, n_images, offset_idx, self.sharpness, rule, walk=walk
         )
         return self.names[chosen].tolist()
 
-    def pairs(self, fixed):
-        """Return the pairs of images to match.
-
-        Parameters
-        ----------
-        fixed : sequence of str
-            Images of the fixed cameras: they are matched with all others.
-        """
+    def pairs(self, fixed: Sequence[str]) -> list[tuple[str, str]]:
+        """Return the pairs of images to match: those of the fixed cameras with all others."""
         near = [
             (str(self.names[i]), str(self.names[j]))
             for i, j in pairs.pair_list(len(self.names))
@@ -64,32 +54,17 @@ class Grid:
         return near + among + [(a, b) for a in fixed for b in usable]
 
 
-def read(tables):
-    """Read the frame tables of the walks.
+def read(tables: Mapping[str, str | Path]) -> Grid:
+    """Read the frame tables of the walks: CSV by walk, as `extract_frames` writes it.
 
-    Parameters
-    ----------
-    tables : dict of str to path
-        CSV by walk, as `extract_frames` writes it.
-
-    Returns
-    -------
-    grid : Grid
-
-    Raises
-    ------
-    InputError
-        If a file is missing or no frame table.
+    Raises `InputError` if a file is missing or no frame table.
     """
-    parts = []
+    parts = [pd.DataFrame(columns=["walk", "path", "kept", "sharpness"])] if not tables else []
     for walk, path in tables.items():
         table = frame_table.read(path)
-        parts.append(
-            table.assign(walk=walk, path=[image_names.frame(walk, name) for name in table["name"]])
-        )
-    whole = (
-        pd.concat(parts) if parts else pd.DataFrame(columns=["walk", "path", "kept", "sharpness"])
-    )
+        paths = [image_names.frame(walk, name) for name in table["name"]]
+        parts.append(table.assign(walk=walk, path=paths))
+    whole = pd.concat(parts)
     return Grid(
         whole["walk"].to_numpy(str),
         whole["path"].to_numpy(str),

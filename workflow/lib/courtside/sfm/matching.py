@@ -1,37 +1,38 @@
-"""Matches of image pairs, once per pair, with their two-view geometries."""
+"""Match image pairs once, and verify the matches by two-view geometries."""
 
 import contextlib
 import sqlite3
+from collections.abc import Sequence
+from pathlib import Path
 
 import pycolmap
 
 from courtside.sfm import database
 
 
-def match(features_db, matches_db, pairs, *, seed, max_ratio=0.8):
+def match(
+    features_db: str | Path,
+    matches_db: str | Path,
+    pairs: Sequence[tuple[str, str]],
+    *,
+    seed: int,
+    max_ratio: float = 0.8,
+) -> dict[tuple[str, str], int]:
     """Match pairs of images and verify the matches; the result holds all that mapping needs.
+
+    One thread: with several, one run in 15 to 50 on a busy machine had other matches of the first
+    few images, whatever the seed.
 
     Parameters
     ----------
-    features_db : str or Path
-    matches_db : str or Path
-        Written: the features' places and the matches, without descriptors.
-    pairs : list of (str, str)
-        Names of images.
-    seed : int
-        Of the verification's random samples.
-    max_ratio : float
-        Of the distances to the best and the second-best descriptor (Lowe's test).
+    matches_db : written: the features' places and the matches, without descriptors
+    pairs : names of images
+    seed : of the verification's random samples
+    max_ratio : of the distances to the best and the second-best descriptor (Lowe's test)
 
     Returns
     -------
-    n_verified : dict of (str, str) to int
-        Matches that agree with one two-view geometry, by pair; 0 where none was found.
-
-    Notes
-    -----
-    One thread: with several, one run in 15 to 50 on a busy machine had other matches of the first few images,
-    whatever the seed.
+    n_verified : matches that agree with one two-view geometry, by pair; 0 where none was found
     """
     matching = pycolmap.FeatureMatchingOptions(num_threads=1, use_gpu=False)
     matching.sift.max_ratio = max_ratio
@@ -54,12 +55,10 @@ def match(features_db, matches_db, pairs, *, seed, max_ratio=0.8):
         return _verified(temporary, pairs)
 
 
-def _verified(path, pairs):
+def _verified(path: Path, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], int]:
     ids = database.image_ids(path)
     with contextlib.closing(pycolmap.Database.open(path)) as opened:
         found, counts = opened.read_two_view_geometry_num_inliers()
     by_pair = dict(zip(map(int, found), map(int, counts), strict=True))
-    return {
-        (a, b): by_pair.get(int(pycolmap.image_pair_to_pair_id(ids[a], ids[b])), 0)
-        for a, b in pairs
-    }
+    keys = {(a, b): int(pycolmap.image_pair_to_pair_id(ids[a], ids[b])) for a, b in pairs}
+    return {pair: by_pair.get(key, 0) for pair, key in keys.items()}

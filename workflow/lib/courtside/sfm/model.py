@@ -1,71 +1,62 @@
-"""A COLMAP model as the project sees it: a network of images, lenses and points."""
+"""Read a COLMAP model as a network of images, lenses and points."""
+
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pycolmap
+from numpy.typing import NDArray
 
 from courtside.calibration.bundle.problem import LENS, Network
 from courtside.sfm import model_files
 from courtside.study.errors import reading
 
 HALF_PIXEL = 0.5  # COLMAP has the first pixel's corner at (0, 0), the project its centre
-LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)  # cx, cy in picture widths
-# ASSUME: unknown focal length, square pixels within 0.1 %, a principal point within 2 % of the width of the
-# centre, and the mild distortion of a camera that is not a fisheye.
+# ASSUME: unknown focal length, square pixels within 0.1 %, a principal point within 2 % of the
+# width of the centre (cx, cy are in picture widths), and the mild distortion of a camera that is
+# not a fisheye.
+LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)
 
 
-def read(folder):
-    """Read the network of a model.
+def read(folder: str | Path) -> tuple[Network, list[str], list[tuple[int, int]]]:
+    """Read the network of a model from the folder of COLMAP's binary files.
 
-    Parameters
-    ----------
-    folder : str or Path
-        With COLMAP's binary files.
+    Raises `InputError` if the files are damaged or do not belong together.
 
     Returns
     -------
-    network : courtside.calibration.bundle.problem.Network
-        In the model's own frame and unit, of registered images only, in the order of their ids; all
-        observations with a sigma of 1 px and no loss. Lenses are in the order of the model's camera ids.
-    names : list of str
-        Of the images.
-    sizes : list of (int, int)
-        Width and height, px, of each lens's pictures.
-
-    Raises
-    ------
-    InputError
-        If the files are damaged or do not belong together.
+    network : in the model's own frame and unit, of registered images only, in the order of their
+        ids; all observations with a sigma of 1 px and no loss. Lenses are in the order of the
+        model's camera ids
+    names : of the images
+    sizes : width and height, px, of each lens's pictures
     """
     with reading(folder, "a COLMAP model", "delete it and run the study again"):
         model_files.check(folder)
         return _network(pycolmap.Reconstruction(str(folder)))
 
 
-def _network(found):
+def _network(found: pycolmap.Reconstruction) -> tuple[Network, list[str], list[tuple[int, int]]]:
     images = [found.images[i] for i in sorted(found.reg_image_ids())]
     camera_ids = sorted({image.camera_id for image in images})
     cameras = [found.cameras[i] for i in camera_ids]
     order = {image.image_id: at for at, image in enumerate(images)}
     tracks = [found.points3D[i] for i in sorted(found.points3D)]
-    seen = [
-        (order[e.image_id], k, e.point2D_idx)
-        for k, t in enumerate(tracks)
-        for e in t.track.elements
-    ]
+    views = [(k, view) for k, each in enumerate(tracks) for view in each.track.elements]
+    seen = [(order[view.image_id], k, view.point2D_idx) for k, view in views]
     places = [image.points2D for image in images]
     image_idx, point_idx, _ = np.array(seen, dtype=int).reshape(-1, 3).T
     xy = np.array([places[v][at].xy for v, _, at in seen]).reshape(-1, 2) - HALF_PIXEL
     sizes = [(camera.width, camera.height) for camera in cameras]
     mean, sigma = lens_prior(sizes)
+    poses = np.array([image.cam_from_world().matrix() for image in images]).reshape(-1, 3, 4)
     network = Network(
-        cam_from_world=np.array([image.cam_from_world().matrix() for image in images]).reshape(
-            -1, 3, 4
-        ),
+        cam_from_world=poses,
         flex=np.zeros((len(images), 5)),
         lens=np.array([_lens(camera) for camera in cameras]).reshape(-1, len(LENS)),
         xyz=np.array([track.xyz for track in tracks]).reshape(-1, 3),
         lens_of_image=np.array([camera_ids.index(i.camera_id) for i in images], dtype=int),
-        height_px=np.array([i.camera.height for i in images], dtype=float),
+        height_px=np.array([found.cameras[i.camera_id].height for i in images], dtype=float),
         image_idx=image_idx,
         point_idx=point_idx,
         xy=xy,
@@ -80,7 +71,7 @@ def _network(found):
     return network, [image.name for image in images], sizes
 
 
-def lens_prior(sizes):
+def lens_prior(sizes: Sequence[tuple[int, int]]) -> tuple[NDArray, NDArray]:
     """Return mean and sigma of lenses, (L, 8) each, that are known by their picture's size only."""
     width, height = np.array(sizes, dtype=float).reshape(-1, 2).T
     mean = np.zeros((len(width), len(LENS)))
@@ -91,6 +82,6 @@ def lens_prior(sizes):
     return mean, sigma
 
 
-def _lens(camera):
+def _lens(camera: pycolmap.Camera) -> list[float]:
     fx, fy, cx, cy, *dist = camera.params
     return [fy, fx / fy, cx - HALF_PIXEL, cy - HALF_PIXEL, *dist]

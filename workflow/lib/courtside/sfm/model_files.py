@@ -1,4 +1,4 @@
-"""Whether the files of a COLMAP model are whole: COLMAP believes their counts, and counts on past the end."""
+"""Check that a COLMAP model's files are complete: COLMAP itself reads past their end."""
 
 import struct
 from pathlib import Path
@@ -8,49 +8,49 @@ OPENCV = 4
 POSE_BYTES = 7 * 8
 SENSOR_BYTES = 8
 POINT_BYTES = 24  # of an image: x, y, id
-TRACK_BYTES = 8  # of a place in a track: image, index
+TRACK_BYTES = 8  # of a track's element: image, index
 
 
 class _Walk:
-    """A walk through a file's bytes that may not leave them."""
+    """A cursor in a file's bytes; a step past their end is a `ValueError`."""
 
-    def __init__(self, path):
+    def __init__(self, path: Path) -> None:
         self.path, self.content, self.at = path, path.read_bytes(), 0
 
-    def skip(self, n_bytes):
+    def skip(self, n_bytes: int) -> None:
         self.at += n_bytes
         if self.at > len(self.content):
             raise ValueError(f"{self.path.name} that ends early")
 
-    def take(self, form):
+    def take(self, form: str) -> int:
         start = self.at
         self.skip(struct.calcsize(form))
         return struct.unpack_from(form, self.content, start)[0]
 
-    def skip_name(self):
+    def skip_name(self) -> None:
         end = self.content.find(b"\0", self.at)
         self.skip(end + 1 - self.at if end >= 0 else len(self.content))
 
 
-def _camera(walk):
+def _camera(walk: _Walk) -> None:
     walk.skip(4)
     if walk.take("<i") != OPENCV:
         raise ValueError(f"{walk.path.name} with another lens than OPENCV")
     walk.skip(16 + 8 * PARAMETERS)
 
 
-def _image(walk):
+def _image(walk: _Walk) -> None:
     walk.skip(4 + POSE_BYTES + 4)
     walk.skip_name()
     walk.skip(POINT_BYTES * walk.take("<Q"))
 
 
-def _point(walk):
+def _point(walk: _Walk) -> None:
     walk.skip(8 + 24 + 3 + 8)
     walk.skip(TRACK_BYTES * walk.take("<Q"))
 
 
-def _rig(walk):
+def _rig(walk: _Walk) -> None:
     walk.skip(4)
     count = walk.take("<I")
     walk.skip(SENSOR_BYTES if count else 0)
@@ -59,7 +59,7 @@ def _rig(walk):
         walk.skip(POSE_BYTES if walk.take("<B") else 0)
 
 
-def _frame(walk):
+def _frame(walk: _Walk) -> None:
     walk.skip(8 + POSE_BYTES)
     walk.skip(16 * walk.take("<I"))
 
@@ -73,13 +73,10 @@ RECORDS = {
 }
 
 
-def check(folder):
-    """Walk through the files of a model, each to its end.
+def check(folder: str | Path) -> None:
+    """Walk through the binary files of a model (`RECORDS`), each to its end.
 
-    Parameters
-    ----------
-    folder : str or Path
-        With `cameras.bin`, `images.bin`, `points3D.bin`, `rigs.bin` and `frames.bin`.
+    colmap/scene/reconstruction_io_binary.cc of COLMAP 4.
 
     Raises
     ------
@@ -87,10 +84,6 @@ def check(folder):
         If a file is longer or shorter than its counts say.
     OSError
         If one is missing.
-
-    Notes
-    -----
-    colmap/scene/reconstruction_io_binary.cc of COLMAP 4.
     """
     for name, record in RECORDS.items():
         walk = _Walk(Path(folder) / f"{name}.bin")

@@ -4,27 +4,19 @@ Places in the grid are counted from 0 to G - 1. Nothing here knows where the cam
 """
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 STRIDES = 8  # longest stride within a level of the pairs; the widest gap of images, in multiples
 
 
-def pair_list(n_grid):
+def pair_list(n_grid: int) -> NDArray:
     """List the pairs of grid frames to match, for any number of bridging images.
 
-    Parameters
-    ----------
-    n_grid : int
-        Frames of the grid, G.
+    About 12 pairs (M, 2) int for each of the `n_grid` frames: places i < j in the grid, sorted,
+    each once.
 
-    Returns
-    -------
-    pairs : (M, 2) int
-        Places i < j in the grid, each pair once, sorted; about 12 G.
-
-    Notes
-    -----
-    Level l holds the frames whose place is a multiple of q = 2**l, and their pairs up to 8 q apart. Those up
-    to 4 q apart are in the levels below already.
+    Level l holds the frames whose place is a multiple of q = 2**l, and their pairs up to 8 q apart.
+    Those up to 4 q apart are in the levels below already.
     """
     pairs, level = [], 1
     while level < n_grid:
@@ -37,22 +29,16 @@ def pair_list(n_grid):
     return found[np.lexsort((found[:, 1], found[:, 0]))]
 
 
-def missing_pairs(place_idx, n_grid, *, reach=1):
-    """Return the pairs of neighbours among chosen frames that `pair_list` does not hold.
+def missing_pairs(place_idx: ArrayLike, n_grid: int, *, reach: int = 1) -> NDArray:
+    """Return the pairs (M, 2) int of neighbours among chosen frames that `pair_list` does not hold.
+
+    They must be matched besides. There are none for the rule "even" and reach 1 unless a long
+    stretch is unusable.
 
     Parameters
     ----------
-    place_idx : (n,) int
-        Chosen places in the grid, ascending.
-    n_grid : int
-        Frames of the grid.
-    reach : int
-        1 for next neighbours only, 2 for second neighbours too, and so on.
-
-    Returns
-    -------
-    pairs : (M, 2) int
-        To be matched besides; none for the rule "even" and reach 1 unless a long stretch is unusable.
+    place_idx : (n,) int; chosen places in the grid, ascending
+    reach : 1 for next neighbours only, 2 for second neighbours too, and so on
     """
     place_idx = np.asarray(place_idx, dtype=int)
     listed = set(map(tuple, pair_list(n_grid).tolist()))
