@@ -69,7 +69,7 @@ def tied(folder):
     made = networks_made.make(2, 8)
     fixed = networks_made.fixed_cameras(made)
     sizes = tuple(camera.size for camera in fixed)
-    known = selection.what_ties_say(made, [0, 1])
+    known = selection.marginalise(made, [0, 1])
     record = tie_points.Record(
         outcome="", fault="", sfm_cameras=fixed, n_points_seen=[8, 5],
         ties=joint_adjustment.Ties(("side", "back"), sizes, known),

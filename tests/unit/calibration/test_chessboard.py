@@ -1,4 +1,4 @@
-"""Chessboards: a drawn board with exact truth, real boards against another vendor's lenses, every refusal."""
+"""Chessboards: drawn ones, real ones against another vendor's lenses, and every refusal."""
 
 from functools import cache
 
@@ -33,7 +33,7 @@ def rays():
 
 
 def draw(turn_deg, shift, blur_px=0.7):
-    """Draw a board of unit squares seen through the lens: each sample's ray is cut with its plane."""
+    """Draw a board of unit squares seen through the lens: each sample's ray meets its plane."""
     rotation = rotations.rotation_from_rodrigues(np.radians(turn_deg))
     place = np.array([*shift, 0]) * 4 + [0, 0, 15] - rotation @ [3, 2, 0]
     board_from_ray = np.linalg.inv(np.column_stack([rotation[:, :2], place]))
@@ -72,7 +72,8 @@ def test_a_drawn_board_gives_its_lens(folder, inner_corners):
     np.testing.assert_allclose(np.diag(lens.K), [600, 600, 1], rtol=0.003)
     np.testing.assert_allclose(lens.K[:2, 2], K[:2, 2], atol=1.5)
     assert lens.K[0, 0] == pytest.approx(600, abs=5 * lens.f_sigma_px)
-    # The curve that the two coefficients make, rather than each: within 0.2 px where the corners are.
+    # The curve that the two coefficients make, rather than each: within 0.2 px where the corners
+    # are.
     radius = np.linspace(0, 0.55, 20)
     off = [600 * radius**3 * (d[0] + d[1] * radius**2) for d in (lens.dist, DIST)]
     np.testing.assert_allclose(*off, atol=0.3)

@@ -1,4 +1,4 @@
-"""Calibration files of other programs against their own converters, OpenCV, and real chessboards."""
+"""Calibration files by other programs, against their converters, OpenCV, real chessboards."""
 
 import re
 
@@ -24,12 +24,15 @@ QUALISYS = """<?xml version="1.0" encoding="UTF-8"?>
 <fov_video left="8" top="4" right="1919" bottom="1087"/>
 <transform x="4000.0" y="2000.0" z="1500.0" r11="0.000000" r12="1.000000" r13="0.000000"
  r21="0.000000" r22="0.000000" r23="1.000000" r31="1.000000" r32="0.000000" r33="0.000000"/>
-<intrinsic focallength="9.27" sensorMinU="0.0" sensorMaxU="122879.0" sensorMinV="0.0" sensorMaxV="69631.0"
- focalLengthU="96000.0" focalLengthV="96064.0" centerPointU="61440.0" centerPointV="34816.0" skew="0.0"
+<intrinsic focallength="9.27" sensorMinU="0.0" sensorMaxU="122879.0"
+ sensorMinV="0.0" sensorMaxV="69631.0"
+ focalLengthU="96000.0" focalLengthV="96064.0" centerPointU="61440.0"
+ centerPointV="34816.0" skew="0.0"
  radialDistortion1="-0.05" radialDistortion2="0.14" radialDistortion3="0.003"
  tangentalDistortion1="0.0006" tangentalDistortion2="-0.0004"/>
 </camera>
-<camera active="0" serial="switched off"/><camera active="1" calibrated="false" serial="not calibrated"/>
+<camera active="0" serial="switched off"/>
+<camera active="1" calibrated="false" serial="not calibrated"/>
 </cameras></calibration>"""
 
 
@@ -158,8 +161,8 @@ def test_caliscope_values_are_the_files():
     assert camera.K[0, 0] == 903.550124089999
     assert camera.dist[4] == 0.0665682301495769
     assert camera.cam_from_world[1, 3] == -0.03234536459937444
-    np.testing.assert_allclose(camera.cam_from_world[0, :3],
-                               [-0.7070716153979968, 0.5639880775931625, -0.42657611165094056])  # fmt: skip
+    row = [-0.7070716153979968, 0.5639880775931625, -0.42657611165094056]
+    np.testing.assert_allclose(camera.cam_from_world[0, :3], row)
 
 
 @needs_real
@@ -274,7 +277,7 @@ def whole_files(tmp_path):
 
 
 def test_truncated_files_are_refused_or_whole(tmp_path):
-    """A prefix that still holds a whole camera reads as that camera; any other is an `InputError`."""
+    """A prefix with a whole camera reads as that camera; any other is an `InputError`."""
     for path in whole_files(tmp_path):
         text = path.read_text(encoding="utf-8")
         (whole,) = file_formats.read(path)

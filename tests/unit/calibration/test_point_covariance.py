@@ -18,7 +18,7 @@ SMALL_LENS = np.array([0.5, 2e-4, 0.5, 0.5, 1e-3, 1e-3, 1e-4, 1e-4])
 
 
 def pair():
-    return selection.alone(networks_made.make(3, 10), [0, 1])
+    return selection.images_only(networks_made.make(3, 10), [0, 1])
 
 
 def moved_cameras(network, step):
@@ -107,13 +107,13 @@ def test_mahalanobis_counts_sigmas():
 
 
 def free_network(noise_px=0.0):
-    """Return three images that see 30 points, lenses known: nothing but their frame and scale is open."""
+    """Return three images of 30 points with known lenses: only frame and scale are free."""
     made = networks_made.make(1, 30, noise_px=noise_px)
     return replace(made, lens_mean=made.lens.copy(), lens_sigma=np.zeros_like(made.lens))
 
 
 def gauge(network):
-    """Return the steps (K, 7) of all images that move, turn or scale the world: pixels stay as they are."""
+    """Return the steps (K, 7) of all images that move, rotate or scale the world: pixels stay."""
     free = np.zeros((network.n_columns, 7))
     for v, pose in enumerate(network.cam_from_world):
         rotation, shift = pose[:, :3], pose[:, 3]
@@ -136,7 +136,7 @@ def without(span, matrix):
 
 
 def test_the_pseudo_inverse_is_that_of_numpy_in_units_of_the_information():
-    information = np.array(selection.what_ties_say(free_network(), [0, 1, 2]).information)
+    information = np.array(selection.marginalise(free_network(), [0, 1, 2]).information)
     active = np.diag(information) > 0
     scale = np.diag(information)[active] ** -0.5
     part = information[np.ix_(active, active)] * np.outer(scale, scale)
@@ -151,9 +151,9 @@ def test_the_pseudo_inverse_is_that_of_numpy_in_units_of_the_information():
 
 
 def test_the_pseudo_inverse_is_the_spread_of_repeated_networks_up_to_their_frame():
-    """Against images adjusted to drawn pixels: frame and scale projected out of both covariances."""
+    """Against images adjusted to drawn pixels: frame and scale projected out of both."""
     true = free_network()
-    information = selection.what_ties_say(true, [0, 1, 2]).information
+    information = selection.marginalise(true, [0, 1, 2]).information
     active = np.diag(information) > 0
     span = gauge(true)[active]
     assert np.abs(information[np.ix_(active, active)] @ span).max() < 1e-5 * information.max()
@@ -176,7 +176,7 @@ def test_the_pseudo_inverse_is_the_spread_of_repeated_networks_up_to_their_frame
 
 
 def test_the_pseudo_inverse_says_nothing_of_frame_and_scale():
-    information = selection.what_ties_say(free_network(), [0, 1, 2]).information
+    information = selection.marginalise(free_network(), [0, 1, 2]).information
     active = np.diag(information) > 0
     scale = np.sqrt(np.diag(information))[active]
     span = gauge(free_network())[active] * scale[:, None]

@@ -29,7 +29,7 @@ def truth():
 def record(cameras, **changes):
     """Return exact ties of these cameras, seen in another frame."""
     made = networks_made.exact_lens_prior(networks_made.make(6, 60))
-    knowledge = selection.what_ties_say(made, [0, 1])
+    knowledge = selection.marginalise(made, [0, 1])
     known = joint_adjustment.Ties(("side", "back"), (networks_made.SIZE,) * 2, knowledge)
     moved = similarity.Sim3(0.3, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
     in_sfm = [moved.camera(camera) for camera in cameras]

@@ -1,4 +1,4 @@
-"""Ties thinned, moved, weighted and condensed: against plain recomputation and the whole adjustment."""
+"""Ties thinned, moved, weighted, marginalised: against recomputation and full adjustment."""
 
 from dataclasses import replace
 
@@ -122,14 +122,16 @@ def clicks_of(network, images=(0, 1), noise_px=0.0, seed=0):
 
 def with_clicks(network, clicks, sigma_px=0.7):
     sigma = dict.fromkeys(clicks, sigma_px)
-    return selection.add(network, KNOWN, KNOWN_SIGMA, clicks, sigma_px=sigma, loss_scale=np.inf)
+    return selection.add_control_points(
+        network, KNOWN, KNOWN_SIGMA, clicks, sigma_px=sigma, loss_scale=np.inf
+    )
 
 
 def test_control_points_come_behind_the_ties():
     made = networks_made.make(3, 10)
     clicks = clicks_of(made)
     clicks[0][[1, 4]], clicks[1][4] = np.nan, np.nan
-    found = selection.add(
+    found = selection.add_control_points(
         made, KNOWN, 0.01 * np.arange(6), clicks, sigma_px={0: 0.5, 1: 2.0}, loss_scale=3.0
     )
     np.testing.assert_array_equal(found.xyz[10:], np.delete(KNOWN, 4, axis=0))
@@ -173,13 +175,13 @@ def test_condensed_ties_and_clicks_give_the_whole_adjustment(noise_px, flex, lim
     tied = selection.select(
         solved, np.arange(len(solved.xyz)) < n_ties, np.arange(len(solved.xy)) < n_seen
     )
-    knowledge = selection.what_ties_say(tied, [0, 1])
+    knowledge = selection.marginalise(tied, [0, 1])
     clicks = clicks_of(made, noise_px=0.7, seed=4)
     whole, whole_normal = solver.adjust(with_clicks(tied, clicks), tolerance=1e-12)
     small = with_clicks(knowledge.reference, clicks)
     small, normal = solver.adjust(small, quadratic=knowledge, tolerance=1e-12)
     covariance = point_covariance.of_columns(normal)
-    both = selection.alone(whole, [0, 1])
+    both = selection.images_only(whole, [0, 1])
     off = small.difference(both)[normal.active] / np.sqrt(np.diag(covariance)[normal.active])
     assert np.abs(off).max() < limit
     columns = np.r_[0:22, 66 : 66 + 16]  # images 0 and 1 of six, lenses 0 and 1
@@ -195,11 +197,11 @@ def test_condensed_ties_and_the_same_clicks_give_the_same_to_rounding():
     clicks = clicks_of(made, noise_px=0.7)
     whole, normal = solver.adjust(with_clicks(made, clicks), tolerance=1e-14)
     tied = selection.select(whole, np.arange(len(whole.xyz)) < 40)
-    knowledge = selection.what_ties_say(tied, [0, 1])
+    knowledge = selection.marginalise(tied, [0, 1])
     small = with_clicks(knowledge.reference, clicks)
     small, small_normal = solver.adjust(small, quadratic=knowledge, tolerance=1e-14)
     sigma = np.sqrt(np.diag(point_covariance.of_columns(small_normal))[small_normal.active])
-    off = small.difference(selection.alone(whole, [0, 1]))[small_normal.active] / sigma
+    off = small.difference(selection.images_only(whole, [0, 1]))[small_normal.active] / sigma
     assert np.abs(off).max() < 1e-5
     columns = np.r_[0:22, 66 : 66 + 16]
     expected = np.sqrt(np.diag(point_covariance.of_columns(normal))[columns][small_normal.active])
@@ -214,19 +216,19 @@ def test_ties_that_are_not_at_rest_pull_the_fixed_cameras():
     images[:, :6] = np.random.default_rng(0).normal(size=(4, 6)) * ([2e-3] * 3 + [0.02] * 3)
     moved = truth.moved(step, np.zeros_like(truth.xyz))
     assert np.abs(networks.residuals(moved)).mean() > 1
-    knowledge = selection.what_ties_say(moved, [0, 1])
+    knowledge = selection.marginalise(moved, [0, 1])
     clicks = clicks_of(truth)
     found, normal = solver.adjust(
         with_clicks(knowledge.reference, clicks), quadratic=knowledge, tolerance=1e-12
     )
     sigma = np.sqrt(np.diag(point_covariance.of_columns(normal))[normal.active])
-    off = found.difference(selection.alone(truth, [0, 1]))[normal.active] / sigma
+    off = found.difference(selection.images_only(truth, [0, 1]))[normal.active] / sigma
     assert np.abs(off).max() < 0.1
 
 
 def test_ties_leave_frame_and_scale_open():
     made = networks_made.exact_lens_prior(networks_made.make(4, 40))
-    knowledge = selection.what_ties_say(made, [0, 1])
+    knowledge = selection.marginalise(made, [0, 1])
     values = np.linalg.eigvalsh(scaled(knowledge.information))
     assert (np.abs(values) < 1e-8).sum() == 7 + 10  # and the ten numbers of flex, which are fixed
     np.testing.assert_allclose(knowledge.gradient, 0, atol=1e-6)

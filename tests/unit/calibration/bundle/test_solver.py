@@ -1,4 +1,4 @@
-"""Bundle adjustment against pycolmap's, against scipy's least squares, and against its own statistics."""
+"""Bundle adjustment against pycolmap's, scipy's least squares, and its own statistics."""
 
 from dataclasses import replace
 
@@ -173,7 +173,7 @@ def test_small_and_large_networks_follow_the_same_equations(monkeypatch):
         with_known_points(networks_made.make(3, 20), 6), 5, scale=1e-3
     )
     dense = solver.normal_equations(network)
-    monkeypatch.setattr(solver, "SMALL", 0)
+    monkeypatch.setattr(solver, "DENSE_ELEMENTS", 0)
     large = solver.normal_equations(network)
     np.testing.assert_allclose(dense.information, large.information, rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(dense.gradient, large.gradient, rtol=1e-9, atol=1e-6)

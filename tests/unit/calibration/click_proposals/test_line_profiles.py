@@ -31,7 +31,9 @@ def look(grey, camera, court, line, reach_px=4.0):
     ends, half = line_edges.middle_line(court, line)
     place = (ends + ends[0]) / 2  # its first half
     paint = line_edges.paint(camera, court)
-    return line_profiles.look(grey, camera, place, ends[0], half, paint, reach_px, BLUR_PX)
+    return line_profiles.sample_stretch(
+        grey, camera, place, ends[0], half, paint, reach_px, BLUR_PX
+    )
 
 
 @pytest.mark.parametrize("line", range(12))
@@ -51,7 +53,9 @@ def test_what_is_expected_is_what_is_seen(grey, camera, court, line):
 def test_normals_point_to_the_higher_coordinate_and_along_is_px(grey, camera, court):
     stretch = look(grey, camera, court, 0)
     at = np.column_stack([np.full(5, 0.02), np.linspace(0.5, 6, 5), np.zeros(5)])
-    tangent, normal = line_profiles.axes(camera, at, np.array([0, 13.4, 0]), np.array([0.02, 0, 0]))
+    tangent, normal = line_profiles.tangent_and_normal(
+        camera, at, np.array([0, 13.4, 0]), np.array([0.02, 0, 0])
+    )
     towards = cameras.project(camera, at + np.array([0.02, 0, 0])) - cameras.project(camera, at)
     assert (np.sum(towards * normal, axis=1) > 0).all()
     np.testing.assert_allclose(np.sum(tangent * normal, axis=1), 0, atol=1e-12)
@@ -77,7 +81,9 @@ def test_the_blur_is_of_the_given_size(camera, court):
     ends = np.array([[2.5, 8.70, 0], [3.6, 8.70, 0]])
     paint = line_edges.paint(big, court)
     half = np.array([0, 0.02, 0])
-    stretch = line_profiles.look(empty, big, ends, ends.mean(axis=0), half, paint, 2.0, 1.5)
+    stretch = line_profiles.sample_stretch(
+        empty, big, ends, ends.mean(axis=0), half, paint, 2.0, 1.5
+    )
     rise = stretch.paint[10]
     t = (np.arange(len(rise)) - (len(rise) - 1) / 2) * line_profiles.STEP_PX
     assert stretch.width_px > 8

@@ -16,7 +16,7 @@ def bar(t, low, high, blur_px=BLUR_PX):
 
 
 def stretch(width=1.5, off=(0.0, 0.0), slope=0.0, noise=1.0, n=60, seed=0, sign=1.0, hidden=()):
-    """Return a stretch whose line is `off` px off at its origin, its edges separately, and turned."""
+    """Return a stretch whose line is `off` px off at its origin, by edge, and rotated."""
     rng = np.random.default_rng(seed)
     along = np.linspace(0, 59, n)
     half = int(np.ceil((width / 2 + line_profiles.MARGIN_PX) / line_profiles.STEP_PX))

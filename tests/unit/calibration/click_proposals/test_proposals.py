@@ -1,4 +1,4 @@
-"""Proposed court points in drawn pictures, from cameras that are some pixels off, against exact places."""
+"""Proposed court points in drawn pictures, from cameras some pixels off, against exact places."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def pictures(views, court):
 
 def off(camera, court, wanted_px, seed):
     """Return a camera turned, moved and zoomed so that the court is about `wanted_px` off in it."""
-    change = np.random.default_rng(seed).normal(0, 1, 8) * refine_pose.KNOWN
+    change = np.random.default_rng(seed).normal(0, 1, 8) * refine_pose.PRIOR_SIGMA
     exact = cameras.project(camera, court.xyz)
 
     def shift(scale):

@@ -14,7 +14,7 @@ def offsets(start, true, court):
     line, ends = line_edges.stretches(court, 1.6)
     middle = ends.mean(axis=1)
     halves = np.array([line_edges.middle_line(court, number)[1] for number in line])
-    _, normal = line_profiles.axes(start, middle, ends[:, 1] - ends[:, 0], halves)
+    _, normal = line_profiles.tangent_and_normal(start, middle, ends[:, 1] - ends[:, 0], halves)
     off = cameras.project(true, middle) - cameras.project(start, middle)
     return middle, normal, np.sum(off * normal, axis=1)
 
@@ -43,7 +43,7 @@ def test_a_change_is_what_its_parameters_say(court):
 def test_lines_bring_the_camera_back(court, seed):
     rng = np.random.default_rng(seed)
     true = court_pictures.pair()[seed % 2]
-    start = refine_pose.moved(true, rng.normal(0, 0.4, 8) * refine_pose.KNOWN)
+    start = refine_pose.moved(true, rng.normal(0, 0.4, 8) * refine_pose.PRIOR_SIGMA)
     middle, normal, off = offsets(start, true, court)
     noisy = off + rng.normal(0, 0.05, len(off))
     noisy[:4] += 15  # other lines taken for these

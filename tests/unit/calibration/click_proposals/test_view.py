@@ -22,7 +22,7 @@ def test_the_shift_is_how_far_the_camera_is_off():
         stretch = ends[0] + np.array([[0.3], [0.6]]) * (ends[1] - ends[0])
         origin = stretch.mean(axis=0)
         found = made.shift(line, stretch, origin, 5.0)
-        _, normal = line_profiles.axes(moved, origin[None], ends[1] - ends[0], half)
+        _, normal = line_profiles.tangent_and_normal(moved, origin[None], ends[1] - ends[0], half)
         exact = (camera.project(true, origin) - camera.project(moved, origin)) @ normal[0]
         assert abs(exact) > 0.3
         assert found.low_px == pytest.approx(exact, abs=0.12)

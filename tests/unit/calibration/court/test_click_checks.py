@@ -1,13 +1,15 @@
-"""Wrong clicks: found, named, and told from line centres, on pictures of a court with exact truth."""
+"""Wrong clicks are found, named, and told from line centres, where the truth is exact."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from courtside.calibration.court import click_checks, court, sfm_alignment
+from courtside.calibration.bundle import selection
+from courtside.calibration.court import click_checks, court, joint_adjustment, sfm_alignment
 from courtside.geometry import camera as camera_models
 from courtside.geometry import similarity
+from fixtures.cameras import networks_made
 from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
@@ -64,7 +66,7 @@ def test_a_click_is_judged_by_the_others_alone():
 
 def test_good_clicks_are_not_accused():
     for seed in range(10):
-        assert click_checks.find(COURT, IN_SFM, clicks(seed), sigma_px=SIGMA_PX) == []
+        assert click_checks.check(COURT, IN_SFM, clicks(seed), sigma_px=SIGMA_PX) == []
 
 
 @pytest.mark.parametrize("camera", ["side", "back", "corner"])
@@ -82,7 +84,7 @@ def test_a_wrong_click_in_one_of_two_cameras_is_named():
     given = clicks(2)
     given["corner"][:] = np.nan
     given["back"][1] += (30, 0)
-    lines = click_checks.find(COURT, IN_SFM, given, sigma_px=SIGMA_PX)
+    lines = click_checks.check(COURT, IN_SFM, given, sigma_px=SIGMA_PX)
     assert lines[0].startswith("camera back: point p02: expected")
     assert (
         "px away" in lines[0] and "click it again or delete it" in lines[0] and "\n" not in lines[0]
@@ -104,10 +106,10 @@ def test_line_centres_are_recognised_and_edges_are_not():
     centres = COURT.xyz + court.to_line_centres(COURT)
     shifts = []
     for seed in range(8):
-        lines = click_checks.find(COURT, IN_SFM, clicks(seed, centres), sigma_px=SIGMA_PX)
+        lines = click_checks.check(COURT, IN_SFM, clicks(seed, centres), sigma_px=SIGMA_PX)
         assert len(lines) == 1 and "line centres seem to be clicked" in lines[0]
         xyz = sfm_alignment.reconstruct(IN_SFM, clicks(seed, centres))
-        shifts.append(click_checks.line_centre_pattern(COURT, xyz))
+        shifts.append(click_checks.inward_shift_of_points(COURT, xyz))
     shift, sigma = np.array(shifts).T
     assert abs(shift.mean() - 1) < 3 * sigma.mean() and sigma.max() < 0.25
 
@@ -115,6 +117,56 @@ def test_line_centres_are_recognised_and_edges_are_not():
 def test_the_pattern_is_silent_without_the_points_to_tell():
     few = np.full_like(COURT.xyz, np.nan)
     few[:4] = COURT.xyz[:4]
-    assert click_checks.line_centre_pattern(COURT, few) == (0.0, np.inf)
-    exact = click_checks.line_centre_pattern(COURT, COURT.xyz + court.to_line_centres(COURT))
+    assert click_checks.inward_shift_of_points(COURT, few) == (0.0, np.inf)
+    exact = click_checks.inward_shift_of_points(COURT, COURT.xyz + court.to_line_centres(COURT))
     assert exact[0] == pytest.approx(1, abs=0.02)
+
+
+# ---- line centres in place of edges, from ties and clicks together
+
+SIZES = (networks_made.SIZE, networks_made.SIZE)
+WEIGHTS = {"click_sigma_px": 0.9, "click_bias_px": 0.01, "click_loss": np.inf}
+CLICK_SIGMA_PX = 0.9 * 1280 / 3840
+
+
+def ties_of(noise_px=0.5):
+    made = networks_made.exact_lens_prior(networks_made.make(6, 60, noise_px=noise_px))
+    return joint_adjustment.Ties(("side", "back"), SIZES, selection.marginalise(made, [0, 1]))
+
+
+def clicks_of(xyz, noise_px=0.0, seed=0):
+    rng = np.random.default_rng(seed)
+    fixed = networks_made.fixed_cameras(networks_made.make(6, 60))
+    exact = {camera.name: opencv_projection(camera, xyz) for camera in fixed}
+    return {name: xy + noise_px * rng.normal(size=xy.shape) for name, xy in exact.items()}
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_exact_clicks_give_the_shift_itself(share):
+    xyz = COURT.xyz + share * court.to_line_centres(COURT)
+    found, sigma = click_checks.inward_shift(ties_of(0.0), clicks_of(xyz), COURT, **WEIGHTS)
+    assert found == pytest.approx(share, abs=0.02)
+    assert 0.02 < sigma < 0.25
+
+
+def test_the_sigma_is_that_of_repeated_clicks():
+    ties, sigmas, off = ties_of(0.0), [], []
+    for seed in range(40):
+        rng = np.random.default_rng(100 + seed)
+        real = COURT.xyz + court.to_line_centres(COURT)
+        real = real + COURT.sigma_m[:, None] * rng.normal(size=real.shape)
+        clicks = clicks_of(real, CLICK_SIGMA_PX, seed)
+        found, sigma = click_checks.inward_shift(ties, clicks, COURT, **WEIGHTS)
+        off.append((found - 1) / sigma)
+        sigmas.append(sigma)
+    # Of 40 draws the mean scatters by 1 / sqrt(40), the standard deviation by 1 / sqrt(80).
+    assert abs(np.mean(off)) < 3 / np.sqrt(40)
+    assert np.std(off) == pytest.approx(1, abs=3 / np.sqrt(80))
+    assert np.ptp(sigmas) < 0.2 * np.mean(sigmas)
+
+
+def test_points_without_a_line_say_nothing():
+    tips = np.where(COURT.xyz[:, 2:] > 0, COURT.xyz, np.nan)
+    clicks = clicks_of(np.nan_to_num(tips))
+    clicks = {n: np.where(np.isfinite(tips[:, :2]), xy, np.nan) for n, xy in clicks.items()}
+    assert click_checks.inward_shift(ties_of(), clicks, COURT, **WEIGHTS) == (0.0, np.inf)

@@ -75,7 +75,7 @@ def test_condensed_ties_agree_with_the_whole_adjustment_of_other_clicks():
     clicks = clicks_of(truth, SIGMA_PX, seed=1)
     clicks["side"][3] = np.nan
     found = joint_adjustment.solve(ties, clicks, COURT, **GAUSSIAN)
-    both = selection.add(
+    both = selection.add_control_points(
         whole,
         COURT.xyz,
         COURT.sigma_m,
@@ -84,7 +84,7 @@ def test_condensed_ties_agree_with_the_whole_adjustment_of_other_clicks():
         loss_scale=np.inf,
     )
     both, _ = solver.adjust(both, tolerance=1e-12)
-    off = found.network.difference(selection.alone(both, [0, 1]))
+    off = found.network.difference(selection.images_only(both, [0, 1]))
     sigma = np.sqrt(np.diag(found.covariance))
     assert np.abs(off[sigma > 0] / sigma[sigma > 0]).max() < 0.1
 
@@ -109,7 +109,7 @@ def repeated(truth, n_draws, small):
 
 
 def test_covariance_is_that_of_repeated_clicks_ties_and_courts():
-    """With errors of a third of the usual: covariance is of first order, and few ties bend the rest."""
+    """With a third of the usual errors: covariance is of first order, few ties bend the rest."""
     truth, n_draws = made(4, 25), 80
     places = np.array([[0.0, 0, 0], [3, 6, 2]])
     seen = clicks_of(truth, xyz=places)
@@ -118,7 +118,7 @@ def test_covariance_is_that_of_repeated_clicks_ties_and_courts():
         active = np.diag(found.covariance) > 0
         part = found.covariance[np.ix_(active, active)]
         scale = np.sqrt(np.diag(part))
-        error = found.network.difference(selection.alone(truth, [0, 1]))[active]
+        error = found.network.difference(selection.images_only(truth, [0, 1]))[active]
         off.append(error / scale)
         square.append(off[-1] @ np.linalg.solve(part / np.outer(scale, scale), off[-1]))
         error_m = sfm_alignment.reconstruct(found.cameras, seen) - places
@@ -133,7 +133,7 @@ def test_covariance_is_that_of_repeated_clicks_ties_and_courts():
 
 
 def test_what_the_clicks_in_a_picture_have_in_common_is_found():
-    """Clicks too high in one picture and too low in the other: no frame of the world explains that."""
+    """Clicks too high in one picture and too low in the other: no world frame explains that."""
     truth = made(6, 60)
     clicks, shift = clicks_of(truth), {"side": np.array([0, 0.5]), "back": np.array([0, -0.5])}
     shifted = {name: xy + shift[name] for name, xy in clicks.items()}
@@ -349,7 +349,8 @@ def test_the_covariance_without_a_court_is_that_of_repeated_ties():
         one, other = found.cameras
         between = from_side(found.cameras)[1] @ from_side(exact)[1].T
         turn = np.array([between[2, 1], between[0, 2], between[1, 0]])
-        # A turn a of the first camera and b of the second: exp(b) R exp(-a), to first order b - R a.
+        # A turn a of the first camera and b of the second: exp(b) R exp(-a), to first order b - R
+        # a.
         by_column = np.zeros((3, 38))
         by_column[:, 11:14], by_column[:, :3] = np.eye(3), -from_side(exact)[1]
         focal = np.zeros((2, 38))

@@ -1,4 +1,4 @@
-"""Calibration from known points by name: which points, which method, and the camera that was there."""
+"""Calibration from known points by name: points, method, and the true camera."""
 
 from pathlib import Path
 
@@ -111,7 +111,7 @@ def test_points_that_are_not_in_the_set_do_not_count():
         ),
         (
             "",
-            "camera back: expected a linear calibration that is a camera, found one that is none; click",
+            "camera back: expected a camera from DLT, found a matrix that gives none; click",
         ),
     ],
 )

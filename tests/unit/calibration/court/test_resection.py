@@ -1,4 +1,4 @@
-"""One camera from known points: exact truth, OpenCV's calibration, Monte Carlo, and every refusal."""
+"""One camera from known points: exact truth, OpenCV, Monte Carlo, and every refusal."""
 
 from pathlib import Path
 

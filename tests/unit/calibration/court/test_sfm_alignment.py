@@ -1,4 +1,4 @@
-"""Alignment of a reconstruction with the court: exact truth, the paper's frame, and courts that cannot be."""
+"""Alignment of a reconstruction with the court: exact truth, the paper's frame, wrong courts."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -91,7 +91,8 @@ def test_the_papers_frame_follows_its_equations_when_the_sides_are_not_square():
     x_in_sfm[at[1]] = SFM_FROM_WORLD.points(6.1 * np.array([np.cos(angle), np.sin(angle), 0]))
     frame = sfm_alignment.paper_frame(COURT, x_in_sfm)
     assert frame.skew_deg == pytest.approx(2.0)
-    # e_x . e_y = sin 2 deg: D takes the end of x to (6.1, 6.1 sin, 0), that of y to (13.4 sin, 13.4, 0).
+    # e_x . e_y = sin 2 deg: D takes the end of x to (6.1, 6.1 sin, 0), that of y to (13.4 sin,
+    # 13.4, 0).
     skew = np.sin(angle)
     expected = [[0, 0, 0], [6.1, 6.1 * skew, 0], [13.4 * skew, 13.4, 0]]
     np.testing.assert_allclose(frame.points(x_in_sfm[at]), expected, atol=1e-9)
@@ -150,7 +151,7 @@ def test_weak_points_are_said(known, words):
 
 
 def exchanged():
-    """Left and right points exchanged: the court's mirror image, with the net posts still upright."""
+    """Left and right points exchanged: the court mirrored, with the net posts still upright."""
     mirrored = COURT.xyz.copy()
     mirrored[:, 0] = 6.1 - mirrored[:, 0]
     return SFM_FROM_WORLD.points(mirrored)

@@ -1,4 +1,4 @@
-"""Camera files under each other's names: told from everything else that can be wrong with clicks."""
+"""Exchanged camera files are told from everything else that can be wrong with clicks."""
 
 from pathlib import Path
 
@@ -43,7 +43,7 @@ def test_two_exchanged_cameras_are_named(names, pair):
     clicks = clicks_of(fixed)
     one, other = pair
     clicks[one], clicks[other] = clicks[other], clicks[one]
-    for refuse in (sfm_alignment.refuse_exchanged_cameras, click_checks.find):
+    for refuse in (sfm_alignment.refuse_exchanged_cameras, click_checks.check):
         with pytest.raises(InputError, match="the camera files may be exchanged") as caught:
             refuse(COURT, fixed, clicks)
         message = str(caught.value)

@@ -14,8 +14,8 @@ from courtside.geometry.camera import project
 from fixtures.cameras import hall_plan
 
 PRIOR = (hall_plan.LENS_MEAN, hall_plan.LENS_SIGMA)
-# Median of volume_rms_cm over draws and offsets in results/plain-a/evaluation/global-n*.csv: all 18 points,
-# method sfm.
+# Median of volume_rms_cm over draws and offsets in results/plain-a/evaluation/global-n*.csv: all 18
+# points, method sfm.
 MEASURED_CM = {10: 0.614, 20: 0.674, 40: 0.688}
 
 
@@ -43,7 +43,7 @@ def test_near_what_the_virtual_study_measured(count):
 
 
 def test_predicted_errors_are_those_of_simulated_sessions():
-    """Clicks, the court and the ties of 100 sessions are drawn, and the cameras are solved from them."""
+    """Clicks, court and ties of 100 sessions are drawn, and the cameras solved from them."""
     found = predict(10, click_loss=1e6)
     fixed, court = hall_plan.fixed(), hall_plan.COURT
     rng = np.random.default_rng([0, 10])
@@ -52,7 +52,7 @@ def test_predicted_errors_are_those_of_simulated_sessions():
     )
     ties = selection.thin(ties, **hall_plan.THINNING)
     ties = selection.weigh(ties, sigma_px=0.6, loss_scale=np.inf)
-    known = selection.what_ties_say(ties, [0, 1])
+    known = selection.marginalise(ties, [0, 1])
     extent, axes = np.linalg.eigh(known.information)
     root = axes * np.sqrt(np.maximum(extent, 0))
     rng, grid, rms_cm = np.random.default_rng(1), quality.volume(court), []

@@ -1,4 +1,4 @@
-"""Made-up ties: on the hall's surfaces, in the pictures, as many and as long-lived as a session's."""
+"""Simulated ties: on the hall's surfaces, in the pictures, as many as a session's."""
 
 from dataclasses import replace
 
@@ -27,7 +27,9 @@ def twenty():
 
 
 def test_points_are_on_walls_and_floor():
-    xyz = tie_points.on_surfaces([[0, 0, 0], [30, 10, 5]], 20000, 0.25, np.random.default_rng(0))
+    xyz = tie_points.points_on_surfaces(
+        [[0, 0, 0], [30, 10, 5]], 20000, 0.25, np.random.default_rng(0)
+    )
     x, y, z = xyz.T
     on_floor = z == 0
     on_wall = (x == 0) | (x == 30) | (y == 0) | (y == 10)
@@ -57,7 +59,7 @@ def test_fixed_cameras_have_their_own_lenses_and_the_walk_one(twenty):
 
 
 def test_as_many_ties_as_the_study_counted():
-    """Of plain-a, as `results/plain-a/sfm/global-n*-o0` has them after thinning: images per point too."""
+    """Of plain-a after thinning (`results/plain-a/sfm/global-n*-o0`): images per point too."""
     for count, per_image, length in ((20, 311, 4.7), (40, 383, 6.8)):
         _, found = made(count)
         found = selection.thin(found, **hall_plan.THINNING | {"max_points": 10**6})

@@ -26,7 +26,7 @@ def test_parameters_are_named_in_their_order():
 @pytest.mark.parametrize("at", range(2 * N))
 def test_each_column_is_the_parameter_of_its_name(at):
     """A step along the network's column moves that camera's parameter and no other."""
-    made = selection.alone(networks_made.make(2, 5), [0, 1])
+    made = selection.images_only(networks_made.make(2, 5), [0, 1])
     step = np.zeros(made.n_columns)
     step[covariance.columns(2)[at]] = 1e-3
     moved = made.moved(step, np.zeros((0, 3)))

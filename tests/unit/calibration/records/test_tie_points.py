@@ -1,4 +1,4 @@
-"""What structure from motion says of the fixed cameras, written and read back; files that are none."""
+"""Tie-point constraints on the fixed cameras, written and read back; damaged files."""
 
 from dataclasses import replace
 
@@ -29,7 +29,7 @@ def cameras():
 
 def record(**changes):
     made = networks_made.make(2, 8)
-    knowledge = selection.what_ties_say(made, [0, 1])
+    knowledge = selection.marginalise(made, [0, 1])
     fields = {
         "outcome": "",
         "fault": "",
@@ -98,8 +98,8 @@ def test_a_failure_is_a_record_too(tmp_path):
 
 
 def test_a_bare_network_holds_poses_and_lenses_only():
-    made = selection.alone(networks_made.make(2, 8), [0, 1])
-    found = networks.bare(made.cam_from_world, made.lens, [height for _, height in SIZES])
+    made = selection.images_only(networks_made.make(2, 8), [0, 1])
+    found = networks.without_points(made.cam_from_world, made.lens, [height for _, height in SIZES])
     assert networks.residuals(found).size == 0
     np.testing.assert_array_equal(found.height_px, [720, 540])
     rebuilt = selection.cameras(found, NAMES, SIZES)

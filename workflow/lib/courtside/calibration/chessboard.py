@@ -1,22 +1,24 @@
-"""A camera's lens from pictures of a chessboard, held in different places before it."""
+"""Calibrate a camera's lens from pictures of a chessboard, held in different places before it."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 from courtside.video import images
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
-FEWEST = 4  # boards
-MISREAD = 0.05  # of a square: corners that miss a plane grid by more are not those of one board
-BLURRED = 0.25  # of a square: width of the edges between black and white
-OUTLIER = 3.0  # times the median error of all boards
-FINE_PX = 0.5  # a board with less error is never left out
-VAGUE = 0.03  # relative standard deviation of the focal length
-MAX_ROUNDS = 10
+FEWEST = 4  # ASSUME: boards; two in different poses are the minimum, four show a wrong one
+MISREAD = 0.05  # ASSUME: of a square: corners that miss a plane grid by more are not of one board
+BLURRED = 0.25  # ASSUME: of a square: width of the edges between black and white
+OUTLIER = 3.0  # ASSUME: times the median error of all boards
+FINE_PX = 0.5  # ASSUME: a board with less error is never left out
+MAX_F_SIGMA = 0.03  # ASSUME: relative standard deviation of a usable focal length
+MAX_ROUNDS = 10  # ASSUME: boards left out at most
 HOW = "film the board again: sharp, whole in the picture, in ten places, tilted by 20 to 40 degrees"
 
 
@@ -26,22 +28,18 @@ class Boards:
 
     Attributes
     ----------
-    paths : tuple of Path, length B
-    xy : (B, columns * rows, 2) float
-        Inner corners, px, row by row.
-    size : (int, int)
-        Width and height of the pictures, px.
-    inner_corners : (int, int)
-        Columns and rows.
-    dropped : dict of Path to str
-        The other pictures, and why: unseen, misread or blurred.
+    paths : length B
+    xy : (B, columns * rows, 2) float; inner corners, px, row by row
+    size : width and height of the pictures, px; (0, 0) without any
+    inner_corners : columns and rows
+    dropped : the other pictures, and why: unseen, misread or blurred
     """
 
-    paths: tuple
-    xy: np.ndarray
-    size: tuple
-    inner_corners: tuple
-    dropped: dict
+    paths: tuple[Path, ...]
+    xy: NDArray
+    size: tuple[int, int]
+    inner_corners: tuple[int, int]
+    dropped: dict[Path, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,55 +48,35 @@ class Lens:
 
     Attributes
     ----------
-    size : (int, int)
-        Of the pictures, px.
-    K : (3, 3) float
-        One focal length along both axes, px.
-    dist : (5,) float
-        k1 k2 and zeros.
-    rms_px : float
-        Per axis, over all corners of the boards used.
-    f_sigma_px : float
-        Standard deviation of the focal length, from the corners' scatter.
-    n_used : int
-        Boards.
-    dropped : dict of Path to str
-        The other pictures, and why: unseen, misread, blurred or off.
+    size : of the pictures, px
+    K : (3, 3) float; one focal length along both axes, px
+    dist : (5,) float; k1 k2 and zeros
+    rms_px : per axis, over all corners of the boards used
+    f_sigma_px : standard deviation of the focal length, from the corners' scatter
+    n_used : boards
+    dropped : the other pictures, and why: unseen, misread, blurred or off
     """
 
-    size: tuple
-    K: np.ndarray
-    dist: np.ndarray
+    size: tuple[int, int]
+    K: NDArray
+    dist: NDArray
     rms_px: float
     f_sigma_px: float
     n_used: int
-    dropped: dict
+    dropped: dict[Path, str]
 
 
-def find(pictures, inner_corners):
-    """Find a chessboard in pictures of one camera.
+def find(pictures: str | Path | Iterable[str | Path], inner_corners: Sequence[int]) -> Boards:
+    """Find a chessboard in pictures of one camera, in the order of their file names.
+
+    OpenCV's sector-based detector (Duda & Frese 2018), which is sub-pixel by itself. It sometimes
+    takes other corners for the board's: those do not form a plane grid. Raises `InputError` if
+    there are no pictures, one is unreadable, or their sizes differ.
 
     Parameters
     ----------
-    pictures : str, Path, or list of such
-        A folder, or files.
-    inner_corners : (int, int)
-        Corners where four squares meet, along both sides of the board, in either order.
-
-    Returns
-    -------
-    boards : Boards
-        Sorted by file name.
-
-    Raises
-    ------
-    InputError
-        If there are no pictures, one is unreadable, or their sizes differ.
-
-    Notes
-    -----
-    OpenCV's sector-based detector (Duda & Frese 2018), which is sub-pixel by itself. It now and then takes
-    other corners for the board's: those do not form a plane grid.
+    pictures : a folder, or files
+    inner_corners : corners where four squares meet, along both sides of the board, in either order
     """
     columns, rows = (int(count) for count in inner_corners)
     if min(columns, rows) < 3 or columns == rows:
@@ -106,7 +84,9 @@ def find(pictures, inner_corners):
             f"inner_corners: expected two different counts of 3 or more, such as [7, 4], found "
             f"{list(inner_corners)}; count where four squares meet"
         )
-    paths, found, dropped, size = [], [], {}, None
+    paths, found = [], []
+    dropped: dict[Path, str] = {}
+    size: tuple[int, int] | None = None
     for path in _paths(pictures):
         image = images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
         size = _same_size(path, image, size)
@@ -117,27 +97,29 @@ def find(pictures, inner_corners):
             paths.append(path)
             found.append(xy)
     xy = np.array(found, dtype=float).reshape(-1, columns * rows, 2)
-    return Boards(tuple(paths), xy, size, (columns, rows), dropped)
+    return Boards(tuple(paths), xy, size or (0, 0), (columns, rows), dropped)
 
 
-def _paths(pictures):
+def _paths(pictures: str | Path | Iterable[str | Path]) -> list[Path]:
     if isinstance(pictures, (str, Path)):
         folder = Path(pictures)
         if not folder.is_dir():
             raise InputError(
-                f"{folder}: expected a folder with pictures of a chessboard, found none; correct the path"
+                f"{folder}: expected a folder with pictures of a chessboard, found none; correct "
+                "the path"
             )
         pictures = [path for path in folder.iterdir() if path.suffix.lower() in PICTURES]
         if not pictures:
             raise InputError(
-                f"{folder}: expected pictures of a chessboard ({' '.join(PICTURES)}), found none; add them"
+                f"{folder}: expected pictures of a chessboard ({' '.join(PICTURES)}), found none; "
+                "add them"
             )
     return sorted(Path(path) for path in pictures)
 
 
-def _same_size(path, image, size):
+def _same_size(path: Path, image: NDArray, size: tuple[int, int] | None) -> tuple[int, int]:
     found = image.shape[1], image.shape[0]
-    if size not in (None, found):
+    if size is not None and size != found:
         raise InputError(
             f"{path}: expected {size[0]}x{size[1]} px as of the pictures before it, found "
             f"{found[0]}x{found[1]}; give pictures of one camera with one setting"
@@ -145,7 +127,7 @@ def _same_size(path, image, size):
     return found
 
 
-def _corners(image, inner_corners):
+def _corners(image: NDArray, inner_corners: tuple[int, int]) -> tuple[NDArray | None, str]:
     """Return the corners (N, 2) px and an empty reason, or None and why not."""
     columns, rows = inner_corners
     seen, xy = cv2.findChessboardCornersSB(image, inner_corners, flags=cv2.CALIB_CB_EXHAUSTIVE)
@@ -165,34 +147,21 @@ def _corners(image, inner_corners):
     return xy, ""
 
 
-def _grid(inner_corners):
+def _grid(inner_corners: tuple[int, int]) -> NDArray:
     columns, rows = inner_corners
     return np.mgrid[:rows, :columns][::-1].reshape(2, -1).T.astype(np.float32)
 
 
-def calibrate(boards, *, name="camera"):
-    """Calibrate a lens from chessboards.
+def calibrate(boards: Boards, *, name: str = "camera") -> Lens:
+    """Calibrate a lens from chessboards; `name` is the camera's, for messages.
 
-    Parameters
-    ----------
-    boards : Boards
-    name : str
-        Of the camera, for messages.
+    Raises `InputError` if fewer than four boards are left, or these do not determine the focal
+    length (to 3 %).
 
-    Returns
-    -------
-    lens : Lens
-
-    Raises
-    ------
-    InputError
-        If fewer than four boards are left, or these do not determine the focal length (to 3 %).
-
-    Notes
-    -----
-    Zhang 2000, by OpenCV: one focal length, the principal point, k1 and k2. A handful of boards does not tell
-    decentering (p1, p2) from the principal point, nor k3 from k2. Boards that the others contradict are
-    left out one after another. The size of the squares does not matter to a lens.
+    Zhang 2000, by OpenCV: one focal length, the principal point, k1 and k2. A handful of boards
+    does not tell decentering (p1, p2) from the principal point, nor k3 from k2. Boards that the
+    others contradict are left out one after another. The size of the squares does not matter to a
+    lens.
     """
     paths, xy = list(boards.paths), list(boards.xy)
     dropped = dict(boards.dropped)
@@ -205,25 +174,26 @@ def calibrate(boards, *, name="camera"):
             break
         dropped[paths.pop(worst)] = "off"
         xy.pop(worst)
-    if not f_sigma_px < VAGUE * matrix[0, 0]:
+    if not f_sigma_px < MAX_F_SIGMA * matrix[0, 0]:
         raise InputError(
-            f"camera {name}: expected chessboards that show the focal length to {100 * VAGUE:g} %, found it "
-            f"to {100 * f_sigma_px / matrix[0, 0]:.0f} %; {HOW}"
+            f"camera {name}: expected chessboards that show the focal length to "
+            f"{100 * MAX_F_SIGMA:g} %, found it to {100 * f_sigma_px / matrix[0, 0]:.0f} %; {HOW}"
         )
     rms_px /= np.sqrt(2)  # OpenCV's is of the distances
     return Lens(boards.size, matrix, dist, rms_px, f_sigma_px, len(xy), dropped)
 
 
-def _too_few(name, count, dropped):
+def _too_few(name: str, count: int, dropped: Mapping[Path, str]) -> str:
     reasons = list(dropped.values())
     counts = ", ".join(f"{reasons.count(why)} {why}" for why in sorted(set(reasons)))
     return (
-        f"camera {name}: expected {FEWEST} pictures or more with a usable chessboard, found {count} of "
-        f"{count + len(dropped)}{f' ({counts})' if counts else ''}; check inner_corners, or {HOW}"
+        f"camera {name}: expected {FEWEST} pictures or more with a usable chessboard, found "
+        f"{count} of {count + len(dropped)}{f' ({counts})' if counts else ''}; check "
+        f"inner_corners, or {HOW}"
     )
 
 
-def _solve(xy, boards):
+def _solve(xy: Sequence[NDArray], boards: Boards) -> tuple[float, NDArray, NDArray, float, NDArray]:
     """Return rms px, K, dist, sigma of the focal length px, and each board's error px."""
     board = np.column_stack([_grid(boards.inner_corners), np.zeros(len(xy[0]))]).astype(np.float32)
     width, height = boards.size

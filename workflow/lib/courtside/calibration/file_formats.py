@@ -1,25 +1,28 @@
-"""Calibrations made elsewhere: Qualisys, Pose2Sim and aniposelib, Caliscope, OpenCV -> cameras."""
+"""Read cameras calibrated elsewhere: by Qualisys, Pose2Sim and aniposelib, Caliscope, OpenCV."""
 
 import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera as cameras
 from courtside.geometry import camera_fields
+from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError, reading
 
-LARGEST_BYTES = 1 << 24
-FARTHEST_M = 300.0
+LARGEST_BYTES = 1 << 24  # ASSUME: far above any calibration: a larger file is another one
+FARTHEST_M = 300.0  # ASSUME: no hall is larger: a camera farther away is in mm or cm
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 FORMS = "Qualisys .qca.txt, TOML of Pose2Sim, aniposelib or Caliscope, or YAML or XML of OpenCV"
-QUALISYS_PER_PX = 64
-QUALISYS_CAM_FROM_CAM = np.diag(
-    [1.0, -1.0, -1.0]
-)  # it looks along -z with y up, ours along +z, y down
+QUALISYS_PER_PX = 64  # see `_from_qualisys`
+# A Qualisys camera looks along -z with y up, ours along +z with y down.
+QUALISYS_CAM_FROM_CAM = np.diag([1.0, -1.0, -1.0])
 OPENCV_SUFFIXES = (".yml", ".yaml", ".xml")
 OPENCV_KEYS = {  # the first is what `camera.build` calls it
     "matrix": ("camera_matrix", "K"),
@@ -29,24 +32,21 @@ OPENCV_KEYS = {  # the first is what `camera.build` calls it
 }
 
 
-def read(path):
+def read(path: str | Path) -> list[Camera]:
     """Read the cameras of a calibration file, choosing the reader by what the file holds.
+
+    Raises `InputError` if the form is not known, or a camera is incomplete, impossible or named
+    twice.
 
     Parameters
     ----------
-    path : str or Path
-        A Qualisys `.qca.txt`; a TOML file of Pose2Sim, aniposelib or Caliscope; a YAML or XML file of
-        OpenCV's FileStorage with one or several cameras; or a folder of such, one camera each.
+    path : a Qualisys `.qca.txt`; a TOML file of Pose2Sim, aniposelib or Caliscope; a YAML or XML
+        file of OpenCV's FileStorage with one or several cameras; or a folder of such, one camera
+        each
 
     Returns
     -------
-    found : list of Camera
-        In the file's order under the file's names, in metres, with the file's world frame.
-
-    Raises
-    ------
-    InputError
-        If the form is not known, or a camera is incomplete, impossible or named twice.
+    found : in the file's order under the file's names, in metres, with the file's world frame
     """
     path = Path(path)
     if path.is_dir():
@@ -60,32 +60,20 @@ def read(path):
     return found
 
 
-def rename(found, names):
-    """Pick the cameras of a session from a calibration.
+def rename(found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
+    """Pick the cameras of a session from a calibration, under the session's names, in their order.
 
-    Parameters
-    ----------
-    found : list of Camera
-    names : dict of str to str
-        Name in the session -> name in the calibration.
-
-    Returns
-    -------
-    cameras : list of Camera
-        In the order of `names`, under the session's names.
-
-    Raises
-    ------
-    InputError
-        If the calibration has no such camera, two cameras of the session are the same one, or a name
-        cannot be a file name of the study.
+    `names` maps the name in the session to the name in the calibration. Raises `InputError` if the
+    calibration has no such camera, two cameras of the session are the same one, or a name cannot be
+    a file name of the study.
     """
     by_name = {camera.name: camera for camera in found}
     for ours, theirs in names.items():
         if theirs not in by_name:
             raise InputError(
-                f"camera {ours}: expected {theirs!r} in the calibration, found {', '.join(by_name)}; "
-                "give the camera its `name_in_calibration` in the session file"
+                f"camera {ours}: expected {theirs!r} in the calibration, found "
+                f"{', '.join(by_name)}; give the camera its `name_in_calibration` in the session "
+                "file"
             )
         if list(names.values()).count(theirs) > 1:
             raise InputError(
@@ -100,16 +88,17 @@ def rename(found, names):
     return [replace(by_name[theirs], name=ours) for ours, theirs in names.items()]
 
 
-def _text(path):
+def _text(path: Path) -> str:
     with reading(path, f"a text file, {FORMS}", "check it"):
         if path.stat().st_size > LARGEST_BYTES:
             raise InputError(
-                f"{path}: expected a calibration, found {path.stat().st_size} bytes; give the right file"
+                f"{path}: expected a calibration, found {path.stat().st_size} bytes; give the "
+                "right file"
             )
         return path.read_text(encoding="utf-8-sig")
 
 
-def _reader(text):
+def _reader(text: str) -> Callable[[Path, str], list[Camera]]:
     start = text.lstrip()[:2000]
     if start.startswith("%YAML") or "<opencv_storage" in start:
         return _read_opencv
@@ -118,16 +107,17 @@ def _reader(text):
     return _read_toml
 
 
-def _check_distance(path, camera):
+def _check_distance(path: Path, camera: Camera) -> None:
     far_m = np.linalg.norm(camera.centre_in_world)
     if far_m > FARTHEST_M:
         raise InputError(
-            f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's origin, "
-            f"found {far_m:.0f} m; if the file is in mm or cm, add the key unit (TOML: in [metadata])"
+            f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's "
+            f"origin, found {far_m:.0f} m; if the file is in mm or cm, add the key unit (TOML: in "
+            "[metadata])"
         )
 
 
-def _read_toml(path, text):
+def _read_toml(path: Path, text: str) -> list[Camera]:
     with reading(path, f"{FORMS} (read as TOML)", "check it"):
         content = camera_fields.toml(text)
     tables = content.get("cameras", content)
@@ -143,7 +133,7 @@ def _read_toml(path, text):
     return _read_caliscope(path, caliscope) if caliscope else cameras.read_toml(path)
 
 
-def _read_caliscope(path, tables):
+def _read_caliscope(path: Path, tables: Mapping[str, dict]) -> list[Camera]:
     """Read Caliscope's `[cameras.0]`, and the older `[cam_0]`; it writes metres.
 
     Its `rotation_count` turns pictures on its screen only: the calibration is of the recorded ones.
@@ -156,7 +146,7 @@ def _read_caliscope(path, tables):
     return found
 
 
-def _read_qualisys(path, text):
+def _read_qualisys(path: Path, text: str) -> list[Camera]:
     if re.search(r"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
         raise InputError(
             f"{path}: expected plain XML, found a DOCTYPE or ENTITY; export it from QTM again"
@@ -170,11 +160,12 @@ def _read_qualisys(path, text):
     ]
 
 
-def _from_qualisys(path, element):
+def _from_qualisys(path: Path, element: ElementTree.Element) -> Camera:
     """Turn one <camera> into a camera.
 
-    Lengths on the sensor are in 1/64 px. Distortion is OpenCV's, without a unit; Pose2Sim 0.10 divides
-    it by 64 too, which chessboard stills of its own demonstration contradict (k1 -0.04, not -0.0007).
+    Lengths on the sensor are in 1/64 px. Distortion is OpenCV's, without a unit; Pose2Sim 0.10
+    divides it by 64 too, which chessboard stills of its own demonstration contradict (k1 -0.04, not
+    -0.0007).
     """
     name = element.get("serial", "without serial")
     where = f"{path}: camera {name}"
@@ -202,7 +193,7 @@ def _from_qualisys(path, element):
     return cameras.build(where, name, table, camera_fields.METRES["mm"])
 
 
-def _attributes(where, element, tag, keys):
+def _attributes(where: str, element: ElementTree.Element, tag: str, keys: str) -> NDArray:
     child = element.find(tag)
     attributes = {} if child is None else child.attrib
     return np.array(
@@ -213,15 +204,15 @@ def _attributes(where, element, tag, keys):
     )
 
 
-def _one_of(where, key, value, allowed):
+def _one_of(where: str, key: str, value: str, allowed: Sequence[str]) -> None:
     if value not in allowed:
         raise InputError(
-            f"{where}: expected {key} as one of {', '.join(allowed)}, found {camera_fields.short(value)}; "
-            f"{camera_fields.EXPORT_AGAIN}"
+            f"{where}: expected {key} as one of {', '.join(allowed)}, found "
+            f"{camera_fields.short(value)}; {camera_fields.EXPORT_AGAIN}"
         )
 
 
-def _read_opencv(path, text):
+def _read_opencv(path: Path, text: str) -> list[Camera]:
     try:
         storage = cv2.FileStorage(text, cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
         root = storage.root()
@@ -237,7 +228,7 @@ def _read_opencv(path, text):
     return [_from_opencv(path, node, key, root) for key, node in maps]
 
 
-def _from_opencv(path, node, name, root):
+def _from_opencv(path: Path, node: Any, name: str, root: Any) -> Camera:
     name_node = _child(node, ("name", "camera_name"))
     name = name_node.string() if name_node is not None and name_node.isString() else name
     where = f"{path}: camera {name}"
@@ -249,13 +240,13 @@ def _from_opencv(path, node, name, root):
     return cameras.build(where, name, table, metres)
 
 
-def _child(node, keys):
+def _child(node: Any, keys: Sequence[str]) -> Any:
     found = [node.getNode(key) for key in keys] if node.isMap() else []
     return next((child for child in found if not child.empty() and not child.isNone()), None)
 
 
-def _value(node):
-    """Return a node of FileStorage as rows of a matrix, list, number or text; None where it is none."""
+def _value(node: Any) -> Any:
+    """Return a node of FileStorage as rows of a matrix, list, number or text; else None."""
     if node is None:
         return None
     if node.isSeq():
@@ -267,10 +258,10 @@ def _value(node):
     return _rows(node) if node.isMap() else None
 
 
-def _rows(node):
+def _rows(node: Any) -> Any:
     """Return a stored matrix as rows, or a vector as a list.
 
-    FileStorage's own way fails hard where rows, columns and type do not fit the data.
+    FileStorage's own method crashes where rows, columns and type do not fit the data.
     """
     columns, data = (_value(_child(node, (key,))) for key in ("cols", "data"))
     if not isinstance(data, list) or not isinstance(columns, float):

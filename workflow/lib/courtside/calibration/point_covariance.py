@@ -1,34 +1,36 @@
-"""What uncertain cameras do to the points that they see: covariance of triangulated points."""
+"""Covariance of triangulated points that the uncertainty of the cameras causes."""
 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from courtside.calibration.bundle import problem as networks
+from courtside.calibration.bundle import problem
+from courtside.calibration.bundle.problem import Network
+from courtside.calibration.bundle.solver import Normal
 
 WITHIN_90 = 1.645  # standard deviations to either side hold 90 % of normal errors
+MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
 
 
-def sensitivity(network, xyz):
-    """Find how triangulated points move when image and lens parameters do.
+def sensitivity(network: Network, xyz: ArrayLike) -> NDArray:
+    """Find how triangulated points move when image and lens parameters do, while pixels stay.
 
     Parameters
     ----------
-    network : courtside.calibration.bundle.problem.Network
-        Of the fixed cameras; its own points do not matter.
-    xyz : (N, 3) float
-        Places, m, that every image sees.
+    network : of the fixed cameras; its own points do not matter
+    xyz : (N, 3) float; places, m, that every image sees
 
     Returns
     -------
-    by_column : (N, 3, K) float
-        Metres per unit of each column of the network. Pixels stay where they are.
+    by_column : (N, 3, K) float; metres per unit of each column of the network
     """
+    xyz = np.asarray(xyz, dtype=float)
     n_images, n_points = len(network.cam_from_world), len(xyz)
     image_idx = np.repeat(np.arange(n_images), n_points)
     view = replace(
         network,
-        xyz=np.asarray(xyz, dtype=float),
+        xyz=xyz,
         xyz_mean=np.zeros((n_points, 3)),
         xyz_sigma=np.full(n_points, np.inf),
         image_idx=image_idx,
@@ -37,43 +39,30 @@ def sensitivity(network, xyz):
         sigma_px=np.ones(len(image_idx)),
         loss_scale=np.full(len(image_idx), np.inf),
     )
-    by_camera, by_point = networks.jacobians(view)
+    by_camera, by_point = problem.jacobians(view)
     full = np.zeros((len(image_idx), 2, network.n_columns))
     np.put_along_axis(full, view.columns()[:, None, :].repeat(2, axis=1), by_camera, axis=2)
-    full = (
-        full.reshape(n_images, n_points, 2, -1)
+    full, by_point = (  # by image and point -> by point, all images together
+        of_views.reshape(n_images, n_points, 2, -1)
         .transpose(1, 0, 2, 3)
-        .reshape(n_points, 2 * n_images, -1)
-    )
-    by_point = (
-        by_point.reshape(n_images, n_points, 2, 3).transpose(1, 0, 2, 3).reshape(n_points, -1, 3)
+        .reshape(n_points, 2 * n_images, of_views.shape[2])
+        for of_views in (full, by_point)
     )
     return -np.linalg.pinv(by_point) @ full
 
 
-def point_covariance(network, covariance, xyz):
-    """Return the covariance of triangulated points that the cameras' own covariance causes.
+def point_covariance(network: Network, covariance: NDArray, xyz: NDArray) -> NDArray:
+    """Return the covariance (N, 3, 3) m2 of triangulated points due to that of the cameras.
 
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-        Of the fixed cameras.
-    covariance : (K, K) float
-        Of its columns.
-    xyz : (N, 3) float
-        m.
-
-    Returns
-    -------
-    covariance : (N, 3, 3) float
-        m2; that of the keypoints' own noise comes on top.
+    The covariance of the keypoints' noise must be added. `covariance` (K, K) is that of the columns
+    of the `network` of the fixed cameras, `xyz` (N, 3) are m.
     """
     by_column = sensitivity(network, xyz)
     return by_column @ covariance @ by_column.transpose(0, 2, 1)
 
 
-def of_columns(normal):
-    """Return the covariance (K, K) of all columns of a network from its `solver.Normal`; 0 of fixed ones."""
+def of_columns(normal: Normal) -> NDArray:
+    """Return the covariance (K, K) of all columns of a network; 0 for fixed ones."""
     size = len(normal.active)
     covariance = np.zeros((size, size))
     scale = 1 / np.sqrt(np.diag(normal.information))
@@ -82,15 +71,11 @@ def of_columns(normal):
     return covariance
 
 
-def pseudo_inverse(information, n_free=7):
-    """Return the covariance (K, K) of a network whose frame and scale are free, of least trace.
+def pseudo_inverse(information: NDArray, n_free: int = 7) -> NDArray:
+    """Return the covariance (K, K) of least trace of a network whose frame and scale are free.
 
-    Parameters
-    ----------
-    information : (K, K) float
-        Zero for fixed columns.
-    n_free : int
-        Directions that nothing is known of: those of least information are left out.
+    The information (K, K) is zero for fixed columns. Nothing is known of `n_free` directions: those
+    of least information are left out (7: rotation, translation and scale of the frame).
     """
     scale = np.where(np.diag(information) > 0, np.diag(information), np.inf) ** -0.5
     extent, axes = np.linalg.eigh(information * np.outer(scale, scale))
@@ -100,6 +85,6 @@ def pseudo_inverse(information, n_free=7):
     return root @ root.T
 
 
-def mahalanobis(error, covariance):
-    """Return error.T @ inverse(covariance) @ error, (N,), of errors (N, 3) with covariances (N, 3, 3)."""
+def mahalanobis(error: NDArray, covariance: NDArray) -> NDArray:
+    """Return error.T @ inverse(covariance) @ error, (N,), of errors (N, 3) and covariances."""
     return np.einsum("ni,ni->n", error, np.linalg.solve(covariance, error[..., None])[..., 0])

@@ -1,1 +1,11 @@
-"""Bundle adjustment: the problem, its solver, choice of tie points, parts of a walk."""
+"""Bundle adjustment of images, lenses and points, with clicked court points as control points.
+
+problem
+    Network, residuals, jacobians, linearised, without_points
+solver
+    adjust, cost, normal_equations, mean, Quadratic, Normal
+selection
+    thin, weigh, select, transform, add_control_points, marginalise, free_frame, cameras, of_cameras
+walk_parts
+    split, centres, points, residual_spread
+"""

@@ -1,16 +1,16 @@
-"""A photogrammetric network: images, lenses, points and observations, and how an observation depends on them.
+"""A photogrammetric network of images, lenses, points and observations, with its derivatives.
 
-Conventions: pixels with the first pixel's centre at (0, 0); world metres; `cam_from_world` maps world to
-camera.
-An image that a moving camera took carries five more numbers, its *flex*: the rotation of the camera while the
-rolling shutter ran from the first to the last row (3, rad, camera frame), and the shift of the principal
-point by
-its stabiliser (2, px). They are zero for a camera on a tripod.
+Conventions: pixels with the first pixel's centre at (0, 0); world metres; `cam_from_world` maps
+world to camera. An image from a moving camera has five more numbers, its *flex*: the rotation of
+the camera while the rolling shutter ran from the first to the last row (3, rad, camera frame), and
+the shift of the principal point by the image stabiliser (2, px). They are zero for a camera on a
+tripod.
 """
 
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera
@@ -19,56 +19,48 @@ LENS = ("f_px", "aspect", "cx_px", "cy_px", "k1", "k2", "p1", "p2")
 POSE = ("rx_rad", "ry_rad", "rz_rad", "tx_m", "ty_m", "tz_m")
 FLEX = ("wx_rad", "wy_rad", "wz_rad", "shift_x_px", "shift_y_px")
 IMAGE = len(POSE) + len(FLEX)
+_Seen = tuple[NDArray, NDArray, NDArray, NDArray]
 
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """State, observations and prior knowledge.
+    """State, observations and prior knowledge of images, lenses and points.
 
     Attributes
     ----------
     cam_from_world : (V, 3, 4) float
     flex : (V, 5) float
-    lens : (L, 8) float
-        In the order of `LENS`; the focal length along y is f, along x f times aspect.
+    lens : (L, 8) float; in the order of `LENS`; focal length f along y, f times aspect along x
     xyz : (N, 3) float
     lens_of_image : (V,) int
-    height_px : (V,) float
-        Of the picture: the rolling shutter's time is (row + 0.5) / height - 0.5.
-    image_idx, point_idx : (M,) int
-        Of each observation.
-    xy : (M, 2) float
-        Observed px.
-    sigma_px : (M,) float
-        Standard deviation of an observation along each axis.
-    loss_scale : (M,) float
-        Where an observation starts to count as an outlier, in its own sigmas (Cauchy loss); inf: never.
-    flex_sigma : (V, 5) float
-        Prior about 0; 0 keeps a number at 0.
-    lens_mean, lens_sigma : (L, 8) float
-        Prior; sigma inf: unknown; 0: known exactly.
-    xyz_mean, xyz_sigma : (N, 3), (N,) float
-        Prior of points; sigma inf: unknown.
+    height_px : (V,) float; of the picture: a row is read at (row + 0.5) / height - 0.5
+    image_idx, point_idx : (M,) int; of each observation
+    xy : (M, 2) float; observed px
+    sigma_px : (M,) float; standard deviation of an observation per axis
+    loss_scale : (M,) float; scale of the Cauchy loss, in the observation's sigmas; inf: no loss
+    flex_sigma : (V, 5) float; prior about 0; 0 keeps a number at 0
+    lens_mean, lens_sigma : (L, 8) float; prior; sigma inf: unknown; 0: known exactly
+    xyz_mean, xyz_sigma : (N, 3), (N,) float; prior of points; sigma inf: unknown
     """
 
-    cam_from_world: np.ndarray
-    flex: np.ndarray
-    lens: np.ndarray
-    xyz: np.ndarray
-    lens_of_image: np.ndarray
-    height_px: np.ndarray
-    image_idx: np.ndarray
-    point_idx: np.ndarray
-    xy: np.ndarray
-    sigma_px: np.ndarray
-    loss_scale: np.ndarray
-    flex_sigma: np.ndarray
-    lens_mean: np.ndarray
-    lens_sigma: np.ndarray
-    xyz_mean: np.ndarray
-    xyz_sigma: np.ndarray
+    cam_from_world: NDArray
+    flex: NDArray
+    lens: NDArray
+    xyz: NDArray
+    lens_of_image: NDArray
+    height_px: NDArray
+    image_idx: NDArray
+    point_idx: NDArray
+    xy: NDArray
+    sigma_px: NDArray
+    loss_scale: NDArray
+    flex_sigma: NDArray
+    lens_mean: NDArray
+    lens_sigma: NDArray
+    xyz_mean: NDArray
+    xyz_sigma: NDArray
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         n_images, n_points, n_seen = len(self.cam_from_world), len(self.xyz), len(self.xy)
         expected = {
             "flex": n_images,
@@ -92,17 +84,17 @@ class Network:
                 raise ValueError(f"expected {name} of length {length}, found {found}")
 
     @property
-    def n_columns(self):
+    def n_columns(self) -> int:
         """Number of image and lens parameters."""
         return IMAGE * len(self.cam_from_world) + len(LENS) * len(self.lens)
 
-    def columns(self):
-        """Return for each observation its 19 columns, (M, 19): those of its image, then of its lens."""
+    def columns(self) -> NDArray:
+        """Return the columns of each observation, (M, 19): those of its image, then of its lens."""
         image = IMAGE * self.image_idx[:, None] + np.arange(IMAGE)
         first = IMAGE * len(self.cam_from_world) + len(LENS) * self.lens_of_image[self.image_idx]
         return np.concatenate([image, first[:, None] + np.arange(len(LENS))], axis=1)
 
-    def moved(self, step, step_xyz):
+    def moved(self, step: NDArray, step_xyz: NDArray) -> "Network":
         """Return the network after a step of its image and lens parameters, and of its points."""
         images, lenses = np.split(step, [IMAGE * len(self.cam_from_world)])
         images = images.reshape(-1, IMAGE)
@@ -117,8 +109,8 @@ class Network:
             xyz=self.xyz + step_xyz,
         )
 
-    def difference(self, reference):
-        """Return the step that leads from a reference network of the same form to this one, points apart."""
+    def difference(self, reference: "Network") -> NDArray:
+        """Return the step of images and lenses from a reference network to this one."""
         turn = self.cam_from_world[:, :, :3] @ reference.cam_from_world[:, :, :3].transpose(0, 2, 1)
         shift = self.cam_from_world[:, :, 3] - np.einsum(
             "vij,vj->vi", turn, reference.cam_from_world[:, :, 3]
@@ -129,15 +121,8 @@ class Network:
         return np.concatenate([images.ravel(), (self.lens - reference.lens).ravel()])
 
 
-def bare(cam_from_world, lens, height_px):
-    """Return a network of images with a lens each, without points or prior knowledge.
-
-    Parameters
-    ----------
-    cam_from_world : (V, 3, 4) float
-    lens : (V, 8) float
-    height_px : (V,) float
-    """
+def without_points(cam_from_world: NDArray, lens: NDArray, height_px: ArrayLike) -> Network:
+    """Return a network of V images with a lens (V, 8) each, without points or prior knowledge."""
     n_images, nothing = len(cam_from_world), np.zeros(0)
     return Network(
         cam_from_world=cam_from_world,
@@ -159,12 +144,12 @@ def bare(cam_from_world, lens, height_px):
     )
 
 
-def residuals(network):
+def residuals(network: Network) -> NDArray:
     """Return predicted minus observed, (M, 2) px; NaN where a point lies behind its image."""
     return _residuals(network, _see(network))
 
 
-def _residuals(network, seen):
+def _residuals(network: Network, seen: _Seen) -> NDArray:
     *_, distorted = seen
     lens = network.lens[network.lens_of_image[network.image_idx]]
     focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
@@ -172,29 +157,18 @@ def _residuals(network, seen):
     return focal * distorted + lens[:, 2:4] + shift - network.xy
 
 
-def jacobians(network):
-    """Return the derivatives of `residuals`.
-
-    Parameters
-    ----------
-    network : Network
-
-    Returns
-    -------
-    by_camera : (M, 2, 19) float
-        Along the columns of `Network.columns`.
-    by_point : (M, 2, 3) float
-    """
+def jacobians(network: Network) -> tuple[NDArray, NDArray]:
+    """Return d `residuals` / d `Network.columns` (M, 2, 19) and by the point (M, 2, 3)."""
     return _jacobians(network, _see(network))
 
 
-def linearised(network):
+def linearised(network: Network) -> tuple[NDArray, NDArray, NDArray]:
     """Return `residuals` and, after them, both of `jacobians`."""
     seen = _see(network)
     return _residuals(network, seen), *_jacobians(network, seen)
 
 
-def _jacobians(network, seen):
+def _jacobians(network: Network, seen: _Seen) -> tuple[NDArray, NDArray]:
     still, in_cam, normalised, distorted = seen
     lens = network.lens[network.lens_of_image[network.image_idx]]
     focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
@@ -215,7 +189,7 @@ def _jacobians(network, seen):
     return by_camera, by_still @ rotation
 
 
-def _by_lens(lens, normalised, distorted):
+def _by_lens(lens: NDArray, normalised: NDArray, distorted: NDArray) -> NDArray:
     x, y = normalised.T
     square = x * x + y * y
     f, aspect = lens[:, 0], lens[:, 1]
@@ -236,10 +210,10 @@ def _by_lens(lens, normalised, distorted):
     return along
 
 
-def _see(network):
-    """Return the observed points in their cameras at mid-exposure and when their row is read, (M, 3) each.
+def _see(network: Network) -> _Seen:
+    """Return the points in the camera frame, (M, 3), at mid-exposure and when their row is read.
 
-    And on the plane z = 1, as they are and as the lens bends them, (M, 2) each.
+    And on the plane z = 1, without and with lens distortion, (M, 2) each.
     """
     pose = network.cam_from_world[network.image_idx]
     still = np.einsum("mij,mj->mi", pose[:, :, :3], network.xyz[network.point_idx]) + pose[:, :, 3]
@@ -250,13 +224,13 @@ def _see(network):
     return still, in_cam, normalised, camera.distort(_coefficients(lens), normalised)
 
 
-def _coefficients(lens):
+def _coefficients(lens: NDArray) -> NDArray:
     return np.concatenate([lens[:, 4:], np.zeros((len(lens), 1))], axis=1).T
 
 
-def _spin(network):
+def _spin(network: Network) -> NDArray:
     return network.flex[network.image_idx, :3] * _row_time(network)[:, None]
 
 
-def _row_time(network):
+def _row_time(network: Network) -> NDArray:
     return (network.xy[:, 1] + 0.5) / network.height_px[network.image_idx] - 0.5

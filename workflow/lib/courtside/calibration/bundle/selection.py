@@ -1,40 +1,34 @@
-"""A network tied to the court: ties thinned and weighted, clicked points as control points, cameras."""
+"""Choice and weights of tie points, control points, frames and the fixed cameras of a network."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from courtside.calibration.bundle import problem as networks
-from courtside.calibration.bundle import solver
+from courtside.calibration.bundle import problem, solver
+from courtside.calibration.bundle.problem import Network
 from courtside.geometry.camera import Camera
 from courtside.geometry.similarity import Sim3
 
-LEAST_PX = 0.05  # no feature is placed better
+LEAST_PX = 0.05  # ASSUME: no feature is located better
 
 
-def transform(network, b_from_a):
-    """Return a network whose frame is moved and scaled by a `similarity.Sim3`."""
+def transform(network: Network, b_from_a: Sim3) -> Network:
+    """Return a network whose frame is moved and scaled by a similarity."""
     rotation = network.cam_from_world[:, :, :3] @ b_from_a.rotation.T
     shift = b_from_a.scale * network.cam_from_world[:, :, 3] - rotation @ b_from_a.translation
     pose = np.concatenate([rotation, shift[:, :, None]], axis=2)
     return replace(network, cam_from_world=pose, xyz=b_from_a.points(network.xyz))
 
 
-def free_frame(network, fixed):
-    """Return the similarity into a frame for sessions without a court.
+def free_frame(network: Network, fixed: Sequence[int]) -> Sim3:
+    """Return the similarity `frame_from_sfm` into a frame for sessions without a court.
 
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-    fixed : sequence of int
-        Images of the fixed cameras; the extent of all images stands in for fewer than two.
-
-    Returns
-    -------
-    frame_from_sfm : courtside.geometry.similarity.Sim3
-        Origin: mean of the projection centres. z: against the mean of the pictures' y axes, upwards if
-        cameras
-        are held upright. x: from the first fixed camera to the second. Unit: their distance.
+    Its origin is the mean of the projection centres. z points against the mean of the pictures' y
+    axes: upwards if the cameras are held upright. x points from the first fixed camera (image index
+    in `fixed`) to the second, and their distance is the unit. The first and last image stand in for
+    fewer than two fixed cameras.
     """
     places = centres(network)
     ends = places[fixed[:2]] if len(fixed) > 1 else places[[0, -1]]
@@ -46,15 +40,10 @@ def free_frame(network, fixed):
     return Sim3(float(scale), rotation, -scale * rotation @ places.mean(axis=0))
 
 
-def select(network, points, seen=None):
-    """Return a network with some of its points and observations, all images and lenses.
+def select(network: Network, points: NDArray, seen: NDArray | None = None) -> Network:
+    """Return a network with the points (N,) bool and the observations `seen` (M,) bool, or all.
 
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-    points : (N,) bool
-    seen : (M,) bool, optional
-        Observations; those of dropped points go in any case.
+    All images and lenses stay. Observations of dropped points are dropped in any case.
     """
     seen = points[network.point_idx] & (True if seen is None else seen)
     number = np.cumsum(points) - 1
@@ -64,29 +53,22 @@ def select(network, points, seen=None):
     return replace(network, point_idx=number[network.point_idx[seen]], **per_point, **per_view)
 
 
-def thin(network, *, min_angle_deg, max_error_px, max_points, seed):
-    """Keep those points that tie images well, and of these a random choice.
+def thin(
+    network: Network, *, min_angle_deg: float, max_error_px: float, max_points: int, seed: int
+) -> Network:
+    """Keep a random choice of the points that tie images well.
+
+    A random choice does better than the points seen under the widest angles: those are often wrong.
+    More points than a few thousand do not help: their errors come from the features and are not
+    independent.
 
     Parameters
     ----------
-    network : courtside.calibration.bundle.problem.Network
-    min_angle_deg : float
-        Smallest angle between a point's two most different rays.
-    max_error_px : float
-        Observations farther from their point's projection are dropped, and points then seen once.
-    max_points : int
-    seed : int
-
-    Returns
-    -------
-    network : courtside.calibration.bundle.problem.Network
-
-    Notes
-    -----
-    A random choice does better than the points seen under the widest angles: those are often wrong. More
-    points than some thousand do not help: their errors come from the features and are not independent.
+    min_angle_deg : smallest angle between a point's two most different rays
+    max_error_px : observations farther from their point's projection are dropped, then points with
+        fewer than two
     """
-    error = np.linalg.norm(networks.residuals(network), axis=1)
+    error = np.linalg.norm(problem.residuals(network), axis=1)
     seen = error <= max_error_px  # of a point behind its image the error is NaN
     network = select(network, np.ones(len(network.xyz), dtype=bool), seen)
     points = _widest_angle(network) >= np.radians(min_angle_deg)
@@ -98,7 +80,7 @@ def thin(network, *, min_angle_deg, max_error_px, max_points, seed):
     return select(network, points)
 
 
-def _widest_angle(network):
+def _widest_angle(network: Network) -> NDArray:
     """Return twice the widest angle between a point's rays and their mean, (N,) rad."""
     rays = network.xyz[network.point_idx] - centres(network)[network.image_idx]
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
@@ -111,28 +93,22 @@ def _widest_angle(network):
     return 2 * widest
 
 
-def centres(network):
+def centres(network: Network) -> NDArray:
     """Return the projection centres of all images, (V, 3)."""
     pose = network.cam_from_world
     return -np.einsum("vji,vj->vi", pose[:, :, :3], pose[:, :, 3])
 
 
-def residual_spread(network):
+def residual_spread(network: Network) -> float:
     """Return the robust standard deviation of all residuals per axis, px; at least `LEAST_PX`."""
-    residual = networks.residuals(network)
+    residual = problem.residuals(network)
     return max(1.4826 * float(np.nanmedian(np.abs(residual))), LEAST_PX)
 
 
-def weigh(network, *, sigma_px, loss_scale):
-    """Return a network in which all observations have one sigma and one loss.
+def weigh(network: Network, *, sigma_px: float, loss_scale: float) -> Network:
+    """Return a network in which all observations have one sigma, px per axis, and one loss.
 
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-    sigma_px : float
-        Standard deviation along each axis.
-    loss_scale : float
-        Where Cauchy's loss sets in, in sigmas; inf: nowhere.
+    `loss_scale` is the scale of the Cauchy loss, in sigmas; inf: no loss.
     """
     return replace(
         network,
@@ -141,23 +117,25 @@ def weigh(network, *, sigma_px, loss_scale):
     )
 
 
-def add(network, xyz, xyz_sigma, clicks, *, sigma_px, loss_scale):
-    """Return a network with control points behind its own points.
+def add_control_points(
+    network: Network,
+    xyz: NDArray,
+    xyz_sigma: NDArray,
+    clicks: Mapping[int, NDArray],
+    *,
+    sigma_px: Mapping[int, float],
+    loss_scale: float,
+) -> Network:
+    """Return a network with control points appended to its own points.
 
     Parameters
     ----------
-    network : courtside.calibration.bundle.problem.Network
-        In the frame of `xyz`.
-    xyz : (P, 3) float
-        Known places, m; those with fewer than one click are left out.
-    xyz_sigma : (P,) float
-        How well they are known, m.
-    clicks : dict of int to (P, 2) float
-        Px by index of the image; NaN where not clicked.
-    sigma_px : dict of int to float
-        Of the clicks, by index of the image.
-    loss_scale : float
-        In sigmas.
+    network : in the frame of `xyz`
+    xyz : (P, 3) float; known places, m; those without a click are left out
+    xyz_sigma : (P,) float; how well they are known, m
+    clicks : (P, 2) px by index of the image; NaN where not clicked
+    sigma_px : of the clicks, by index of the image
+    loss_scale : in sigmas
     """
     clicked = [
         (v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))
@@ -180,40 +158,24 @@ def add(network, xyz, xyz_sigma, clicks, *, sigma_px, loss_scale):
     )
 
 
-def alone(network, images):
-    """Return a network of some images and their lenses, without any point or prior.
-
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-    images : sequence of int
-        Each with a lens of its own.
-    """
+def images_only(network: Network, images: ArrayLike) -> Network:
+    """Return a network of some images, each with a lens of its own, without any point or prior."""
     images = np.asarray(images, dtype=int)
     lens = network.lens[network.lens_of_image[images]]
-    return networks.bare(network.cam_from_world[images], lens, network.height_px[images])
+    return problem.without_points(network.cam_from_world[images], lens, network.height_px[images])
 
 
-def what_ties_say(network, images):
-    """Return what a network says of some images and their lenses, all else eliminated.
+def marginalise(network: Network, images: Sequence[int] | NDArray) -> solver.Quadratic:
+    """Marginalise a network without control points to some images and their lenses.
 
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-        Without control points.
-    images : sequence of int
-        Each with a lens of its own.
-
-    Returns
-    -------
-    knowledge : courtside.calibration.bundle.solver.Quadratic
-        About the network `alone(network, images)`, its frame and scale left open.
+    Each of these images has a lens of its own. The result is about `images_only(network, images)`;
+    the ties leave its frame and scale open.
     """
     normal = solver.normal_equations(network)
-    n_images, n_lens = len(network.cam_from_world), len(networks.LENS)
+    n_images, n_lens = len(network.cam_from_world), len(problem.LENS)
     lenses = network.lens_of_image[np.asarray(images)]
-    blocks = [networks.IMAGE * v + np.arange(networks.IMAGE) for v in images]
-    blocks += [networks.IMAGE * n_images + n_lens * k + np.arange(n_lens) for k in lenses]
+    blocks = [problem.IMAGE * v + np.arange(problem.IMAGE) for v in images]
+    blocks += [problem.IMAGE * n_images + n_lens * k + np.arange(n_lens) for k in lenses]
     columns = np.concatenate(blocks)
     place = np.full(network.n_columns, -1)
     place[columns] = np.arange(len(columns))
@@ -230,51 +192,41 @@ def what_ties_say(network, images):
     information[np.ix_(at, at)] = normal.information[np.ix_(mine, mine)] - mixed.T @ solved[:, :-1]
     gradient[at] = normal.gradient[mine] - mixed.T @ solved[:, -1]
     information = (information + information.T) / 2
-    return solver.Quadratic(alone(network, images), information, gradient)
+    return solver.Quadratic(images_only(network, images), information, gradient)
 
 
-def cameras(network, names, sizes):
-    """Return the images of a network as cameras; `names` and `sizes` are those of its first images.
-
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-    names : sequence of str
-    sizes : sequence of (int, int)
-        Width and height, px.
-    """
+def cameras(
+    network: Network, names: Sequence[str], sizes: Sequence[tuple[int, int]]
+) -> list[Camera]:
+    """Return the first images of a network as cameras; `sizes` are (width, height), px."""
     found = []
     for v, (name, size) in enumerate(zip(names, sizes, strict=True)):
         f_px, aspect, cx_px, cy_px, *dist = network.lens[network.lens_of_image[v]]
         K = np.array([[f_px * aspect, 0, cx_px], [0, f_px, cy_px], [0, 0, 1]])
-        found.append(Camera(name, size, K, [*dist, 0.0], network.cam_from_world[v]))
+        found.append(Camera(name, size, K, np.array([*dist, 0.0]), network.cam_from_world[v]))
     return found
 
 
-def of_cameras(known):
-    """Return the network of cameras (list of Camera) without points: `cameras` the other way round."""
+def of_cameras(known: Iterable[Camera]) -> Network:
+    """Return the network of cameras without points: the inverse of `cameras`."""
     lenses = []
     for camera in known:
         (fx, _, cx), (_, fy, cy), _ = camera.K
         lenses.append([fy, fx / fy, cx, cy, *camera.dist[:4]])
-    return networks.bare(
+    return problem.without_points(
         np.array([camera.cam_from_world for camera in known]).reshape(-1, 3, 4),
-        np.array(lenses).reshape(-1, len(networks.LENS)),
+        np.array(lenses).reshape(-1, len(problem.LENS)),
         [camera.size[1] for camera in known],
     )
 
 
-def fixed_cameras(network, fixed, sizes):
+def fixed_cameras(
+    network: Network, fixed: Mapping[str, int], sizes: Mapping[str, tuple[int, int]]
+) -> list[Camera]:
     """Return the fixed cameras of a network, in its frame.
 
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-    fixed : dict of str to int
-        Index of each fixed camera's image.
-    sizes : dict of str to (int, int)
-        Of their pictures, px.
+    `fixed` has the index of each fixed camera's image, `sizes` the size of its pictures, px.
     """
     return cameras(
-        alone(network, list(fixed.values())), list(fixed), [sizes[name] for name in fixed]
+        images_only(network, list(fixed.values())), list(fixed), [sizes[name] for name in fixed]
     )

@@ -1,40 +1,42 @@
 """Bundle adjustment of a `Network`: Levenberg-Marquardt on images and lenses, points eliminated."""
 
 import warnings
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import linalg, sparse
 
-from courtside.calibration.bundle import problem as networks
+from courtside.calibration.bundle import problem
+from courtside.calibration.bundle.problem import Network
 
-SMALL = 10_000  # elements of a matrix that is not worth the overhead of a sparse one
-FLAT = 1e-10  # of a point's information along its best direction: no depth is known below it
-MOST_DAMPING = 1e6  # the steps of images are nothing then
+DENSE_ELEMENTS = 10_000  # a matrix up to this size is not worth the overhead of a sparse one
+# Relative to a point's information along its best direction: less is rounding error, not depth.
+MIN_INFORMATION = 1e-10
+MAX_DAMPING = 1e6  # a step of the images is negligible then
 
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
-    """What else is known of the image and lens parameters: a parabola about a reference.
+    """A quadratic prior of image and lens parameters about a reference network.
 
     Attributes
     ----------
-    reference : courtside.calibration.bundle.problem.Network
-    information : (K, K) float
-        Second derivative, over all columns.
-    gradient : (K,) float
-        First derivative at the reference.
+    information : (K, K) float; second derivative, over all columns
+    gradient : (K,) float; first derivative at the reference
     """
 
-    reference: networks.Network
-    information: np.ndarray
-    gradient: np.ndarray
+    reference: Network
+    information: NDArray
+    gradient: NDArray
 
 
-def mean(knowledge):
-    """Return the mean of what several `Quadratic` say of the same parameters, about the first's reference.
+def mean(knowledge: Sequence[Quadratic]) -> Quadratic:
+    """Return the mean of several `Quadratic` of the same parameters, about the first's reference.
 
-    It knows no more than they do one by one: their errors may be the same.
+    It is no more certain than one of them: their errors may be the same.
     """
     reference = knowledge[0].reference
     gradients = [k.gradient + k.information @ reference.difference(k.reference) for k in knowledge]
@@ -48,50 +50,40 @@ class Normal:
 
     Attributes
     ----------
-    active : (K,) bool
-        The parameters that are not fixed, and of which anything is known.
-    information : (A, A) float
-        Of the active ones.
+    active : (K,) bool; parameters that are free and observed
+    information : (A, A) float; of the active ones
     gradient : (A,) float
-    cost : float
-        Half the sum of squared, robustly weighted residuals.
+    cost : half the sum of squared, robustly weighted residuals
     point_information : (N, 3, 3) float
-    back : callable
-        Step of the points (N, 3) from a step of the active parameters (A,).
+    back : from a step of the active parameters (A,) to the step of the points (N, 3)
     """
 
-    active: np.ndarray
-    information: np.ndarray
-    gradient: np.ndarray
+    active: NDArray
+    information: NDArray
+    gradient: NDArray
     cost: float
-    point_information: np.ndarray
-    back: object
+    point_information: NDArray
+    back: Callable[[NDArray], NDArray]
 
 
-def adjust(network, *, quadratic=None, max_iterations=30, tolerance=1e-8):
-    """Find the network of least cost.
+def adjust(
+    network: Network,
+    *,
+    quadratic: Quadratic | None = None,
+    max_iterations: int = 30,
+    tolerance: float = 1e-8,
+) -> tuple[Network, Normal]:
+    """Find the network of least cost, and its normal equations.
+
+    Triggs et al. 2000. The Cauchy loss is applied by weights of Triggs's first order (IRLS).
+    Without a prior on points or images the world frame is free: damping keeps it where it starts,
+    and the information is singular.
 
     Parameters
     ----------
-    network : courtside.calibration.bundle.problem.Network
-        A start within the reach of Newton's method.
-    quadratic : Quadratic, optional
-        Knowledge that is not in the observations.
-    max_iterations : int
-    tolerance : float
-        Stop when the cost falls by less than this fraction.
-
-    Returns
-    -------
-    network : courtside.calibration.bundle.problem.Network
-    normal : Normal
-        At the solution.
-
-    Notes
-    -----
-    Triggs et al. 2000. The Cauchy loss is kept by weights of Triggs's first order (IRLS). Without a prior on
-    points or images the world frame is free: damping keeps it where it starts, and the information is
-    singular.
+    network : a start within the reach of Newton's method
+    quadratic : knowledge that is not in the observations
+    tolerance : stop when the cost falls by less than this fraction
     """
     damping = 1e-4
     normal = normal_equations(network, quadratic)
@@ -107,15 +99,16 @@ def adjust(network, *, quadratic=None, max_iterations=30, tolerance=1e-8):
     return network, normal
 
 
-def _fall(network, normal, quadratic, damping):
-    """Return the network after a step that lowers the cost, the cost, and the damping that it took.
+def _fall(network, normal, quadratic, damping) -> tuple[Network, float | None, float]:
+    """Return the network after a step that lowers the cost, the cost, and the damping used.
 
-    Points are not damped: a step may put one behind an image however small the images' steps are. Where
-    no damping helps, such points stay where they were, because one alone would stop all others.
+    Points are not damped: a step may put one behind an image however small the images' steps are.
+    Where no damping helps, such points stay where they were, because one alone would stop all
+    others.
     """
     for hold in (False, True):
         tried = damping
-        while tried <= MOST_DAMPING:
+        while tried <= MAX_DAMPING:
             moved, trial = _descend(network, normal, quadratic, tried, hold)
             if trial is not None:
                 return moved, trial, tried
@@ -123,12 +116,11 @@ def _fall(network, normal, quadratic, damping):
     return network, None, damping
 
 
-def _descend(network, normal, quadratic, damping, hold):
+def _descend(network, normal, quadratic, damping, hold) -> tuple[Network, float | None]:
     """Return the network after a damped step with its cost, None if the cost does not fall."""
     information = normal.information + damping * np.diag(np.diag(normal.information) + 1e-12)
-    with (
-        warnings.catch_warnings()
-    ):  # a free frame leaves the information singular but for the damping
+    with warnings.catch_warnings():
+        # Without its damping the information of a free frame is singular.
         warnings.simplefilter("ignore", linalg.LinAlgWarning)
         part = linalg.solve(information, -normal.gradient, assume_a="sym")
     step = np.zeros(len(normal.active))
@@ -140,18 +132,18 @@ def _descend(network, normal, quadratic, damping, hold):
     return moved, trial if trial <= normal.cost else None
 
 
-def _in_front(moved, network):
+def _in_front(moved: Network, network: Network) -> Network:
     """Return a moved network whose points stay where they were if they would be behind an image."""
-    behind = ~np.isfinite(networks.residuals(moved)).all(axis=1)
+    behind = ~np.isfinite(problem.residuals(moved)).all(axis=1)
     xyz = moved.xyz.copy()
     stay = np.unique(moved.point_idx[behind])
     xyz[stay] = network.xyz[stay]
     return replace(moved, xyz=xyz)
 
 
-def cost(network, quadratic=None):
-    """Return half the sum of squares of all residuals in sigmas, inf where a point is behind its image."""
-    scaled = networks.residuals(network) / network.sigma_px[:, None]
+def cost(network: Network, quadratic: Quadratic | None = None) -> float:
+    """Return half the sum of squared residuals in sigmas, inf where a point is behind its image."""
+    scaled = problem.residuals(network) / network.sigma_px[:, None]
     if not np.isfinite(scaled).all():
         return np.inf
     square = (scaled**2).sum(axis=1)
@@ -167,20 +159,14 @@ def cost(network, quadratic=None):
     return total / 2
 
 
-def normal_equations(network, quadratic=None):
-    """Build the `Normal` of a network.
-
-    Parameters
-    ----------
-    network : courtside.calibration.bundle.problem.Network
-    quadratic : Quadratic, optional
-    """
+def normal_equations(network: Network, quadratic: Quadratic | None = None) -> Normal:
+    """Build the `Normal` of a network."""
     return _normal(network, quadratic, cost(network, quadratic))
 
 
-def _normal(network, quadratic, total):
+def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Normal:
     """Return the `Normal` of a network whose cost is known."""
-    residual, by_camera, by_point = networks.linearised(network)
+    residual, by_camera, by_point = problem.linearised(network)
     weight = _weight(network, residual)
     seen = weight > 0
     residual, by_camera, by_point = (
@@ -195,53 +181,53 @@ def _normal(network, quadratic, total):
     information = full[np.ix_(active, active)] - _dense(coupling.T @ coupling)
     gradient = gradient[active] - coupling.T @ scaled_gradient.ravel()
 
-    def back(step):
+    def back(step: NDArray) -> NDArray:
         pulled = (coupling @ step).reshape(-1, 3) + scaled_gradient
         return -np.einsum("nji,nj->ni", root, pulled)
 
     return Normal(active, information, gradient, total, point_information, back)
 
 
-def _along(values, terms):
+def _along(values: NDArray, terms: NDArray) -> NDArray:
     """Return values (M,) shaped so that they apply to terms (M, ...)."""
     return values.reshape(-1, *[1] * (terms.ndim - 1))
 
 
-def _weight(network, residual):
-    """Return the square root of each observation's weight (M,); 0 where its point is behind its image."""
+def _weight(network: Network, residual: NDArray) -> NDArray:
+    """Return the root of each observation's weight (M,); 0 where its point is behind its image."""
     square = (residual**2).sum(axis=1) / network.sigma_px**2
     robust = 1 / np.sqrt(1 + square / network.loss_scale**2)
     return np.where(np.isfinite(square), robust, 0.0) / network.sigma_px
 
 
-def _active(network):
+def _active(network: Network) -> NDArray:
     flex = network.flex_sigma > 0
-    pose = np.ones((len(flex), len(networks.POSE)), dtype=bool)
+    pose = np.ones((len(flex), len(problem.POSE)), dtype=bool)
     images = np.concatenate([pose, flex], axis=1)
     return np.concatenate([images.ravel(), (network.lens_sigma > 0).ravel()])
 
 
-def _prior(network):
-    """Return (value - mean) / sigma and 1 / sigma of image and lens parameters, 0 where nothing is known."""
+def _prior(network: Network) -> tuple[NDArray, NDArray]:
+    """Return (value - mean) / sigma and 1 / sigma of images and lenses; 0 without a prior."""
     flex = np.concatenate(
-        [np.full((len(network.flex), len(networks.POSE)), np.inf), network.flex_sigma], axis=1
+        [np.full((len(network.flex), len(problem.POSE)), np.inf), network.flex_sigma], axis=1
     )
     sigma = np.concatenate([flex.ravel(), network.lens_sigma.ravel()])
-    poses = np.zeros((len(network.flex), len(networks.POSE)))
+    poses = np.zeros((len(network.flex), len(problem.POSE)))
     value = np.concatenate([poses, network.flex], axis=1)
     value = np.concatenate([value.ravel(), (network.lens - network.lens_mean).ravel()])
     inverse = np.divide(1.0, sigma, out=np.zeros_like(sigma), where=sigma > 0)
     return value * inverse, inverse
 
 
-def _point_prior(network):
+def _point_prior(network: Network) -> tuple[NDArray, NDArray]:
     known = np.isfinite(network.xyz_sigma)
     inverse = np.divide(1.0, network.xyz_sigma, out=np.zeros(len(known)), where=known)
     return np.where(known[:, None], network.xyz - network.xyz_mean, 0.0) * inverse[:, None], inverse
 
 
-def _camera_side(network, by_camera, residual, quadratic):
-    """Return information (K, K) and gradient (K,) of the image and lens parameters before elimination."""
+def _camera_side(network, by_camera, residual, quadratic) -> tuple[NDArray, NDArray]:
+    """Return information (K, K) and gradient (K,) of images and lenses before elimination."""
     size, columns = network.n_columns, network.columns()
     blocks = np.einsum("mri,mrj->mij", by_camera, by_camera)
     rows = np.broadcast_to(columns[:, :, None], blocks.shape).ravel()
@@ -259,8 +245,8 @@ def _camera_side(network, by_camera, residual, quadratic):
     return information, gradient
 
 
-def _point_side(network, by_point, residual):
-    """Return of the points root (N, 3, 3), root.T @ root being their covariance, gradient and information."""
+def _point_side(network, by_point, residual) -> tuple[NDArray, NDArray, NDArray]:
+    """Return the points' root, root.T @ root = covariance (N, 3, 3), gradient and information."""
     n_points = len(network.xyz)
     blocks = np.einsum("mri,mrj->mij", by_point, by_point).reshape(-1, 9)
     information = _sum_by(network.point_idx, blocks, n_points).reshape(-1, 3, 3)
@@ -270,22 +256,22 @@ def _point_side(network, by_point, residual):
     gradient = gradient + off * inverse[:, None]
     extent, axes = np.linalg.eigh(information)
     most = extent[:, -1:]
-    extent = np.maximum(extent, FLAT * most + (most == 0))
+    extent = np.maximum(extent, MIN_INFORMATION * most + (most == 0))
     root = axes.transpose(0, 2, 1) / np.sqrt(extent)[:, :, None]
     return root, gradient, information
 
 
-def _sum_by(index, values, length):
+def _sum_by(index: NDArray, values: NDArray, length: int) -> NDArray:
     return np.stack([np.bincount(index, column, minlength=length) for column in values.T], axis=1)
 
 
-def _coupling(network, root, by_point, by_camera):
-    """Return root @ by_point.T @ by_camera, summed by point: (3 N, K), sparse where it is large."""
+def _coupling(network, root, by_point, by_camera) -> NDArray | sparse.csr_matrix:
+    """Return root @ by_point.T @ by_camera, summed by point: (3 N, K); sparse where it is large."""
     block = np.einsum("mij,mrj,mrk->mik", root[network.point_idx], by_point, by_camera)
     rows = 3 * network.point_idx[:, None, None] + np.arange(3)[None, :, None]
     columns = network.columns()[:, None, :]
     n_rows, n_columns = 3 * len(network.xyz), network.n_columns
-    if n_rows * n_columns <= SMALL:
+    if n_rows * n_columns <= DENSE_ELEMENTS:
         at = (rows * n_columns + columns).ravel()
         whole = np.bincount(at, block.ravel(), minlength=n_rows * n_columns)
         return whole.reshape(n_rows, n_columns)
@@ -293,5 +279,5 @@ def _coupling(network, root, by_point, by_camera):
     return sparse.csr_matrix((block.ravel(), at), shape=(n_rows, n_columns))
 
 
-def _dense(matrix):
+def _dense(matrix: Any) -> NDArray:
     return matrix.toarray() if sparse.issparse(matrix) else matrix

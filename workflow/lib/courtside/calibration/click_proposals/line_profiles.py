@@ -1,17 +1,19 @@
-"""Painted lines in a picture: what is seen across a line where a camera expects it."""
+"""Painted lines in a picture: brightness across a line where a camera expects it."""
 
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from courtside.geometry import camera as projection
+from courtside.calibration.court.line_edges import Paint
+from courtside.geometry.camera import Camera, project
 
-STEP_PX = 0.25  # of profiles across a line
-FINE = 5  # steps of the expected paint within one of those
-MARGIN_PX = 4.0  # of floor beside a line's edges that is compared too
-MOST_SAMPLES = 90
-LEAST_SAMPLES = 6
+STEP_PX = 0.25  # ASSUME: of profiles across a line
+FINE = 5  # ASSUME: steps of the expected paint within one of those
+MARGIN_PX = 4.0  # ASSUME: of floor beside a line's edges that is compared too
+MOST_SAMPLES = 90  # ASSUME: more take longer and share their pixels' errors
+LEAST_SAMPLES = 6  # ASSUME: fewer do not separate a shift from a slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,56 +22,48 @@ class Stretch:
 
     Attributes
     ----------
-    xy : (N, 2) float
-        Where the line's middle is expected, px.
-    normal : (N, 2) float
-        Across the line in the picture, unit length, towards its edge of the higher coordinate.
-    along_px : (N,) float
-        Along the line in the picture, 0 at the origin asked for.
-    width_px : float
-        Of the line, expected.
-    seen : (N, S) float
-        Brightness at steps of `STEP_PX` across, the middle one where the line is expected.
-    paint : (N, T) float
-        Share of paint expected there, 0..1, at the T middle ones of these steps.
+    xy : (N, 2) float; where the line's middle is expected, px
+    normal : (N, 2) float; across the line in the picture, unit length, towards its edge of the
+        higher coordinate
+    along_px : (N,) float; along the line in the picture, 0 at the origin asked for
+    width_px : of the line, expected
+    seen : (N, S) float; brightness at steps of `STEP_PX` across, the middle one where the line is
+        expected
+    paint : (N, T) float; share of paint expected there, 0..1, at the T middle ones of these steps
     """
 
-    xy: np.ndarray
-    normal: np.ndarray
-    along_px: np.ndarray
+    xy: NDArray
+    normal: NDArray
+    along_px: NDArray
     width_px: float
-    seen: np.ndarray
-    paint: np.ndarray
+    seen: NDArray
+    paint: NDArray
 
 
-def look(grey, camera, ends_m, origin_m, half_width_m, paint, reach_px, blur_px):
-    """Sample a picture across a stretch of a line.
+def sample_stretch(
+    grey: NDArray,
+    camera: Camera,
+    ends_m: NDArray,
+    origin_m: NDArray,
+    half_width_m: NDArray,
+    paint: Paint,
+    reach_px: float,
+    blur_px: float,
+) -> Stretch | None:
+    """Sample a picture across a stretch of a line; None where too little of it is in the picture.
 
     Parameters
     ----------
     grey : (H, W) float32
-    camera : courtside.geometry.camera.Camera
-        Expects the line.
-    ends_m : (2, 3) float
-        Of the stretch, on the line's middle; world, metres.
-    origin_m : (3,) float
-        On the same straight line, where shifts are wanted.
-    half_width_m : (3,) float
-        From the line's middle to its edge of the higher coordinate.
-    paint : courtside.calibration.court.line_edges.Paint
-        Expected by the camera.
-    reach_px : float
-        How far off the line may be.
-    blur_px : float
-        Of the picture, standard deviation.
-
-    Returns
-    -------
-    stretch : Stretch or None
-        None where too little of it is in the picture.
+    ends_m : (2, 3) float; of the stretch, on the line's middle; world, m
+    origin_m : (3,) float; on the same straight line, where shifts are wanted
+    half_width_m : (3,) float; from the line's middle to its edge of the higher coordinate
+    paint : expected by the camera
+    reach_px : how far off the line may be
+    blur_px : of the picture, standard deviation
     """
     xyz = ends_m[0] + np.linspace(0, 1, 400)[:, np.newaxis] * (ends_m[1] - ends_m[0])
-    xy = projection.project(camera, xyz)
+    xy = project(camera, xyz)
     inside = _inside(xy, camera.size, reach_px + MARGIN_PX)
     if inside.sum() < 2:
         return None
@@ -84,20 +78,16 @@ def look(grey, camera, ends_m, origin_m, half_width_m, paint, reach_px, blur_px)
 
 
 def _sample(grey, camera, xyz, origin_m, ends_m, half_width_m, paint, reach_px, blur_px):
-    xy = projection.project(camera, xyz)
-    tangent, normal = axes(camera, xyz, ends_m[1] - ends_m[0], half_width_m)
-    across = projection.project(camera, xyz + half_width_m) - projection.project(
-        camera, xyz - half_width_m
-    )
+    xy = project(camera, xyz)
+    tangent, normal = tangent_and_normal(camera, xyz, ends_m[1] - ends_m[0], half_width_m)
+    across = project(camera, xyz + half_width_m) - project(camera, xyz - half_width_m)
     width_px = float(np.median(np.sum(across * normal, axis=1)))
     about = np.median(tangent, axis=0)
-    along = (xy - projection.project(camera, origin_m)) @ (about / np.linalg.norm(about))
+    along = (xy - project(camera, origin_m)) @ (about / np.linalg.norm(about))
     half = int(np.ceil((width_px / 2 + MARGIN_PX) / STEP_PX))
     wide = half + int(np.ceil(reach_px / STEP_PX))
-    places = xy[:, np.newaxis] + normal[:, np.newaxis] * (
-        np.arange(-wide, wide + 1)[:, np.newaxis] * STEP_PX
-    )
-    places = places.astype(np.float32)
+    steps = np.arange(-wide, wide + 1)[:, np.newaxis] * STEP_PX
+    places = (xy[:, np.newaxis] + normal[:, np.newaxis] * steps).astype(np.float32)
     seen = cv2.remap(
         grey, places[..., 0], places[..., 1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
     )
@@ -105,43 +95,36 @@ def _sample(grey, camera, xyz, origin_m, ends_m, half_width_m, paint, reach_px, 
     return Stretch(xy, normal, along, width_px, seen.astype(float), expected)
 
 
-def axes(camera, xyz, along_m, across_m):
-    """Return unit vectors in the picture along a line at points on it, and normal to it.
+def tangent_and_normal(
+    camera: Camera, xyz: NDArray, along_m: NDArray, across_m: NDArray
+) -> tuple[NDArray, NDArray]:
+    """Return unit vectors (N, 2) in the picture along a line at points on it, and normal to it.
 
     Parameters
     ----------
-    camera : courtside.geometry.camera.Camera
-    xyz : (N, 3) float
-        On the line, metres.
-    along_m, across_m : (3,) float
-        Along the line, and to the side to which the normals point.
-
-    Returns
-    -------
-    tangent, normal : (N, 2) float
+    xyz : (N, 3) float; on the line, m
+    along_m, across_m : (3,) float; along the line, and to the side to which the normals point
     """
     small = 1e-3 / np.linalg.norm(along_m, axis=-1, keepdims=True)
-    middle = projection.project(camera, xyz)
-    tangent = projection.project(camera, xyz + small * along_m) - middle
+    middle = project(camera, xyz)
+    tangent = project(camera, xyz + small * along_m) - middle
     tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
     normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
-    towards = projection.project(camera, xyz + across_m) - middle
+    towards = project(camera, xyz + across_m) - middle
     return tangent, normal * np.sign(np.sum(towards * normal, axis=-1, keepdims=True))
 
 
-def _inside(xy, size, margin_px):
+def _inside(xy: NDArray, size: tuple[int, int], margin_px: float) -> NDArray:
     room = np.minimum(margin_px, 12.0)
     return ((xy > room) & (xy < np.array(size) - 1 - room)).all(axis=1)
 
 
-def _expected(paint, xy, normal, half, blur_px):
+def _expected(paint: Paint, xy: NDArray, normal: NDArray, half: int, blur_px: float) -> NDArray:
     """Return the blurred share of paint across the line, (N, 2 * half + 1)."""
     room = int(np.ceil(3 * blur_px / STEP_PX))
     knots = np.arange(-(half + room), half + room + FINE, FINE) * STEP_PX
     places = paint.place(xy[:, np.newaxis] + normal[:, np.newaxis] * knots[:, np.newaxis])
-    share = (
-        np.arange(FINE * FINE)[:, np.newaxis] / FINE**2
-    )  # straight between knots, which are near
+    share = np.arange(FINE * FINE)[:, np.newaxis] / FINE**2  # knots are near: linear between them
     between = places[:, :-1, np.newaxis] * (1 - share) + places[:, 1:, np.newaxis] * share
     there = paint.shows(between.reshape(len(xy), -1, 2)).astype(float)
     offsets = np.arange(-room * FINE, room * FINE + 1) * STEP_PX / FINE

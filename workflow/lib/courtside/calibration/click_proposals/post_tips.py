@@ -1,64 +1,51 @@
 """Posts of a net in a picture: their axes, and where these end."""
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import erf
 
 from courtside.calibration.click_proposals import line_profiles, line_shift
-from courtside.calibration.click_proposals.view import Ray
+from courtside.calibration.click_proposals.view import Ray, View
+from courtside.calibration.court.court import Court
 from courtside.calibration.court.line_edges import Paint
-from courtside.geometry import camera as projection
+from courtside.geometry.camera import Camera, project
 
+# ASSUME: a post is 4 cm wide; the rest is tuned by hand on the virtual sessions.
 WIDTH_M = 0.04
-LOWER, UPPER = (
-    (0.04, 0.6),
-    (0.4, 0.985),
-)  # parts of a post's height by which its foot and its tip are found
-SEARCH_PX = 3.0
-LEAST_SCORE, LEAST_SHARE = 0.3, 0.4
-OWN_PX = 0.15  # error of an axis that profiles do not tell
-END_SEARCH = 0.008  # of the picture's width: lines on the floor tell heights badly
+LOWER, UPPER = (0.04, 0.6), (0.4, 0.985)  # parts of a post's height that give its foot and its tip
+SEARCH_PX = 3.0  # across the axis
+LEAST_SCORE, LEAST_SHARE = 0.3, 0.4  # from which an axis is believed
+OWN_PX = 0.15  # error of an axis that is not in the fit of its profiles
+END_SEARCH = 0.008  # of the picture's width: lines on the floor determine heights badly
 END_PX = 10.0  # of the axis beyond that, on each side
 END_STEP_PX = 0.2
 BESIDE_PX = (1.5, 3.5)  # of background beside the post
 LEAST_FIT = 0.6  # share of the variance along the axis that an end must explain
 MOST_BEYOND = 0.35  # of the post's contrast may remain beyond its end
-COVERED_PX = 1.5
-APART_PX = 6.0  # ends of both posts nearer to each other are not told apart
+COVERED_PX = 1.5  # nearer to the other post, a post is covered
+APART_PX = 6.0  # ends of both posts nearer to each other cannot be separated
 
 
-def axis(view, post):
-    """Return the axis of a post near its foot as a Ray, None where it is not seen.
-
-    Parameters
-    ----------
-    view : courtside.calibration.click_proposals.view.View
-    post : int
-        0 or 1, as in the court's net.
-    """
+def axis(view: View, post: int) -> Ray | None:
+    """Return the axis of a post (0 or 1, as in the court's net) near its foot, None if unseen."""
     return None if _covered(view, post, 0.0) else _axis(view, post, LOWER, 0.0)
 
 
-def tip(view, post):
+def tip(view: View, post: int) -> tuple[NDArray, NDArray, float, str]:
     """Find the upper end of a post.
-
-    Parameters
-    ----------
-    view : courtside.calibration.click_proposals.view.View
-    post : int
 
     Returns
     -------
-    xy : (2,) float
-        Px; NaN where it is not seen.
+    xy : (2,) float; px; NaN where it is not seen
     covariance : (2, 2) float
-    share : float
-        Of the post that is seen, 0..1.
-    reason : str
-        Why there is none; empty where there is.
+    share : of the post that is seen, 0..1
+    reason : why there is none; empty where there is
     """
     nothing = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0
-    ends = projection.project(view.camera, _places(view.court, [0, 1], 1.0))
+    ends = project(view.camera, _places(view.court, [0, 1], 1.0))
     if np.linalg.norm(ends[1] - ends[0]) < APART_PX or _covered(view, post, 1.0):
         return *nothing, "one post is behind the other"
     ray = _axis(view, post, UPPER, 1.0)
@@ -73,24 +60,25 @@ def tip(view, post):
     return ray.start + along * ray.direction, covariance, ray.share, ""
 
 
-def _places(court, post, share):
+def _places(court: Court, post: int | Sequence[int], share: ArrayLike) -> NDArray:
     """Return places on a post's axis at shares of its height, (..., 3) m."""
-    x, height = np.array(court.net["x_m"])[post], np.asarray(share) * court.net["post_height_m"]
-    return np.stack(np.broadcast_arrays(x, court.net["y_m"], height), axis=-1)
+    net: dict = court.net or {}  # `line_edges.post` finds none without a net
+    x, height = np.array(net["x_m"])[post], np.asarray(share) * net["post_height_m"]
+    return np.stack(np.broadcast_arrays(x, net["y_m"], height), axis=-1)
 
 
-def _half_width(view, post):
+def _half_width(view: View, post: int) -> NDArray:
     """Return half a post's width as a vector across the view, (3,) m."""
     away = _places(view.court, post, 0.0) - view.camera.centre_in_world
     across = np.cross([0, 0, 1.0], away)
     return across / np.linalg.norm(across) * WIDTH_M / 2
 
 
-def _axis(view, post, part, share):
+def _axis(view: View, post: int, part: ArrayLike, share: float) -> Ray | None:
     places, origin = _places(view.court, post, part), _places(view.court, post, share)
     half = _half_width(view, post)
     shown = _shows(view.camera, _places(view.court, post, [0.0, 1.0]), half)
-    seen = line_profiles.look(
+    seen = line_profiles.sample_stretch(
         view.grey, view.camera, places, origin, half, shown, SEARCH_PX, view.blur_px
     )
     if seen is None:
@@ -98,22 +86,24 @@ def _axis(view, post, part, share):
     shift = line_shift.shift(seen, polarity=0, blur_px=view.blur_px)
     if not shift or shift.score < LEAST_SCORE or shift.share < LEAST_SHARE:
         return None
-    tangent, normal = line_profiles.axes(view.camera, origin[None], places[1] - places[0], half)
+    tangent, normal = line_profiles.tangent_and_normal(
+        view.camera, origin[None], places[1] - places[0], half
+    )
     moved = (shift.low_px + shift.high_px) / 2
     direction = tangent[0] + shift.slope * normal[0]
-    start = projection.project(view.camera, origin) + moved * normal[0]
+    start = project(view.camera, origin) + moved * normal[0]
     sigma = np.hypot(shift.sigma_px, OWN_PX)
     return Ray(start, direction / np.linalg.norm(direction), sigma, shift.share)
 
 
-def _shows(camera, ends, half):
+def _shows(camera: Camera, ends: NDArray, half: NDArray) -> Paint:
     """Return the post as what is expected in the picture; places are px."""
-    low, high = projection.project(camera, ends)
-    reach = np.linalg.norm(projection.project(camera, ends + half) - (low, high), axis=1)
-    length = np.linalg.norm(high - low)
+    low, high = project(camera, ends)
+    reach = np.linalg.norm(project(camera, ends + half) - (low, high), axis=1)
+    length = float(np.linalg.norm(high - low))
     along = (high - low) / length
 
-    def shows(xy):
+    def shows(xy: NDArray) -> NDArray:
         off = xy - low
         across = np.abs(off[..., 0] * along[1] - off[..., 1] * along[0])
         return across <= np.interp(off @ along, [0, length], reach)
@@ -121,19 +111,18 @@ def _shows(camera, ends, half):
     return Paint(lambda xy: xy, shows)
 
 
-def _covered(view, post, share):
-    """Say whether the other post stands before this one, at a share of its height."""
+def _covered(view: View, post: int, share: float) -> bool:
+    """Return whether the other post stands before this one, at a share of its height."""
     court, centre = view.court, view.camera.centre_in_world
     here, other = _places(court, post, share), _places(court, 1 - post, [0.0, 1.0])
     if np.linalg.norm(here - centre) < np.linalg.norm(other[0] - centre):
         return False
-    low, high = projection.project(view.camera, other)
+    low, high = project(view.camera, other)
     if not np.isfinite([low, high]).all():
         return False
-    width = np.linalg.norm(
-        projection.project(view.camera, other[0] + 2 * _half_width(view, 1 - post)) - low
-    )
-    at = projection.project(view.camera, here)
+    wide = other[0] + 2 * _half_width(view, 1 - post)
+    width = np.linalg.norm(project(view.camera, wide) - low)
+    at = project(view.camera, here)
     along = (high - low) / np.linalg.norm(high - low)
     off = at - low
     beside = abs(off[0] * along[1] - off[1] * along[0])
@@ -141,16 +130,14 @@ def _covered(view, post, share):
     return bool(beside < width + COVERED_PX and beyond < width + COVERED_PX)
 
 
-def _end(view, post, ray):
-    """Return how far along its axis a post ends from where it should, and its sigma; None if unseen."""
+def _end(view: View, post: int, ray: Ray) -> tuple[float, float] | None:
+    """Return how far along its axis a post's end is off, and its sigma; None if unseen."""
     reach = END_SEARCH * view.camera.size[0]
     steps = np.arange(-reach - END_PX, reach + END_PX, END_STEP_PX)
     normal = np.array([-ray.direction[1], ray.direction[0]])
     half = _half_width(view, post)
     at = _places(view.court, post, 1.0)
-    width = np.linalg.norm(
-        projection.project(view.camera, at + half) - projection.project(view.camera, at)
-    )
+    width = np.linalg.norm(project(view.camera, at + half) - project(view.camera, at))
     core = np.linspace(-0.5, 0.5, 3) * width
     beside = np.linspace(*BESIDE_PX, 5) + width
     inside = _brightness(view.grey, ray, normal, steps, core)
@@ -158,39 +145,35 @@ def _end(view, post, ray):
     for side in _sides(view, post, normal):
         outside = _brightness(view.grey, ray, normal, steps, side * beside)
         found.append(_step(inside - outside, steps, reach, view.blur_px))
-    found = [step for step in found if step]
-    return max(found, key=lambda step: step[2])[:2] if found else None
+    steps_found = [step for step in found if step]
+    return max(steps_found, key=lambda step: step[2])[:2] if steps_found else None
 
 
-def _sides(view, post, normal):
+def _sides(view: View, post: int, normal: NDArray) -> tuple[int, ...]:
     """Return on which sides the background beside the tip is free of the net: of -1 and 1."""
     at = _places(view.court, post, 1.0)
     outwards = np.array([0.1 if post else -0.1, 0, 0])
-    shown = (
-        projection.project(view.camera, at + outwards) - projection.project(view.camera, at)
-    ) @ normal
+    shown = (project(view.camera, at + outwards) - project(view.camera, at)) @ normal
     return (-1, 1) if abs(shown) < 1.0 else (int(np.sign(shown)),)
 
 
-def _brightness(grey, ray, normal, along, across):
+def _brightness(grey, ray, normal, along, across) -> NDArray:
     places = ray.start + along[:, None, None] * ray.direction + across[:, None] * normal
     places = places.astype(np.float32)
-    seen = cv2.remap(grey, places[..., 0], places[..., 1], cv2.INTER_LINEAR,
-                     borderMode=cv2.BORDER_REPLICATE)  # fmt: skip
+    replicate = {"borderMode": cv2.BORDER_REPLICATE}
+    seen = cv2.remap(grey, places[..., 0], places[..., 1], cv2.INTER_LINEAR, **replicate)
     return seen.mean(axis=1)
 
 
-def _step(values, steps, reach, blur_px):
-    """Fit the end of what differs from 0; return (place, sigma, share of variance explained) or None."""
-    best = None
+def _step(values, steps, reach, blur_px) -> tuple[float, float, float] | None:
+    """Fit where values fall to 0; return place, sigma, share of variance explained, or None."""
+    fits = []
     for place in np.arange(-reach, reach + 1e-9, 0.1):
         below = (1 + erf((place - steps) / blur_px / np.sqrt(2))) / 2
         design = np.stack([below, np.ones_like(below)], axis=1)
         found = np.linalg.solve(design.T @ design, design.T @ values)
-        rest = float(np.sum((values - design @ found) ** 2))
-        if best is None or rest < best[0]:
-            best = rest, place, found
-    rest, place, (contrast, beyond) = best
+        fits.append((float(np.sum((values - design @ found) ** 2)), place, found))
+    rest, place, (contrast, beyond) = min(fits, key=lambda fit: fit[0])
     explained = 1 - rest / max(float(np.sum((values - values.mean()) ** 2)), 1e-9)
     post_goes_on = abs(beyond) > MOST_BEYOND * abs(contrast)
     if explained < LEAST_FIT or post_goes_on or abs(place) > reach - 0.3:

@@ -1,15 +1,21 @@
-"""Where the named points of a court are in a picture: proposed for confirmation, by its painted lines."""
+"""Propose where the named points of a court are in a picture, by its painted lines."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.click_proposals import line_profiles, post_tips, refine_pose
+from courtside.calibration.click_proposals.line_shift import Shift
 from courtside.calibration.click_proposals.view import Ray, View
 from courtside.calibration.court import line_edges
-from courtside.geometry import camera as projection
+from courtside.calibration.court.court import Court
+from courtside.calibration.court.line_edges import Edge
+from courtside.geometry.camera import Camera, project
 
-STRETCH_M = 1.6
+# ASSUME: all of these are tuned by hand on the virtual sessions.
+STRETCH_M = 1.6  # of line that is measured at once
 SHARES = (1.0, 0.5, 0.25, 0.25)  # of the search, in successive rounds
 LEAST_PX = 2.0  # of search
 LEAST_SCORE, MOST_RIVAL, LEAST_SHARE = 0.25, 0.85, 0.5  # from which a stretch is believed
@@ -17,10 +23,11 @@ FEWEST = 5  # stretches by which a camera is moved
 SIDE_PX, SIDE_M = 45.0, (0.5, 2.5)  # of line on each side of a point
 NEAR_PX = 2.5  # search around a point, once the camera is moved
 CAMERA_PX = 0.6  # of a point on the floor by the moved camera: paint is some mm off the model
-HEIGHT_M = 0.03  # of one above the floor: lines on the floor tell heights badly
-OFF_SIGMA = 4.0  # what is farther from where the camera has it is another thing
-PAINT_PX = 0.1  # what profiles do not tell of their own error: codec, neighbours
+HEIGHT_M = 0.03  # of one above the floor: lines on the floor determine heights badly
+OFF_SIGMA = 4.0  # an edge farther from where the camera expects it is another one
+PAINT_PX = 0.1  # error not in the fit of a profile: codec, neighbouring paint
 BLUR = 0.75, 1920  # px of blur, per px of width beyond this
+_Found = tuple[NDArray, NDArray, float, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,56 +36,47 @@ class Proposals:
 
     Attributes
     ----------
-    xy : (P, 2) float
-        Px; NaN where nothing is proposed.
-    sigma_px : (P,) float
-        Expected standard deviation, the larger of both axes; NaN where nothing is proposed.
-    confidence : (P,) float
-        0..1: share of what is expected near the point that is seen, less where the place is uncertain.
-    reason : tuple of str, length P
-        Why nothing is proposed; empty where something is.
-    camera : courtside.geometry.camera.Camera
-        The given one, moved so that the lines fit.
+    xy : (P, 2) float; px; NaN where nothing is proposed
+    sigma_px : (P,) float; expected standard deviation, the larger of both axes; NaN where nothing
+        is proposed
+    confidence : (P,) float; 0..1: share of what is expected near the point that is seen, less where
+        the place is uncertain
+    reason : length P; why nothing is proposed; empty where something is
+    camera : the given one, moved so that the lines fit
     """
 
-    xy: np.ndarray
-    sigma_px: np.ndarray
-    confidence: np.ndarray
-    reason: tuple
-    camera: projection.Camera
+    xy: NDArray
+    sigma_px: NDArray
+    confidence: NDArray
+    reason: tuple[str, ...]
+    camera: Camera
 
 
-def propose(camera, image, court, *, search_px, max_sigma_px=1.0, lines="light"):
+def propose(
+    camera: Camera,
+    image: NDArray,
+    court: Court,
+    *,
+    search_px: float,
+    max_sigma_px: float = 1.0,
+    lines: str = "light",
+) -> Proposals:
     """Propose the points of a court in one camera's picture.
+
+    Raises `ValueError` if the picture has not the camera's size.
+
+    First the camera is moved so that all painted lines lie where they are seen, stretch by stretch.
+    Then each point is measured by the lines it names, near it: their edges are fitted and
+    intersected; along lines that meet at an acute angle the moved camera helps. A post's tip is
+    where its axis, fitted likewise, ends. A point that is not seen is not proposed, even where the
+    camera predicts it.
 
     Parameters
     ----------
-    camera : courtside.geometry.camera.Camera
-        As known from two or three clicks: the court it expects may be `search_px` off.
-    image : (H, W, 3) uint8
-        Its static picture.
-    court : courtside.calibration.court.court.Court
-    search_px : float
-    max_sigma_px : float
-        A point whose expected error is larger is not proposed.
-    lines : str
-        "light" or "dark", against the floor.
-
-    Returns
-    -------
-    proposals : Proposals
-
-    Raises
-    ------
-    ValueError
-        If the picture has not the camera's size.
-
-    Notes
-    -----
-    First the camera is moved so that all painted lines lie where they are seen, stretch by stretch. Then
-    each point is measured by the lines it names, near it: the edges named are fitted and intersected; along
-    lines that meet at an acute angle the moved camera helps. A post's tip is where its axis, fitted likewise,
-    ends. Nothing is proposed where the camera alone tells.
+    camera : as known from two or three clicks: the court it expects may be `search_px` off
+    image : (H, W, 3) uint8; its static picture
+    max_sigma_px : a point whose expected error is larger is not proposed
+    lines : "light" or "dark", against the floor
     """
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")
@@ -94,35 +92,20 @@ def propose(camera, image, court, *, search_px, max_sigma_px=1.0, lines="light")
     return _checked(view, found, max_sigma_px)
 
 
-def register(view, search_px):
-    """Move a view's camera so that the lines fit.
-
-    Parameters
-    ----------
-    view : View
-    search_px : float
-
-    Returns
-    -------
-    view : View
-    reason : str
-        Why it could not be moved; empty where it could.
-    """
+def register(view: View, search_px: float) -> tuple[View, str]:
+    """Move a view's camera so that the lines fit; also return why not, empty if it was moved."""
     line, ends = line_edges.stretches(view.court, STRETCH_M)
     middle = ends.mean(axis=1)
     for share in SHARES:
         reach = max(share * search_px, LEAST_PX)
-        shifts = [
-            view.shift(number, piece, at, reach)
-            for number, piece, at in zip(line, ends, middle, strict=True)
-        ]
+        shifts = [view.shift(*each, reach) for each in zip(line, ends, middle, strict=True)]
         good = np.array([_believed(shift) for shift in shifts])
         if good.sum() < FEWEST or len({line[at] for at in np.flatnonzero(good)}) < 3:
             return view, "too few painted lines are seen where they are expected"
         halves = np.array([line_edges.middle_line(view.court, at)[1] for at in line[good]])
         along = ends[good, 1] - ends[good, 0]
-        normal = line_profiles.axes(view.camera, middle[good], along, halves)[1]
-        used = [shift for shift in shifts if _believed(shift)]
+        normal = line_profiles.tangent_and_normal(view.camera, middle[good], along, halves)[1]
+        used = [shift for shift in shifts if shift is not None and _believed(shift)]
         offset = np.array([(shift.low_px + shift.high_px) / 2 for shift in used])
         sigma = np.array([shift.sigma_px for shift in used])
         moved, _ = refine_pose.refine(view.camera, middle[good], normal, offset, sigma)
@@ -130,7 +113,7 @@ def register(view, search_px):
     return view, ""
 
 
-def _believed(shift):
+def _believed(shift: Shift | None) -> bool:
     return (
         shift is not None
         and shift.score > LEAST_SCORE
@@ -139,15 +122,13 @@ def _believed(shift):
     )
 
 
-def _point(view, at):
+def _point(view: View, at: int) -> _Found:
     """Return (xy, covariance, share, reason) of one point."""
     court, place = view.court, view.court.xyz[at]
-    expected = projection.project(view.camera, place)
+    expected = project(view.camera, place)
     nothing = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0
-    inside = np.isfinite(expected).all() and (
-        (expected > 1) & (expected < np.array(view.camera.size) - 2)
-    )
-    if not np.all(inside):
+    inside = (expected > 1) & (expected < np.array(view.camera.size) - 2)
+    if not (np.isfinite(expected).all() and inside.all()):
         return *nothing, "outside the picture"
     post = line_edges.post(court, at)
     edges = line_edges.named(court)[at]
@@ -160,12 +141,13 @@ def _point(view, at):
         rays.append(post_tips.axis(view, post))
     if len(rays) < 2:
         return *nothing, "fewer than two edges meet here"
-    if any(ray is None for ray in rays):
+    one, other = rays[:2]
+    if one is None or other is None:
         return *nothing, "a line it names is not seen near it"
-    return _meet(*rays)
+    return _meet(one, other)
 
 
-def _edge(view, edge, place):
+def _edge(view: View, edge: Edge, place: NDArray) -> Ray | None:
     """Return the seen edge near a point as a Ray, None where it is not seen."""
     ends, half = line_edges.middle_line(view.court, edge.line)
     origin = place.copy()
@@ -173,42 +155,40 @@ def _edge(view, edge, place):
     along = 1 - edge.axis
     step = np.zeros(3)
     step[along] = 0.05
-    scale = np.linalg.norm(
-        projection.project(view.camera, origin + step)
-        - projection.project(view.camera, origin - step)
-    )
-    reach_m = np.clip(SIDE_PX / max(scale / 0.1, 1e-6), *SIDE_M)
+    ends_px = project(view.camera, origin + step), project(view.camera, origin - step)
+    scale = np.linalg.norm(ends_px[0] - ends_px[1])
+    reach_m = np.clip(SIDE_PX / max(float(scale) / 0.1, 1e-6), *SIDE_M)
     stretch = np.array([origin, origin])
     stretch[0, along] = max(origin[along] - reach_m, ends[0, along])
     stretch[1, along] = min(origin[along] + reach_m, ends[1, along])
     shift = view.shift(edge.line, stretch, origin, NEAR_PX)
     if not shift or shift.score < LEAST_SCORE or shift.near_share < LEAST_SHARE:
         return None
-    tangent, normal = line_profiles.axes(view.camera, origin[None], ends[1] - ends[0], half)
+    tangent, normal = line_profiles.tangent_and_normal(
+        view.camera, origin[None], ends[1] - ends[0], half
+    )
     moved = {-1: shift.low_px, 0: (shift.low_px + shift.high_px) / 2, 1: shift.high_px}[edge.side]
-    start = projection.project(view.camera, place) + moved * normal[0]
+    start = project(view.camera, place) + moved * normal[0]
     direction = tangent[0] + shift.slope * normal[0]
     sigma = np.hypot(shift.sigma_px, PAINT_PX)
     share = min(shift.near_share, shift.share)
     return Ray(start, direction / np.linalg.norm(direction), sigma, share)
 
 
-def _meet(one, other):
+def _meet(one: Ray, other: Ray) -> _Found:
     """Return (xy, covariance, share, reason) where two rays meet."""
     across = np.array([[-ray.direction[1], ray.direction[0]] for ray in (one, other)])
     if abs(np.linalg.det(across)) < 0.03:
         return np.full(2, np.nan), np.full((2, 2), np.nan), 0.0, "its lines run into one another"
     back = np.linalg.inv(across)
-    xy = back @ np.array(
-        [normal @ ray.start for normal, ray in zip(across, (one, other), strict=True)]
-    )
+    xy = back @ np.array([across[0] @ one.start, across[1] @ other.start])
     covariance = back @ np.diag([one.sigma_px**2, other.sigma_px**2]) @ back.T
     return xy, covariance, min(one.share, other.share), ""
 
 
-def _checked(view, found, max_sigma_px):
+def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Proposals:
     """Return proposals without those that are uncertain or far from where the camera has them."""
-    expected = projection.project(view.camera, view.court.xyz)
+    expected = project(view.camera, view.court.xyz)
     n = len(found)
     xy, sigma_px, confidence = np.full((n, 2), np.nan), np.full(n, np.nan), np.zeros(n)
     reasons = []
@@ -226,21 +206,21 @@ def _checked(view, found, max_sigma_px):
     return Proposals(xy, sigma_px, confidence, tuple(reasons), view.camera)
 
 
-def _with_camera(place, covariance, expected):
-    """Return the place to which the edges near it and the camera, moved to fit all lines, agree best."""
+def _with_camera(place: NDArray, covariance: NDArray, expected: NDArray) -> tuple[NDArray, NDArray]:
+    """Combine the place by the edges near it with that by the camera, moved to fit all lines."""
     gain = covariance @ np.linalg.inv(covariance + CAMERA_PX**2 * np.eye(2))
     return place + gain @ (expected - place), covariance - gain @ covariance
 
 
-def _model_error(view, at):
-    """Return how far a point may be from where the moved camera has it, standard deviation in px."""
+def _model_error(view: View, at: int) -> float:
+    """Return the standard deviation, px, of where the moved camera projects a point."""
     place, court = view.court.xyz[at], view.court
     away = np.linalg.norm(place - view.camera.centre_in_world)
     off_m = np.hypot(court.sigma_m[at], HEIGHT_M * (place[2] > 0))
     return np.hypot(CAMERA_PX, off_m * view.camera.K[0, 0] / away)
 
 
-def _why_not(off, allowed, sigma, max_sigma_px):
+def _why_not(off: NDArray, allowed: NDArray, sigma: float, max_sigma_px: float) -> str:
     """Return why a place is not proposed, empty where it is."""
     if sigma > max_sigma_px:
         return f"uncertain by {sigma:.1f} px"

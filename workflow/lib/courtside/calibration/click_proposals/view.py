@@ -1,8 +1,8 @@
-"""A picture of a court with the camera that expects it, as measurements of lines and posts share them."""
+"""A picture of a court and its camera, shared by the measurements of lines and posts."""
 
 from dataclasses import dataclass
 
-import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.click_proposals import line_profiles, line_shift
 from courtside.calibration.court import line_edges
@@ -12,47 +12,36 @@ from courtside.geometry.camera import Camera
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture, its camera and what all measurements in it have in common.
+    """A picture and its camera, with what all measurements in it have in common.
 
     Attributes
     ----------
     grey : (H, W) float32
-    camera : Camera
-    court : Court
-    blur_px : float
-        Of the picture, standard deviation.
-    polarity : int
-        1 where lines are lighter than the floor, -1 where darker.
+    blur_px : of the picture, standard deviation
+    polarity : 1 where lines are lighter than the floor, -1 where darker
     """
 
-    grey: np.ndarray
+    grey: NDArray
     camera: Camera
     court: Court
     blur_px: float
     polarity: int
 
-    def shift(self, line, ends_m, origin_m, reach_px):
-        """Return how far a stretch of a painted line is off.
+    def shift(
+        self, line: int, ends_m: NDArray, origin_m: NDArray, reach_px: float
+    ) -> line_shift.Shift | None:
+        """Return how far a stretch of a painted line is off, None where it is not seen.
 
         Parameters
         ----------
-        line : int
-            Row of the court's `lines_m`.
-        ends_m : (2, 3) float
-            Of the stretch, on the line's middle.
-        origin_m : (3,) float
-            On the same straight line: where the shift is wanted.
-        reach_px : float
-            How far off the line may be.
-
-        Returns
-        -------
-        shift : line_shift.Shift or None
-            None where it is not seen.
+        line : row of the court's `lines_m`
+        ends_m : (2, 3) float; of the stretch, on the line's middle
+        origin_m : (3,) float; on the same straight line: where the shift is wanted
+        reach_px : how far off the line may be
         """
         _, half = line_edges.middle_line(self.court, line)
         paint = line_edges.paint(self.camera, self.court)
-        seen = line_profiles.look(
+        seen = line_profiles.sample_stretch(
             self.grey, self.camera, ends_m, origin_m, half, paint, reach_px, self.blur_px
         )
         if seen is None:
@@ -66,17 +55,13 @@ class Ray:
 
     Attributes
     ----------
-    start : (2,) float
-        On it, px, where it is needed.
-    direction : (2,) float
-        Unit length.
-    sigma_px : float
-        Standard deviation across it at `start`.
-    share : float
-        Of what was expected near `start` that is seen, 0..1.
+    start : (2,) float; on it, px, where it is needed
+    direction : (2,) float; unit length
+    sigma_px : standard deviation across it at `start`
+    share : of what was expected near `start` that is seen, 0..1
     """
 
-    start: np.ndarray
-    direction: np.ndarray
+    start: NDArray
+    direction: NDArray
     sigma_px: float
     share: float

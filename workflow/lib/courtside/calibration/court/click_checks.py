@@ -1,50 +1,52 @@
-"""Wrong clicks of court points: found, named, and told from line centres taken for edges."""
+"""Find wrong clicks of court points, and tell them from line centres clicked in place of edges."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.bundle import solver
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, sfm_alignment
-from courtside.geometry import camera as camera_models
+from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.point_covariance import MEDIAN_2D
+from courtside.geometry.camera import Camera, project
 from courtside.study.errors import InputError
 
-MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
-WRONG = 6.0  # a click this many sigmas off is wrong
-CERTAIN = 4.0  # the inward shift must be this many standard deviations from none
-CENTRES = (0.5, 1.6)  # of half a line width: shifts that mean line centres
+WRONG = 6.0  # ASSUME: a click this many sigmas off is wrong
+CERTAIN = 4.0  # ASSUME: the inward shift must be this many standard deviations from none
+CENTRES = (0.5, 1.6)  # ASSUME: of half a line width: shifts that mean line centres
+# In half line widths: edges, half way, line centres; three points determine a parabola.
+SHIFTS = (0.0, 0.5, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class LeaveOneOut:
-    """Every clicked point against an alignment that it had no part in.
+    """Every clicked point against an alignment to all the other points.
 
     Attributes
     ----------
-    points : tuple of str, length P
-    cameras : tuple of str, length C
-    residual_m : (P, 3) float
-        Reconstructed minus true place, in the world; NaN where fewer than two cameras have a click.
-    projected_px : (C, P, 2) float
-        Where the court's point should be in the picture.
-    clicked_px : (C, P, 2) float
-        NaN where not clicked.
+    residual_m : (P, 3) float; reconstructed minus true place, in the world; NaN where fewer than
+        two cameras have a click
+    projected_px : (C, P, 2) float; where the court's point should be in the picture
+    clicked_px : (C, P, 2) float; NaN where not clicked
     """
 
-    points: tuple
-    cameras: tuple
-    residual_m: np.ndarray
-    projected_px: np.ndarray
-    clicked_px: np.ndarray
+    points: tuple[str, ...]
+    cameras: tuple[str, ...]
+    residual_m: NDArray
+    projected_px: NDArray
+    clicked_px: NDArray
 
     @property
-    def error_cm(self):
+    def error_cm(self) -> NDArray:
         """Distance in the world, (P,) cm."""
         return 100 * np.linalg.norm(self.residual_m, axis=1)
 
     @property
-    def error_px(self):
+    def error_px(self) -> NDArray:
         """Distance in each picture, (C, P) px."""
         return np.linalg.norm(self.clicked_px - self.projected_px, axis=-1)
 
@@ -55,12 +57,8 @@ class WrongClick:
 
     Attributes
     ----------
-    camera, point : str
-    error_px : float
-    error_cm : float
-        Of the point in the world; NaN where one camera alone has it.
-    looks_like : str or None
-        Another point of the court that lies where this one was clicked.
+    error_cm : of the point in the world; NaN where one camera alone has it
+    looks_like : another point of the court that lies where this one was clicked
     """
 
     camera: str
@@ -69,39 +67,23 @@ class WrongClick:
     error_cm: float
     looks_like: str | None
 
-    def __str__(self):
+    def __str__(self) -> str:
         other = f", where {self.looks_like} should be" if self.looks_like else ""
         size = "" if np.isnan(self.error_cm) else f" ({self.error_cm:.0f} cm on the court)"
         return (
-            f"camera {self.camera}: point {self.point}: expected the click near the place that the other "
-            f"clicks give, found it {self.error_px:.1f} px away{size}{other}; click it again or delete it"
+            f"camera {self.camera}: point {self.point}: expected the click near the place that the "
+            f"other clicks give, found it {self.error_px:.1f} px away{size}{other}; click it again "
+            "or delete it"
         )
 
 
-def leave_one_out(cameras, clicks, court):
+def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court) -> LeaveOneOut:
     """Compare each court point with where all the other points put it.
 
-    Parameters
-    ----------
-    cameras : list of Camera
-        Fixed cameras in one frame, of structure from motion or the world.
-    clicks : dict of str to (P, 2) float
-        By camera name, px; NaN where not clicked.
-    court : courtside.calibration.court.court.Court
-
-    Returns
-    -------
-    table : LeaveOneOut
-
-    Raises
-    ------
-    InputError
-        If, without one point, the others cannot be aligned: too few, collinear, mirrored.
-
-    Notes
-    -----
-    The cameras stay; the similarity to the world is found again without the point (robustly, so that another
-    wrong click does not spread).
+    The cameras, in one frame of structure from motion or the world, stay. The similarity to the
+    world is found again without the point (robustly, so that another wrong click does not spread).
+    Raises `InputError` if without one point, the others cannot be aligned: too few, collinear,
+    mirrored.
     """
     xyz = sfm_alignment.reconstruct(cameras, clicks)
     residual = np.full_like(xyz, np.nan)
@@ -115,24 +97,18 @@ def leave_one_out(cameras, clicks, court):
         fitted = sfm_alignment.align(court, others)[0] if known else world_from_sfm
         residual[at] = fitted.points(xyz[at]) - court.xyz[at]
         for row, camera in enumerate(cameras):
-            projected[row, at] = camera_models.project(fitted.camera(camera), court.xyz[at])
+            projected[row, at] = project(fitted.camera(camera), court.xyz[at])
     names = tuple(camera.name for camera in cameras)
     return LeaveOneOut(court.points, names, residual, projected, clicked)
 
 
-def find_wrong_clicks(table, *, sigma_px=1.0):
-    """Name the clicks that the others contradict.
+def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[WrongClick]:
+    """Return the clicks that the others contradict, the worst first.
 
     Parameters
     ----------
-    table : LeaveOneOut
-        Of six points or more: with fewer, one wrong click spoils what the others say.
-    sigma_px : float
-        Of a good click per axis, at least; where a camera's clicks scatter more, that counts.
-
-    Returns
-    -------
-    wrong : list of WrongClick, the worst first
+    table : of six points or more: with fewer, one wrong click spoils what the others say
+    sigma_px : of a good click per axis, at least; where a camera's clicks scatter more, that counts
     """
     error = table.error_px
     wrong = []
@@ -145,39 +121,26 @@ def find_wrong_clicks(table, *, sigma_px=1.0):
             away = np.linalg.norm(table.projected_px[row] - table.clicked_px[row, at], axis=-1)
             near = int(np.argmin(np.where(np.isfinite(away), away, np.inf)))
             other = table.points[near] if near != at and away[near] < WRONG * sigma else None
-            wrong.append(
-                WrongClick(
-                    camera,
-                    table.points[at],
-                    float(error[row, at]),
-                    float(table.error_cm[at]),
-                    other,
-                )
-            )
+            off = float(error[row, at]), float(table.error_cm[at])
+            wrong.append(WrongClick(camera, table.points[at], *off, other))
     return sorted(wrong, key=lambda click: -click.error_px)
 
 
-def line_centre_pattern(court, xyz_in_sfm):
+def inward_shift_of_points(court: Court, xyz_in_sfm: NDArray) -> tuple[float, float]:
     """Find how far, in half line widths, all points lie inwards of the edges that the court names.
+
+    Least squares of the residuals over one shift along `court.to_line_centres` and a small
+    similarity together. The scale absorbs most of the shrinking; lines within the court determine
+    the rest.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-    xyz_in_sfm : (P, 3) float
-        Reconstructed court points, in any frame; NaN where missing.
+    xyz_in_sfm : (P, 3) float; reconstructed court points, in any frame; NaN where missing
 
     Returns
     -------
-    shift : float
-        0 where edges were clicked, 1 where line centres were.
-    sigma : float
-        Its standard deviation, from how far the points fit; inf where too few do.
-
-    Notes
-    -----
-    Least squares of the residuals, over one shift along `court.to_line_centres` and a small
-    similarity together: most of the shrinking is swallowed by the scale, the rest is what the lines within
-    the court tell.
+    shift : 0 where edges were clicked, 1 where line centres were
+    sigma : its standard deviation, from how far the points fit; inf where too few do
     """
     world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
     inwards = courts.to_line_centres(court)
@@ -196,7 +159,7 @@ def line_centre_pattern(court, xyz_in_sfm):
     return float(solution[0]), float(sigma)
 
 
-def _small_similarity(xyz):
+def _small_similarity(xyz: NDArray) -> NDArray:
     """Return derivatives (P, 3, 7) of points by translation, rotation and scale."""
     turned = np.zeros((len(xyz), 3, 3))
     for axis in range(3):
@@ -205,33 +168,30 @@ def _small_similarity(xyz):
     return np.concatenate([shifted, turned, xyz[..., None]], axis=2)
 
 
-def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None, table=None):
+def check(
+    court: Court,
+    cameras: Sequence[Camera],
+    clicks: ClickedPoints,
+    *,
+    sigma_px: float = 1.0,
+    inwards: tuple[float, float] | None = None,
+    table: LeaveOneOut | None = None,
+) -> list[str]:
     """Check clicked court points as far as the fixed cameras allow.
+
+    Raises `InputError` if the points cannot be this court: see `sfm_alignment.check`.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-    cameras : list of Camera
-        Fixed cameras in one frame.
-    clicks : dict of str to (P, 2) float
-        By camera name, px; NaN where not clicked.
-    sigma_px : float
-        Of a good click per axis.
-    inwards : (float, float), optional
-        Shift of all clicks towards line centres and its sigma, from `click_checks.shift`; without it,
-        `line_centre_pattern`.
-    table : LeaveOneOut, optional
-        Of these cameras and clicks, where it is known already.
+    cameras : in one frame
+    sigma_px : of a good click per axis
+    inwards : shift of all clicks towards line centres and its sigma, from `inward_shift`; by
+        default from `inward_shift_of_points`
+    table : of these cameras and clicks, where it is known already
 
     Returns
     -------
-    warnings : list of str
-        One line each: weak geometry, wrong clicks by camera and point, line centres.
-
-    Raises
-    ------
-    InputError
-        If the points cannot be this court: see `sfm_alignment.check`.
+    warnings : one line each: weak geometry, wrong clicks by camera and point, line centres
     """
     sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks)
     xyz = sfm_alignment.reconstruct(cameras, clicks)
@@ -241,44 +201,34 @@ def find(court, cameras, clicks, *, sigma_px=1.0, inwards=None, table=None):
     except InputError:
         return warnings  # too few points to leave one out, which `check` has said
     warnings += [str(click) for click in find_wrong_clicks(table, sigma_px=sigma_px)]
-    shift, sigma = inwards or line_centre_pattern(court, xyz)
+    shift, sigma = inwards or inward_shift_of_points(court, xyz)
     if CENTRES[0] < shift < CENTRES[1] and shift > CERTAIN * sigma:
         warnings.append(
-            f"court points: all lie inwards of the edges by {500 * court.line_width_m * shift:.0f} mm (+-"
-            f"{500 * court.line_width_m * sigma:.0f}), half a line width: line centres seem to be "
-            "clicked; click the edges that the court's file names"
+            f"court points: all lie inwards of the edges by {500 * court.line_width_m * shift:.0f} "
+            f"mm (+-{500 * court.line_width_m * sigma:.0f}), half a line width: line centres seem "
+            "to be clicked; click the edges that the court's file names"
         )
     return warnings
 
 
-SHIFTS = (0.0, 0.5, 1.0)  # in half line widths
-
-
-def shift(ties, clicks, court, **weights):
+def inward_shift(
+    ties: joint_adjustment.Ties, clicks: ClickedPoints, court: Court, **weights: Any
+) -> tuple[float, float]:
     """Find how far, in half line widths, the clicks lie inwards of the edges that the court names.
+
+    The cameras are solved for the court as it is, half way, and with all points at line centres.
+    The cost is a parabola of the shift: its minimum is the shift and its curvature gives sigma.
+    `inward_shift_of_points` finds a third of the shift, because adjusted cameras have absorbed the
+    rest.
 
     Parameters
     ----------
-    ties : courtside.calibration.court.joint_adjustment.Ties
-        Of a session with a court.
-    clicks : dict of str to (P, 2) float
-        By camera; NaN where not clicked.
-    court : courtside.calibration.court.court.Court
-    **weights
-        Of the clicks, as for `joint_adjustment.solve`.
+    **weights : of the clicks, as for `joint_adjustment.solve`
 
     Returns
     -------
-    shift : float
-        0 where edges were clicked, 1 where line centres were.
-    sigma : float
-        Its standard deviation; inf where the clicks do not tell.
-
-    Notes
-    -----
-    The cameras are solved for the court as it is, half way, and with all points at line centres; the cost is
-    a parabola of the shift, whose minimum and curvature are wanted. `click_checks.line_centre_pattern`, which
-    looks at where adjusted cameras put the points, finds a third of it: the cameras have swallowed the rest.
+    shift : 0 where edges were clicked, 1 where line centres were
+    sigma : its standard deviation; inf where the clicks do not tell
     """
     inwards, costs = courts.to_line_centres(court), []
     for share in SHIFTS:

@@ -1,10 +1,13 @@
 """A court of known size: named points, the line edges that meet there, painted lines, net."""
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera_fields
 from courtside.study.configuration import yaml_files
@@ -14,79 +17,67 @@ NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 KEYS = {
     "description", "size_m", "line_width_m", "sigma_m", "points", "sets", "lines_m", "net",
 }  # fmt: skip
-NET_KEYS = {"y_m": (), "x_m": (2,), "post_height_m": (), "mid_height_m": ()}
-ON_EDGE_M = 1e-6
+NET_KEYS: dict[str, tuple[int, ...]] = {
+    "y_m": (), "x_m": (2,), "post_height_m": (), "mid_height_m": ()
+}  # fmt: skip
+ON_EDGE_M = 1e-6  # for rounding only: files state millimetres
+# Clicked court points by camera name: (P, 2) px in the order of `Court.points`, NaN where not
+# clicked.
+ClickedPoints: TypeAlias = Mapping[str, NDArray]
 SEE = "see config/courts/badminton.yaml"
 
 
 @dataclass(frozen=True, eq=False)
 class Court:
-    """A court, with its outer corner as origin, x along its short side, y along its long side, z up.
+    """A court: origin in its outer corner, x along its short side, y along its long side, z up.
 
     Attributes
     ----------
-    name : str
-        As in the file name.
-    description : str
-    size_m : (2,) float
-        Along x and y, to the outer edges of the lines.
-    line_width_m : float
-    points : tuple of str, length P
-    xyz : (P, 3) float
-        Metres.
-    edges : tuple of str, length P
-        Which edges meet at the point, in words.
-    sigma_m : (P,) float
-        How far a real court is from `xyz`, standard deviation per axis.
-    sets : dict of str to tuple of str
-        Named subsets of `points`; "all" is always there.
-    lines_m : (L, 4) float
-        Painted rectangles: x0 y0 x1 y1.
-    net : dict or None
-        `y_m`, `x_m` [left, right], `post_height_m`, `mid_height_m`.
+    name : as in the file name
+    size_m : (2,) float; along x and y, to the outer edges of the lines
+    xyz : (P, 3) float; m
+    edges : length P; which edges meet at the point, in words
+    sigma_m : (P,) float; how far a real court is from `xyz`, standard deviation per axis
+    sets : named subsets of `points`; "all" is always there
+    lines_m : (L, 4) float; painted rectangles: x0 y0 x1 y1
+    net : `y_m`, `x_m` [left, right], `post_height_m`, `mid_height_m`; None without a net
     """
 
     name: str
     description: str
-    size_m: np.ndarray
+    size_m: NDArray
     line_width_m: float
-    points: tuple
-    xyz: np.ndarray
-    edges: tuple
-    sigma_m: np.ndarray
-    sets: dict
-    lines_m: np.ndarray
+    points: tuple[str, ...]
+    xyz: NDArray
+    edges: tuple[str, ...]
+    sigma_m: NDArray
+    sets: dict[str, tuple[str, ...]]
+    lines_m: NDArray
     net: dict | None
 
-    def indices(self, chosen):
-        """Return the positions in `points` of a set's name or a list of points, (n,) int."""
+    def line_corners(self) -> tuple[NDArray, NDArray]:
+        """Return the low and the high corner of each painted rectangle, (L, 2) m each."""
+        ends = self.lines_m[:, :2], self.lines_m[:, 2:]
+        return np.minimum(*ends), np.maximum(*ends)
+
+    def indices(self, chosen: str | Sequence[str]) -> NDArray:
+        """Return the indices in `points` of a set, by its name, or of some points, (n,) int."""
         names = self.sets[chosen] if isinstance(chosen, str) else chosen
         return np.array([self.points.index(name) for name in names], dtype=int)
 
 
-def read(path):
-    """Read a court file.
+def read(path: str | Path) -> Court:
+    """Read a court file: YAML; `config/courts/badminton.yaml` shows every key.
 
-    Parameters
-    ----------
-    path : str or Path
-        YAML; `config/courts/badminton.yaml` shows every key.
-
-    Returns
-    -------
-    court : Court
-
-    Raises
-    ------
-    InputError
-        If a key is missing or unknown, a number is none, a set names an unknown point, two points are at one
-        place, a line leaves the court, or x is not the short side.
+    Raises `InputError` if a key is missing or unknown, a value is not a number, a set names an
+    unknown point, two points are at one place, a line leaves the court, or x is not the short side.
     """
     content = yaml_files.read(path)
     odd = KEYS.symmetric_difference(content)
     if odd:
         raise InputError(
-            f"{path}: expected the keys {', '.join(sorted(KEYS))}, found {', '.join(sorted(content))}; {SEE}"
+            f"{path}: expected the keys {', '.join(sorted(KEYS))}, found "
+            f"{', '.join(sorted(content))}; {SEE}"
         )
     sigma = content["sigma_m"] if isinstance(content["sigma_m"], dict) else {}
     floor_m, raised_m = (
@@ -114,15 +105,12 @@ def read(path):
     return court
 
 
-def _points(path, table):
+def _points(path, table) -> tuple[tuple[str, ...], NDArray, tuple[str, ...]]:
     if not isinstance(table, dict) or not table:
         raise InputError(f"{path}: expected points with xyz_m and edges, found none; {SEE}")
     for name, point in table.items():
-        if (
-            not NAME.fullmatch(name)
-            or not isinstance(point, dict)
-            or set(point) != {"xyz_m", "edges"}
-        ):
+        complete = isinstance(point, dict) and set(point) == {"xyz_m", "edges"}
+        if not NAME.fullmatch(name) or not complete:
             raise InputError(
                 f"{path}: points: expected names of a-z, 0-9, _ and -, each with xyz_m and edges, "
                 f"found {name}: {camera_fields.short(point)}; {SEE}"
@@ -133,7 +121,7 @@ def _points(path, table):
     return tuple(table), np.array(xyz), tuple(str(point["edges"]) for point in table.values())
 
 
-def _sets(path, table, points):
+def _sets(path, table, points) -> dict[str, tuple[str, ...]]:
     if not isinstance(table, dict):
         raise InputError(
             f"{path}: expected sets of points, found {camera_fields.short(table)}; {SEE}"
@@ -150,12 +138,13 @@ def _sets(path, table, points):
     return {name: tuple(members) for name, members in table.items()}
 
 
-def _net(path, table):
+def _net(path: str | Path, table: dict | None) -> dict | None:
     if table is None:
         return None
     if not isinstance(table, dict) or set(table) != set(NET_KEYS):
         raise InputError(
-            f"{path}: net: expected null or {', '.join(NET_KEYS)}, found {camera_fields.short(table)}; {SEE}"
+            f"{path}: net: expected null or {', '.join(NET_KEYS)}, found "
+            f"{camera_fields.short(table)}; {SEE}"
         )
     numbers = {
         key: camera_fields.numbers(f"{path}: net", key, table[key], s)
@@ -164,7 +153,7 @@ def _net(path, table):
     return {key: value.tolist() for key, value in numbers.items()}
 
 
-def _check(path, court):
+def _check(path: str | Path, court: Court) -> None:
     if not 0 < court.size_m[0] <= court.size_m[1]:
         raise InputError(
             f"{path}: expected size_m as [short side, long side], found {court.size_m.tolist()}; "
@@ -174,8 +163,9 @@ def _check(path, court):
     first, second = np.unravel_index(np.argmin(apart_m + 1e9 * np.eye(len(apart_m))), apart_m.shape)
     if len(court.points) < 3 or apart_m[first, second] < ON_EDGE_M:
         raise InputError(
-            f"{path}: expected three points or more at different places, found {court.points[first]} and "
-            f"{court.points[second]} {apart_m[first, second]:g} m apart; correct them"
+            f"{path}: expected three points or more at different places, found "
+            f"{court.points[first]} and {court.points[second]} {apart_m[first, second]:g} m apart; "
+            "correct them"
         )
     if min(court.line_width_m, court.sigma_m.min()) <= 0:
         raise InputError(
@@ -184,22 +174,17 @@ def _check(path, court):
     corners = court.lines_m.reshape(-1, 2)
     if (corners < -ON_EDGE_M).any() or (corners > court.size_m + ON_EDGE_M).any():
         raise InputError(
-            f"{path}: expected lines_m inside the court of {camera_fields.times(court.size_m)} m, found a "
-            "line beyond it; correct it"
+            f"{path}: expected lines_m inside the court of {camera_fields.times(court.size_m)} m, "
+            "found a line beyond it; correct it"
         )
 
 
-def to_line_centres(court):
-    """Return where each named point would move if line centres were taken for edges, (P, 3) m.
+def to_line_centres(court: Court) -> NDArray:
+    """Return how far each named point would move if line centres were taken for edges, (P, 3) m.
 
     Zero for raised points, and along lines whose middle is meant.
-
-    Parameters
-    ----------
-    court : Court
     """
-    low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
-    high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    low, high = court.line_corners()
     across = np.argmin(high - low, axis=1)  # the axis that the line's width is measured along
     shift = np.zeros_like(court.xyz)
     for line in range(len(low)):

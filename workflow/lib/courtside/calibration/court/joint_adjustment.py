@@ -1,43 +1,47 @@
-"""Fixed cameras in the court's frame: bundle adjustment of ties between images and clicked court points.
+"""Fixed cameras in the court's frame: bundle adjustment of tie points and clicked court points.
 
-The ties of one structure from motion are condensed once, into what they say of the fixed cameras; then
-any set
+The tie points of one structure from motion are marginalised once to the fixed cameras. Then any set
 of clicks costs milliseconds.
 """
 
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance as uncertainty
 from courtside.calibration.bundle import selection, solver, walk_parts
-from courtside.calibration.bundle.problem import FLEX, IMAGE, POSE
+from courtside.calibration.bundle.problem import FLEX, IMAGE, POSE, Network
+from courtside.calibration.bundle.walk_parts import Part
 from courtside.calibration.court import sfm_alignment
+from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.geometry.camera import Camera
+from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 
 UHD = 3840  # picture width at which click sigmas are stated
-# Focal lengths are tied to the bend of the whole, and the cost falls slowly along a curved valley. Most
-# sessions need 20 steps. With no more than these, one small one in thirty was 2.5 cm off instead of 0.9, and
-# without a court the fixed cameras of one in five 4 to 7 degrees instead of 1.2 to 1.7.
-ENOUGH = {"max_iterations": 200, "tolerance": 1e-6}
+# Focal lengths are correlated with the bend of the whole model, and the cost falls slowly along a
+# curved valley. Most sessions need 20 steps. With at most 20, one small session in thirty was 2.5
+# cm off instead of 0.9, and without a court the fixed cameras of one in five were 4 to 7 degrees
+# off instead of 1.2 to 1.7.
+MAX_ITERATIONS, TOLERANCE = 200, 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Ties:
-    """What structure from motion says of the fixed cameras.
+    """Tie-point constraints of one structure from motion on the fixed cameras.
 
     Attributes
     ----------
-    cameras : tuple of str
-        Names, in the order of the images of `knowledge.reference`.
-    sizes : tuple of (int, int)
-        Of their pictures, px.
-    knowledge : courtside.calibration.bundle.solver.Quadratic
-        In the court's frame, which the ties themselves leave open.
+    cameras : names, in the order of the images of `knowledge.reference`
+    sizes : of their pictures, px
+    knowledge : in the court's frame, which the ties themselves leave open
     """
 
-    cameras: tuple
-    sizes: tuple
+    cameras: tuple[str, ...]
+    sizes: tuple[tuple[int, int], ...]
     knowledge: solver.Quadratic
 
 
@@ -47,77 +51,60 @@ class Solution:
 
     Attributes
     ----------
-    cameras : list of Camera
-    network : courtside.calibration.bundle.problem.Network
-        Of the fixed cameras and the court points used.
-    covariance : (K, K) float
-        Of the network's columns: for each camera rotation (3, rad, in its own frame) and translation of
-        cam_from_world (3, m) and its flex (5, always 0), then for each camera its lens (`problem.LENS`).
+    network : of the fixed cameras and the court points used
+    covariance : (K, K) float; of the network's columns: for each camera rotation (3, rad, in its
+        own frame) and translation of cam_from_world (3, m) and its flex (5, always 0), then for
+        each camera its lens (`problem.LENS`)
     """
 
-    cameras: list
-    network: object
-    covariance: np.ndarray
+    cameras: list[Camera]
+    network: Network
+    covariance: NDArray
 
-    def point_covariance(self, xyz):
+    def point_covariance(self, xyz: NDArray) -> NDArray:
         """Return the covariance (N, 3, 3) m2 of points (N, 3) triangulated from exact pixels."""
         return uncertainty.point_covariance(self.network, self.covariance, xyz)
 
 
 def condense(
-    network,
-    fixed,
-    sizes,
-    clicks,
-    court,
+    network: Network,
+    fixed: Mapping[str, int],
+    sizes: Mapping[str, tuple[int, int]],
+    clicks: ClickedPoints,
+    court: Court,
     *,
-    images_per_part,
-    tie_sigma_px,
-    tie_loss,
-    click_sigma_px,
-    click_loss,
-    **thinning,
-):
-    """Adjust a network with its clicks, part by part, and keep what its ties say of the fixed cameras.
+    images_per_part: int,
+    tie_sigma_px: float,
+    tie_loss: float,
+    click_sigma_px: float,
+    click_loss: float,
+    **thinning: Any,
+) -> tuple[Ties, list[Part]]:
+    """Adjust a network with its clicks, part by part, and marginalise it to the fixed cameras.
+
+    Raises `InputError` if the clicks cannot give a frame.
 
     Parameters
     ----------
-    network : courtside.calibration.bundle.problem.Network
-        As `sfm.model.read` gives it.
-    fixed : dict of str to int
-        Index of each fixed camera's image; each has a lens of its own.
-    sizes : dict of str to (int, int)
-        Of their pictures, px.
-    clicks : dict of str to (P, 2) float
-        By camera; NaN where not clicked.
-    court : courtside.calibration.court.court.Court
-    images_per_part : int
-        See `walk_parts.split`.
-    tie_sigma_px : float
-        Weight of the ties. Their errors are not independent: it is larger than a feature's own noise.
-    tie_loss, click_loss : float
-        Where Cauchy's loss sets in, in sigmas.
-    click_sigma_px : float
-        Of a click per axis, at a picture width of 3840 px; in proportion at others.
-    **thinning
-        Arguments of `selection.thin`.
+    network : as `sfm.model.read` gives it
+    fixed : index of each fixed camera's image; each has a lens of its own
+    sizes : of their pictures, px
+    images_per_part : see `walk_parts.split`
+    tie_sigma_px : weight of the ties. Their errors are not independent: it is larger than a
+        feature's own noise
+    tie_loss, click_loss : scale of the Cauchy loss, in sigmas
+    click_sigma_px : of a click per axis, at a picture width of 3840 px; in proportion at others
+    **thinning : arguments of `selection.thin`
 
     Returns
     -------
-    ties : Ties
-        The mean over the parts.
-    parts : list of courtside.calibration.bundle.walk_parts.Part
-        With their chosen points after adjustment, in the court's frame.
-
-    Raises
-    ------
-    InputError
-        If the clicks cannot give a frame.
+    ties : the mean over the parts
+    parts : with their chosen points after adjustment, in the court's frame
     """
     cameras = selection.fixed_cameras(network, fixed, sizes)
     sigma_px = [click_sigma(click_sigma_px, sizes[name]) for name in fixed]
 
-    def adjusted(clicks, straightened):
+    def adjusted(clicks: ClickedPoints, straightened: bool) -> Iterator[Part]:
         in_world = selection.transform(network, _alignment(court, cameras, clicks))
         for part in walk_parts.split(in_world, list(fixed.values()), images_per_part):
             tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
@@ -133,131 +120,116 @@ def condense(
             }
             yield replace(part, network=_adjusted(tied, court, **marked))
 
-    def adjusted_cameras(clicks):
+    def adjusted_cameras(clicks: ClickedPoints) -> list[Camera]:
         part = next(adjusted(clicks, straightened=True))
         return _fixed_cameras(part.network, fixed, part.fixed, sizes)
 
     sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjusted_cameras)
-    parts = list(adjusted(clicks, sfm_alignment.is_bent(court, cameras, clicks)))
+    parts = list(adjusted(clicks, sfm_alignment.misses_court(court, cameras, clicks)))
     return _condensed(parts, tuple(fixed), sizes), parts
 
 
-def _fixed_cameras(network, names, at, sizes):
+def _fixed_cameras(network, names, at, sizes) -> list[Camera]:
     return selection.fixed_cameras(network, dict(zip(names, map(int, at), strict=True)), sizes)
 
 
-def _alignment(court, cameras, clicks):
+def _alignment(court, cameras, clicks) -> Sim3:
     return sfm_alignment.align(court, sfm_alignment.reconstruct(cameras, clicks))[0]
 
 
-def _adjusted_freely(network, fixed):
+def _adjusted_freely(network: Network, fixed: Sequence[int]) -> Network:
     """Return a network adjusted without clicks, in its free frame."""
-    network, _ = solver.adjust(_in_free_frame(network, fixed), **ENOUGH)
+    network = _in_free_frame(network, fixed)
+    network, _ = solver.adjust(network, max_iterations=MAX_ITERATIONS, tolerance=TOLERANCE)
     return _in_free_frame(network, fixed)  # which nothing held in place
 
 
-def _adjusted(network, court, **marked):
+def _adjusted(network: Network, court: Court, **marked: Any) -> Network:
     """Return a network adjusted with clicked court points, without these."""
     n_ties, n_seen = len(network.xyz), len(network.xy)
-    both = selection.add(network, court.xyz, court.sigma_m, **marked)
+    both = selection.add_control_points(network, court.xyz, court.sigma_m, **marked)
     if not np.isfinite(solver.cost(both)):
         raise InputError(
-            "court points: expected all before the cameras that saw them, found some behind after alignment; "
-            "structure from motion went wrong: take more bridging images"
+            "court points: expected all before the cameras that saw them, found some behind after "
+            "alignment; structure from motion went wrong: take more bridging images"
         )
-    both, _ = solver.adjust(both, **ENOUGH)
+    both, _ = solver.adjust(both, max_iterations=MAX_ITERATIONS, tolerance=TOLERANCE)
     return selection.select(
         both, np.arange(len(both.xyz)) < n_ties, np.arange(len(both.xy)) < n_seen
     )
 
 
-def condense_free(network, fixed, sizes, *, images_per_part, tie_sigma_px, tie_loss, **thinning):
-    """Adjust a network that no court scales, in a frame of its own.
-
-    Parameters
-    ----------
-    network, fixed, sizes, images_per_part, tie_sigma_px, tie_loss, **thinning
-        As for `condense`.
-
-    Returns
-    -------
-    ties : Ties
-        In the frame of `selection.free_frame`: the unit is the distance between the first two fixed
-        cameras.
-    parts : list of courtside.calibration.bundle.walk_parts.Part
-    """
+def condense_free(
+    network: Network,
+    fixed: Mapping[str, int],
+    sizes: Mapping[str, tuple[int, int]],
+    *,
+    images_per_part: int,
+    tie_sigma_px: float,
+    tie_loss: float,
+    **thinning: Any,
+) -> tuple[Ties, list[Part]]:
+    """Do as `condense` without a court, in the frame of `selection.free_frame`."""
     names, parts = tuple(fixed), []
     network = _in_free_frame(network, list(fixed.values()))
     for part in walk_parts.split(network, list(fixed.values()), images_per_part):
         tied = _ties_of(part.network, tie_sigma_px, tie_loss, thinning)
-        parts.append(replace(part, network=_adjusted_freely(tied, part.fixed)))
+        parts.append(replace(part, network=_adjusted_freely(tied, part.fixed.tolist())))
     return _condensed(parts, names, sizes), parts
 
 
-def _ties_of(network, sigma_px, loss_scale, thinning):
+def _ties_of(network, sigma_px, loss_scale, thinning) -> Network:
     network = selection.thin(network, **thinning)
     return selection.weigh(network, sigma_px=sigma_px, loss_scale=loss_scale)
 
 
-def _condensed(parts, names, sizes):
-    said = [selection.what_ties_say(part.network, part.fixed) for part in parts]
+def _condensed(parts, names, sizes) -> Ties:
+    said = [selection.marginalise(part.network, part.fixed) for part in parts]
     return Ties(names, tuple(sizes[name] for name in names), solver.mean(said))
 
 
-def _in_free_frame(network, fixed):
+def _in_free_frame(network: Network, fixed: Sequence[int]) -> Network:
     return selection.transform(network, selection.free_frame(network, fixed))
 
 
-def free(ties):
-    """Return the `Solution` of ties that no court scales; the covariance leaves out frame and scale.
-
-    Parameters
-    ----------
-    ties : Ties
-        Of `condense_free`.
-    """
+def free(ties: Ties) -> Solution:
+    """Return the `Solution` of `condense_free`; its covariance leaves out frame and scale."""
     network = ties.knowledge.reference
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
     return Solution(cameras, network, uncertainty.pseudo_inverse(ties.knowledge.information))
 
 
-def click_sigma(sigma_px_at_3840, size):
+def click_sigma(sigma_px_at_3840: float, size: tuple[int, int]) -> float:
     """Return the sigma of a click in a picture of this size, px."""
     return sigma_px_at_3840 * size[0] / UHD
 
 
-def largest_click_sigma(sigma_px_at_3840, cameras):
+def largest_click_sigma(sigma_px_at_3840: float, cameras: Sequence[Camera]) -> float:
     """Return the sigma of a click in the largest of the cameras' pictures, px."""
     return max(click_sigma(sigma_px_at_3840, camera.size) for camera in cameras)
 
 
 def solve(
-    ties, clicks, court, *, click_sigma_px, click_bias_px, click_loss, points=None, max_iterations=8
-):
-    """Find the fixed cameras from the condensed ties and any clicks.
+    ties: Ties,
+    clicks: ClickedPoints,
+    court: Court,
+    *,
+    click_sigma_px: float,
+    click_bias_px: float,
+    click_loss: float,
+    points: NDArray | None = None,
+    max_iterations: int = 8,
+) -> Solution:
+    """Find the fixed cameras from their tie-point constraints and any clicks.
+
+    Raises `InputError` if neither ties nor clicks place a camera.
 
     Parameters
     ----------
-    ties : Ties
-    clicks : dict of str to (P, 2) float
-        By camera; NaN where not clicked.
-    court : courtside.calibration.court.court.Court
-    click_sigma_px, click_loss : float
-        As for `condense`.
-    click_bias_px : float
-        What all clicks in one picture have in common, standard deviation per axis, at a width of 3840 px.
-    points : (P,) bool, optional
-        Court points to use; all without.
-    max_iterations : int
-
-    Returns
-    -------
-    solution : Solution
-
-    Raises
-    ------
-    InputError
-        If neither ties nor clicks place a camera.
+    click_sigma_px, click_loss : as for `condense`
+    click_bias_px : what all clicks in one picture have in common, standard deviation per axis, at a
+        width of 3840 px
+    points : (P,) bool; court points to use; by default all
     """
     network = _with_bias(ties, click_bias_px)
     use = np.ones(len(court.points), dtype=bool) if points is None else np.asarray(points)
@@ -265,7 +237,7 @@ def solve(
         at: np.where(use[:, None], clicks[name], np.nan) for at, name in enumerate(ties.cameras)
     }
     sigmas = {at: click_sigma(click_sigma_px, size) for at, size in enumerate(ties.sizes)}
-    network = selection.add(
+    network = selection.add_control_points(
         network, court.xyz, court.sigma_m, images, sigma_px=sigmas, loss_scale=click_loss
     )
     network, normal = solver.adjust(
@@ -279,20 +251,23 @@ def solve(
     return Solution(cameras, network, covariance)
 
 
-def _with_bias(ties, click_bias_px):
-    """Return the fixed cameras free to shift their clicks: the ties are condensed, so nothing else shifts."""
+def _with_bias(ties: Ties, click_bias_px: float) -> Network:
+    """Return the network of the fixed cameras, free to shift their clicks.
+
+    The flex stands for the clicks' bias: the ties are marginalised and have no flex of their own.
+    """
     network = ties.knowledge.reference
     flex_sigma = np.zeros((len(ties.cameras), len(FLEX)))
     flex_sigma[:, 3:] = [[click_sigma(click_bias_px, size)] for size in ties.sizes]
     return replace(network, flex_sigma=flex_sigma)
 
 
-def _shift_columns(network):
+def _shift_columns(network: Network) -> NDArray:
     first = IMAGE * np.arange(len(network.cam_from_world))
     return np.concatenate([first + IMAGE - 2, first + IMAGE - 1])
 
 
-def _check_placed(ties, normal):
+def _check_placed(ties: Ties, normal: solver.Normal) -> None:
     of_images = normal.active[: IMAGE * len(ties.cameras)].reshape(-1, IMAGE)
     lost = [
         name
@@ -301,6 +276,6 @@ def _check_placed(ties, normal):
     ]
     if lost:
         raise InputError(
-            f"camera {lost[0]}: expected matches with other images or clicked court points, found neither; "
-            "click points in it, or film the walk closer to it"
+            f"camera {lost[0]}: expected matches with other images or clicked court points, found "
+            "neither; click points in it, or film the walk closer to it"
         )

@@ -1,11 +1,14 @@
-"""Calibrating fixed cameras from known court points alone: the methods of the study by name."""
+"""Calibrate fixed cameras from known court points alone: the methods of the study by name."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.court import joint_adjustment, resection
+from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
 NAME = re.compile(r"(dlt|known)(\d+)(-board)?")
@@ -17,70 +20,56 @@ class Method:
 
     Attributes
     ----------
-    linear : bool
-        By DLT; otherwise by least squares.
-    board : bool
-        With the lens known from a chessboard; otherwise focal length and k1 are found too.
-    points : (n,) int
-        Court points used.
+    linear : by DLT; otherwise by least squares
+    board : with the lens known from a chessboard; otherwise focal length and k1 are found too
+    points : (n,) int; indices of the court points used
     """
 
     linear: bool
     board: bool
-    points: np.ndarray
+    points: NDArray
 
 
-def method(name, court):
+def method(name: str, court: Court) -> Method:
     """Return the `Method` that a calibration's name means.
 
-    Parameters
-    ----------
-    name : str
-        `known18`, `known8-board`, `dlt18`: the number is that of the court's points or of a set of them.
-    court : courtside.calibration.court.court.Court
-
-    Raises
-    ------
-    InputError
-        If the court has no set of that many points.
+    `known18`, `known8-board`, `dlt18`: the number is that of the court's points or of a set of
+    them. Raises `InputError` if the court has no set of that many points.
     """
-    kind, number, board = NAME.fullmatch(name).groups()
+    matched = NAME.fullmatch(name)
+    if matched is None:
+        raise ValueError(f"expected dlt or known with a number of points, found {name!r}")
+    kind, number, board = matched.groups()
     sets = [points for points in court.sets.values() if len(points) == int(number)]
     if not sets:
         there = {key: len(points) for key, points in court.sets.items()}
         raise InputError(
-            f"calibration {name}: expected a set of {number} points in court {court.name}, found {there}; "
-            "name one of these numbers"
+            f"calibration {name}: expected a set of {number} points in court {court.name}, found "
+            f"{there}; name one of these numbers"
         )
     return Method(kind == "dlt", board is not None, court.indices(sets[0]))
 
 
-def calibrate(way, court, clicks, sizes, lenses, *, click_sigma_px):
+def calibrate(
+    way: Method,
+    court: Court,
+    clicks: ClickedPoints,
+    sizes: Mapping[str, tuple[int, int]],
+    lenses: Mapping[str, Camera],
+    *,
+    click_sigma_px: float,
+) -> dict[str, resection.Linear | resection.Fitted]:
     """Calibrate each camera from its clicks.
+
+    Raises `InputError` if the points do not determine a camera.
 
     Parameters
     ----------
-    way : Method
-    court : courtside.calibration.court.court.Court
-    clicks : dict of str to (P, 2) float
-        By camera; NaN where not clicked.
-    sizes : dict of str to (int, int)
-        Of the pictures, px.
-    lenses : dict of str to Camera
-        K and dist by camera, for methods with a board.
-    click_sigma_px : float
-        At a picture width of 3840 px.
-
-    Returns
-    -------
-    found : dict of str to resection.Linear or resection.Fitted
-
-    Raises
-    ------
-    InputError
-        If the points do not determine a camera.
+    sizes : of the pictures, px
+    lenses : K and dist by camera, for methods with a board
+    click_sigma_px : at a picture width of 3840 px
     """
-    found = {}
+    found: dict[str, resection.Linear | resection.Fitted] = {}
     for name, size in sizes.items():
         xyz, xy = court.xyz[way.points], clicks[name][way.points]
         if way.linear:
@@ -99,13 +88,16 @@ def calibrate(way, court, clicks, sizes, lenses, *, click_sigma_px):
     return found
 
 
-def cameras(found):
-    """Return the cameras of `calibrate`'s results, or raise `InputError` where a linear one is none."""
+def cameras(found: Mapping[str, resection.Linear | resection.Fitted]) -> list[Camera]:
+    """Return the cameras of `calibrate`; raise `InputError` where DLT gave no valid camera."""
+    calibrated = []
     for name, result in found.items():
         if result.camera is None:
+            reason = result.reason if isinstance(result, resection.Linear) else ""
             raise InputError(
-                result.reason
-                or f"camera {name}: expected a linear calibration that is a camera, found one that is none; "
+                reason
+                or f"camera {name}: expected a camera from DLT, found a matrix that gives none; "
                 "click more points, more exactly, or calibrate by least squares"
             )
-    return [result.camera for result in found.values()]
+        calibrated.append(result.camera)
+    return calibrated

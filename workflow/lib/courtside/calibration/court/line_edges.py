@@ -1,13 +1,13 @@
-"""Which edges of which painted lines meet at each named point of a court."""
+"""Which edges of which painted lines meet at each named point of a court, and where paint is."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from courtside.geometry import camera as cameras
-
-ON_EDGE_M = 1e-6
+from courtside.calibration.court.court import ON_EDGE_M, Court
+from courtside.geometry.camera import Camera, undistort
 
 
 @dataclass(frozen=True)
@@ -16,14 +16,10 @@ class Edge:
 
     Attributes
     ----------
-    line : int
-        Row of `Court.lines_m`.
-    axis : int
-        0 where the edge runs along y at a fixed x, 1 where it runs along x at a fixed y.
-    at_m : float
-        That fixed coordinate.
-    side : int
-        -1 for the edge of the lower coordinate, 0 for the line's middle, 1 for the other edge.
+    line : row of `Court.lines_m`
+    axis : 0 where the edge runs along y at a fixed x, 1 where it runs along x at a fixed y
+    at_m : that fixed coordinate
+    side : -1 for the edge of the lower coordinate, 0 for the line's middle, 1 for the other edge
     """
 
     line: int
@@ -32,54 +28,39 @@ class Edge:
     side: int
 
 
-def named(court):
-    """Find the edges that meet at each point on the floor.
+def named(court: Court) -> tuple[tuple[Edge, ...], ...]:
+    """Find the edges that meet at each of the P points, on the floor.
 
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-
-    Returns
-    -------
-    edges : tuple of tuple of Edge, length P
-        Two for a crossing or corner, of different axes; one for the foot of a net post on a side line; none
-        for raised points. Where lines of one axis overlap at the point, the longer one counts.
+    Two for a crossing or corner, of different axes; one for the foot of a net post on a side line;
+    none for raised points. Where lines of one axis overlap at the point, the longer one counts.
     """
-    low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
-    high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    low, high = court.line_corners()
     return tuple(_at(low, high, xyz) for xyz in court.xyz)
 
 
-def _at(low, high, xyz):
+def _at(low: NDArray, high: NDArray, xyz: NDArray) -> tuple[Edge, ...]:
     if xyz[2] > 0:
         return ()
     across = np.argmin(high - low, axis=1)
     inside = (xyz[:2] >= low - ON_EDGE_M) & (xyz[:2] <= high + ON_EDGE_M)
-    best = {}
+    best: dict[int, tuple[float, Edge]] = {}
     for line in np.flatnonzero(inside.all(axis=1)):
         axis = int(across[line])
         side = _side(low[line, axis], high[line, axis], xyz[axis])
         length = high[line, 1 - axis] - low[line, 1 - axis]
-        if side is not None and length > best.get(axis, (0, None))[0]:
+        if side is not None and length > (best[axis][0] if axis in best else 0):
             best[axis] = length, Edge(int(line), axis, float(xyz[axis]), side)
     return tuple(best[axis][1] for axis in sorted(best))
 
 
-def _side(low, high, at):
-    """Return which part of a line's width a coordinate is, None where it is none with a name."""
+def _side(low: float, high: float, at: float) -> int | None:
+    """Return which edge of a line (or 0, its middle) has this coordinate, None if none has."""
     places = {-1: low, 0: (low + high) / 2, 1: high}
     return next((side for side, place in places.items() if abs(place - at) <= ON_EDGE_M), None)
 
 
-def post(court, point):
-    """Return which post of the net a point belongs to, 0 or 1, or None.
-
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    point : int
-        Its position in `court.points`.
-    """
+def post(court: Court, point: int) -> int | None:
+    """Return the post of the net, 0 or 1, of the point of an index in `court.points`, or None."""
     if court.net is None:
         return None
     place = court.xyz[point]
@@ -89,17 +70,9 @@ def post(court, point):
     return None
 
 
-def middle_line(court, line):
-    """Return the two ends of a painted line's middle, and half its width, (2, 3) and (3,) m.
-
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    line : int
-        Row of `lines_m`.
-    """
-    low = np.minimum(court.lines_m[line, :2], court.lines_m[line, 2:])
-    high = np.maximum(court.lines_m[line, :2], court.lines_m[line, 2:])
+def middle_line(court: Court, line: int) -> tuple[NDArray, NDArray]:
+    """Return the ends of the middle of a row of `lines_m`, (2, 3) m, and half its width, (3,) m."""
+    low, high = (corners[line] for corners in court.line_corners())
     axis = int(np.argmin(high - low))
     ends = np.array([[*low, 0.0], [*high, 0.0]])
     ends[:, axis] = (low[axis] + high[axis]) / 2
@@ -108,20 +81,13 @@ def middle_line(court, line):
     return ends, half
 
 
-def stretches(court, length_m):
+def stretches(court: Court, length_m: float) -> tuple[NDArray, NDArray]:
     """Cut all lines into stretches of about one length.
-
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    length_m : float
 
     Returns
     -------
-    line : (M,) int
-        Row of `lines_m`.
-    ends : (M, 2, 3) float
-        On the line's middle, metres.
+    line : (M,) int; row of `lines_m`
+    ends : (M, 2, 3) float; on the line's middle, m
     """
     found = []
     for line in range(len(court.lines_m)):
@@ -138,41 +104,30 @@ class Paint:
 
     Attributes
     ----------
-    place : callable
-        From px (..., 2) to places (..., 2), smooth.
-    shows : callable
-        From places (..., 2) to (...) bool.
+    place : from px (..., 2) to places (..., 2), smooth
+    shows : from places (..., 2) to (...) bool: whether there is paint
     """
 
-    place: Callable
-    shows: Callable
+    place: Callable[[NDArray], NDArray]
+    shows: Callable[[NDArray], NDArray]
 
 
-def paint(camera, court):
+def paint(camera: Camera, court: Court) -> Paint:
     """Return where a camera expects the painted lines of a court.
 
-    Parameters
-    ----------
-    camera : courtside.geometry.camera.Camera
-    court : courtside.calibration.court.court.Court
-
-    Returns
-    -------
-    paint : Paint
-        Its places are metres on the floor, NaN above the horizon.
+    Its places are metres on the floor, NaN above the horizon.
     """
-    low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
-    high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
+    low, high = court.line_corners()
     rotation, centre = camera.cam_from_world[:, :3], camera.centre_in_world
 
-    def place(xy):
-        rays = cameras.undistort(camera, xy)
+    def place(xy: NDArray) -> NDArray:
+        rays = undistort(camera, xy)
         rays = np.concatenate([rays, np.ones((*rays.shape[:-1], 1))], axis=-1) @ rotation
         with np.errstate(divide="ignore", invalid="ignore"):
             on_floor = centre[:2] - rays[..., :2] * (centre[2] / rays[..., 2:])
         return np.where(rays[..., 2:] * centre[2] < 0, on_floor, np.nan)
 
-    def shows(places):
+    def shows(places: NDArray) -> NDArray:
         found = np.zeros(places.shape[:-1], dtype=bool)
         x, y = places[..., 0], places[..., 1]
         for (x0, y0), (x1, y1) in zip(low, high, strict=True):

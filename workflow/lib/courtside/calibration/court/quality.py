@@ -1,128 +1,118 @@
-"""What can be said of calibrated cameras without the truth, and how wrong they are where it is known."""
+"""Checks of calibrated cameras without the truth, and their errors where the truth is known."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 from scipy.spatial.transform import Rotation
 
-from courtside.calibration import point_covariance
 from courtside.calibration.court import click_checks, joint_adjustment
+from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.point_covariance import mahalanobis
+from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
+
+# ASSUME: heights of a match, from the floor to a player's reach; the grid is about 2 m wide on a
+# badminton court.
+HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
+COLUMNS, ROWS = 5, 7  # of the grid, along the short and the long side
+# Of chi-squared with three degrees of freedom; `scipy.stats` has it too, but takes half a second to
+# import.
+LIMITS = {level: 2 * special.gammaincinv(3 / 2, level) for level in (0.5, 0.9, 0.95)}
 
 
 def of_court(
-    court, cameras, clicks, *, click_sigma_px, point_covariance=None, inwards=None, strict=True
-):
+    court: Court,
+    cameras: Sequence[Camera],
+    clicks: ClickedPoints,
+    *,
+    click_sigma_px: float,
+    point_covariance: Callable[[NDArray], NDArray] | None = None,
+    inwards: tuple[float, float] | None = None,
+    strict: bool = True,
+) -> dict[str, Any]:
     """Check cameras against the clicked court points, each left out in turn.
+
+    Raises `InputError` if the points cannot be this court.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-    cameras : list of Camera
-        In the court's frame.
-    clicks : dict of str to (P, 2) float
-        By camera; NaN where not clicked.
-    click_sigma_px : float
-        Of a good click, in the largest picture.
-    point_covariance : callable, optional
-        Covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate.
-    inwards : (float, float), optional
-        As for `click_checks.find`.
-    strict : bool
-        Whether points that cannot be this court are an error; otherwise they are a warning.
+    cameras : in the court's frame
+    click_sigma_px : of a good click, in the largest picture
+    point_covariance : covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate
+    inwards : as for `click_checks.check`
+    strict : whether points that cannot be this court are an error; otherwise they are a warning
 
     Returns
     -------
-    quality : dict
-        For a JSON file: `warnings`; `left_out`, by point: how far it is from its place (cm) and from each
-        click (px) in a similarity fitted to the other points; `expected_volume_rms_cm` where the covariance
-        is known.
-
-    Raises
-    ------
-    InputError
-        If the points cannot be this court.
+    quality : for a JSON file: `warnings`; `left_out`, by point: how far it is from its place (cm)
+        and from each click (px) in a similarity fitted to the other points;
+        `expected_volume_rms_cm` where the covariance is known
     """
     table, each = _leave_one_out(court, cameras, clicks)
+    known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
     try:
-        warnings = click_checks.find(
-            court, cameras, clicks, sigma_px=click_sigma_px, inwards=inwards, table=table
-        )
+        warnings = click_checks.check(court, cameras, clicks, **known)
     except InputError as error:
         if strict:
             raise
         warnings = [str(error)]
-    quality = {"warnings": warnings, "left_out": each}
+    quality: dict[str, Any] = {"warnings": warnings, "left_out": each}
     if point_covariance is not None:
         covariance = point_covariance(volume(court))
         quality["expected_volume_rms_cm"] = _number(expected_rms_cm(covariance))
     return quality
 
 
-def of_ties(court, ties, clicks, **weights):
-    """Adjust the fixed cameras with the clicked court points, and check these against the result.
+def of_ties(
+    court: Court, ties: joint_adjustment.Ties, clicks: ClickedPoints, **weights: Any
+) -> tuple[joint_adjustment.Solution, dict[str, Any]]:
+    """Adjust the fixed cameras with the clicked court points, and check these as `of_court` does.
 
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    ties : courtside.calibration.court.joint_adjustment.Ties
-    clicks : dict of str to (P, 2) float
-        By camera; NaN where not clicked.
-    **weights
-        Of the clicks, as for `joint_adjustment.solve`.
+    `**weights` are those of the clicks, as for `joint_adjustment.solve`. Raises `InputError` if the
+    points cannot be this court.
 
-    Returns
-    -------
-    solution : courtside.calibration.court.joint_adjustment.Solution
-    quality : dict
-        As `of_court` gives it.
-
-    Raises
-    ------
-    InputError
-        If the points cannot be this court.
-
-    Notes
-    -----
-    A model of structure from motion is bent by what its ties leave open, mostly focal lengths: with 12 small
-    pictures by 0.02 to 0.4 m at the court points, where clicks are 1 cm off. The adjustment takes off as much
-    of the bend as the ties' own covariance allows: what is left is the fault of the clicks or the court.
+    A model of structure from motion is bent by what its ties leave open, mostly focal lengths: with
+    12 small pictures by 0.02 to 0.4 m at the court points, where clicks are 1 cm off. The
+    adjustment removes as much of the bend as the ties' own covariance allows: what is left is the
+    fault of the clicks or the court.
     """
     solved = joint_adjustment.solve(ties, clicks, court, max_iterations=30, **weights)
-    known = {
-        "click_sigma_px": joint_adjustment.largest_click_sigma(
-            weights["click_sigma_px"], solved.cameras
-        ),
-        "point_covariance": solved.point_covariance,
-        "inwards": click_checks.shift(ties, clicks, court, **weights),
-    }
-    return solved, of_court(court, solved.cameras, clicks, **known)
+    sigma_px = joint_adjustment.largest_click_sigma(weights["click_sigma_px"], solved.cameras)
+    quality = of_court(
+        court,
+        solved.cameras,
+        clicks,
+        click_sigma_px=sigma_px,
+        point_covariance=solved.point_covariance,
+        inwards=click_checks.inward_shift(ties, clicks, court, **weights),
+    )
+    return solved, quality
 
 
-def without_court(n_agreeing, n_maps):
-    """Return the quality of cameras that no court scales: how many maps of the same images agree."""
+def without_court(n_agreeing: int, n_maps: int) -> dict[str, Any]:
+    """Return the quality of cameras without a court: how many maps of the same images agree."""
     warnings = ["no court: scale and frame are arbitrary"]
     if n_agreeing == 1 < n_maps:
         warnings.append(
-            f"walk: expected maps of its images to agree, found {n_maps} that all differ by more than 1 % of "
-            "their extent: angles and proportions are that uncertain; take more bridging images, or name a "
-            "court"
+            f"walk: expected maps of its images to agree, found {n_maps} that all differ by more "
+            "than 1 % of their extent: angles and proportions are that uncertain; take more "
+            "bridging images, or name a court"
         )
     return {"warnings": warnings}
 
 
-def left_out(court, cameras, clicks):
-    """Return `left_out` of `of_court` alone: how well cameras put court points where they belong.
-
-    Parameters
-    ----------
-    court, cameras, clicks
-        As of `of_court`.
-    """
+def left_out(
+    court: Court, cameras: Sequence[Camera], clicks: ClickedPoints
+) -> str | dict[str, dict]:
+    """Return the error of each court point left out, as `of_court`, or why there is none."""
     return _leave_one_out(court, cameras, clicks)[1]
 
 
 def _leave_one_out(court, cameras, clicks):
-    """Return the table, None where there is none, and the same or the reason by point, as JSON has it."""
+    """Return the table and its errors by point, for JSON, or None and the reason."""
     try:
         table = click_checks.leave_one_out(cameras, clicks, court)
     except InputError as error:
@@ -130,7 +120,7 @@ def _leave_one_out(court, cameras, clicks):
     return table, _by_point(table)
 
 
-def _by_point(table):
+def _by_point(table: click_checks.LeaveOneOut) -> dict[str, dict]:
     return {
         point: {
             "error_cm": _number(table.error_cm[at]),
@@ -140,26 +130,17 @@ def _by_point(table):
     }
 
 
-def _number(value):
-    """Return a float as JSON has it: rounded, null where it is none."""
+def _number(value: float) -> float | None:
+    """Return a number as JSON has it: rounded, null where it is not finite."""
     return round(float(value), 4) if np.isfinite(value) else None
 
 
-HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
-COLUMNS, ROWS = 5, 7  # of the grid, along the short and the long side
-# Of chi-squared with three degrees of freedom; `scipy.stats` has it too, but takes half a second to import.
-LIMITS = {level: 2 * special.gammaincinv(3 / 2, level) for level in (0.5, 0.9, 0.95)}
+def volume(
+    court: Court, heights_m: Sequence[float] = HEIGHTS_M, columns: int = COLUMNS, rows: int = ROWS
+) -> NDArray:
+    """Return a grid of points over the court, both ends included, (N, 3) m, by height, then row.
 
-
-def volume(court, heights_m=HEIGHTS_M, columns=COLUMNS, rows=ROWS):
-    """Return a grid of points over the court, (N, 3) m, height after height, row after row.
-
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    heights_m : sequence of float
-    columns, rows : int
-        Points along the short and the long side, both ends included.
+    `columns` and `rows` are the points along the short and the long side.
     """
     x = np.linspace(0, court.size_m[0], columns)
     y = np.linspace(0, court.size_m[1], rows)
@@ -167,32 +148,20 @@ def volume(court, heights_m=HEIGHTS_M, columns=COLUMNS, rows=ROWS):
     return np.stack([x, y, z], axis=-1).reshape(-1, 3)
 
 
-def court_points(court, xyz):
-    """Return the published errors: of the end of x and the end of y, cm.
+def court_points(court: Court, xyz: NDArray) -> dict[str, float]:
+    """Return the published errors: at the end of x `xo_cm` and y `yo_cm`, and their mean `xy_cm`.
 
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    xyz : (P, 3) float
-        Its points as reconstructed from clicks, m.
-
-    Returns
-    -------
-    errors : dict of str to float
-        `xo_cm`, `yo_cm`, and their mean `xy_cm`.
+    `xyz` (P, 3) are all court points as reconstructed from clicks, m.
     """
     ends = court.indices("three")[1:]
     xo_cm, yo_cm = 100 * np.linalg.norm(xyz[ends] - court.xyz[ends], axis=1)
     return {"xo_cm": xo_cm, "yo_cm": yo_cm, "xy_cm": (xo_cm + yo_cm) / 2}
 
 
-def poses(cameras, truth):
-    """Return mean errors of the cameras themselves: position (cm), rotation (degrees), focal length (%).
+def poses(cameras: Sequence[Camera], truth: Sequence[Camera]) -> dict[str, float]:
+    """Return mean errors of cameras: position (cm), rotation (degrees), focal length (%).
 
-    Parameters
-    ----------
-    cameras, truth : list of Camera
-        In the same order.
+    `truth` has the cameras in the same order.
     """
     place, turn, focal = [], [], []
     for found, true in zip(cameras, truth, strict=True):
@@ -207,7 +176,7 @@ def poses(cameras, truth):
     }
 
 
-def over_volume(error_m):
+def over_volume(error_m: NDArray) -> dict[str, float]:
     """Return root mean square and 95 % quantile of displacements (N, 3) m, in cm."""
     distance = 100 * np.linalg.norm(error_m, axis=1)
     return {
@@ -216,28 +185,26 @@ def over_volume(error_m):
     }
 
 
-def coverage(error_m, covariance):
+def coverage(error_m: NDArray, covariance: NDArray) -> dict[str, float]:
     """Return how often errors lie within the ellipsoids of their covariance, and the size expected.
 
     Parameters
     ----------
     error_m : (N, 3) float
-    covariance : (N, 3, 3) float
-        m2.
+    covariance : (N, 3, 3) float; m2
 
     Returns
     -------
-    shares : dict of str to float
-        `coverage50`, `coverage90`, `coverage95` in 0..1 and `predicted_volume_cm`, the expected root
-        mean square.
+    shares : `coverage50`, `coverage90`, `coverage95` in 0..1 and `predicted_volume_cm`, the
+        expected root mean square
     """
-    square = point_covariance.mahalanobis(error_m, covariance)
+    square = mahalanobis(error_m, covariance)
     shares = {
         f"coverage{100 * level:.0f}": np.mean(square <= limit) for level, limit in LIMITS.items()
     }
     return {**shares, "predicted_volume_cm": expected_rms_cm(covariance)}
 
 
-def expected_rms_cm(covariance):
+def expected_rms_cm(covariance: NDArray) -> float:
     """Return the root mean square length, cm, of errors with covariances (N, 3, 3) m2."""
     return 100 * np.sqrt(np.mean(np.trace(covariance, axis1=1, axis2=2)))

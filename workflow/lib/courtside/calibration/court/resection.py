@@ -1,24 +1,31 @@
-"""Calibrating one camera from points whose places are known: linear (DLT), and by least squares."""
+"""Calibrate one camera from points at known places: linear (DLT), and by least squares."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy import linalg
 
 from courtside.calibration.bundle.problem import POSE
 from courtside.calibration.court import one_camera
-from courtside.geometry import camera as cameras
+from courtside.calibration.point_covariance import MEDIAN_2D
 from courtside.geometry import similarity
+from courtside.geometry.camera import Camera, project
 from courtside.study.errors import InputError
 
 LENS = ("f_px", "k1")
-FEWEST = {"dlt": 6, "lens": 8, "pose": 4}  # points
+# Points. DLT has 11 unknowns, and a point gives two equations; a pose has 6 unknowns, with focal
+# length and k1 8. ASSUME: 4 (pose) and 8 (lens) points leave enough equations to notice wrong
+# clicks.
+FEWEST = {"dlt": 6, "lens": 8, "pose": 4}
 OUTLIER = 4.0  # sigmas; a good click is farther off in 0.03 % of cases
-CAUCHY = 3.0  # sigmas: where a click starts to count less
-MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
-VAGUE = 30.0  # a DLT that magnifies click errors as many times within the volume is degenerate
-HOPELESS = 0.02  # of the picture's width: clicks that most miss by more are of other points
-FLAT = 1e-9  # relative information below which a parameter is not determined
+CAUCHY = 3.0  # ASSUME: scale of the Cauchy loss, in sigmas
+# ASSUME: a DLT that magnifies click errors more often than this within the volume is degenerate.
+MAX_MAGNIFICATION = 30.0
+MAX_MISFIT = (
+    0.02  # ASSUME: of the picture's width: clicks that most miss by more are of other points
+)
+MIN_EXTENT = 1e-9  # relative singular value below which rounding errors leave nothing determined
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,24 +34,21 @@ class Linear:
 
     Attributes
     ----------
-    matrix : (3, 4) float
-        From homogeneous world points (m) to homogeneous pixels, all eleven numbers free; positive before
-        the camera. For `triangulation.triangulate` with pixels in place of normalised points.
-    camera : courtside.geometry.camera.Camera or None
-        The same but for skew, which `Camera` does not have; None where the matrix holds no camera.
-    rms_px : float
-        Per axis, of the points it was found from.
-    magnification : float
-        How many times larger than a click's error a projected point's error is, at worst, in the box
-        around the points up to half its short side (the playing volume); inf for points in one plane.
-    degenerate : bool
-        Whether the points do not determine the camera.
-    reason : str
-        One sentence if so, else empty.
+    matrix : (3, 4) float; from homogeneous world points (m) to homogeneous pixels, all eleven
+        numbers free; positive before the camera. For `triangulation.triangulate` with pixels in
+        place of normalised points
+    camera : the same but for skew, which `Camera` does not have; None where the matrix holds no
+        camera
+    rms_px : per axis, of the points it was found from
+    magnification : how many times larger than a click's error a projected point's error is, at
+        worst, in the box around the points up to half its short side (the playing volume); inf for
+        points in one plane
+    degenerate : whether the points do not determine the camera
+    reason : one sentence if so, else empty
     """
 
-    matrix: np.ndarray
-    camera: cameras.Camera | None
+    matrix: NDArray
+    camera: Camera | None
     rms_px: float
     magnification: float
     degenerate: bool
@@ -57,55 +61,41 @@ class Fitted:
 
     Attributes
     ----------
-    camera : courtside.geometry.camera.Camera
-    covariance : (n, n) float
-        Of `parameters`. The pose changes from the left: a step r, t takes x_in_cam to exp(r) x_in_cam + t.
-    parameters : tuple of str, length n
-        `problem.POSE`, then f_px and k1 where the lens was unknown.
-    accepted : (P,) bool
-        The clicks that it rests on: present, and within four sigmas of the others' verdict.
-    error_px : (P,) float
-        Distance of each click, accepted or not, to its projected point; NaN where not clicked.
-    rms_px : float
-        Per axis, of the accepted clicks.
+    covariance : (n, n) float; of `parameters`. The pose changes from the left: a step r, t takes
+        x_in_cam to exp(r) x_in_cam + t
+    parameters : `problem.POSE`, then f_px and k1 where the lens was unknown
+    accepted : (P,) bool; the clicks used: present, and within four sigmas of the fit to the others
+    error_px : (P,) float; distance of each click, accepted or not, to its projected point; NaN
+        where not clicked
+    rms_px : per axis, of the accepted clicks
     """
 
-    camera: cameras.Camera
-    covariance: np.ndarray
-    parameters: tuple
-    accepted: np.ndarray
-    error_px: np.ndarray
+    camera: Camera
+    covariance: NDArray
+    parameters: tuple[str, ...]
+    accepted: NDArray
+    error_px: NDArray
     rms_px: float
 
 
-def dlt(xyz, xy, *, size=(1, 1), name="camera"):
-    """Calibrate a camera linearly from known points: the projection matrix, all eleven numbers free.
+def dlt(
+    xyz: ArrayLike, xy: ArrayLike, *, size: tuple[int, int] = (1, 1), name: str = "camera"
+) -> Linear:
+    """Calibrate a camera linearly from known points: a projection matrix of eleven free numbers.
+
+    Raises `InputError` if fewer than six points are clicked.
+
+    Hartley & Zisserman 2004, alg. 7.1 without its last step; normalised by their sec. 4.4. No lens
+    distortion. `degenerate` comes from the covariance of the linear solution. It shows points in
+    one plane, and, which the residuals do not show, the layout with a camera in the plane of the
+    net: of the only points above the floor, the tips of the posts, one then stands behind the
+    other.
 
     Parameters
     ----------
-    xyz : (P, 3) float
-        Known places, m.
-    xy : (P, 2) float
-        Clicks, px; NaN where missing.
-    size : (int, int)
-        Of the picture, px: for `camera` only.
-    name : str
-
-    Returns
-    -------
-    found : Linear
-
-    Raises
-    ------
-    InputError
-        If fewer than six points are clicked.
-
-    Notes
-    -----
-    Hartley & Zisserman 2004, alg. 7.1 without its last step; normalised by their sec. 4.4. No lens
-    distortion. `degenerate` comes from the covariance of the linear solution. It shows points in one plane,
-    and, which the residuals do not show, the layout with a camera in the plane of the net: of the only points
-    above the floor, the tips of the posts, one then stands behind the other.
+    xyz : (P, 3) float; known places, m
+    xy : (P, 2) float; clicks, px; NaN where missing
+    size : of the picture, px: for `camera` only
     """
     xyz, xy, _ = _clicked(xyz, xy, FEWEST["dlt"], name)
     from_xyz, from_xy = _normaliser(xyz), _normaliser(xy)
@@ -132,41 +122,42 @@ def dlt(xyz, xy, *, size=(1, 1), name="camera"):
         camera=_decompose(matrix, size, name),
         rms_px=float(np.sqrt(np.mean(off**2))),
         magnification=magnification,
-        degenerate=not magnification < VAGUE,
+        degenerate=not magnification < MAX_MAGNIFICATION,
         reason=_why(xyz, magnification, name),
     )
 
 
-def _why(xyz, magnification, name):
-    if magnification < VAGUE:
+def _why(xyz: NDArray, magnification: float, name: str) -> str:
+    if magnification < MAX_MAGNIFICATION:
         return ""
     if similarity.flatness(xyz)[2] < 1e-3:
         return (
-            f"camera {name}: the points lie in one plane, which leaves a linear calibration undetermined; "
-            "click points above the floor too, or calibrate by least squares"
+            f"camera {name}: the points lie in one plane, which leaves a linear calibration "
+            "undetermined; click points above the floor too, or calibrate by least squares"
         )
     return (
-        f"camera {name}: a linear calibration magnifies click errors {magnification:.0f} times: the points "
-        "above the floor are in line with the camera (as the net posts are for a camera in the net's plane); "
-        "move the camera, or calibrate by least squares"
+        f"camera {name}: a linear calibration magnifies click errors {magnification:.0f} times: "
+        "the points above the floor are in line with the camera (as the net posts are for a "
+        "camera in the net's plane); move the camera, or calibrate by least squares"
     )
 
 
-def _clicked(xyz, xy, fewest, name):
-    """Return the clicked points and clicks, and which they are (P,) bool; raise `InputError` if too few."""
+def _clicked(xyz, xy, fewest, name) -> tuple[NDArray, NDArray, NDArray]:
+    """Return the clicked points, their clicks and indices; raise `InputError` if too few."""
     xyz, xy = np.asarray(xyz, float), np.asarray(xy, float)
     if xyz.shape != (len(xy), 3) or xy.shape != (len(xy), 2):
         raise ValueError(f"expected xyz (P, 3) and xy (P, 2), found {xyz.shape} and {xy.shape}")
     seen = np.isfinite(xy).all(axis=1) & np.isfinite(xyz).all(axis=1)
     if seen.sum() < fewest or similarity.is_collinear(xyz[seen]):
         raise InputError(
-            f"camera {name}: expected {fewest} clicked points or more that are not on one line, found "
-            f"{seen.sum()}{' on one line' if seen.sum() >= fewest else ''}; click more points of the court"
+            f"camera {name}: expected {fewest} clicked points or more that are not on one line, "
+            f"found {seen.sum()}{' on one line' if seen.sum() >= fewest else ''}; click more "
+            "points of the court"
         )
     return xyz[seen], xy[seen], seen
 
 
-def _normaliser(points):
+def _normaliser(points: NDArray) -> NDArray:
     """Return the matrix that brings points (P, D) to mean 0 and mean distance sqrt(D)."""
     middle, dimension = points.mean(axis=0), points.shape[1]
     scale = np.sqrt(dimension) / np.linalg.norm(points - middle, axis=1).mean()
@@ -175,15 +166,15 @@ def _normaliser(points):
     return matrix
 
 
-def _homogeneous(points):
+def _homogeneous(points: NDArray) -> NDArray:
     return np.concatenate([points, np.ones((len(points), 1))], axis=1)
 
 
-def _apply(matrix, points):
+def _apply(matrix: NDArray, points: NDArray) -> NDArray:
     return _homogeneous(points) @ matrix.T
 
 
-def _magnification(xyz, from_xyz, normalised, extent, vectors):
+def _magnification(xyz, from_xyz, normalised, extent, vectors) -> float:
     """Return the largest error in the volume per unit of click error, to first order."""
     depth = np.abs(_apply(from_xyz, xyz) @ normalised[2])
     low, high = xyz.min(axis=0), xyz.max(axis=0)
@@ -191,7 +182,7 @@ def _magnification(xyz, from_xyz, normalised, extent, vectors):
     corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
     corners = _apply(from_xyz, corners)
     seen = corners @ normalised.T
-    if extent[-2] < FLAT * extent[0] or (np.abs(seen[:, 2]) < FLAT * depth.max()).any():
+    if extent[-2] < MIN_EXTENT * extent[0] or (np.abs(seen[:, 2]) < MIN_EXTENT * depth.max()).any():
         return np.inf
     # A click's error e moves its row by e times the depth.
     root = vectors[:-1].T * (np.sqrt(np.mean(depth**2)) / extent[:-1])
@@ -202,8 +193,8 @@ def _magnification(xyz, from_xyz, normalised, extent, vectors):
     return float(sigma.max())
 
 
-def _decompose(matrix, size, name):
-    """Return the `Camera` of a projection matrix without its skew, None where there is none."""
+def _decompose(matrix: NDArray, size: tuple[int, int], name: str) -> Camera | None:
+    """Return the `Camera` of a projection matrix without its skew, None if there is none."""
     upper, rotation = linalg.rq(matrix[:, :3])
     signs = np.diag(np.sign(np.diag(upper)))
     upper, rotation = upper @ signs, signs @ rotation
@@ -213,89 +204,86 @@ def _decompose(matrix, size, name):
     upper = upper / upper[2, 2]
     upper[0, 1] = 0.0
     pose = np.column_stack([rotation, shift])
-    return cameras.Camera(name, size, upper, np.zeros(5), pose)
+    return Camera(name, size, upper, np.zeros(5), pose)
 
 
-def nonlinear(xyz, xy, size, *, K=None, dist=None, sigma_px=1.0, xyz_sigma=None, name="camera"):
+def nonlinear(
+    xyz: ArrayLike,
+    xy: ArrayLike,
+    size: tuple[int, int],
+    *,
+    K: ArrayLike | None = None,
+    dist: ArrayLike | None = None,
+    sigma_px: float = 1.0,
+    xyz_sigma: ArrayLike | None = None,
+    name: str = "camera",
+) -> Fitted:
     """Calibrate a camera by robust least squares of the pixel errors, without a start value.
+
+    Raises `InputError` if the points are too few (8, or 4 with K), on one line, leave the camera
+    undetermined, or do not agree with one another.
+
+    Start: for each of several focal lengths the pose by SQPnP (Terzakis & Lourakis 2020); the one
+    with the least median error. Then Levenberg-Marquardt with a Cauchy loss, and once more without
+    on the accepted clicks: the covariance is that of this last fit, for errors as large as
+    `sigma_px` and `xyz_sigma` say.
 
     Parameters
     ----------
-    xyz : (P, 3) float
-        Known places, m.
-    xy : (P, 2) float
-        Clicks, px; NaN where missing.
-    size : (int, int)
-        Of the picture, px.
-    K : (3, 3) float, optional
-        Known from a lens calibration: then the pose alone is found. Otherwise also the focal length, equal
-        along both axes, and k1, with the principal point at the picture's centre.
-    dist : (5,) float, optional
-        With K; zeros where it is not given.
-    sigma_px : float
-        Of a good click per axis.
-    xyz_sigma : (P,) float, optional
-        How far the points are from `xyz`, standard deviation per axis, m.
-    name : str
-
-    Returns
-    -------
-    fitted : Fitted
-
-    Raises
-    ------
-    InputError
-        If the points are too few (8, or 4 with K), on one line, leave the camera undetermined, or do not
-        agree with one another.
-
-    Notes
-    -----
-    Start: for each of several focal lengths the pose by SQPnP (Terzakis & Lourakis 2020), of which the one
-    with the least median error. Then Levenberg-Marquardt with a Cauchy loss, and once more without on
-    the accepted clicks: the covariance is that of this last fit, for errors as large as `sigma_px` and
-    `xyz_sigma` say.
+    xyz : (P, 3) float; known places, m
+    xy : (P, 2) float; clicks, px; NaN where missing
+    size : of the picture, px
+    K : (3, 3) float; known from a lens calibration: then the pose alone is found. Otherwise also
+        the focal length, equal along both axes, and k1, with the principal point at the picture's
+        centre
+    dist : (5,) float; only with K; zeros by default
+    sigma_px : of a good click per axis
+    xyz_sigma : (P,) float; how far the points are from `xyz`, standard deviation per axis, m
     """
     if K is None and dist is not None:
         raise ValueError("expected dist only together with K")
     fewest = FEWEST["lens" if K is None else "pose"]
-    *clicked, seen = _clicked(xyz, xy, fewest, name)
+    xyz_seen, xy_seen, seen = _clicked(xyz, xy, fewest, name)
     spread = None if xyz_sigma is None else np.broadcast_to(xyz_sigma, len(seen))[seen]
-    clicks = one_camera.Clicks(*clicked, float(sigma_px), spread, K is None)
+    clicks = one_camera.Clicks(xyz_seen, xy_seen, float(sigma_px), spread, K is None)
     dist = np.zeros(5) if dist is None else np.asarray(dist, float)
     state = one_camera.start(clicks, size, K, dist)
     if state is None:
         raise InputError(
-            f"camera {name}: expected clicks that fit a camera, found none; check the names of the points"
+            f"camera {name}: expected clicks that fit a camera, found none; check the names of the "
+            "points"
         )
     state, off, _ = one_camera.descend(state, clicks, CAUCHY)
     distance = np.linalg.norm(off, axis=1)
     agree = distance <= OUTLIER * max(1.0, np.median(distance) / MEDIAN_2D)
     off_px = np.median(np.linalg.norm(one_camera.residuals(state, clicks)[0], axis=1))
     few = agree.sum() < fewest or similarity.is_collinear(clicks.xyz[agree])
-    if few or off_px > HOPELESS * size[0]:
+    if few or off_px > MAX_MISFIT * size[0]:
         raise InputError(
-            f"camera {name}: expected {fewest} clicks or more that fit one camera, found {agree.sum()} and "
-            f"half of all {off_px:.1f} px off or more; check the names of the clicked points, and the court"
+            f"camera {name}: expected {fewest} clicks or more that fit one camera, found "
+            f"{agree.sum()} and half of all {off_px:.1f} px off or more; check the names of the "
+            "clicked points, and the court"
         )
     state, _, by_step = one_camera.descend(state, clicks.of(agree), np.inf)
     accepted = np.zeros(len(seen), dtype=bool)
     accepted[np.flatnonzero(seen)[agree]] = True
-    camera = cameras.Camera(name, size, state.K, state.dist, state.cam_from_world)
-    error_px = np.linalg.norm(cameras.project(camera, xyz) - xy, axis=1)
+    camera = Camera(name, size, state.K, state.dist, state.cam_from_world)
+    error_px = np.linalg.norm(project(camera, xyz) - xy, axis=1)
     covariance = _covariance(by_step.reshape(-1, by_step.shape[2]), name)
     parameters = POSE + LENS if K is None else POSE
     rms_px = float(np.sqrt(np.mean(error_px[accepted] ** 2) / 2))
     return Fitted(camera, covariance, parameters, accepted, error_px, rms_px)
 
 
-def _covariance(columns, name):
-    """Return the inverse of the normal matrix, or raise `InputError` where it has none."""
+def _covariance(columns: NDArray, name: str) -> NDArray:
+    """Return the inverse of the normal matrix, or raise `InputError` where it is singular."""
     scale = np.linalg.norm(columns, axis=0)
     extent, vectors = np.linalg.svd(columns / scale, full_matrices=False)[1:]
-    if extent[-1] < FLAT * extent[0]:
+    if extent[-1] < MIN_EXTENT * extent[0]:
         raise InputError(
-            f"camera {name}: expected points that determine the camera, found that its focal length and "
-            "distance cannot be told apart; click points above the floor too, or give its lens calibration"
+            f"camera {name}: expected points that determine the camera, found that its focal "
+            "length and distance cannot be told apart; click points above the floor too, or give "
+            "its lens calibration"
         )
     root = vectors.T / extent / scale[:, None]
     return root @ root.T

@@ -1,22 +1,31 @@
-"""From the frame of structure from motion to the court's, by the published frame or a robust similarity.
+"""Align structure from motion to the court, by the published frame or a robust similarity.
 
-Camera files under each other's names are told here too: the clicks of each fit where the other one stands.
+This module also detects exchanged camera files: the clicks of each of two cameras fit the pose of
+the other.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry import similarity, triangulation
+from courtside.geometry.camera import Camera
+from courtside.geometry.similarity import Sim3
 from courtside.study.errors import InputError
 
-HOPELESS = 0.03  # a court that most points miss by this part of its length is no fit
-STRETCHED = 0.01  # of the ratio of the sides: less can be the clicks' own bias
-FLAT = 0.01  # relative to the longest extent: points lower than this all lie on the floor
-OFF = 0.01  # of the court's length: points nearer than that fit
-BENT = 0.1  # of the court's length: structure from motion of 12 small pictures was bent by up to half of that
-NEARER = 5.0  # so many times nearer must they be with the clicks of two cameras exchanged
+# ASSUME: a court whose points are mostly off by more than this part of its length is another court.
+MAX_MISFIT = 0.03
+MAX_STRETCH = 0.01  # ASSUME: of the ratio of the sides: less can be the clicks' own bias
+FLAT = 0.01  # ASSUME: relative to the longest extent: points lower than this all lie on the floor
+FITTING = 0.01  # ASSUME: of the court's length: points nearer than this fit
+# Of the court's length: structure from motion of 12 small pictures was bent by up to half of this.
+MAX_BEND = 0.1
+# ASSUME: points must fit this many times better with the clicks of two cameras exchanged.
+EXCHANGE_GAIN = 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,86 +34,63 @@ class PaperFrame:
 
     Attributes
     ----------
-    world_from_sfm : (4, 4) float
-        The matrix D with the scale in it, for points; its axes are as far from perpendicular as the points
-        are.
-    nearest : courtside.geometry.similarity.Sim3
-        The same with the nearest rotation, for cameras.
-    skew_deg : float
-        How far the angle between the court's sides, as reconstructed, is from 90 degrees.
+    world_from_sfm : (4, 4) float; the matrix D with the scale in it, for points; its axes are as
+        far from perpendicular as the points are
+    nearest : the same with the nearest rotation, for cameras
+    skew_deg : how far the angle between the court's sides, as reconstructed, is from 90 degrees
     """
 
-    world_from_sfm: np.ndarray
-    nearest: similarity.Sim3
+    world_from_sfm: NDArray
+    nearest: Sim3
     skew_deg: float
 
-    def points(self, x_in_sfm):
+    def points(self, x_in_sfm: ArrayLike) -> NDArray:
         """Return points (..., 3) of the SfM frame in the world, by D."""
         return np.asarray(x_in_sfm) @ self.world_from_sfm[:3, :3].T + self.world_from_sfm[:3, 3]
 
 
-def reconstruct(cameras, clicks):
-    """Triangulate clicked court points from the fixed cameras, by least squares of the pixel errors.
+def reconstruct(cameras: Sequence[Camera], clicks: ClickedPoints) -> NDArray:
+    """Triangulate clicked court points by least squares of the pixel errors.
 
-    Parameters
-    ----------
-    cameras : list of Camera
-        Fixed cameras in one frame, of structure from motion or the world.
-    clicks : dict of str to (P, 2) float
-        By camera name, px; NaN where not clicked.
-
-    Returns
-    -------
-    xyz : (P, 3) float
-        In the cameras' frame; NaN where fewer than two cameras have a click or the views do not meet before
-        the cameras that saw them.
+    The points (P, 3) are in the cameras' frame, of structure from motion or the world; NaN where
+    fewer than two cameras have a click or the views do not meet before the cameras that saw them.
     """
     xy = np.stack([np.asarray(clicks[camera.name], float) for camera in cameras])
     return triangulation.triangulate_all(cameras, xy)
 
 
-def paper_frame(court, xyz_in_sfm):
+def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     """Find the world frame as the paper does, from the origin and the ends of x and y.
+
+    Raises `InputError` if the court has no such set, or one of the points is missing.
+
+    [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o, D = [R t;
+    0 1]. They are called orthonormal there and never made so; D is used as it is for points. A
+    camera needs a rotation: the nearest one (polar factor of R).
+
+    # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin,
+    # and the paper does not say how it is found.
+    # ASSUME: the scale, "known length over SfM length", is that of both sides together, (6.1 + 13.4
+    # m) over the sum of their SfM lengths: the paper names both lengths and one scale. It
+    # multiplies R and t.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-        Its set "three" names the origin, a point on the x axis and one on the y axis.
-    xyz_in_sfm : (P, 3) float
-        Reconstructed court points; all three must be there.
-
-    Returns
-    -------
-    frame : PaperFrame
-
-    Raises
-    ------
-    InputError
-        If the court has no such set, or one of the points is missing.
-
-    Notes
-    -----
-    [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o, D = [R t; 0 1].
-    They are called orthonormal there and never made so; D is used as it is for points. A camera needs a
-    rotation: the nearest one (polar factor of R).
-
-    # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin, and the
-    # paper does not say how it is found.
-    # ASSUME: the scale, "known length over SfM length", is that of both sides together, (6.1 + 13.4 m) over
-    # the sum of their SfM lengths: the paper names both lengths and one scale. It multiplies R and t.
+    court : its set "three" names the origin, a point on the x axis and one on the y axis
+    xyz_in_sfm : (P, 3) float; reconstructed court points; all three must be there
     """
     if "three" not in court.sets or len(court.sets["three"]) != 3:
         raise InputError(
-            f"court {court.name}: expected a set `three` of the origin, the end of x and the end of y, found "
-            "none; add it to the court's file"
+            f"court {court.name}: expected a set `three` of the origin, the end of x and the end "
+            "of y, found none; add it to the court's file"
         )
     names = court.sets["three"]
     places = np.asarray(xyz_in_sfm, float)[court.indices("three")]
     missing = [name for name, place in zip(names, places, strict=True) if np.isnan(place).any()]
     if missing:
         raise InputError(
-            f"court points: expected {', '.join(names)} in two cameras each, found too few clicks of "
-            f"{', '.join(missing)}; click them, or use another alignment"
+            f"court points: expected {', '.join(names)} in two cameras each, found too few clicks "
+            f"of {', '.join(missing)}; click them, or use another alignment"
         )
     origin, along_x, along_y = places
     sides = np.stack([along_x - origin, along_y - origin])
@@ -117,135 +103,103 @@ def paper_frame(court, xyz_in_sfm):
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = scale * rows, -scale * rows @ origin
     left, _, right = np.linalg.svd(rows)
-    nearest = similarity.Sim3(float(scale), left @ right, -scale * (left @ right) @ origin)
+    nearest = Sim3(float(scale), left @ right, -scale * (left @ right) @ origin)
     skew_deg = abs(90 - np.degrees(np.arccos(np.clip(e_x @ e_y, -1, 1))))
     return PaperFrame(matrix, nearest, float(skew_deg))
 
 
-def align(court, xyz_in_sfm):
-    """Find the robust similarity from all reconstructed court points to the court.
+def align(court: Court, xyz_in_sfm: NDArray) -> tuple[Sim3, NDArray]:
+    """Find the robust similarity from reconstructed court points to the court.
 
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    xyz_in_sfm : (P, 3) float
-        NaN where missing.
-
-    Returns
-    -------
-    world_from_sfm : courtside.geometry.similarity.Sim3
-    accepted : (P,) bool
-
-    Raises
-    ------
-    InputError
-        If the points are too few, collinear or mirrored.
+    Also return which points (P,) bool it accepts. Raises `InputError` if the points are too few,
+    collinear or mirrored.
     """
     return similarity.robust(xyz_in_sfm, court.xyz, court.sigma_m)
 
 
-def check(court, xyz_in_sfm, cameras=()):
+def check(court: Court, xyz_in_sfm: NDArray, cameras: Sequence[Camera] = ()) -> list[str]:
     """Check that reconstructed points can be this court, seen the right way round.
+
+    Raises `InputError` if no alignment is possible: too few points, collinear, mirrored, or another
+    shape than the court's.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-    xyz_in_sfm : (P, 3) float
-        Reconstructed court points; NaN where missing.
-    cameras : sequence of Camera
-        Those that saw them, in the same frame: they must be above the floor.
+    xyz_in_sfm : (P, 3) float; reconstructed court points; NaN where missing
+    cameras : those that saw them, in the same frame: they must be above the floor
 
     Returns
     -------
-    warnings : list of str
-        One line each; what `click_checks.find` says of single clicks is not in it.
-
-    Raises
-    ------
-    InputError
-        If no alignment is possible: too few points, collinear, mirrored, or another shape than the court's.
+    warnings : one line each, without those of `click_checks.check` on single clicks
     """
     world_from_sfm, _ = align(court, xyz_in_sfm)
     _check_size(court, xyz_in_sfm)
     off_m = misfit_m(court, world_from_sfm, xyz_in_sfm)
-    if off_m > HOPELESS * np.max(court.size_m):
+    if off_m > MAX_MISFIT * np.max(court.size_m):
         short_m, long_m = court.size_m
         raise InputError(
-            f"court points: expected them near those of {court.name} ({short_m:g} m by {long_m:g} m), found "
-            f"most {100 * off_m:.0f} cm off after the best alignment; give the right court file, or correct "
-            "the names of points and cameras in the clicks"
+            f"court points: expected them near those of {court.name} ({short_m:g} m by {long_m:g} "
+            f"m), found most {100 * off_m:.0f} cm off after the best alignment; give the right "
+            "court file, or correct the names of points and cameras in the clicks"
         )
     below = [c.name for c in cameras if world_from_sfm.camera(c).centre_in_world[2] < 0]
     if below:
         raise InputError(
-            f"court points: expected the cameras above the floor, found {', '.join(below)} below it: the "
-            "points are mirrored; exchange the names of the left and right points in all cameras, or undo "
-            "the flip of the videos"
+            f"court points: expected the cameras above the floor, found {', '.join(below)} below "
+            "it: the points are mirrored; exchange the names of the left and right points in all "
+            "cameras, or undo the flip of the videos"
         )
     return _weak(court, np.isfinite(np.asarray(xyz_in_sfm)).all(axis=1))
 
 
-def misfit_m(court, world_from_sfm, xyz_in_sfm):
-    """Return how far most reconstructed points are from the court after an alignment, m.
-
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    world_from_sfm : courtside.geometry.similarity.Sim3
-    xyz_in_sfm : (P, 3) float
-        NaN where missing.
-    """
+def misfit_m(court: Court, world_from_sfm: Sim3, xyz_in_sfm: NDArray) -> float:
+    """Return the median distance, m, of reconstructed points, NaN where missing, to the court."""
     residual = world_from_sfm.points(xyz_in_sfm) - court.xyz
     return float(np.nanmedian(np.linalg.norm(residual, axis=1)))
 
 
-def _weak(court, known):
+def _weak(court: Court, known: NDArray) -> list[str]:
     warnings = []
     if known.sum() < 4:
         warnings.append(
-            f"court points: {known.sum()} are seen by two cameras: a wrong click cannot be noticed; click "
-            "four or more"
+            f"court points: {known.sum()} are seen by two cameras: a wrong click cannot be "
+            "noticed; click four or more"
         )
     if np.ptp(court.xyz[known, 2]) < FLAT * np.ptp(court.xyz[known], axis=0).max():
         warnings.append(
-            "court points: all lie on the floor: heights are several times less certain than on the floor; "
-            "click points above it too, such as the tips of the net posts"
+            "court points: all lie on the floor: heights are several times less certain than on "
+            "the floor; click points above it too, such as the tips of the net posts"
         )
     return warnings
 
 
-def _check_size(court, xyz_in_sfm):
-    """Raise where the court's two sides have different scales: it is not the court of the file."""
+def _check_size(court: Court, xyz_in_sfm: NDArray) -> None:
+    """Raise if the court's two sides have different scales: it is not the court of the file."""
     ratio, sigma = stretch(court, xyz_in_sfm)
-    if abs(np.log(ratio)) > max(STRETCHED, 5 * sigma):
+    if abs(np.log(ratio)) > max(MAX_STRETCH, 5 * sigma):
         short_m, long_m = court.size_m
         raise InputError(
-            f"court points: expected the sides of {court.name}, {short_m:g} m by {long_m:g} m, found "
-            f"{short_m * ratio:.2f} m by {long_m:g} m (or as much in proportion); give the right court "
-            "file, or click the lines that it names"
+            f"court points: expected the sides of {court.name}, {short_m:g} m by {long_m:g} m, "
+            f"found {short_m * ratio:.2f} m by {long_m:g} m (or as much in proportion); give the "
+            "right court file, or click the lines that it names"
         )
 
 
-def stretch(court, xyz_in_sfm):
+def stretch(court: Court, xyz_in_sfm: NDArray) -> tuple[float, float]:
     """Find whether the reconstructed floor has the court's proportions.
+
+    An affine map from the floor to the points' frame, by least median of squares over subsets of
+    three and least squares over those that agree. A similarity would impose the court's
+    proportions.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-    xyz_in_sfm : (P, 3) float
-        NaN where missing.
+    xyz_in_sfm : (P, 3) float; NaN where missing
 
     Returns
     -------
-    ratio : float
-        Scale along x over that along y: 1 where the proportions are right.
-    sigma : float
-        Standard deviation of its logarithm; inf where the floor points are too few to tell.
-
-    Notes
-    -----
-    An affine map from the floor to the points' frame, by least median of squares over subsets of three and
-    least squares over those that agree: free of the similarity that the court's shape would force.
+    ratio : scale along x over that along y: 1 where the proportions are right
+    sigma : standard deviation of its logarithm; inf where the floor points are too few to tell
     """
     xyz_in_sfm = np.asarray(xyz_in_sfm, float)
     floor = np.isfinite(xyz_in_sfm).all(axis=1) & (court.xyz[:, 2] == 0)
@@ -264,8 +218,8 @@ def stretch(court, xyz_in_sfm):
     return float(lengths[0] / lengths[1]), float(np.sqrt((spread / lengths**2).sum()))
 
 
-def _affine_agree(design, places):
-    """Return which points (n,) bool one affine map fits, for most of them."""
+def _affine_agree(design: NDArray, places: NDArray) -> NDArray:
+    """Return which points (n,) bool agree with the affine map that fits most of them."""
     subsets = np.array(list(combinations(range(len(design)), 3)))
     spanned = np.abs(np.linalg.det(design[subsets]))
     subsets = subsets[spanned > 0.1 * spanned.max()]
@@ -277,27 +231,25 @@ def _affine_agree(design, places):
     return distance[best] <= max(4 * middle[best], 1e-9 * np.abs(places).max())
 
 
-def refuse_exchanged_cameras(court, cameras, clicks, adjust=None):
-    """Raise where the clicks fit the court only after those of two cameras are exchanged.
+def refuse_exchanged_cameras(
+    court: Court,
+    cameras: Sequence[Camera],
+    clicks: ClickedPoints,
+    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
+) -> None:
+    """Raise `InputError` if the clicks fit the court only after those of two cameras are exchanged.
+
+    Then the files of these cameras may be exchanged. Other faults of the clicks are not looked for.
 
     Parameters
     ----------
-    court : courtside.calibration.court.court.Court
-    cameras : list of Camera
-        Fixed cameras in one frame, of structure from motion: clicks must not have shaped it.
-    clicks : dict of str to (P, 2) float
-        By camera name, px; NaN where not clicked.
-    adjust : callable, optional
-        From clicks to the fixed cameras after a joint adjustment with them. Structure from motion of few
-        pictures is bent by more than clicks scatter: points that such a bend can explain are judged after it.
-
-    Raises
-    ------
-    InputError
-        If so: the files of these cameras may be exchanged. Any other fault of the clicks is not looked for.
+    cameras : in one frame, of structure from motion: clicks must not have shaped it
+    adjust : from clicks to the fixed cameras after a joint adjustment with them. Structure from
+        motion of few pictures is bent by more than clicks scatter: points that such a bend can
+        explain are judged after it
     """
-    near_m = OFF * np.max(court.size_m)
-    if not is_bent(court, cameras, clicks):
+    near_m = FITTING * np.max(court.size_m)
+    if not misses_court(court, cameras, clicks):
         return
     off_m = _off_m(court, cameras, clicks, adjust)
     if off_m < near_m:
@@ -305,38 +257,36 @@ def refuse_exchanged_cameras(court, cameras, clicks, adjust=None):
     for one, other in combinations([camera.name for camera in cameras], 2):
         exchanged = {**clicks, one: clicks[other], other: clicks[one]}
         better_m = _off_m(court, cameras, exchanged, adjust)
-        if better_m < min(near_m, off_m / NEARER):
+        if better_m < min(near_m, off_m / EXCHANGE_GAIN):
             found = f"{100 * off_m:.0f} cm off" if np.isfinite(off_m) else "impossible"
             raise InputError(
-                f"cameras {one} and {other}: expected clicked court points to fit the walk, found them "
-                f"{found}, but {100 * better_m:.0f} cm off with the clicks of the two exchanged: the camera "
-                "files may be exchanged; correct their names in the session, or in the court points"
+                f"cameras {one} and {other}: expected clicked court points to fit the walk, found "
+                f"them {found}, but {100 * better_m:.0f} cm off with the clicks of the two "
+                "exchanged: the camera files may be exchanged; correct their names in the "
+                "session, or in the court points"
             )
 
 
-def is_bent(court, cameras, clicks):
-    """Say whether most court points miss the court by more than clicks do: by the model, or wrong clicks.
+def misses_court(court: Court, cameras: Sequence[Camera], clicks: ClickedPoints) -> bool:
+    """Return whether most court points miss the court by more than clicks scatter.
 
-    Parameters
-    ----------
-    court, cameras, clicks
-        As of `refuse_exchanged_cameras`.
+    The model is bent, or clicks are wrong. Arguments are those of `refuse_exchanged_cameras`.
     """
-    return _off_m(court, cameras, clicks) >= OFF * np.max(court.size_m)
+    return _off_m(court, cameras, clicks) >= FITTING * np.max(court.size_m)
 
 
 def _off_m(court, cameras, clicks, adjust=None):
-    """Return how far most reconstructed points are from the court, inf where they cannot be aligned."""
+    """Return `misfit_m` after alignment, inf where the points cannot be aligned."""
     try:
         off_m = _misfit_m(court, cameras, clicks)
-        if adjust and off_m <= BENT * np.max(court.size_m):
+        if adjust and off_m <= MAX_BEND * np.max(court.size_m):
             off_m = _misfit_m(court, adjust(clicks), clicks)
     except InputError:
         return np.inf
     return off_m
 
 
-def _misfit_m(court, cameras, clicks):
+def _misfit_m(court: Court, cameras: Sequence[Camera], clicks: ClickedPoints) -> float:
     xyz = reconstruct(cameras, clicks)
     world_from_sfm, _ = align(court, xyz)
     return misfit_m(court, world_from_sfm, xyz)

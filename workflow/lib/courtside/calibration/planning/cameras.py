@@ -1,38 +1,44 @@
-"""Planned fixed cameras and the path of a planned walk, with the angles between its views."""
+"""Planned fixed cameras, the path of a planned walk, and the angles between its views."""
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from courtside.geometry import rotations
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, project
 from courtside.study.errors import InputError
 
-# ASSUME: how far a person who walks strays from the way (along x, y, z) and misses the aim, m, and turns the
-# camera about its axis, degrees: standard deviations. It helps: without it the camera's tilt is hardly told
-# from its principal point.
+# ASSUME: how far a person who walks strays from the path (along x, y, z) and misses the aim, m, and
+# turns the camera about its axis, degrees: standard deviations. It helps: without it the camera's
+# tilt can hardly be separated from its principal point.
 STRAY_M, MISS_M, ROLL_DEG = (0.25, 0.25, 0.05), (0.35, 0.35, 0.2), 0.3
-STRAY_EVERY_M = 5.0  # slowly
-FINE = 1000  # places by which the way is measured
+STRAY_EVERY_M = 5.0  # ASSUME: of path between independent strays
+FINE = (
+    1000  # places by which the path's length is measured: centimetres apart on a walk round a court
+)
 
 
-def camera(name, place_m, aim_m, size_px, *, focal_px=None, fov_deg=None, roll=0.0):
+def camera(
+    name: str,
+    place_m: Sequence[float] | NDArray,
+    aim_m: Sequence[float] | NDArray,
+    size_px: Sequence[int],
+    *,
+    focal_px: float | None = None,
+    fov_deg: float | None = None,
+    roll: float = 0.0,
+) -> Camera:
     """Return a planned camera: no distortion, principal point in the middle.
 
     Parameters
     ----------
-    name : str
-    place_m, aim_m : (3,) float
-        World, m.
-    size_px : (int, int)
-        Width and height.
-    focal_px, fov_deg : float, optional
-        One of them: focal length, or field of view across the width.
-    roll : float
-        Its turn about its own axis, rad.
-
-    Returns
-    -------
-    camera : Camera
+    place_m, aim_m : (3,) float; world, m
+    size_px : width and height
+    focal_px, fov_deg : one of them: focal length, or field of view across the width
+    roll : rotation about its own axis, rad
 
     Raises
     ------
@@ -44,13 +50,14 @@ def camera(name, place_m, aim_m, size_px, *, focal_px=None, fov_deg=None, roll=0
     if (focal_px is None) == (fov_deg is None):
         raise ValueError("expected one of focal_px and fov_deg")
     width, height = size_px
-    focal_px = focal_px or width / 2 / np.tan(np.radians(fov_deg) / 2)
+    if fov_deg is not None:
+        focal_px = width / 2 / np.tan(np.radians(fov_deg) / 2)
     K = np.array([[focal_px, 0, (width - 1) / 2], [0, focal_px, (height - 1) / 2], [0, 0, 1]])
     forward = np.subtract(aim_m, place_m).astype(float)
-    if np.hypot(*forward[:2]) < 1e-3 * max(np.linalg.norm(forward), 1e-9):
+    if np.hypot(*forward[:2]) < 1e-3 * np.maximum(np.linalg.norm(forward), 1e-9):
         raise InputError(
-            f"camera {name}: expected it to look sideways, found the aim {list(aim_m)} from {list(place_m)}; "
-            "move one of them"
+            f"camera {name}: expected it to look sideways, found the aim {list(aim_m)} from "
+            f"{list(place_m)}; move one of them"
         )
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, [0, 0, 1.0])
@@ -61,19 +68,18 @@ def camera(name, place_m, aim_m, size_px, *, focal_px=None, fov_deg=None, roll=0
     return Camera(name, (int(width), int(height)), K, np.zeros(5), pose)
 
 
-def on_way(points_m, n_places, height_m):
-    """Return places evenly spaced along a smooth way through points, both ends included.
+def in_picture(camera: Camera, xyz: NDArray) -> tuple[NDArray, NDArray]:
+    """Return where a camera sees points (N, 3), px, and which are in its picture, (N,) bool."""
+    with np.errstate(invalid="ignore"):
+        xy = project(camera, xyz)
+        inside = ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=1)
+    return xy, inside
 
-    Parameters
-    ----------
-    points_m : (P, 2) float
-        On the floor, m; two or more.
-    n_places : int
-    height_m : float
 
-    Returns
-    -------
-    places_m : (n_places, 3) float
+def places_on_path(points_m: ArrayLike, n_places: int, height_m: float) -> NDArray:
+    """Return places (n_places, 3) m evenly spaced along a smooth path, both ends included.
+
+    `points_m` (P, 2) are two or more on the floor.
     """
     fine, length_m = _measured(points_m)
     wanted_m = length_m[-1] * _shares(n_places)
@@ -81,42 +87,42 @@ def on_way(points_m, n_places, height_m):
     return np.column_stack([*xy, np.full(n_places, float(height_m))])
 
 
-def _measured(points_m):
-    """Return places close by each other along a smooth way through points, and how far along they are, m."""
+def _measured(points_m: ArrayLike) -> tuple[NDArray, NDArray]:
+    """Return `FINE` places along a smooth path through points, and how far along they are, m."""
     points_m = np.asarray(points_m, dtype=float)
     along = np.append(0, np.linalg.norm(np.diff(points_m, axis=0), axis=1).cumsum())
     fine = CubicSpline(along, points_m)(np.linspace(0, along[-1], FINE))
     return fine, np.append(0, np.linalg.norm(np.diff(fine, axis=0), axis=1).cumsum())
 
 
-def _shares(n_places):
+def _shares(n_places: int) -> NDArray:
     return np.linspace(0, 1, n_places) if n_places != 1 else np.array([0.5])
 
 
-def walked_cameras(way_m, n_images, height_m, aim_m, size_px, *, seed, **lens):
-    """Return the bridging images of a planned walk, as a person takes them.
+def walked_cameras(
+    way_m: ArrayLike,
+    n_images: int,
+    height_m: float,
+    aim_m: ArrayLike,
+    size_px: Sequence[int],
+    *,
+    seed: int,
+    **lens: Any,
+) -> list[Camera]:
+    """Return the bridging images of a planned walk, in order, with the scatter of a person's aim.
 
     Parameters
     ----------
-    way_m, n_images, height_m
-        As for `on_way`.
-    aim_m : (3,) float
-        What the camera is aimed at.
-    size_px : (int, int)
-    seed : int
-    **lens
-        `focal_px` or `fov_deg` of `camera`.
-
-    Returns
-    -------
-    walked : list of Camera
-        In order.
+    way_m, n_images, height_m : as for `places_on_path`
+    aim_m : (3,) float; what the camera is aimed at
+    **lens : `focal_px` or `fov_deg` of `camera`
     """
-    rng = np.random.default_rng([seed, n_images])
     length_m = _measured(way_m)[1][-1]
     knots = np.linspace(0, 1, max(4, round(length_m / STRAY_EVERY_M) + 1))
     stray_m = STRAY_M * np.random.default_rng(seed).standard_normal((len(knots), 3))
-    places = on_way(way_m, n_images, height_m) + CubicSpline(knots, stray_m)(_shares(n_images))
+    places = places_on_path(way_m, n_images, height_m) + CubicSpline(knots, stray_m)(
+        _shares(n_images)
+    )
     rng = np.random.default_rng([seed, n_images])
     aims = np.asarray(aim_m, dtype=float) + MISS_M * rng.standard_normal((n_images, 3))
     rolls = np.radians(ROLL_DEG) * rng.standard_normal(n_images)
@@ -126,40 +132,29 @@ def walked_cameras(way_m, n_images, height_m, aim_m, size_px, *, seed, **lens):
     ]
 
 
-def neighbour_angles_deg(centres, point):
+def neighbour_angles_deg(centres: ArrayLike, point: ArrayLike) -> NDArray:
     """Measure the angles between neighbouring views, as seen from a point.
 
     Parameters
     ----------
-    centres : (V, 3) float
-        Optical centres in order along the path, the fixed cameras at its ends included; metres.
-    point : (3,) float
-        Where the angles are measured: for the study the court's centre, 1 m high.
+    centres : (V, 3) float; optical centres in order along the path, the fixed cameras at its ends
+        included; m
+    point : (3,) float; where the angles are measured: for the study the court's centre, 1 m high
 
     Returns
     -------
-    angle_deg : (V - 1,) float
-        Between 0 and 180; NaN beside a centre that is NaN.
+    angle_deg : (V - 1,) float; between 0 and 180; NaN beside a centre that is NaN
     """
     ray = np.asarray(centres, dtype=float) - np.asarray(point, dtype=float)
     cross = np.linalg.norm(np.cross(ray[:-1], ray[1:]), axis=1)
     return np.degrees(np.arctan2(cross, np.sum(ray[:-1] * ray[1:], axis=1)))
 
 
-def path_order(centres, fixed):
-    """Put fixed cameras where a walk passes them.
+def path_order(centres: NDArray, fixed: NDArray) -> NDArray:
+    """Return the order (V,) int in which a walk passes all images.
 
-    Parameters
-    ----------
-    centres : (V, 3) float
-        Optical centres, those of the walk in order.
-    fixed : (V,) bool
-        Which are fixed cameras.
-
-    Returns
-    -------
-    order : (V,) int
-        Each fixed camera stands where it lengthens the path least: before, within or behind the walk.
+    Each fixed camera, `fixed` (V,) bool, stands where it lengthens the path least: before, within
+    or behind the walk, whose optical centres are in order among `centres` (V, 3).
     """
     order = np.flatnonzero(~fixed).tolist()
     for camera in np.flatnonzero(fixed):
@@ -170,15 +165,10 @@ def path_order(centres, fixed):
     return np.array(order, dtype=int)
 
 
-def path_angles_deg(fixed, centres, point):
-    """Return `neighbour_angles_deg` of registered images, fixed cameras put where the walk passes them.
+def path_angles_deg(fixed: NDArray, centres: NDArray, point: ArrayLike) -> NDArray:
+    """Return `neighbour_angles_deg` with fixed cameras put where the walk passes them.
 
-    Parameters
-    ----------
-    fixed : (V,) bool
-        Which of the images are of fixed cameras.
-    centres : (V, 3) float
-    point : (3,) float
+    `fixed` (V,) bool tells which images are of fixed cameras.
     """
     order = path_order(centres, fixed)
     return neighbour_angles_deg(centres[order], point)

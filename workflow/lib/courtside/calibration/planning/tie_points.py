@@ -1,24 +1,27 @@
-"""A made-up network of ties between images of a planned session: what features of a hall's walls would give.
+"""Simulate the ties between images of a planned session, by features of a hall's walls.
 
-A feature is found as long as it is seen from nearly the same side. Each point of the walls and the floor
-therefore has a *life*: a range of directions, along the path of the camera, in which it is found.
+A feature is found as long as it is seen from nearly the same side. Each point of the walls and the
+floor therefore has a *life*: a range of directions, along the path of the camera, in which it is
+found.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from courtside.calibration.bundle import problem as networks
-from courtside.calibration.bundle import selection
+from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle.problem import Network
 from courtside.calibration.planning import cameras
-from courtside.geometry.camera import project
+from courtside.geometry.camera import Camera
 
-CHUNK = 4000  # points tried at once
+CHUNK = 4000  # points tried at once, which bounds the memory
 WIDTH_PX = 1280  # of the pictures in which textures were measured
-BEFORE = (
-    6.0  # lives before the path's start, in the longest mean life: all that begin earlier are over
-)
-NEAREST_M = 1.0  # of a point to an image: nearer ones are out of focus and soon out of the picture
+# Lives begin up to this many longest mean lives before the path: 0.25 % of earlier ones would last.
+BEFORE = 6.0
+# ASSUME: of a point to an image: nearer ones are out of focus and soon out of the picture.
+NEAREST_M = 1.0
 
 
 @dataclass(frozen=True)
@@ -27,95 +30,80 @@ class Texture:
 
     Attributes
     ----------
-    n_alive : float
-        Features in a picture 1280 px wide that are found again from exactly the same place; in
-        proportion to the width.
-    lives_deg : tuple of float
-        Mean length of the lives of two kinds of features, exponentially distributed.
-    shares : tuple of float
-        Of the kinds among the features of one picture.
-    noise_px : float
-        Standard deviation of a tie per axis, whatever the picture's size.
-    floor : float
-        Share of the features that are on the floor.
+    n_alive : features in a picture 1280 px wide that are found again from exactly the same place;
+        in proportion to the width
+    lives_deg : mean length of the lives of two kinds of features, exponentially distributed
+    shares : of the kinds among the features of one picture
+    noise_px : standard deviation of a tie per axis, whatever the picture's size
+    floor : share of the features that are on the floor
     """
 
     n_alive: float
-    lives_deg: tuple
-    shares: tuple
+    lives_deg: tuple[float, ...]
+    shares: tuple[float, ...]
     noise_px: float
     floor: float
 
 
-# ASSUME: chosen by trial so that the ties per image, and the images per tie, come near those of the virtual
-# sessions: plain-a with 10, 20, 40 bridging images 157, 311, 383 ties per image, seen in 4.0, 4.7, 6.8
-# images; rich-a 527, 808, 1064 in 5.0, 6.3, 9.5. Noise is the robust spread of their residuals with 20 to 40
-# images; it changes by a quarter from pictures of 640 px to 1920 px.
+# ASSUME: chosen by trial so that the ties per image, and the images per tie, come near those of the
+# virtual sessions: plain-a with 10, 20, 40 bridging images 157, 311, 383 ties per image, seen in
+# 4.0, 4.7, 6.8 images; rich-a 527, 808, 1064 in 5.0, 6.3, 9.5. Noise is the robust spread of their
+# residuals with 20 to 40 images; it changes by a quarter from pictures of 640 px to 1920 px.
 TEXTURES = {
     "plain": Texture(480, (1.2, 12.0), (0.6, 0.4), 0.30, 0.05),
     "rich": Texture(1150, (2.0, 16.0), (0.55, 0.45), 0.17, 0.15),
 }
 
 
-def network(fixed, walked, hall_m, texture, lens_prior, rng):
-    """Make the network that structure from motion would find, free of errors, in the court's frame.
+def network(
+    fixed: Sequence[Camera],
+    walked: Sequence[Camera],
+    hall_m: ArrayLike,
+    texture: Texture,
+    lens_prior: tuple[NDArray, NDArray],
+    rng: np.random.Generator,
+) -> Network:
+    """Return the network that error-free structure from motion would find, in the court's frame.
+
+    Fixed cameras come first; points seen once or never are not in it.
 
     Parameters
     ----------
-    fixed : list of Camera
-        Each with a lens of its own.
-    walked : list of Camera
-        The bridging images in order, all by one camera.
-    hall_m : (2, 3) float
-        Two opposite corners of the hall, m.
-    texture : Texture
-    lens_prior : (mean, sigma)
-        Of `Network`, (C + 1, 8) each: the fixed cameras' lenses, then the walked one's.
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    network : courtside.calibration.bundle.problem.Network
-        Fixed cameras first; points seen once or never are not in it.
+    fixed : each with a lens of its own
+    walked : the bridging images in order, all by one camera
+    hall_m : (2, 3) float; two opposite corners of the hall, m
+    lens_prior : mean and sigma of `Network`, (C + 1, 8) each: the fixed cameras' lenses, then the
+        walked one's
     """
     images = [*fixed, *walked]
     order = path_order(fixed, walked)
     found, tried, wanted = [], 0, CHUNK
     while tried < wanted:
-        xyz = on_surfaces(hall_m, CHUNK, texture.floor, rng)
+        xyz = points_on_surfaces(hall_m, CHUNK, texture.floor, rng)
         seen, n_alive = _seen(images, order, xyz, texture, rng)
         if not tried and n_alive:
             full = max(camera.size[0] for camera in images) / WIDTH_PX
             wanted = CHUNK * texture.n_alive * full / n_alive
-        # Of the last points only so many as are wanted.
         tried += CHUNK
         use = seen.sum(axis=1) >= 2
-        use &= np.arange(CHUNK) < CHUNK - max(0, tried - wanted)
+        use &= np.arange(CHUNK) < CHUNK - max(0, tried - wanted)  # of the last chunk only a part
         found.append((xyz[use], seen[use]))
     xyz, seen = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    return _of(images, len(fixed), xyz, seen, lens_prior)
+    return _network_of(images, len(fixed), xyz, seen, lens_prior)
 
 
-def path_order(fixed, walked):
-    """Return the indices of all images, fixed ones first, in the order in which the walk passes them."""
+def path_order(fixed: Sequence[Camera], walked: Sequence[Camera]) -> NDArray:
+    """Return the indices of all images, fixed ones first, in the order of the walk."""
     places = np.array([camera.centre_in_world for camera in [*fixed, *walked]])
     if not walked:
         return np.arange(len(fixed))
     return cameras.path_order(places, np.arange(len(places)) < len(fixed))
 
 
-def on_surfaces(hall_m, n_points, floor, rng):
-    """Return points spread evenly over a hall's walls and its floor, (N, 3) m.
-
-    Parameters
-    ----------
-    hall_m : (2, 3) float
-        Two opposite corners.
-    n_points : int
-    floor : float
-        Share of points on the floor.
-    rng : numpy.random.Generator
-    """
+def points_on_surfaces(
+    hall_m: ArrayLike, n_points: int, floor: float, rng: np.random.Generator
+) -> NDArray:
+    """Return points spread evenly over a hall's walls and, a share `floor`, its floor, (N, 3) m."""
     low, high = np.min(hall_m, axis=0), np.max(hall_m, axis=0)
     xyz = rng.uniform(low, high, (n_points, 3))
     wide, deep = (high - low)[:2]
@@ -129,8 +117,8 @@ def on_surfaces(hall_m, n_points, floor, rng):
     return xyz
 
 
-def _seen(images, order, xyz, texture, rng):
-    """Return which image sees which point, (N, V) bool, and how many the widest pictures see at once."""
+def _seen(images, order, xyz, texture, rng) -> tuple[NDArray, float]:
+    """Return which image sees which point, (N, V) bool, and how many a widest picture sees."""
     angle_deg = _along(np.array([images[at].centre_in_world for at in order]), xyz)
     alive = np.zeros(angle_deg.shape, dtype=bool)
     alive[:, order] = _alive(angle_deg, texture, rng)
@@ -142,8 +130,8 @@ def _seen(images, order, xyz, texture, rng):
     return alive & fine, n_alive
 
 
-def _along(centres, xyz):
-    """Return how far the direction to each image has turned along the path, as seen from points, degrees."""
+def _along(centres: NDArray, xyz: NDArray) -> NDArray:
+    """Return how far the direction from points to each image has turned along the path, degrees."""
     ray = centres - xyz[:, None]
     ray = ray / np.linalg.norm(ray, axis=2, keepdims=True)
     between = np.linalg.norm(np.diff(ray, axis=1), axis=2) / 2
@@ -151,7 +139,7 @@ def _along(centres, xyz):
     return np.concatenate([np.zeros((len(xyz), 1)), np.cumsum(turn_deg, axis=1)], axis=1)
 
 
-def _alive(angle_deg, texture, rng):
+def _alive(angle_deg: NDArray, texture: Texture, rng: np.random.Generator) -> NDArray:
     """Return in which images each point is in its life, (N, V) bool."""
     lives_deg, shares = np.array(texture.lives_deg), np.array(texture.shares)
     births = shares / lives_deg  # long lives fill more pictures than their number
@@ -163,15 +151,12 @@ def _alive(angle_deg, texture, rng):
     return (since >= 0) & (since <= life_deg[:, None])
 
 
-def _in_view(camera, xyz):
+def _in_view(camera: Camera, xyz: NDArray) -> NDArray:
     away_m = np.linalg.norm(xyz - camera.centre_in_world, axis=1)
-    with np.errstate(invalid="ignore"):
-        xy = project(camera, xyz)
-        inside = ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=1)
-    return inside & (away_m > NEAREST_M)
+    return cameras.in_picture(camera, xyz)[1] & (away_m > NEAREST_M)
 
 
-def _of(images, n_fixed, xyz, seen, lens_prior):
+def _network_of(images, n_fixed, xyz, seen, lens_prior) -> Network:
     point_idx, image_idx = np.nonzero(seen)
     alone = selection.of_cameras(images)
     lens_of_image = np.minimum(np.arange(len(images)), n_fixed)
@@ -192,4 +177,4 @@ def _of(images, n_fixed, xyz, seen, lens_prior):
         sigma_px=np.ones(len(image_idx)),
         loss_scale=np.full(len(image_idx), np.inf),
     )
-    return replace(blank, xy=networks.residuals(blank))
+    return replace(blank, xy=problem.residuals(blank))

@@ -1,1 +1,7 @@
-"""Files between rules of the calibration: tie-point constraints, joint covariance."""
+"""Files between rules of the calibration.
+
+tie_points
+    Record, read, write: tie-point constraints of one structure from motion
+covariance
+    CameraCovariance, of_network, read, write: joint covariance of the fixed cameras
+"""

@@ -1,8 +1,11 @@
 """The joint covariance of a session's fixed cameras: npz with its parameters named."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS, POSE
 from courtside.records import npz
@@ -18,31 +21,27 @@ SPEC = {
 
 @dataclass(frozen=True, eq=False)
 class CameraCovariance:
-    """Covariance of poses and lenses of cameras.
+    """Covariance (14 C, 14 C) of the poses and lenses of named cameras.
 
-    Attributes
-    ----------
-    cameras : list of str
-    covariance : (14 C, 14 C) float
-        Camera after camera, each in the order of `PARAMETERS`: a small turn of the camera in its own
-        frame (rad,
-        applied on the left of cam_from_world), translation of cam_from_world (m), focal length along y (px),
-        focal length along x over that along y, principal point (px), k1, k2, p1, p2.
+    Camera after camera, each in the order of `PARAMETERS`: a small rotation of the camera in its
+    own frame (rad, applied on the left of cam_from_world), translation of cam_from_world (m), focal
+    length along y (px), focal length along x over that along y, principal point (px), k1, k2, p1,
+    p2.
     """
 
-    cameras: list
-    covariance: np.ndarray
+    cameras: list[str]
+    covariance: NDArray
 
-    def of_columns(self):
-        """Return the same in the order of a network's columns, (K, K); 0 for the flex."""
+    def of_columns(self) -> NDArray:
+        """Return the covariance in the order of a network's columns, (K, K); 0 for the flex."""
         size = (IMAGE + len(LENS)) * len(self.cameras)
         at = columns(len(self.cameras))
         whole = np.zeros((size, size))
         whole[np.ix_(at, at)] = self.covariance
         return whole
 
-    def of(self, cameras):
-        """Return that of some of the cameras, in their order; `ValueError` names one that is not there."""
+    def of(self, cameras: Sequence[str]) -> "CameraCovariance":
+        """Return the covariance of some cameras, in order; `ValueError` names a missing one."""
         for name in cameras:
             if name not in self.cameras:
                 raise ValueError(f"expected a camera of {self.cameras}, found {name!r}")
@@ -52,8 +51,8 @@ class CameraCovariance:
         return CameraCovariance(list(cameras), self.covariance[np.ix_(rows, rows)])
 
 
-def columns(n_cameras):
-    """Return where the parameters of cameras stand in the columns of their network, (14 C,) int."""
+def columns(n_cameras: int) -> NDArray:
+    """Return the indices of the cameras' parameters among their network's columns, (14 C,) int."""
     places = []
     for at in range(n_cameras):
         places.append(IMAGE * at + np.arange(IMAGE - len(FLEX)))
@@ -61,13 +60,13 @@ def columns(n_cameras):
     return np.concatenate(places) if places else np.zeros(0, dtype=int)
 
 
-def of_network(cameras, covariance):
-    """Build a `CameraCovariance` from that of a network's columns (K, K)."""
+def of_network(cameras: Sequence[str], covariance: NDArray) -> CameraCovariance:
+    """Build a `CameraCovariance` from the covariance of a network's columns (K, K)."""
     at = columns(len(cameras))
     return CameraCovariance(list(cameras), covariance[np.ix_(at, at)])
 
 
-def write(path, found):
+def write(path: str | Path, found: CameraCovariance) -> None:
     """Write a `CameraCovariance`; a camera whose covariance is unknown has NaN."""
     arrays = {
         "camera": np.array(found.cameras, dtype=str),
@@ -77,7 +76,7 @@ def write(path, found):
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path):
-    """Read a `CameraCovariance`; an `InputError` says what is wrong with a file that is none."""
+def read(path: str | Path) -> CameraCovariance:
+    """Read a `CameraCovariance`; an `InputError` says what is wrong with the file."""
     found = npz.read(path, FORM, SPEC)
     return CameraCovariance([str(name) for name in found["camera"]], found["covariance"])

@@ -1,13 +1,16 @@
-"""What one structure from motion says of the fixed cameras, or why it says nothing: npz."""
+"""npz: tie-point constraints on the fixed cameras of a session, or why there are none."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from courtside.calibration.bundle import problem as networks
-from courtside.calibration.bundle import selection, solver
+from courtside.calibration.bundle import problem, selection, solver
 from courtside.calibration.bundle.problem import LENS
 from courtside.calibration.court import joint_adjustment
+from courtside.geometry.camera import Camera
 from courtside.records import npz
 from courtside.study.errors import reading
 
@@ -38,41 +41,33 @@ class Record:
 
     Attributes
     ----------
-    outcome : str
-        Empty, or in one line which fixed camera was not placed, and what to film again.
-    fault : str
-        Empty, or in one line why the placed cameras could not be adjusted with the court points.
-    sfm_cameras : list of Camera
-        The fixed cameras that were registered, in the model's own frame and unit.
-    n_points_seen : (C,) int
-        Points of the model that each of them sees.
-    ties : courtside.calibration.court.joint_adjustment.Ties or None
-        None where there is an outcome or a fault.
-    images : (V,) str
-        Names of the registered images.
-    centres : (V, 3) float
-        Where they were taken from: in the court's frame where there are ties, else in the model's.
-    xyz : (N, 3) float
-        Points that tie the images, in the same frame.
-    residual_px : float
-        Of the ties, robust standard deviation per axis; NaN without ties.
-    n_maps : (int, int)
-        Maps of the same matches that place the images as this one does, itself included; all that were made.
+    outcome : empty, or in one line which fixed camera was not placed, and what to film again
+    fault : empty, or in one line why the placed cameras could not be adjusted with the court points
+    sfm_cameras : the registered fixed cameras, in the model's own frame and unit
+    n_points_seen : (C,) int; points of the model that each of them sees
+    ties : None where there is an outcome or a fault
+    images : (V,) str; names of the registered images
+    centres : (V, 3) float; their projection centres: in the court's frame where there are ties,
+        else in the model's
+    xyz : (N, 3) float; tie points, in the same frame
+    residual_px : of the ties, robust standard deviation per axis; NaN without ties
+    n_maps : number of maps of the same matches that place the images as this one does, itself
+        included, and number of all maps made
     """
 
     outcome: str
     fault: str
-    sfm_cameras: list
-    n_points_seen: np.ndarray
-    ties: object
-    images: np.ndarray
-    centres: np.ndarray
-    xyz: np.ndarray
+    sfm_cameras: list[Camera]
+    n_points_seen: NDArray
+    ties: joint_adjustment.Ties | None
+    images: NDArray
+    centres: NDArray
+    xyz: NDArray
     residual_px: float
-    n_maps: tuple
+    n_maps: tuple[int, int]
 
 
-def write(path, record):
+def write(path: str | Path, record: Record) -> None:
     """Write a `Record` to an npz file."""
     sfm = selection.of_cameras(record.sfm_cameras)
     reference = record.ties.knowledge.reference if record.ties else None
@@ -98,22 +93,22 @@ def write(path, record):
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path):
-    """Read a `Record`; an `InputError` says what is wrong with a file that is none."""
+def read(path: str | Path) -> Record:
+    """Read a `Record`; an `InputError` says what is wrong with the file."""
     found = npz.read(path, FORM, SPEC)
     with reading(path, "cameras and ties that fit one another"):
         return _record(found)
 
 
-def _record(found):
-    sizes = [tuple(map(int, size)) for size in found["size"]]
+def _record(found: Mapping[str, NDArray]) -> Record:
+    sizes = [(int(width), int(height)) for width, height in found["size"]]
     names, heights_px = tuple(map(str, found["camera"])), found["size"][:, 1]
     sfm = selection.cameras(
-        networks.bare(found["cam_from_sfm"], found["lens_sfm"], heights_px), names, sizes
+        problem.without_points(found["cam_from_sfm"], found["lens_sfm"], heights_px), names, sizes
     )
     ties = None
     if len(found["information"]):
-        reference = networks.bare(found["cam_from_world"], found["lens"], heights_px)
+        reference = problem.without_points(found["cam_from_world"], found["lens"], heights_px)
         knowledge = solver.Quadratic(reference, found["information"], found["gradient"])
         ties = joint_adjustment.Ties(names, tuple(sizes), knowledge)
     return Record(
@@ -126,9 +121,9 @@ def _record(found):
         found["centre"],
         found["xyz"],
         float(found["residual_px"]),
-        tuple(map(int, found["n_maps"])),
+        (int(found["n_maps"][0]), int(found["n_maps"][1])),
     )
 
 
-def _stack(values, shape):
+def _stack(values: ArrayLike, shape: tuple[int, ...]) -> NDArray:
     return np.asarray(values, dtype=float).reshape(-1, *shape)
