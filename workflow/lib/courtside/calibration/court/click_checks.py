@@ -82,7 +82,7 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
 
     The cameras, in one frame of structure from motion or the world, stay. The similarity to the
     world is found again without the point (robustly, so that another wrong click does not spread).
-    Raises `InputError` if without one point, the others cannot be aligned: too few, collinear,
+    Raises `InputError` if the others cannot be aligned without one point: too few, collinear,
     mirrored.
     """
     xyz = sfm_alignment.reconstruct(cameras, clicks)

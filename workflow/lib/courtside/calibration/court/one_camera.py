@@ -1,9 +1,9 @@
 """Least squares for one camera and known points: its pose, and if free its focal length and k1.
 
-The Levenberg-Marquardt loop is our own because it is four times faster. In 54 cases (18 or 8 points,
-0 to 0.7 px, known and free lens, some wrong clicks) `scipy.optimize.least_squares` (`trf`, the same
-derivatives and loss) gave the same cameras within 1e-6 px, in 78 ms a fit against 18 ms. Its `lm` with
-differences took 170 ms and diverged where clicks were wrong.
+The Levenberg-Marquardt loop is our own because it is four times faster. In 54 cases (18 or 8
+points, 0 to 0.7 px, known and free lens, some wrong clicks) `scipy.optimize.least_squares` (`trf`,
+the same derivatives and loss) gave the same cameras within 1e-6 px, in 78 ms a fit against 18 ms.
+Its `lm` with differences took 170 ms and diverged where clicks were wrong.
 """
 
 from dataclasses import dataclass, replace

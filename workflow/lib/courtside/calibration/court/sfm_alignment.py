@@ -62,17 +62,17 @@ def reconstruct(cameras: Sequence[Camera], clicks: ClickedPoints) -> NDArray:
 def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     """Find the world frame as the paper does, from the origin and the ends of x and y.
 
-    Raises `InputError` if the court has no such set, or one of the points is missing.
+    Raises `InputError` if the court has no set "three", or one of its points is missing.
 
-    [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o, D = [R t;
-    0 1]. They are called orthonormal there and never made so; D is used as it is for points. A
-    camera needs a rotation: the nearest one (polar factor of R).
+    [Shishido2020, eq 2-5]: e_i = (S_i - S_o) / |S_i - S_o| are the rows of R, t = -R S_o,
+    D = [R t; 0 1]. They are called orthonormal there and never made so; D is used as it is for
+    points. A camera needs a rotation: the nearest one (polar factor of R).
 
     # ASSUME: S_z, a point on the z axis, is S_o + e_x x e_y: no court point lies above the origin,
     # and the paper does not say how it is found.
-    # ASSUME: the scale, "known length over SfM length", is that of both sides together, (6.1 + 13.4
-    # m) over the sum of their SfM lengths: the paper names both lengths and one scale. It
-    # multiplies R and t.
+    # ASSUME: the scale, "known length over SfM length", is that of both sides together,
+    # (6.1 + 13.4 m) over the sum of their SfM lengths: the paper names both lengths and one scale.
+    # It multiplies R and t.
 
     Parameters
     ----------
