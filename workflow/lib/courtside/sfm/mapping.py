@@ -64,18 +64,15 @@ def map_images(
     tried: list[_Attempt] = []
     options = dict(options or {})
     for at in range(max(attempts, 1)):
-        lost = at >= HELD_FROM and not any(_is_whole(each, images) for each in tried)
-        held: dict[str, Any] = HELD.get(mapper, {}) if lost else {}
-        held = {name: value for name, value in held.items() if name not in options}
+        held = _held(tried, images, mapper, options)
         found = _map(matches_db, images, mapper, seed + at, options | held)._replace(held=held)
         confirmed = any(_confirms(each, found, images) for each in tried)
         tried.append(found)
         if confirmed and _is_whole(found, images):
             break
     agreeing = [1 + sum(_confirms(each, found, images) for each in tried) for found in tried]
-    chosen = max(
-        range(len(tried)), key=lambda at: _rank(tried[at], agreeing[at])
-    )  # first of equals
+    ranks = [_rank(*each) for each in zip(tried, agreeing, strict=True)]
+    chosen = ranks.index(max(ranks))  # the first of equals
     n_agreeing, best = agreeing[chosen], tried[chosen]
     Path(folder).mkdir(parents=True, exist_ok=True)
     best.model.write_binary(str(folder))
@@ -94,6 +91,13 @@ def map_images(
         "n_attempts": len(tried),
         "n_agreeing": n_agreeing,
     }
+
+
+def _held(tried, images, mapper, options) -> dict[str, Any]:
+    """Return options that hold distortion, once `HELD_FROM` attempts gave no whole model."""
+    if len(tried) < HELD_FROM or any(_is_whole(each, images) for each in tried):
+        return {}
+    return {name: on for name, on in HELD.get(mapper, {}).items() if name not in options}
 
 
 def _check_whole(model: pycolmap.Reconstruction, folder: Path) -> None:

@@ -257,13 +257,7 @@ def nonlinear(
     distance = np.linalg.norm(off, axis=1)
     agree = distance <= OUTLIER * max(1.0, np.median(distance) / MEDIAN_2D)
     off_px = np.median(np.linalg.norm(one_camera.residuals(state, clicks)[0], axis=1))
-    few = agree.sum() < fewest or similarity.is_collinear(clicks.xyz[agree])
-    if few or off_px > MAX_MISFIT * size[0]:
-        raise InputError(
-            f"camera {name}: expected {fewest} clicks or more that fit one camera, found "
-            f"{agree.sum()} and half of all {off_px:.1f} px off or more; check the names of the "
-            "clicked points, and the court"
-        )
+    _check_agreement(clicks, agree, off_px, fewest, size, name)
     state, _, by_step = one_camera.descend(state, clicks.of(agree), np.inf)
     accepted = np.zeros(len(seen), dtype=bool)
     accepted[np.flatnonzero(seen)[agree]] = True
@@ -273,6 +267,17 @@ def nonlinear(
     parameters = POSE + LENS if K is None else POSE
     rms_px = float(np.sqrt(np.mean(error_px[accepted] ** 2) / 2))
     return Fitted(camera, covariance, parameters, accepted, error_px, rms_px)
+
+
+def _check_agreement(clicks, agree, off_px, fewest, size, name) -> None:
+    """Raise `InputError` if too few clicks agree, or most are far off."""
+    few = agree.sum() < fewest or similarity.is_collinear(clicks.xyz[agree])
+    if few or off_px > MAX_MISFIT * size[0]:
+        raise InputError(
+            f"camera {name}: expected {fewest} clicks or more that fit one camera, found "
+            f"{agree.sum()} and half of all {off_px:.1f} px off or more; check the names of the "
+            "clicked points, and the court"
+        )
 
 
 def _covariance(columns: NDArray, name: str) -> NDArray:
