@@ -1,15 +1,21 @@
 """From keypoints of several clocks to skeletons: exact scenes, reasons, and real footage."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from courtside.calibration.bundle import selection
+from courtside.calibration.records import covariance as camera_covariance
 from courtside.reconstruction import fusion, resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints2D
 from fixtures.cameras import scene
+from fixtures.people import walker
 
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
 OPTIONS = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True}
@@ -107,3 +113,131 @@ def test_the_measured_noise_gives_honest_ellipsoids():
     inside = np.mean(squared < 6.251, axis=0)
     assert (inside > 0.85).all()
     assert (inside < 0.95).all()
+
+
+CAMERAS = scene.ring(2, radius_m=8)
+N = len(camera_covariance.PARAMETERS)
+SIGMA = np.array([1e-3, 2e-3, 1e-3, 0.01, 0.02, 0.01, 4, 1e-4, 2, 2, 1e-4, 1e-4, 1e-5, 1e-5])
+
+
+def covariance():
+    return camera_covariance.CameraCovariance(["c0", "c1"], np.diag(np.tile(SIGMA, 2) ** 2))
+
+
+def triangulated(poses, xy):
+    matrices = [camera.K @ pose for camera, pose in zip(CAMERAS, poses, strict=True)]
+    found = cv2.triangulatePoints(*matrices, xy[0].T.copy(), xy[1].T.copy())
+    return (found[:3] / found[3]).T
+
+
+def test_spread_is_that_of_points_triangulated_with_cameras_moved_at_random():
+    points = walker.points(6, n_cameras=2)
+    places = np.array([[[0.5, 0.2, 1.0]] * walker.N_JOINTS] * 6)[None]
+    points = walker_at(points, places)
+    pose_only = covariance()
+    keep = np.tile(np.arange(N) < 6, 2)
+    pose_only.covariance[~np.ix_(keep, keep)[0][:, 0]] = 0
+    found = fusion.with_cameras(points, CAMERAS, pose_only.of_columns())
+    rng = np.random.default_rng(0)
+    xy = scene.views(CAMERAS, places[0, 0, :1])
+    moved = []
+    for _ in range(4000):
+        poses = []
+        for camera in CAMERAS:
+            turn = Rotation.from_rotvec(rng.normal(0, SIGMA[:3])).as_matrix()
+            pose = turn @ camera.cam_from_world
+            pose[:, 3] += rng.normal(0, SIGMA[3:6])
+            poses.append(pose)
+        moved.append(triangulated(poses, xy)[0])
+    expected = np.cov(np.array(moved).T)
+    np.testing.assert_allclose(
+        found.covariance_camera[0, 0, 5], expected, atol=0.08 * np.trace(expected)
+    )
+
+
+def walker_at(points, xyz):
+    return type(points)(**{**vars(points), "xyz": xyz})
+
+
+def test_a_person_who_is_missing_has_none_and_joints_share_the_persons():
+    points = walker.points(6, n_cameras=2)
+    points.xyz[0, 2] = np.nan
+    found = fusion.with_cameras(points, CAMERAS, covariance().of_columns())
+    assert np.isnan(found.covariance_camera[0, 2]).all()
+    assert np.isnan(found.covariance_camera[0, 3, 4]).all()
+    np.testing.assert_array_equal(
+        found.covariance_camera[0, 4, 0], found.covariance_camera[0, 4, 20]
+    )
+    np.testing.assert_array_equal(found.covariance_2d, points.covariance_2d)
+
+
+def test_some_of_the_cameras_have_their_own_part():
+    three = camera_covariance.CameraCovariance(
+        ["a", "b", "c"], np.diag(np.arange(3 * N, dtype=float))
+    )
+    part = three.of(["c", "a"])
+    assert part.cameras == ["c", "a"]
+    assert np.diag(part.covariance).tolist() == [*range(2 * N, 3 * N), *range(N)]
+    with pytest.raises(ValueError, match="expected a camera of"):
+        three.of(["d"])
+    assert selection.of_cameras(CAMERAS).n_columns == len(part.of_columns())
+
+
+CAMERAS_HALFBODY = ["centre", "left", "right"]
+UP = np.array([0, 0, 1.0])
+
+
+def halves():
+    points = walker.points(20, n_cameras=2)
+    left = replace(points, cameras=np.array(["centre", "left"]))
+    right = replace(
+        points,
+        cameras=np.array(["centre", "right"]),
+        xyz=points.xyz + UP,
+        reason=points.reason.copy(),
+    )
+    return left, right
+
+
+def test_each_side_is_that_of_its_record_and_the_middle_the_mean():
+    left, right = halves()
+    merged = fusion.merge(left, right, CAMERAS_HALFBODY)
+    at = {name: list(merged.joints).index(name) for name in ("left_hip", "right_hip", "nose")}
+    assert merged.cameras.tolist() == CAMERAS_HALFBODY
+    np.testing.assert_array_equal(merged.xyz[:, :, at["left_hip"]], left.xyz[:, :, at["left_hip"]])
+    np.testing.assert_array_equal(
+        merged.xyz[:, :, at["right_hip"]], right.xyz[:, :, at["right_hip"]]
+    )
+    lifted = merged.xyz[:, :, at["nose"]] - left.xyz[:, :, at["nose"]]
+    np.testing.assert_allclose(lifted, np.broadcast_to([0, 0, 0.5], lifted.shape), atol=1e-12)
+
+
+def test_views_are_those_of_the_half():
+    left, right = halves()
+    merged = fusion.merge(left, right, CAMERAS_HALFBODY)
+    at = {name: list(merged.joints).index(name) for name in ("left_knee", "right_knee", "nose")}
+    assert merged.accepted[0, 0, at["left_knee"]].tolist() == [True, True, False]
+    assert merged.accepted[0, 0, at["right_knee"]].tolist() == [True, False, True]
+    assert merged.accepted[0, 0, at["nose"]].tolist() == [True, True, True]
+    assert merged.n_views[0, 0, [at["left_knee"], at["nose"]]].tolist() == [2, 3]
+    error = merged.reproj_error_px[0, 0, at["left_knee"]]
+    np.testing.assert_array_equal(error[:2], left.reproj_error_px[0, 0, at["left_knee"]])
+    assert np.isnan(error[2]) and np.isfinite(merged.reproj_error_px[0, 0, at["nose"]]).all()
+
+
+def test_a_joint_of_the_middle_that_one_half_lacks_is_that_of_the_other():
+    left, right = halves()
+    nose = list(left.joints).index("nose")
+    left.xyz[0, 2, nose], left.reason[0, 2, nose] = np.nan, missing_reason.REJECTED
+    left.accepted[0, 2, nose] = False
+    merged = fusion.merge(left, right, CAMERAS_HALFBODY)
+    np.testing.assert_array_equal(merged.xyz[0, 2, nose], right.xyz[0, 2, nose])
+    assert merged.reason[0, 2, nose] == missing_reason.OK
+    assert (merged.reason[:, 3, 4], merged.n_views[0, 3, 4]) == (missing_reason.REJECTED, 0)
+    assert np.isnan(merged.xyz[0, 3, 4]).all()
+
+
+def test_halves_of_different_takes_are_a_fault():
+    left, right = halves()
+    with pytest.raises(ValueError, match="expected halves of the same time_s"):
+        fusion.merge(left, replace(right, time_s=right.time_s + 1), CAMERAS_HALFBODY)

@@ -1,9 +1,14 @@
 """Candidates over time: exact places with gaps, crossings, and exchanged pieces."""
 
+import itertools
+
 import numpy as np
 
 from courtside.reconstruction.association import candidates, linking
+from courtside.reconstruction.association import rows as rows_module
 from courtside.reconstruction.association.candidates import Candidates
+from fixtures.cameras import scene
+from fixtures.people import stick_figures
 
 STEP_S = 0.1
 
@@ -37,7 +42,7 @@ def lines(n, *ends):
 
 def persons_of(paths, person):
     """Return which person each followed path shows, as sets."""
-    return [set(person[c[c >= 0]]) for c in paths.chosen if (c >= 0).any()]
+    return [set(person[c[c >= 0]]) for c in paths if (c >= 0).any()]
 
 
 def test_two_who_walk_apart_are_two_paths():
@@ -46,7 +51,7 @@ def test_two_who_walk_apart_are_two_paths():
     )
     paths = linking.link(found, piece, time_s, 4)
     assert sorted(map(sorted, persons_of(paths, person))) == [[0], [1]]
-    assert (paths.chosen >= 0).sum() >= 56  # a person is believed in after some instants
+    assert (paths >= 0).sum() >= 56  # a person is believed in after some instants
 
 
 def test_motion_carries_identity_through_a_gap_of_both():
@@ -79,7 +84,7 @@ def test_a_lost_person_is_found_again_rather_than_born_again():
     found, piece, time_s, person = candidates_of(paths, own, missing)
     result = linking.link(found, piece, time_s, 3)
     assert persons_of(result, person) == [{0}]
-    assert (result.chosen >= 0).sum() >= 38
+    assert (result >= 0).sum() >= 38
 
 
 def test_a_row_is_not_counted_for_two():
@@ -94,7 +99,7 @@ def test_a_row_is_not_counted_for_two():
         np.full((10, 2), -2.9),
     )
     order = np.argsort(np.concatenate([found.instant, ghost.instant]), kind="stable")
-    both = candidates.together([found, ghost])
+    both = candidates.concatenate([found, ghost])
     piece = np.concatenate([piece, ghost.row])[order]
     owner = np.concatenate([person, np.full(10, 9)])[order]
     result = linking.link(both, piece, time_s, 4)
@@ -103,10 +108,10 @@ def test_a_row_is_not_counted_for_two():
 
 def test_nothing_to_link_gives_empty_paths():
     found, _, _, _ = candidates_of(lines(5, ([0, 0, 1], [1, 0, 1])))
-    none = found.of(np.zeros(5, bool))
+    none = found.subset(np.zeros(5, bool))
     result = linking.link(none, np.zeros((0, 2), int), np.arange(5) * STEP_S, 2)
-    assert result.chosen.shape == (2, 5)
-    assert (result.chosen == -1).all()
+    assert result.shape == (2, 5)
+    assert (result == -1).all()
 
 
 def test_players_rather_stay_in_their_half():
@@ -144,7 +149,71 @@ def test_a_ray_of_one_view_carries_a_person_through_a_turn():
     order = np.argsort(np.concatenate([found.instant, rays.instant]), kind="stable")
     pieces = np.concatenate([piece, np.stack([own[0, 14:30], np.full(16, -1)], axis=1)])[order]
     owner = np.concatenate([person, np.zeros(16, int)])[order]
-    result = linking.link(candidates.together([found, rays]), pieces, time_s, 2)
+    result = linking.link(candidates.concatenate([found, rays]), pieces, time_s, 2)
     assert sorted(map(sorted, persons_of(result, owner))) == [[0], [1]]
-    on_rays = [(c[14:30] >= 0).sum() for c in result.chosen]
+    on_rays = [(c[14:30] >= 0).sum() for c in result]
     assert sorted(on_rays) == [0, 16]
+
+
+def test_a_path_is_sure_at_its_instants_and_silent_far_from_them():
+    time_s, at_s = np.arange(31) / 10, np.array([0.0, 0.2, 2.0])
+    path, sigma_m = linking.along(time_s, at_s, np.outer(at_s, [1.0, 0, 0]))
+    np.testing.assert_allclose(path[:21, 0], time_s[:21])
+    assert (path[21:, 0] == 2.0).all()
+    assert sigma_m[[0, 2, 20]].tolist() == [0, 0, 0]
+    assert np.isinf(sigma_m[[10, 30]]).all()
+    assert 0 < sigma_m[1] < sigma_m[4]
+
+
+def test_each_row_is_cheapest_for_its_own_person():
+    camera, time_s = scene.ring(1, radius_m=15)[0], np.arange(10) / 30
+    places = [np.outer(time_s, [1.0, 0]) + start for start in ([0, 2], [0, -2])]
+    people = np.stack([stick_figures.body(place, time_s) for place in places])
+    xy = scene.opencv_projection(camera, people.reshape(-1, 3)).reshape(2, 10, 12, 2)
+    xy[1, 4] = np.nan
+    rows = rows_module.describe(xy, stick_figures.TRUNK)
+    path = people[:, :, stick_figures.TRUNK].mean(axis=2)
+    cost = linking.costs(camera, rows, path, np.zeros((2, 10)), np.array([True, False]))
+    assert cost.shape == (2, 10, 3)
+    own = np.delete(np.arange(10), 4)
+    assert (cost[:, own].argmin(axis=2) == [[0], [1]]).all()
+    assert (cost[1, 4] == 0).all()
+    unsure = linking.costs(camera, rows, path, np.full((2, 10), np.inf), np.array([True, False]))
+    assert (unsure[0, own].argmin(axis=1) == 0).all()  # the wanted one gets it, the other does not
+    assert (unsure[0, own, 1] > unsure[0, own, 2]).all()
+
+
+def test_noise_does_not_change_the_owner_and_a_cut_does():
+    cost = np.zeros((1, 20, 3))
+    cost[0, :, 1:] = 6.0
+    cost[0, 10:, :] = [6.0, 0.0, 6.0]
+    cost[0, [3, 15]] = [3.0, 1.0, 6.0]
+    cut = np.zeros((1, 20), bool)
+    cut[0, 10] = True
+    owner = linking.follow(cost, cut, np.ones((1, 20), bool))
+    assert owner[0].tolist() == [0] * 10 + [1] * 10
+
+
+def test_the_cheapest_sequence_is_found():
+    """Against all sequences tried one by one."""
+    rng = np.random.default_rng(3)
+    cost, cut = rng.uniform(0, 12, (1, 6, 3)), rng.random((1, 6)) < 0.4
+    change = np.where(cut, linking.CHANGE_AT_CUT, linking.CHANGE)[0]
+
+    def total(owners):
+        moves = sum(change[t] for t in range(1, 6) if owners[t] != owners[t - 1])
+        return moves + sum(cost[0, t, owner] for t, owner in enumerate(owners))
+
+    best = min(itertools.product(range(3), repeat=6), key=total)
+    owner = linking.follow(cost, cut, np.ones((1, 6), bool))[0]
+    assert [2 if o == -1 else o for o in owner] == list(best)
+
+
+def test_of_two_rows_the_better_one_is_the_person():
+    owner = np.zeros((2, 30), int)
+    owner[0, 20:] = -1
+    cost = np.zeros((2, 30, 2))
+    cost[0, :, 0], cost[1, :, 0] = 1.0, 2.0
+    cost[0, 3::7, 0] = 4.0  # now and then the better row is worse: the rows do not take turns
+    index = linking.one_row_each(owner, cost)
+    assert index.tolist() == [[0] * 20 + [1] * 10]

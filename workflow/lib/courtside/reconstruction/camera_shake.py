@@ -1,43 +1,46 @@
-"""Camera shake and knocks: quantified per frame, and taken off the keypoints."""
+"""Camera shake and knocks: measured per frame, and removed from the keypoints.
 
+Tables are those of `courtside.records.cameras.shake_table`; cameras are as calibrated, standing as
+in their static picture.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
+from pandas import DataFrame
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import camera as cameras
+from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 
-LONGEST_GAP_S = 0.2  # frames without a measurement that are bridged by a line
-SAME_FRAME = 0.25  # of a frame: a time that agrees with a row of the table
-PROBE_PX = 20.0  # how far from the centre the turn of the content is read
-N_STEPS = 6
-DONE_RAD = 1e-10
+# ASSUME: tremor of a mounted camera changes little over longer gaps than this, s.
+LONGEST_GAP_S = 0.2
+SAME_FRAME = 0.25  # share of a frame: a keypoint time this close to a row's time is that row
+PROBE_PX = 20.0  # distance from the centre at which the rotation is read: small against the lens
+N_STEPS = 6  # Newton steps; DONE_RAD is usually reached earlier
+DONE_RAD = 1e-10  # far below any measurement
 
 
-def camera_turns(camera, table):
-    """Return how the camera had turned in each frame.
-
-    Parameters
-    ----------
-    camera : courtside.geometry.camera.Camera
-        As calibrated, standing as in its static picture.
-    table : DataFrame
-        Of `courtside.records.cameras.shake_table`.
+def camera_turns(camera: Camera, table: DataFrame) -> NDArray:
+    """Return the rotation of the camera in each frame.
 
     Returns
     -------
     shaken_from_still : (T, 3) float
-        Rotation vector, radians, from the axes of the camera as calibrated to those it has in the frame; NaN
+        Rotation vector, radians, from the camera axes as calibrated to those in the frame; NaN
         where the shake is unknown.
 
     Notes
     -----
-    A fixed camera turns about itself: when its picture moves by ten pixels, its centre moves by about
-    a millimetre. The rotation is the one that moves the picture's centre, and turns the content there, as
-    measured (Newton's method through the lens). Zoom is left out: an angle of view does not shake.
+    The model is a pure rotation: when the picture moves by ten pixels, the camera's centre moves by
+    about a millimetre. The rotation is the one that moves the picture's centre, and turns the
+    content there, as measured (Newton's method through the lens). Zoom is ignored.
     """
     measured = np.column_stack(
         [table.shift_x_px, table.shift_y_px, np.radians(table.rotation_deg)]
@@ -49,22 +52,19 @@ def camera_turns(camera, table):
     return found
 
 
-def steady(view, camera, table):
-    """Move keypoints from the shaken pictures of a camera to where its static picture has them.
+def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
+    """Move keypoints from a camera's shaken frames to their place in its static picture.
 
     Parameters
     ----------
-    view : courtside.records.keypoints.keypoints.Keypoints2D
-    camera : courtside.geometry.camera.Camera
-        As calibrated.
     table : DataFrame
-        Of `courtside.records.cameras.shake_table`, with a row for each frame of the view.
+        With a row for each frame of the view.
 
     Returns
     -------
-    steadied : courtside.records.keypoints.keypoints.Keypoints2D
-        With `xy` and `xyz_in_body` turned back. Frames whose shake is unknown for longer than 0.2 s are left
-        as they are, which the log says. Keypoints that the lens model cannot have seen stay, too.
+    steadied : Keypoints2D
+        With `xy` and `xyz_in_body` turned back. Frames whose shake is unknown for longer than 0.2 s
+        are left as they are, and the log reports them. Keypoints outside the lens model stay, too.
 
     Raises
     ------
@@ -73,10 +73,10 @@ def steady(view, camera, table):
 
     Notes
     -----
-    The measured shake is used as it is, not smoothed: its noise is far below a keypoint's, and smoothing
-    would take more from the tremor than from the noise.
+    The measured shake is not smoothed: its noise is far below a keypoint's, and smoothing would
+    remove more tremor than noise.
     """
-    cameras.check_size(camera, view.size, f"keypoints of camera {view.camera}")
+    camera_models.check_size(camera, view.size, f"keypoints of camera {view.camera}")
     turned = _bridged(table.time_s.to_numpy(float), camera_turns(camera, table))
     turned = turned[_rows(view, table)]
     unknown = np.isnan(turned).any(axis=1)
@@ -97,8 +97,8 @@ def steady(view, camera, table):
     )
 
 
-def _solve(camera, measured):
-    """Return the rotation vectors (T, 3) that move the picture's centre, and turn it there, as measured."""
+def _solve(camera: Camera, measured: NDArray) -> NDArray:
+    """Return rotation vectors (T, 3) that move and turn the picture's centre as measured."""
     centre = (np.array(camera.size) - 1) / 2
     arms = PROBE_PX * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
     directions = _directions(camera, centre + arms)
@@ -119,8 +119,8 @@ def _solve(camera, measured):
     return vectors
 
 
-def _bridged(time_s, vectors):
-    """Fill short gaps of (T, 3) with lines, not before the first and after the last value."""
+def _bridged(time_s: NDArray, vectors: NDArray) -> NDArray:
+    """Fill short gaps of (T, 3) linearly, between the first and the last value only."""
     known = np.flatnonzero(np.isfinite(vectors).all(axis=1))
     filled = vectors.copy()
     for last, following in pairwise(known):
@@ -132,7 +132,7 @@ def _bridged(time_s, vectors):
     return filled
 
 
-def _rows(view, table):
+def _rows(view: Keypoints2D, table: DataFrame) -> NDArray:
     """Return the row of the table of each frame of a view, (T,) int."""
     time_s = table.time_s.to_numpy(float)
     wanted = np.asarray(view.time_s, float)
@@ -148,64 +148,54 @@ def _rows(view, table):
     return rows
 
 
-def _directions(camera, xy):
-    """Return where pixels look, (..., 3), in the camera's axes, z = 1."""
-    seen = cameras.undistort(camera, xy)
+def _directions(camera: Camera, xy: NDArray) -> NDArray:
+    """Return viewing directions (..., 3) of pixels in the camera's axes, z = 1."""
+    seen = camera_models.undistort(camera, xy)
     return np.concatenate([seen, np.ones((*seen.shape[:-1], 1))], axis=-1)
 
 
-def _project(camera, xyz_in_cam):
+def _project(camera: Camera, xyz_in_cam: NDArray) -> NDArray:
     """Project points that are given in the camera's axes."""
-    return cameras.project(replace(camera, cam_from_world=np.eye(3, 4)), xyz_in_cam)
+    return camera_models.project(replace(camera, cam_from_world=np.eye(3, 4)), xyz_in_cam)
 
 
-WINDOW_S = 1.0  # before and after: medians over that are compared
-LEAST_S = 0.4  # of it must be known on both sides, to say that a knock stays
+# ASSUME: thresholds that separate simulated knocks from tremor (docs/measured.md).
+WINDOW_S = 1.0  # before and after a knock: medians over this time are compared
+LEAST_S = 0.4  # of it must be known on both sides, to tell that the new pose is kept
 LEAST_PX = 1.0  # of a knock
 LEAST_RATIO = 5.0  # of a knock to the same comparison at the other frames
-LEAST_SPREADS = 3.0  # of a knock to the tremor about the medians beside it, root mean square
-ABRUPT_S, ABRUPT_SHARE = (
-    0.15,
-    0.6,
-)  # within that, a knock does that share of its work: tremor swings slower
-MOST = 30  # knocks of one take that are named
+LEAST_SPREADS = 3.0  # of a knock to the root mean square of the tremor beside it
+# A knock makes this share of its step within this time, s; tremor is slower.
+ABRUPT_S, ABRUPT_SHARE = 0.15, 0.6
+MOST = 30  # knocks reported per take
 
 
 @dataclass(frozen=True)
 class Knock:
-    """A camera was knocked, and stayed as it then stood.
+    """A camera was knocked and stayed in its new pose.
 
     Attributes
     ----------
     time_s : float
         Of the first frame that shows it, on the camera's own clock.
     shift_px : (2,) float
-        By how much the content of the picture's centre moved: right, down.
+        Movement of the content at the picture's centre: right, down.
     turn_deg : float
-        By how much the camera turned, about whatever axis.
+        Angle by which the camera turned, about any axis.
     """
 
     time_s: float
-    shift_px: np.ndarray
+    shift_px: NDArray
     turn_deg: float
 
 
-def find(camera, table):
-    """Find the times at which a camera was knocked.
+def find(camera: Camera, table: DataFrame) -> list[Knock]:
+    """Find the times at which a camera was knocked, in order.
 
-    Parameters
-    ----------
-    camera : courtside.geometry.camera.Camera
-    table : DataFrame
-        Of `courtside.records.cameras.shake_table`.
-
-    Returns
-    -------
-    knocks : list of Knock
-        In order of time. A step counts where the median turns of the second before and after differ by
-        more than 1 px at the picture's centre, by five times their uncertainty, five times what they
-        typically differ by in this take, and three times the tremor's root mean square beside it: of a
-        trembling camera only what stands out is found, and nothing within 0.4 s of the ends of a take.
+    A step counts if the median rotations of the second before and after differ by more than 1 px at
+    the picture's centre, by five times their uncertainty, five times their typical difference in
+    this take, and three times the root mean square of the tremor beside it. Only what stands out of
+    the tremor is found, and nothing within 0.4 s of the ends of a take.
     """
     table = table[np.isfinite(table.shift_x_px)]
     if len(table) < 2:
@@ -235,56 +225,30 @@ def find(camera, table):
     return [_knock(table, turns, split, n) for split in sorted(splits)]
 
 
-def tremor_px(table, knocks=()):
-    """Return the root mean square, per axis, of the shift about its median between knocks, px.
-
-    Parameters
-    ----------
-    table : DataFrame
-        Of `courtside.records.cameras.shake_table`.
-    knocks : list of Knock
-    """
+def tremor_px(table: DataFrame, knocks: Sequence[Knock] = ()) -> float:
+    """Return the root mean square, px per axis, of the shift about its median between knocks."""
     parts = _parts(table, knocks)
     off = [part - np.median(part, axis=0) for part in parts]
     return float(np.sqrt(np.mean(np.concatenate(off) ** 2))) if off else np.nan
 
 
-def mm_at(camera, xyz, table):
-    """Return how far the shake moves the picture's content at a player, (T,) mm.
-
-    Parameters
-    ----------
-    camera : courtside.geometry.camera.Camera
-    xyz : (3,) float
-        Where the player is, m, in the world.
-    table : DataFrame
-        Of `courtside.records.cameras.shake_table`. The shift is that of the picture's centre.
-    """
+def mm_at(camera: Camera, xyz: NDArray, table: DataFrame) -> NDArray:
+    """Return the shift (T,) of the picture's centre in mm at a place `xyz` (3,) m in world."""
     shift_px = np.hypot(table.shift_x_px, table.shift_y_px).to_numpy(float)
     return mm_per_px(camera, xyz) * shift_px
 
 
-def mm_per_px(camera, xyz):
-    """Return the length that a pixel covers at a place (3,) m in the world: depth over focal length, mm."""
+def mm_per_px(camera: Camera, xyz: NDArray) -> float:
+    """Return the length, mm, of a pixel at a place (3,) m in world: depth / focal length."""
     depth = camera.cam_from_world[2] @ np.r_[np.asarray(xyz, float), 1.0]
     return float(1000 * depth / np.diag(camera.K)[:2].mean())
 
 
-def say(camera, table, xyz):
-    """Say in plain lines what a camera's shake amounts to.
+def say(camera: Camera, table: DataFrame, xyz: NDArray) -> list[str]:
+    """Describe a camera's shake in plain lines, with its size at a player at `xyz` (3,) m in world.
 
-    Parameters
-    ----------
-    camera : courtside.geometry.camera.Camera
-    table : DataFrame
-        Of `courtside.records.cameras.shake_table`.
-    xyz : (3,) float
-        Where the player is, m, in the world; NaN where unknown.
-
-    Returns
-    -------
-    lines : list of str
-        One about tremor; one more if the camera did not stand as in its static picture; one per knock.
+    One line is about tremor, one more if the camera did not stand as in its static picture, and one
+    about each knock. NaN for `xyz` means an unknown place.
     """
     knocks, scale = find(camera, table), mm_per_px(camera, xyz)
     tremor = tremor_px(table, knocks)
@@ -300,7 +264,8 @@ def say(camera, table, xyz):
     if start_px > max(LEAST_PX, tremor):
         lines.append(
             f"{name} stood {start_px:.1f} px off its static picture when the take began"
-            f"{_at_player(scale * start_px)}: steady its keypoints, or film the static picture again"
+            f"{_at_player(scale * start_px)}: steady its keypoints, "
+            "or film the static picture again"
         )
     for knock in knocks:
         size_px = np.hypot(*knock.shift_px)
@@ -311,13 +276,16 @@ def say(camera, table, xyz):
     return lines
 
 
-def _at_player(length_mm):
+def _at_player(length_mm: float) -> str:
     digits = 0 if length_mm >= 10 else 1
     return f", {length_mm:.{digits}f} mm at the player" if np.isfinite(length_mm) else ""
 
 
-def _steps(level, n, least):
-    """Return the median over the next n frames less that over the last n, (T, 3); NaN where too few known."""
+def _steps(level: NDArray, n: int, least: int) -> NDArray:
+    """Return the median over the next n frames minus that over the last n, (T, 3).
+
+    It is NaN where fewer than `least` frames are known.
+    """
     pad = np.full((n, level.shape[1]), np.nan)
     windows = np.lib.stride_tricks.sliding_window_view(np.concatenate([pad, level, pad]), n, axis=0)
     enough = np.isfinite(windows[:, 0]).sum(axis=-1) >= least
@@ -326,14 +294,14 @@ def _steps(level, n, least):
     return medians[n : n + len(level)] - medians[: len(level)]
 
 
-def _sudden(before, after, step, n):
-    """Tell whether the n frames next to a split show most of its step (3,)."""
+def _sudden(before: NDArray, after: NDArray, step: NDArray, n: int) -> bool:
+    """Return whether the n frames next to a split show most of its step (3,)."""
     ends = np.array([np.median(after[:n], axis=0), np.median(before[-n:], axis=0)])
     return bool((ends[0] - ends[1]) @ step > ABRUPT_SHARE * (step @ step))
 
 
-def _split(level, near, n):
-    """Return the frame near another that best parts what is before from what is after."""
+def _split(level: NDArray, near: int, n: int) -> int:
+    """Return the frame near another that best separates the level before from the level after."""
     first, stop = max(near - n, 0), min(near + n, len(level))
     before = np.median(level[first:near], axis=0)
     after = np.median(level[near:stop], axis=0)
@@ -344,7 +312,7 @@ def _split(level, near, n):
     return max(near - n // 2, 0) + int(total.argmax())
 
 
-def _knock(table, turns, split, n):
+def _knock(table: DataFrame, turns: NDArray, split: int, n: int) -> Knock:
     shift = table[["shift_x_px", "shift_y_px"]].to_numpy(float)
     ends = [slice(max(split - n, 0), split), slice(split, split + n)]
     before, after = (Rotation.from_rotvec(np.median(turns[end], axis=0)) for end in ends)
@@ -353,8 +321,8 @@ def _knock(table, turns, split, n):
     return Knock(float(table.time_s.iloc[split]), moved[1] - moved[0], float(turn))
 
 
-def _parts(table, knocks):
-    """Return the known shifts (n, 2) px between knocks, those that are not empty."""
+def _parts(table: DataFrame, knocks: Sequence[Knock]) -> list[NDArray]:
+    """Return the known shifts (n, 2) px of each non-empty span between knocks."""
     known = table[np.isfinite(table.shift_x_px)]
     shift = known[["shift_x_px", "shift_y_px"]].to_numpy(float)
     cuts = np.searchsorted(known.time_s, [knock.time_s for knock in knocks])

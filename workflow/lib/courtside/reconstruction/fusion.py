@@ -1,69 +1,66 @@
-"""Fusion of views into one 3D skeleton: all views, half bodies, and the cameras' part of the error."""
+"""Fusion of views into one 3D skeleton: all views, half bodies, the cameras' part of the error."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
-from courtside.geometry import triangulation as plain_dlt
+from courtside.geometry import triangulation
+from courtside.geometry.camera import Camera
 from courtside.reconstruction import left_right, resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import missing_reason
-from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 
 
 def triangulate_take(
-    cameras,
-    views,
-    skeleton,
-    person_id,
+    cameras: Sequence[Camera],
+    views: Sequence[Keypoints2D],
+    skeleton: Skeleton,
+    person_id: Sequence[str],
     *,
-    min_score,
-    min_views,
-    max_error_px,
-    fade_px,
-    fix_sides,
-    clocks=None,
-    time_s=None,
-    rule="robust",
-):
+    min_score: float,
+    min_views: int,
+    max_error_px: float,
+    fade_px: float,
+    fix_sides: bool,
+    clocks: Sequence[Clock] | None = None,
+    time_s: NDArray | None = None,
+    rule: str = "robust",
+) -> tuple[Keypoints3D, NDArray]:
     """Triangulate the persons of one take.
 
     Parameters
     ----------
-    cameras : list of Camera, length C
-        In the order of `views`.
-    views : list of Keypoints2D, length C
-        One tracklet per person, in the same order in every camera.
-    skeleton : Skeleton
-        Of the network that made `views`.
-    person_id : list of str, length P
-        Names of the tracklets' persons.
+    cameras, views, clocks
+        In one order. Each view has one tracklet per person, in the order of `person_id` (P,), by
+        the network of `skeleton`. Without clocks, all agree.
     min_score, min_views, max_error_px, fade_px
         As for `triangulation.triangulate_robust`.
     fix_sides : bool
         Whether to exchange left and right in views that contradict the others.
-    clocks : list of Clock, length C, optional
-        Of the cameras, in the order of `views`; clocks that agree by default.
     time_s : (T,) float, optional
-        Of the result, on the reference clock; `resampling.common_times` of the views by default.
+        Of the result, on the reference clock; by default `resampling.common_times` of the views.
     rule : str
-        "robust" weighs and leaves out views (`triangulation.triangulate_robust`); "dlt" takes all as they are
+        "robust" weights and excludes views (`triangulation.triangulate_robust`); "dlt" uses all
         (`triangulation.triangulate_plain`).
 
     Returns
     -------
     points : Keypoints3D
     swapped : (C, P, T, J) bool
-        Where left and right changed places.
+        Where left and right were exchanged.
 
     Notes
     -----
-    The keypoints' standard deviation is not assumed but measured: per joint, from the residuals of the
-    accepted views, with the three coordinates of each point counted as spent degrees of freedom. It
-    holds what the views disagree on; an error that all views share (a network that places every hip too
-    low) is not in it.
+    The keypoints' standard deviation is measured per joint from the residuals of the accepted
+    views, three degrees of freedom less per point. It contains what the views disagree on, but not
+    an error that all views share, such as a network that places every hip too low.
     """
     clocks = clocks or [Clock()] * len(views)
     time_s = resampling.common_times(views, clocks) if time_s is None else time_s
@@ -76,9 +73,9 @@ def triangulate_take(
         xy, score, swapped = _fix_sides(cameras, xy, score, skeleton, max_error_px)
     flat = score.reshape(len(cameras), -1)
     options = {"min_views": min_views, "min_score": min_score, "sigma_px": 1.0}
-    solve = plain_dlt.triangulate_plain
+    solve: Callable[..., triangulation.Triangulated] = triangulation.triangulate_plain
     if rule == "robust":
-        solve = plain_dlt.triangulate_robust
+        solve = triangulation.triangulate_robust
         options |= {"max_error_px": max_error_px, "fade_px": fade_px}
     found = solve(cameras, xy.reshape(len(cameras), -1, 2), flat, **options)
     points = _record(cameras, views[0], person_id, time_s, found, score.shape[1:])
@@ -88,7 +85,7 @@ def triangulate_take(
     return replace(points, reason=reason, covariance_2d=covariance), swapped
 
 
-def _fix_sides(cameras, xy, score, skeleton, max_error_px):
+def _fix_sides(cameras, xy, score, skeleton, max_error_px) -> tuple[NDArray, NDArray, NDArray]:
     mirror = np.array(skeleton.mirror())
     groups = [[skeleton.index(j) for j in g] for g in skeleton.side_groups()]
     swapped = np.zeros(score.shape, dtype=bool)
@@ -101,7 +98,7 @@ def _fix_sides(cameras, xy, score, skeleton, max_error_px):
     return xy, score, swapped
 
 
-def _record(cameras, view, person_id, time_s, found, shape):
+def _record(cameras, view, person_id, time_s, found, shape) -> Keypoints3D:
     per_view = (len(cameras), *shape)
     accepted = np.moveaxis(found.accepted.reshape(per_view), 0, -1)
     covariance = found.covariance.reshape(*shape, 3, 3)
@@ -121,17 +118,11 @@ def _record(cameras, view, person_id, time_s, found, shape):
     )
 
 
-def why_missing(score, xyz, min_score, min_views):
-    """Return the reason code of each point, (N,) uint8.
+def why_missing(score: NDArray, xyz: NDArray, min_score: float, min_views: int) -> NDArray:
+    """Return the reason code (N,) uint8 of each point.
 
-    Parameters
-    ----------
-    score : (C, N) float
-        NaN where unseen.
-    xyz : (N, 3) float
-        NaN where not triangulated.
-    min_score, min_views
-        As used for triangulation.
+    `score` (C, N) is NaN where unseen, `xyz` (N, 3) NaN where not triangulated; `min_score` and
+    `min_views` are those of the triangulation.
     """
     n_seen = np.isfinite(score).sum(axis=0)
     n_usable = (np.nan_to_num(score, nan=-1.0) >= max(min_score, 1e-12)).sum(axis=0)
@@ -143,22 +134,11 @@ def why_missing(score, xyz, min_score, min_views):
     return reason
 
 
-def keypoint_variance(points, score):
-    """Measure each joint's keypoint variance for score 1, px^2, from how far the views disagree.
+def keypoint_variance(points: Keypoints3D, score: NDArray) -> NDArray:
+    """Measure each joint's keypoint variance (J,) for score 1, px^2 per axis, from the residuals.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    score : (C, P, T, J) float
-
-    Returns
-    -------
-    variance : (J,) float
-        Per axis; NaN for a joint that never has a degree of freedom.
-
-    Notes
-    -----
-    Each point has 2 n residuals and spends 3 of them on its coordinates.
+    `score` is (C, P, T, J). Each point has 2 n residuals and uses 3 of them for its coordinates.
+    The result is NaN for a joint without a degree of freedom.
     """
     weight = np.where(points.accepted, np.nan_to_num(np.moveaxis(score, 0, -1)), 0.0)
     squares = (weight * np.nan_to_num(points.reproj_error_px) ** 2).sum(axis=(0, 1, 3))
@@ -166,26 +146,24 @@ def keypoint_variance(points, score):
     return np.where(freedom > 0, squares / np.maximum(freedom, 1), np.nan)
 
 
-SHARED = ("time_s", "joints", "person_id")
+SHARED = ("time_s", "joints", "person_id")  # fields that both halves must have in common
 
 
-def merge(left, right, cameras):
+def merge(left: Keypoints3D, right: Keypoints3D, cameras: Sequence[str]) -> Keypoints3D:
     """Join the left half of one record with the right half of another.
 
     Parameters
     ----------
-    left : Keypoints3D
-        From the centre and the left camera.
-    right : Keypoints3D
-        From the centre and the right camera; same times, joints and persons.
+    left, right : Keypoints3D
+        From the centre and the left camera, and from the centre and the right camera.
     cameras : sequence of str
         Of the result.
 
     Returns
     -------
     merged : Keypoints3D
-        Joints of the left side are those of `left`, of the right side those of `right`; joints of neither
-        side are the mean of both, or the one that is there.
+        Left joints are those of `left`, right joints those of `right`; joints of neither side are
+        the mean of both, or the one that exists.
 
     Raises
     ------
@@ -194,16 +172,17 @@ def merge(left, right, cameras):
 
     Notes
     -----
-    [Shishido2020, section 4]. The paper does not say what becomes of head and neck; the mean is ours.
+    [Shishido2020, section 4]. The paper does not tell how head and neck are merged; the mean is
+    ours.
     """
     for key in SHARED:
         if not np.array_equal(getattr(left, key), getattr(right, key)):
-            raise ValueError(f"expected halves of the same {key}, found others")
-    cameras = np.array(cameras)
-    parts = [_spread(part, cameras) for part in (left, right)]
-    names = left.joints.astype(str)
-    of_right, of_left = (np.char.startswith(names, side) for side in ("right_", "left_"))
-    chosen = {
+            raise ValueError(f"expected halves of the same {key}, found different ones")
+    names = np.array(cameras)
+    parts = [_with_columns(part, names) for part in (left, right)]
+    joints = left.joints.astype(str)
+    of_right, of_left = (np.char.startswith(joints, side) for side in ("right_", "left_"))
+    chosen: dict[str, Any] = {  # Any: mypy cannot match the fields that `replace` gets by `**`
         key: _choose(getattr(parts[0], key), getattr(parts[1], key), of_left, of_right)
         for key in ("xyz", "covariance_2d", "covariance_camera", "reproj_error_px")
     }
@@ -214,10 +193,10 @@ def merge(left, right, cameras):
     reason = np.where(of_right, right.reason, left.reason)
     reason[:, :, either] = np.minimum(left.reason, right.reason)[:, :, either]
     n_views = views.sum(axis=-1) * np.isfinite(chosen["xyz"][..., 0])
-    return replace(left, cameras=cameras, accepted=views, n_views=n_views, reason=reason, **chosen)
+    return replace(left, cameras=names, accepted=views, n_views=n_views, reason=reason, **chosen)
 
 
-def _spread(points, cameras):
+def _with_columns(points: Keypoints3D, cameras: NDArray) -> Keypoints3D:
     """Return a record with a column for each of more cameras."""
     at = [cameras.tolist().index(name) for name in points.cameras.tolist()]
     shape = (*points.reproj_error_px.shape[:-1], len(cameras))
@@ -226,35 +205,37 @@ def _spread(points, cameras):
     return replace(points, cameras=cameras, reproj_error_px=error, accepted=accepted)
 
 
-def _choose(left, right, of_left, of_right):
-    """Choose along the joints, the third axis; where a joint is of neither side, take the mean."""
+def _choose(left: NDArray, right: NDArray, of_left: NDArray, of_right: NDArray) -> NDArray:
+    """Choose along the joints, the third axis; for joints of neither side take the mean."""
     shape = (1, 1, -1) + (1,) * (left.ndim - 3)
     mean = np.where(np.isnan(left), right, np.where(np.isnan(right), left, (left + right) / 2))
     return np.where(of_left.reshape(shape), left, np.where(of_right.reshape(shape), right, mean))
 
 
-def with_cameras(points, cameras, covariance):
-    """Add the covariance that the cameras' own causes to a record.
+def with_cameras(
+    points: Keypoints3D, cameras: Sequence[Camera], covariance: NDArray
+) -> Keypoints3D:
+    """Add the covariance caused by the cameras to a record.
 
     Parameters
     ----------
-    points : Keypoints3D
     cameras : list of Camera
         Those of `points.cameras`.
     covariance : (K, K) float
-        Of the columns of the network of these cameras, as
-        `courtside.calibration.records.covariance.CameraCovariance.of_columns` returns it.
+        Of the columns of the network of these cameras, from
+        `courtside.calibration.records.covariance.CameraCovariance.of_columns`.
 
     Returns
     -------
     points : Keypoints3D
-        With `covariance_camera`: that of a person's middle in each frame, the same for all joints; NaN
-        where the person is missing.
+        With `covariance_camera`: that at a person's middle in each frame, the same for all joints;
+        NaN where the person is missing.
 
     Notes
     -----
-    # ASSUME: the error of a calibration changes little within the reach of a body, and little when single
-    joints rest on fewer views than the person does.
+    # ASSUME: the error of a calibration varies little over a body, and little when single joints
+    # use
+    fewer views than the person does.
     """
     placed = np.isfinite(points.xyz)
     count = placed.sum(axis=2)

@@ -1,16 +1,21 @@
 """Correction of a network's joints: offsets by body part and view, and limbs of constant length."""
 
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise, product
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.geometry import rotations
 from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, reading
 
-BONES = {  # lines that may tell where a joint is put, of the joint's own side: (from, to)
+# Lines (from, to) of a joint's own side that may explain its offset.
+BONES = {
     "shoulder": (("shoulder", "elbow"), ("elbow", "wrist")),
     "elbow": (("shoulder", "elbow"), ("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
     "wrist": (("elbow", "wrist"), ("wrist", "index"), ("wrist", "pinky")),
@@ -20,32 +25,35 @@ BONES = {  # lines that may tell where a joint is put, of the joint's own side: 
 }
 ACROSS = {"shoulder": ("shoulder", "elbow"), "hip": ("hip", "knee")}  # and of the other side
 TRUNK = ("out", "up", "forward")  # names of the trunk's vectors, each as long as the trunk
-# Vectors whose shares men and women have with opposite signs, beside what they have in common: hips of
-# development bodies that were left out of the fit are 20 mm off with them, 33 mm without.
+# Vectors with shares of opposite sign for men and women, besides the common shares: hips of
+# development bodies left out of the fit are 20 mm off with them, 33 mm without.
 BY_SEX = {"hip": TRUNK}
-SIGN = {"m": 1.0, "f": -1.0}  # nothing is known of others: the mean of both
-# Lines that count by their direction, too: where a part of the arm looks too short, the elbow is off.
+SIGN: dict[str | None, float] = {"m": 1.0, "f": -1.0}  # for others, the mean of both
+# Lines that also count by their direction: if a part of the arm looks too short, the elbow is off.
 DIRECTED = {"elbow": (("shoulder", "elbow"), ("elbow", "wrist"))}
-LENGTH_M = 0.3  # of directions, and of the vector along the world's z
-RIDGE = 1e-3  # of the mean square of the vectors: what the clips do not show stays near zero
-OUTLIER = 1.5  # times the median error: beyond, a frame loses weight (Huber)
-ROUNDS = 15
+LENGTH_M = (
+    0.3  # of directions and of the vector along the world's z: about a limb, any unit will do
+)
+# Ridge, share of the vectors' mean square: undetermined shares stay near zero. Another weight did
+# not help (docs/measured.md).
+RIDGE = 1e-3
+OUTLIER = 1.5  # ASSUME: times the median error: beyond it a frame loses weight (Huber)
+ROUNDS = 15  # of reweighting
 NORMAL_MEDIAN = 1.5382  # median length of a vector of three standard normal numbers
 COLUMNS = ["joint", "vector", "share", "sigma_m", "n"]
 REMAKE = "make it anew with the rule evaluate_joint_offsets"
 
 
-def vectors(xyz, joints, side, joint, sex=None):
-    """Return the vectors that a joint's offset may be made of.
+def vectors(
+    xyz: NDArray, joints: Sequence[str], side: str, joint: str, sex: str | None = None
+) -> dict[str, NDArray]:
+    """Return the vectors that a joint's offset may be a combination of.
 
     Parameters
     ----------
     xyz : (..., J, 3) float
-        Skeletons in the world, metres.
-    joints : sequence of str
-        Names of J joints.
-    side : str
-        "left" or "right"
+        Skeletons in the world, metres, with the named `joints` (J,).
+    side : {"left", "right"}
     joint : str
         One of `skeleton.LIMBS`.
     sex : {"m", "f"} or None
@@ -53,10 +61,11 @@ def vectors(xyz, joints, side, joint, sex=None):
     Returns
     -------
     basis : dict of str to (..., 3) float
-        Trunk axes of the trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright`, the
-        world's z; lines between joints of the own side (`hip-knee`) and of the other (`other hip-knee`), as
-        far as the network has these joints; `way elbow-wrist` and the like, lines of `DIRECTED` made
-        `LENGTH_M` long; `sex up` and the like, those of `BY_SEX` with the sign of the sex; metres.
+        Metres. Trunk axes of the trunk's length (`out`: to the joint's own side; `up`; `forward`);
+        `upright`, the world's z; lines between joints of the own side (`hip-knee`) and of the other
+        (`other hip-knee`), if the network has these joints; `way elbow-wrist` and the like, lines
+        of `DIRECTED` with length `LENGTH_M`; `sex up` and the like, those of `BY_SEX` with the sign
+        of the sex.
     """
     place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
     hips, shoulders = (
@@ -83,7 +92,11 @@ def vectors(xyz, joints, side, joint, sex=None):
     return found | {f"sex {name}": sign * found[name] for name in BY_SEX.get(joint, ())}
 
 
-def estimate(clips, joints, true_joints):
+def estimate(
+    clips: Sequence[tuple[NDArray, NDArray, str | None]],
+    joints: Sequence[str],
+    true_joints: Sequence[str],
+) -> pd.DataFrame:
     """Fit the offsets on skeletons whose true joints are known.
 
     Parameters
@@ -95,9 +108,9 @@ def estimate(clips, joints, true_joints):
 
     Returns
     -------
-    table : pandas.DataFrame
-        `COLUMNS`: for each joint (both sides together) and vector its share; sigma_m, what remains per
-        axis; n, how many joints it rests on.
+    table : DataFrame
+        `COLUMNS`: the share of each joint (both sides together) and vector; `sigma_m`, the residual
+        per axis; `n`, the number of joints used.
 
     Raises
     ------
@@ -106,16 +119,16 @@ def estimate(clips, joints, true_joints):
     """
     joints, true_joints, rows = list(joints), list(true_joints), []
     for joint in skeleton.LIMBS:
-        design, offset = [], []
+        columns_of, offset_of = [], []
         for (found, true, sex), side in product(clips, ("left", "right")):
             name = f"{side}_{joint}"
             basis = vectors(found, joints, side, joint, sex)
             columns = np.stack(list(basis.values()), axis=-1)
             difference = found[:, joints.index(name)] - true[:, true_joints.index(name)]
             known = np.isfinite(difference).all(axis=-1) & np.isfinite(columns).all(axis=(-2, -1))
-            design.append(columns[known])
-            offset.append(difference[known])
-        design, offset = np.concatenate(design), np.concatenate(offset)
+            columns_of.append(columns[known])
+            offset_of.append(difference[known])
+        design, offset = np.concatenate(columns_of), np.concatenate(offset_of)
         if not len(offset):
             raise ValueError(f"expected {joint} in a clip, found it in none of {len(clips)}")
         shares, sigma_m = _fit(design, offset)
@@ -126,23 +139,24 @@ def estimate(clips, joints, true_joints):
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def correct(points, table, sex_of=None):
+def correct(
+    points: Keypoints3D, table: pd.DataFrame, sex_of: Mapping[str, str | None] | None = None
+) -> Keypoints3D:
     """Subtract the offsets from the limb joints of a record.
 
     Parameters
     ----------
-    points : Keypoints3D
-    table : pandas.DataFrame
-        As `estimate` returns it.
+    table : DataFrame
+        From `estimate`.
     sex_of : dict of str to {"m", "f"} or None, optional
-        Of persons; of others the mean of both is taken.
+        Of persons; for others the mean of both is used.
 
     Returns
     -------
     corrected : Keypoints3D
-        Joints without a row are as they were. A joint's offset needs shoulders, hips and the joint's own
-        limb; where one of them is missing the joint keeps its place, and so its offset. What a corrected
-        joint's offset leaves unexplained is added to its `covariance_2d`.
+        Joints without a row stay. A joint's offset needs shoulders, hips and the joint's own limb;
+        if one of them is missing the joint keeps its place and its offset. `sigma_m` of a corrected
+        joint is added to its `covariance_2d`.
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d.copy()
@@ -158,19 +172,8 @@ def correct(points, table, sex_of=None):
     return replace(points, xyz=xyz, covariance_2d=covariance)
 
 
-def read(path):
-    """Read a table of offsets.
-
-    Parameters
-    ----------
-    path : str or Path
-        CSV with `COLUMNS`.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+def read(path: str | os.PathLike) -> pd.DataFrame:
+    """Read a CSV table of offsets with `COLUMNS`; raise `InputError` if it is not one."""
     with reading(path, "a table of joint offsets", REMAKE):
         table = pd.read_csv(path, comment="#")
         found = list(table.columns)
@@ -182,21 +185,21 @@ def read(path):
     if found != COLUMNS or not pairs <= known or not np.isfinite(numbers).all():
         joints = sorted({str(joint) for joint, _ in pairs})
         raise InputError(
-            f"{path}: expected columns {COLUMNS} with joints of {skeleton.LIMBS} and numbers, found columns "
-            f"{found} and joints {joints}; {REMAKE}"
+            f"{path}: expected columns {COLUMNS} with joints of {skeleton.LIMBS} and numbers, "
+            f"found columns {found} and joints {joints}; {REMAKE}"
         )
     return table
 
 
-def _vector_names(joint):
+def _vector_names(joint: str) -> list[str]:
     names = [*TRUNK, "upright", *(f"{start}-{stop}" for start, stop in BONES[joint])]
     names += [f"other {'-'.join(ACROSS[joint])}"] if joint in ACROSS else []
     names += [f"way {start}-{stop}" for start, stop in DIRECTED.get(joint, ())]
     return names + [f"sex {name}" for name in BY_SEX.get(joint, ())]
 
 
-def _fit(design, offset):
-    """Return shares (V,) of vectors (N, 3, V) that make offsets (N, 3), and what remains per axis."""
+def _fit(design: NDArray, offset: NDArray) -> tuple[NDArray, float]:
+    """Return shares (V,) of vectors (N, 3, V) that fit offsets (N, 3), and the residual."""
     weight = np.ones(len(offset))
     for _ in range(ROUNDS):
         weighted = design * weight[:, None, None]
@@ -210,29 +213,20 @@ def _fit(design, offset):
 
 
 SIDES = ("left", "right")
-LEAST = 10  # frames, of both sides together, that a length must rest on
-# ASSUME: a take's own median length is wrong by 5 % (one standard deviation): on the development bodies the
-# ratio to the true length, offsets taken off, has mean 0.98 and standard deviation 0.04.
+LEAST = 10  # ASSUME: frames of both sides that a median length needs
+# ASSUME: a take's own median length is wrong by 5 % (one standard deviation): on the development
+# bodies the ratio to the true length, after correction, has mean 0.98 and standard deviation 0.04.
 LENGTH_SIGMA = 0.05
-UNKNOWN_M = 0.03  # standard deviation per axis of a joint for which none is stated
-LIMB_ROUNDS = 8
+UNKNOWN_M = 0.03  # ASSUME: standard deviation per axis of a joint without a stated one
+LIMB_ROUNDS = 8  # Gauss-Newton steps
 
 
-def lengths(xyz, joints):
-    """Return the length of each limb segment over a take, both sides taken together.
+def lengths(xyz: NDArray, joints: Sequence[str]) -> dict[tuple[str, str], float]:
+    """Return the length of each limb segment of one person over a take, metres.
 
-    Parameters
-    ----------
-    xyz : (T, J, 3) float
-        One person, metres; NaN where missing.
-    joints : sequence of str
-        Names of the J joints.
-
-    Returns
-    -------
-    lengths : dict of (str, str) to float
-        For each segment, named without its side (`("shoulder", "elbow")`), the median over the frames of both
-        sides, metres; none for a segment seen in fewer than `LEAST`.
+    `xyz` (T, J, 3) m is NaN where missing. Segments are named without side, `("shoulder",
+    "elbow")`. The length is the median over the frames of both sides, absent if these are fewer
+    than `LEAST`.
     """
     place = dict(zip(joints, np.moveaxis(xyz, 1, 0), strict=True))
     found = {}
@@ -246,25 +240,21 @@ def lengths(xyz, joints):
     return found
 
 
-def keep(points):
-    """Move the joints of a record, each as far as its uncertainty allows, to where limbs keep their length.
-
-    Parameters
-    ----------
-    points : Keypoints3D
+def keep(points: Keypoints3D) -> Keypoints3D:
+    """Move joints, as far as their uncertainty allows, so that limbs keep their length.
 
     Returns
     -------
     points : Keypoints3D
-        `xyz` of shoulders, elbows, wrists, hips, knees and ankles is changed; joints that are missing stay
-        missing, and a limb without a length (`lengths`) stays as it is. The covariance is left as it was: the
-        lengths come from the same joints, wrong ones from wrong joints, and it stays an upper bound.
+        With changed `xyz` of shoulders, elbows, wrists, hips, knees and ankles; missing joints and
+        limbs without a length (`lengths`) stay. The covariance stays as an upper bound: the lengths
+        come from the same joints, so wrong joints give wrong lengths.
 
     Notes
     -----
-    In each frame the most probable place of a chain's three joints, given where they were measured, with what
-    covariance (of keypoints and cameras), and the lengths: Gauss-Newton on the squared Mahalanobis distances
-    and the squared relative errors of length over `LENGTH_SIGMA`.
+    In each frame, the most probable places of a chain's three joints given their measured places,
+    their covariance (of keypoints and cameras) and the lengths: Gauss-Newton on the squared
+    Mahalanobis distances and the squared relative errors of length over `LENGTH_SIGMA`.
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)
@@ -278,8 +268,8 @@ def keep(points):
     return replace(points, xyz=xyz)
 
 
-def _chain(xyz, covariance, wanted):
-    """Return places (T, 3, 3) of three joints in a row, measured at `xyz`, at the wanted distances."""
+def _chain(xyz: NDArray, covariance: NDArray, wanted: Sequence[float | None]) -> NDArray:
+    """Return places (T, 3, 3) of a chain's joints, measured at `xyz`, at the wanted distances."""
     known = np.isfinite(xyz).all(axis=2)
     stated = np.isfinite(covariance).all(axis=(2, 3))[..., None, None]
     information = np.linalg.inv(np.where(stated, covariance, UNKNOWN_M**2 * np.eye(3)))
@@ -300,7 +290,7 @@ def _chain(xyz, covariance, wanted):
     return np.where(known[..., None], place.reshape(-1, 3, 3), np.nan)
 
 
-def _length_rows(place, at, length, both):
+def _length_rows(place: NDArray, at: int, length: float, both: NDArray) -> tuple[NDArray, NDArray]:
     """Return rows (T, 9) and right sides (T,) of one segment's length, in standard deviations."""
     first, second = slice(3 * at, 3 * at + 3), slice(3 * at + 3, 3 * at + 6)
     line = place[:, second] - place[:, first]

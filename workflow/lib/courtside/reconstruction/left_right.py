@@ -1,48 +1,61 @@
-"""Left and right sides confused by a pose network: found by the other views, and along time."""
+"""Left and right sides confused by a pose network: found by the other views and over time."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import epipolar, triangulation
+from courtside.geometry.camera import Camera
 
-TOGETHER = 4  # views decided at once, of 2^4 readings; further ones follow one by one
-LIMIT = 0.2  # disagreement is counted up to this share of the person's size at most
-JUMP = 0.5  # sizes: a movement between two frames that speaks fully against itself
-CONTINUITY = 2.0  # a keypoint's full jump, in units of its full disagreement
-SWITCH = 1.0  # cost of a view that changes from right to wrong or back, in the same unit
-PRIOR = 0.01  # cost of a pair of keypoints read against the network's word, in the same unit
-LONGEST_GAP = 15  # frames: over longer gaps nothing is known of movements
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md). The unit of cost is
+# the full disagreement of one keypoint.
+TOGETHER = 4  # views decided at once, 2^4 hypotheses; further ones follow one by one
+LIMIT = 0.2  # share of the person's size at which disagreement is cut off at the latest
+JUMP = 0.5  # person's sizes: a movement between two frames of the full cost `CONTINUITY`
+CONTINUITY = 2.0  # cost of a keypoint's full jump
+SWITCH = 1.0  # cost of a view that changes from right to wrong or back
+PRIOR = 0.01  # cost of a pair of keypoints read against the network's labels
+LONGEST_GAP = 15  # frames: over longer gaps movements are not judged
 
 
-def swapped_views(cameras, xy, score, mirror, groups, *, max_error_px):
-    """Find where networks took left for right in a take of one person.
+def swapped_views(
+    cameras: Sequence[Camera],
+    xy: NDArray,
+    score: NDArray,
+    mirror: Sequence[int] | NDArray,
+    groups: Sequence[Sequence[int]],
+    *,
+    max_error_px: float,
+) -> NDArray:
+    """Find where networks confused left and right in a take of one person.
 
     Parameters
     ----------
-    cameras : list of Camera, length C
     xy : (C, T, J, 2) float
-        Keypoints in px, distorted, at uniform times; NaN where unseen.
+        Keypoints in distorted px, at uniform times; NaN where unseen.
     score : (C, T, J) float
         Confidence, 0 to 1; NaN where unseen.
     mirror : (J,) int
-        Index of the same joint of the other side, itself for joints without sides.
+        Index of the same joint of the other side; its own for joints without sides.
     groups : list of list of int
         Joints that a network confuses together, such as both legs; each closed under `mirror`.
     max_error_px : float
-        Disagreement of a view is counted up to this reprojection error, or to `LIMIT` of the person's
-        size in that view where this is less.
+        Disagreement of a view is cut off at this reprojection error, or at `LIMIT` of the person's
+        size in that view if this is less.
 
     Returns
     -------
     swapped : (C, T, J) bool
-        True where the left and right keypoints of a view should change places.
+        True where the left and right keypoints of a view should be exchanged.
 
     Notes
     -----
-    For each group, the path over time through the readings of the views that costs least (Viterbi 1967).
-    A reading costs what the views disagree on (`left_right.disagreement`) and a little for each view that it
-    exchanges; a change of a view's reading costs what joints move further with the change than without,
-    and a little more. All views exchanged look as consistent as none: the reading of fewer exchanges is
-    kept, so each must be right more often than not. A view that errs only while its sides cross in the
+    For each group, the cheapest path over time through the hypotheses (Viterbi 1967). A hypothesis
+    costs the disagreement of the views (`disagreement`) and a little for each view it exchanges; a
+    change in a view costs the additional movement of its joints (`jumps`) and a little more. All
+    views exchanged are as consistent as none: the hypothesis with fewer exchanges is kept, so each
+    view must be right more often than not. A view that errs only while its sides cross in the
     picture is found by the others alone.
     """
     mirror = np.asarray(mirror)
@@ -60,18 +73,11 @@ def swapped_views(cameras, xy, score, mirror, groups, *, max_error_px):
     return swapped & (seen | seen[:, :, mirror])
 
 
-def sizes(xy):
-    """Return how large a person is in each view and frame: the root mean square distance from the middle.
+def sizes(xy: NDArray) -> NDArray:
+    """Return the size (C, T), px, of a person: root mean square distance of joints from their mean.
 
-    Parameters
-    ----------
-    xy : (C, T, J, 2) float
-        Keypoints, px; NaN where unseen.
-
-    Returns
-    -------
-    size_px : (C, T) float
-        Of frames that show less than half of the joints ever shown at once, that of their neighbours.
+    `xy` (C, T, J, 2) is NaN where unseen. Frames with less than half of the most joints ever seen
+    at once get the size of their neighbours.
     """
     known = np.isfinite(xy).all(axis=-1)
     count = known.sum(axis=-1)
@@ -86,8 +92,8 @@ def sizes(xy):
     return np.maximum(size_px, 1.0)
 
 
-def jumps(xy, weight, size_px):
-    """Return how much further joints move where sides change between a frame and the one before.
+def jumps(xy: NDArray, weight: NDArray, size_px: NDArray) -> NDArray:
+    """Return how much further joints move if sides change between a frame and the one before.
 
     Parameters
     ----------
@@ -101,15 +107,15 @@ def jumps(xy, weight, size_px):
     Returns
     -------
     further : (C, T) float
-        Sum over pairs of the squared movements in units of `JUMP`, cut off at 1, with a change less
-        without, times the weight. Negative where a change is the smaller movement.
+        Weighted sum over pairs of the squared movements in units of `JUMP`, cut off at 1, with a
+        change minus without. Negative where a change is the smaller movement.
 
     Notes
     -----
-    A movement is the way of left relative to right from where the last frame that shows the pair, or its
-    velocity, or the velocity of the next frame, puts it: the nearest of the three. Sides that cross with
-    a velocity thus speak neither for nor against a change. After a gap, `JUMP` squared grows with its
-    frames.
+    A movement is the distance of left relative to right from its prediction, by the last frame that
+    shows the pair, by its velocity, or by the velocity of the next frame: the smallest of the
+    three. Sides that cross with a velocity are thus neutral. After a gap, `JUMP` squared grows with
+    its frames.
     """
     apart = (xy[..., 0, :] - xy[..., 1, :]) / size_px[..., None, None]
     frame = np.arange(weight.shape[1])[None, :, None]
@@ -123,7 +129,7 @@ def jumps(xy, weight, size_px):
     came = np.take_along_axis(step[:, :-1], at[..., None], axis=1)
     goes = step[:, 1:]
 
-    def movement(sign):
+    def movement(sign: int) -> NDArray:
         moved = sign * apart - before
         ways = (moved, moved - came, moved - sign * goes)
         square = np.min([(way**2).sum(axis=-1) for way in ways], axis=0)
@@ -135,17 +141,17 @@ def jumps(xy, weight, size_px):
 
 
 class _Group:
-    """Joints of a person that are confused together; `change` (C, T) is the cost of a view's change."""
+    """Joints that are confused together; `change` (C, T) is the cost of a view's change."""
 
-    def __init__(self, cameras, straight, weight, change, limit_px):
+    def __init__(self, cameras, straight, weight, change, limit_px) -> None:
         self.cameras, self.straight, self.weight = cameras, straight, weight
         self.change, self.limit_px = change, limit_px
-        self.word = PRIOR * weight.sum(axis=-1)
+        self.label_cost = PRIOR * weight.sum(axis=-1)
 
-    def decide(self):
-        """Return (C, T) bool: the views that show most first, together, then each given the others."""
-        order = np.argsort(-self.word.sum(axis=1), kind="stable").tolist()
-        flags = np.zeros(self.word.shape, dtype=bool)
+    def decide(self) -> NDArray:
+        """Return (C, T) bool: the best-seen views together, then each further view given those."""
+        order = np.argsort(-self.label_cost.sum(axis=1), kind="stable").tolist()
+        flags = np.zeros(self.label_cost.shape, dtype=bool)
         self._choose(flags, order[:TOGETHER], order[:TOGETHER])
         for n_used in range(TOGETHER + 1, len(order) + 1):
             self._choose(flags, order[:n_used], [order[n_used - 1]])
@@ -153,7 +159,7 @@ class _Group:
             self._choose(flags, order, [camera])
         return flags
 
-    def _choose(self, flags, used, free):
+    def _choose(self, flags: NDArray, used: list[int], free: list[int]) -> None:
         """Set the flags of the free views, by those that are used."""
         exchanged = (np.arange(2 ** len(free))[:, None] >> np.arange(len(free))) & 1 == 1
         trials = np.repeat(flags[None], len(exchanged), axis=0)
@@ -167,28 +173,16 @@ class _Group:
             trials[:n_costed, used],
             self.limit_px[used],
         )
-        cost = np.concatenate([cost, cost[::-1]])[: len(trials)] + exchanged @ self.word[free]
+        cost = np.concatenate([cost, cost[::-1]])[: len(trials)] + exchanged @ self.label_cost[free]
         path = cheapest_path(cost.T, (exchanged @ self.change[free]).T)
         flags[free] = exchanged[path].T
 
 
-def cheapest_path(cost, change):
-    """Find the states over time that cost least together.
+def cheapest_path(cost: NDArray, change: NDArray) -> NDArray:
+    """Return the cheapest states (T,) over time, by Viterbi 1967.
 
-    Parameters
-    ----------
-    cost : (T, S) float
-        Of each state; S a power of two, whose bits are switches.
-    change : (T, S) float
-        Of changing the switches that are the bits of the index, from the frame before.
-
-    Returns
-    -------
-    path : (T,) int
-
-    Notes
-    -----
-    Viterbi 1967.
+    `cost` (T, S) is that of each state; S is a power of two, its bits are switches. `change` (T, S)
+    is the cost of changing, from the frame before, the switches that are the bits of the index.
     """
     n_frames, n_states = cost.shape
     state = np.arange(n_states)
@@ -207,35 +201,40 @@ def cheapest_path(cost, change):
     return path
 
 
-APART = 2.0  # joints of a pair closer than this many limits in a view say less about sides there
-NEAREST_M = 1e-6  # depth: points behind a camera come out far from any keypoint
+APART = 2.0  # ASSUME: limits: pairs of joints closer than this in a view weigh less there
+NEAREST_M = 1e-6  # least depth: points behind a camera project far from any keypoint
 BATCH = 20000  # pairs at a time: keeps the working set in the cache and memory flat
 
 
-def disagreement(cameras, straight, weight, swapped, limit_px):
-    """Return how far views are from showing one body, for several readings of their sides.
+def disagreement(
+    cameras: Sequence[Camera],
+    straight: NDArray,
+    weight: NDArray,
+    swapped: NDArray,
+    limit_px: NDArray,
+) -> NDArray:
+    """Return how far views are from showing one body, for several hypotheses of their sides.
 
     Parameters
     ----------
-    cameras : list of Camera, length C
     straight : (C, T, K, 2, 2) float
-        Straight px (`epipolar.straight_px`) of the left and the right joint of K pairs; NaN where unseen.
+        `epipolar.straight_px` of the left and the right joint of K pairs; NaN where unseen.
     weight : (C, T, K) float
-        Of a pair in a view, such as the lower score of its joints; 0 where one of them is unseen.
+        Of a pair in a view, such as the lower score of its joints; 0 if one of them is unseen.
     swapped : (R, C, T) bool
-        R readings: the views whose left and right change places.
+        R hypotheses: the views with exchanged left and right.
     limit_px : (C,) float
-        Disagreement of a keypoint is counted up to this reprojection error.
+        Reprojection error at which the disagreement of a keypoint is cut off.
 
     Returns
     -------
     disagreement : (R, T) float
-        Sum over views, pairs and both joints of the squared errors in units of the limit, cut off at 1,
-        times the weight. A pair counts less in a view where its joints are close.
+        Weighted sum over views, pairs and both joints of the squared errors in units of the limit,
+        cut off at 1. A pair counts less in a view where its joints are close.
 
     Notes
     -----
-    A joint is triangulated from all views that see it, by DLT: where one is read wrong, all are off.
+    A joint is triangulated by DLT from all views that see it: one wrong view moves all errors.
     """
     n_frames, n_pairs = weight.shape[1:]
     matrix = np.stack([camera.cam_from_world for camera in cameras])
@@ -249,28 +248,16 @@ def disagreement(cameras, straight, weight, swapped, limit_px):
     return found
 
 
-def apply_swaps(values, swapped, mirror):
-    """Exchange left and right where told.
-
-    Parameters
-    ----------
-    values : (C, T, J) or (C, T, J, K) array
-        Anything per keypoint.
-    swapped : (C, T, J) bool
-    mirror : (J,) int
-
-    Returns
-    -------
-    exchanged : array of the shape of `values`
-    """
+def apply_swaps(values: NDArray, swapped: NDArray, mirror: Sequence[int] | NDArray) -> NDArray:
+    """Exchange left and right of values (C, T, J, ...) where `swapped` (C, T, J)."""
     shaped = swapped.reshape(swapped.shape + (1,) * (values.ndim - swapped.ndim))
     return np.where(shaped, values[:, :, np.asarray(mirror)], values)
 
 
 class _Views:
-    """A piece of a take: what every reading of it needs. Matrices (C, 3, 4) project to straight px."""
+    """What all hypotheses share; `matrix` (C, 3, 4) projects to straight px."""
 
-    def __init__(self, matrix, straight, weight, limit_px):
+    def __init__(self, matrix, straight, weight, limit_px) -> None:
         used = weight > 0
         apart = np.linalg.norm(straight[..., 0, :] - straight[..., 1, :], axis=-1)
         share = np.minimum(apart / (APART * limit_px[:, None, None]), 1.0)
@@ -282,8 +269,8 @@ class _Views:
         rows *= np.sqrt(weight)[..., None, None, None]
         self.normal = rows.swapaxes(-1, -2) @ rows
 
-    def disagreement(self, swapped):
-        """Return (T,) for one reading (C, T)."""
+    def disagreement(self, swapped: NDArray) -> NDArray:
+        """Return (T,) for one hypothesis (C, T)."""
         normal = _read(self.normal, swapped).sum(axis=0)
         flat = normal.reshape(-1, 4, 4)
         xyz = triangulation.solve_3x3(flat[:, :3, :3], -flat[:, :3, 3])
@@ -298,7 +285,7 @@ class _Views:
         return total.sum(axis=1)
 
 
-def _read(values, swapped):
-    """Return values (C, T, K, 2, ...) with left and right exchanged where told, (C, T)."""
+def _read(values: NDArray, swapped: NDArray) -> NDArray:
+    """Return values (C, T, K, 2, ...) with left and right exchanged where `swapped` (C, T)."""
     shaped = swapped.reshape(swapped.shape + (1,) * (values.ndim - 2))
     return np.where(shaped, values[:, :, :, ::-1], values)

@@ -1,29 +1,25 @@
-"""Keypoints of cameras with clocks of their own -> keypoints at common, uniform times."""
+"""Resampling of keypoints from cameras with their own clocks to common, uniform times."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints.keypoints import Keypoints2D
 
-RATE_TOLERANCE = 1e-3  # frame times closer than this share of a frame are the same moment
-# frames further apart than this many frame intervals have a dropped frame between
+# Frame times closer than this share of a frame are equal: rounding of containers' clocks.
+RATE_TOLERANCE = 1e-3
+# Frames further apart than this many frame intervals have a dropped frame between them.
 LONGEST_STEP = 1.5
 
 
-def common_times(views, clocks=None):
-    """Return the uniform times of a take on the reference clock.
+def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock] | None = None) -> NDArray:
+    """Return uniform times (T,) of a take on the reference clock.
 
-    Parameters
-    ----------
-    views : list of Keypoints2D, length C
-    clocks : list of Clock, length C, optional
-        One common clock by default.
-
-    Returns
-    -------
-    time_s : (T,) float
-        The median frame interval of the first camera, over the span that two cameras share at least.
+    They have the median frame interval of the first camera and cover the span that at least two
+    cameras share. Without clocks, all agree.
     """
     clocks = clocks or [Clock()] * len(views)
     on_reference = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
@@ -35,16 +31,10 @@ def common_times(views, clocks=None):
     return start + step_s * np.arange(int(np.floor((stop - start) / step_s + RATE_TOLERANCE)) + 1)
 
 
-def resample(view, time_s, clock=None):
-    """Interpolate one camera's keypoints at other times, between neighbouring frames.
-
-    Parameters
-    ----------
-    view : Keypoints2D
-    time_s : (T,) float
-        Times on the reference clock.
-    clock : Clock, optional
-        The camera's; the reference clock itself by default.
+def resample(
+    view: Keypoints2D, time_s: NDArray, clock: Clock | None = None
+) -> tuple[NDArray, NDArray]:
+    """Interpolate one camera's keypoints at times (T,) of the reference clock.
 
     Returns
     -------
@@ -53,9 +43,9 @@ def resample(view, time_s, clock=None):
 
     Notes
     -----
-    A cubic through the two frames before and the two after (Catmull & Rom 1974), a straight line where the
-    outer ones are missing: at 30 frames per second the line alone is 3 cm off at the turning point of a
-    wrist with 200 m/s2.
+    A cubic through the two frames before and the two after (Catmull & Rom 1974), a line where the
+    outer ones are missing: at 30 frames per second the line alone is 3 cm off at the turning point
+    of a wrist with 200 m/s2.
     """
     own, known = (clock or Clock()).from_reference(time_s), view.time_s
     step_s = float(np.median(np.diff(known))) if len(known) > 1 else 1.0
@@ -75,23 +65,11 @@ def resample(view, time_s, clock=None):
     return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
 
 
-def nearest(view, time_s, clock):
-    """Return the frames of a camera nearest to times of the reference clock, as they are.
+def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[Keypoints2D, NDArray]:
+    """Return a camera's frames nearest to times (T,) of the reference clock, not interpolated.
 
-    Parameters
-    ----------
-    view : Keypoints2D
-    time_s : (T,) float
-        On the reference clock.
-    clock : Clock
-        The camera's.
-
-    Returns
-    -------
-    view : Keypoints2D
-        With these times.
-    own_s : (T,) float
-        When the frames were taken, on the camera's own clock: to find them in its video.
+    The view gets these times. The second result (T,) tells when the frames were taken, on the
+    camera's own clock: to find them in its video.
     """
     own = clock.from_reference(time_s)
     at = np.abs(view.time_s[None] - np.asarray(own)[:, None]).argmin(axis=1)
@@ -99,8 +77,8 @@ def nearest(view, time_s, clock):
     return replace(view, time_s=np.asarray(time_s, dtype=float), **per_frame), view.time_s[at]
 
 
-def _cubic(values, known, left, right, share, longest_s):
-    """Return values (P, T, J, 2) between frames, with a straight line where the cubic lacks a frame."""
+def _cubic(values: NDArray, known: NDArray, left, right, share: NDArray, longest_s) -> NDArray:
+    """Return values (P, T, J, 2) between frames, linear where the cubic lacks a frame."""
     share = share[:, None, None]
     before, after = values[:, left], values[:, right]
     straight = before + share * (after - before)

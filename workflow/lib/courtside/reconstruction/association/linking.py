@@ -1,44 +1,36 @@
-"""People linked over time, and the names that they get."""
-
-from dataclasses import dataclass
+"""Link candidate places to persons over time, and assign each frame of each row to a person."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
+from courtside.reconstruction.association.candidates import Candidates
+from courtside.reconstruction.association.rows import Rows
 
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md). Costs are negative
+# log-likelihoods.
 HISTORIES = 60  # kept after each instant
-HOPELESS = 20.0  # histories that cost so much more than the best are dropped
+HOPELESS = 20.0  # histories that cost this much more than the best are dropped
 PLACE_M = 0.07  # standard deviation of a body about its prediction one instant later
 ACCELERATION_MS2 = 6.0  # of a player, for predictions over gaps
-LARGEST_M = 4.0  # a person lost for long may come back this far away
-COAST_S = 0.3  # a lost person is expected to go on for so long
-BIRTH = 20.0  # cost of another person: more than that of finding a lost one again
-MISSED, MISSED_S = 2.0, 1.0  # cost of an instant without a candidate, for a person seen so lately
+LARGEST_M = 4.0  # limit of the prediction's standard deviation, for persons lost for long
+COAST_S = 0.3  # a lost person is expected to keep the velocity for this long
+BIRTH = 20.0  # cost of a new person: more than that of finding a lost one again
+# Cost of an instant without a candidate, for a person seen within this time.
+MISSED, MISSED_S = 2.0, 1.0
 SHARED = 0.7  # cost of a row that shows somebody else, who may hide this person
 EXCHANGE = 10.0  # cost of an uncut piece that changes its owner
 NET_CROSSED = 3.0  # cost of a player who changes the half of the court
-ONE_VIEW = 0.9  # cosine between rays that are as good as one view
+ONE_VIEW = 0.9  # rays with a larger cosine between them count as one view
 GAIN = 0.5  # of the velocity's update
-MOST = 16  # candidates looked at in one instant
-
-
-@dataclass(frozen=True)
-class Paths:
-    """Where S persons were at N instants.
-
-    Attributes
-    ----------
-    chosen : (S, N) int
-        Index of the candidate, a place or a ray; -1 where none.
-    """
-
-    chosen: np.ndarray
+MOST = 16  # candidates considered in one instant
 
 
 class _Histories:
     """H histories of S persons each; arrays lead with H."""
 
-    def __init__(self, slots, n_cameras):
+    def __init__(self, slots: int, n_cameras: int) -> None:
         self.cost = np.zeros(1)
         self.alive = np.zeros((1, slots), bool)
         self.place = np.zeros((1, slots, 3))
@@ -48,39 +40,45 @@ class _Histories:
         self.ray = np.zeros((1, slots, 3))  # direction of the rays since then
         self.owned = np.full((1, slots, n_cameras), -1)
 
-    def keep(self, parent):
+    def keep(self, parent: NDArray) -> None:
         """Reorder to the given parents."""
         for name, value in vars(self).items():
             setattr(self, name, value[parent])
 
 
-def link(candidates, piece, time_s, slots, net_y_m=None):
+def link(
+    candidates: Candidates,
+    piece: NDArray,
+    time_s: NDArray,
+    slots: int,
+    net_y_m: float | None = None,
+) -> NDArray:
     """Link candidates over time.
 
     Parameters
     ----------
-    candidates : courtside.reconstruction.association.candidates.Candidates
     piece : (M, C) int
-        Uncut piece of each candidate's row in each camera, -1 without one.
+        Uncut piece of each candidate's row in each camera; -1 without one.
     time_s : (N,) float
         Of the instants.
     slots : int
-        Persons followed at most.
+        Largest number S of persons followed.
     net_y_m : float, optional
-        Where the net stands: crossing it costs a little.
+        Position of the net: crossing it has a cost.
 
     Returns
     -------
-    paths : Paths
+    chosen : (S, N) int
+        Index of each person's candidate, a place or a ray; -1 for none.
 
     Notes
     -----
-    A search through the assignments of candidates to persons, instant by instant, that keeps the best
-    histories (a multi-hypothesis tracker: Reid 1979). A history costs what its candidates cost, plus the
-    distance to a constant-velocity prediction, plus a price for each uncut tracklet piece that changes its
-    owner: a view without a crossing carries identities through one in another view. While two views do not
-    agree on a person, rays of one view carry it on, with its place along them open. Of two people behind
-    one another both may rest on the row that shows one of them; it counts once.
+    A multiple-hypothesis tracker (Reid 1979): at each instant candidates are assigned to persons,
+    and the best histories are kept. A history costs its candidates, their distance from a
+    constant-velocity prediction, and a price for each uncut tracklet piece that changes its owner,
+    so that a view without a crossing carries identities through a crossing in another view. While
+    only one view sees a person, its rays continue the history and leave the place along them open.
+    Of two people behind one another both may use the one visible row; its cost counts once.
     """
     state = _Histories(slots, piece.shape[1])
     first = np.searchsorted(candidates.instant, np.arange(len(time_s) + 1))
@@ -91,17 +89,17 @@ def link(candidates, piece, time_s, slots, net_y_m=None):
             total = candidates.view_cost[here].sum(axis=1) + 99 * candidates.is_ray[here]
             here = np.sort(here[np.argsort(total, kind="stable")[:MOST]])
         if len(here):
-            parent, choice = _advance(state, candidates.of(here), piece[here], now_s, net_y_m)
+            parent, choice = _advance(state, candidates.subset(here), piece[here], now_s, net_y_m)
         else:
             parent = np.arange(len(state.cost))
             choice = np.full((len(parent), slots), -1)
         parents.append(parent)
         choices.append(np.where(choice >= 0, here[choice] if len(here) else -1, -1))
-    return Paths(_trace(state, parents, choices, slots))
+    return _trace(state, parents, choices, slots)
 
 
-def _advance(state, offered, piece, now_s, net_y_m):
-    """Take one instant into the histories; return their parents and choices."""
+def _advance(state, offered, piece, now_s, net_y_m) -> tuple[NDArray, NDArray]:
+    """Add one instant to the histories; return their parents and choices."""
     parent, choice, cost = _assign(state, _own_cost(state, offered, now_s, net_y_m), offered, now_s)
     state.keep(parent)
     pieces = np.where((choice >= 0)[..., None], piece[choice], -1)
@@ -118,20 +116,20 @@ def _advance(state, offered, piece, now_s, net_y_m):
     return parent[different], choice[different]
 
 
-def _shared(pieces):
-    """Return (H, S, C) bool: another person of the same history rests on the same piece."""
+def _shared(pieces: NDArray) -> NDArray:
+    """Return (H, S, C) bool: another person of the same history uses the same piece."""
     same = (pieces[:, :, None] == pieces[:, None]) & (pieces[:, :, None] >= 0)
     return same.sum(axis=2) > 1
 
 
-def _exchanged(owned, pieces, shared):
-    """Return (H,) how many pieces go over from one person to another."""
+def _exchanged(owned: NDArray, pieces: NDArray, shared: NDArray) -> NDArray:
+    """Return (H,) the number of pieces that change from one person to another."""
     owner = (owned[:, :, None] == pieces[:, None]) & (pieces[:, None] >= 0)
     other = owner & ~np.eye(pieces.shape[1], dtype=bool)[:, :, None]
     return (other.any(axis=1) & ~shared).sum(axis=(1, 2))
 
 
-def _own_cost(state, offered, now_s, net_y_m):
+def _own_cost(state, offered, now_s, net_y_m) -> NDArray:
     """Return (H, S, n) costs of giving each candidate to each person."""
     move = _move_cost(state, offered, now_s)
     if net_y_m is not None:
@@ -144,19 +142,19 @@ def _own_cost(state, offered, now_s, net_y_m):
     return np.where(state.alive[..., None], move, birth) + offered.view_cost.sum(axis=1)
 
 
-def _move_cost(state, offered, now_s):
+def _move_cost(state: _Histories, offered: Candidates, now_s: float) -> NDArray:
     """Return (H, S, n) negative log-likelihoods of candidates about the predicted places.
 
-    A person whom only one view saw of late is uncertain along its ray, more than across.
+    A person whom only one view saw lately is less certain along its ray than across.
     """
     gone_s = np.maximum(now_s - state.time_s, 0.0)[..., None]
     ahead = state.place + state.velocity * np.minimum(gone_s, COAST_S)
-    off, sigma_m = _apart(ahead[:, :, None], offered.xyz, offered.direction, offered.sigma_m)
+    off, sigma_m = _offset(ahead[:, :, None], offered.xyz, offered.direction, offered.sigma_m)
     along = (off * state.ray[:, :, None]).sum(axis=-1) ** 2
     across = np.maximum((off**2).sum(axis=-1) - along, 0.0)
     variance = _spread_m(gone_s) ** 2 + sigma_m**2
     blind = _spread_m(np.maximum(now_s - state.placed_s, 0.0)[..., None]) ** 2 + sigma_m**2
-    blind = np.where(state.ray.any(axis=-1)[..., None], blind, variance)
+    blind = np.where(np.any(state.ray, axis=-1)[..., None], blind, variance)
     cosine = (state.ray @ offered.direction.T) ** 2
     # A ray does not measure what lies along it.
     volume = 2 * np.log(variance / PLACE_M**2) + np.log(blind / PLACE_M**2)
@@ -165,19 +163,19 @@ def _move_cost(state, offered, now_s):
     return 0.5 * (across / variance + along / blind + volume)
 
 
-def _apart(ahead, xyz, direction, sigma_m):
-    """Return the shortest ways (..., 3) from predictions to places or rays, and standard deviations there."""
+def _offset(ahead, xyz, direction, sigma_m) -> tuple[NDArray, NDArray]:
+    """Return shortest vectors (..., 3) from predictions to places or rays, and the sigmas there."""
     off = xyz - ahead
     back = (off * direction).sum(axis=-1)
     off = off - back[..., None] * direction
     return off, np.where(direction.any(axis=-1), np.abs(back), 1.0) * sigma_m
 
 
-def _spread_m(gone_s):
+def _spread_m(gone_s: NDArray) -> NDArray:
     return np.minimum(PLACE_M + 0.5 * ACCELERATION_MS2 * gone_s**2, LARGEST_M)
 
 
-def _assign(state, own, offered, now_s):
+def _assign(state, own, offered, now_s) -> tuple[NDArray, NDArray, NDArray]:
     """Return parents (H',), choices (H', S) and costs (H',) of the best assignments."""
     count, slots, n = own.shape
     parent, cost = np.arange(count), state.cost
@@ -187,7 +185,7 @@ def _assign(state, own, offered, now_s):
     views = (offered.row >= 0).sum(axis=1)
     missed = MISSED * (state.alive & (now_s - state.time_s < MISSED_S))
     for slot in range(slots):
-        # A row that shows somebody else already says nothing for this person, who may be hidden behind.
+        # A row that already shows somebody else is no evidence for this person, who may be hidden.
         lost = np.where(taken_rows, SHARED - offered.view_cost, 0.0).sum(axis=2)
         lost = np.where(taken_rows.sum(axis=2) < views, lost, np.inf)
         every = np.concatenate([missed[parent, slot, None], own[parent, slot] + lost], axis=1)
@@ -202,19 +200,19 @@ def _assign(state, own, offered, now_s):
     return parent, choice, cost
 
 
-def _lowest(values, most):
+def _lowest(values: NDArray, most: int) -> NDArray:
     near = np.flatnonzero(values <= values.min() + HOPELESS)
     return near[np.argsort(values[near], kind="stable")[:most]]
 
 
-def _move(state, choice, offered, now_s):
+def _move(state: _Histories, choice: NDArray, offered: Candidates, now_s: float) -> None:
     history, slot = np.nonzero(choice >= 0)
     taken = choice[history, slot]
     born = ~state.alive[history, slot][:, None]
     gone_s = np.maximum(now_s - state.time_s[history, slot], 1e-6)[:, None]
     old, direction = state.velocity[history, slot], offered.direction[taken]
     ahead = state.place[history, slot] + old * np.minimum(gone_s, COAST_S)
-    off, sigma_m = _apart(ahead, offered.xyz[taken], direction, offered.sigma_m[taken])
+    off, sigma_m = _offset(ahead, offered.xyz[taken], direction, offered.sigma_m[taken])
     spread = 2 * _spread_m(gone_s)
     new = ahead + np.where(born, 1.0, spread**2 / (spread**2 + sigma_m[:, None] ** 2)) * off
     speed = (new - state.place[history, slot]) / gone_s
@@ -229,15 +227,15 @@ def _move(state, choice, offered, now_s):
     state.ray[history, slot] = direction
 
 
-def _own(state, pieces, shared):
-    """Make those who alone rest on a piece its owners."""
+def _own(state: _Histories, pieces: NDArray, shared: NDArray) -> None:
+    """Make persons the owners of the pieces that only they use."""
     gained = (pieces >= 0) & ~shared
     lost = (state.owned[:, :, None] == np.where(gained, pieces, -2)[:, None]).any(axis=2)
     state.owned = np.where(gained, pieces, np.where(lost, -1, state.owned))
 
 
-def _different(state, choice):
-    """Return the best histories, of those that agree on the present only the best one."""
+def _different(state: _Histories, choice: NDArray) -> NDArray:
+    """Return the best histories; of those with the same present state only the best one."""
     seen, kept = set(), []
     for at in range(len(choice)):  # the cheapest comes first
         key = choice[at].tobytes() + state.owned[at].tobytes() + state.time_s[at].tobytes()
@@ -249,7 +247,7 @@ def _different(state, choice):
     return np.array(kept)
 
 
-def _trace(state, parents, choices, slots):
+def _trace(state, parents, choices, slots) -> NDArray:
     chosen = np.full((slots, len(parents)), -1)
     at = int(np.argmin(state.cost))
     for instant in range(len(parents) - 1, -1, -1):
@@ -258,31 +256,21 @@ def _trace(state, parents, choices, slots):
     return chosen
 
 
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 NOBODY = 6.0  # cost of a frame that belongs to none of the persons
-FAR = 14.0  # a frame costs no more than this, however far off
+FAR = 14.0  # limit of a frame's cost
 CHANGE = 15.0  # cost of a change of owner within an uncut piece
 CHANGE_AT_CUT = 0.7
-DRIFT_MS2 = 3.0  # how fast the path of a person becomes uncertain away from a triangulated instant
-BELIEVED_S = 0.4  # further away from one a path says nothing
+DRIFT_MS2 = 3.0  # growth of a path's standard deviation with the square of the time to an instant
+BELIEVED_S = 0.4  # beyond this time from an instant a path is unknown
 
 
-def along(time_s, at_s, xyz):
-    """Return a path at all frames, and how uncertain it is.
+def along(time_s: NDArray, at_s: NDArray, xyz: NDArray) -> tuple[NDArray, NDArray]:
+    """Return a person's path at all frames, and its standard deviation.
 
-    Parameters
-    ----------
-    time_s : (T,) float
-    at_s : (N,) float
-        Instants with a place, at least one, increasing.
-    xyz : (N, 3) float
-        Metres.
-
-    Returns
-    -------
-    path : (T, 3) float
-        Linear between instants, constant before the first and after the last.
-    sigma_m : (T,) float
-        0 at an instant, inf where too far from any.
+    At least one increasing instant `at_s` (N,) has a place `xyz` (N, 3), metres. The path (T, 3) is
+    linear between instants, constant before the first and after the last; the standard deviation
+    (T,) is 0 at an instant, inf where too far from any.
     """
     path = np.stack([np.interp(time_s, at_s, column) for column in xyz.T], axis=1)
     right = np.clip(np.searchsorted(at_s, time_s), 0, len(at_s) - 1)
@@ -291,25 +279,24 @@ def along(time_s, at_s, xyz):
     return path, np.where(away <= BELIEVED_S, DRIFT_MS2 * away**2, np.inf)
 
 
-def costs(camera, rows, path, sigma_m, wanted):
-    """Return what it costs to give each frame of each row to each person.
+def costs(camera: Camera, rows: Rows, path: NDArray, sigma_m: NDArray, wanted: NDArray) -> NDArray:
+    """Return the cost of assigning each frame of each row to each person.
 
     Parameters
     ----------
-    camera : Camera
-    rows : courtside.reconstruction.association.associate.Rows
+    rows : Rows
         P rows of T frames.
     path : (S, T, 3) float
         Metres; NaN for a person without any place.
     sigma_m : (S, T) float
         From `along`.
     wanted : (S,) bool
-        Persons who get what nobody else explains while only this view sees them.
+        Persons who get rows that nobody else explains while only this view sees them.
 
     Returns
     -------
     cost : (P, T, S + 1) float
-        The last column is nobody's; zero throughout where the row is absent.
+        The last column is nobody's; all zero where the row is absent.
     """
     count = len(path)
     cost = np.zeros((*rows.present.shape, count + 1))
@@ -330,25 +317,11 @@ def costs(camera, rows, path, sigma_m, wanted):
     return cost
 
 
-def follow(cost, cut, present):
-    """Return the cheapest owners of rows over time.
+def follow(cost: NDArray, cut: NDArray, present: NDArray) -> NDArray:
+    """Return the cheapest owners of rows over time, by Viterbi 1967, for each row alone.
 
-    Parameters
-    ----------
-    cost : (R, T, S + 1) float
-        The last column is nobody's.
-    cut : (R, T) bool
-        Where changing the owner is cheap.
-    present : (R, T) bool
-
-    Returns
-    -------
-    owner : (R, T) int
-        0 to S - 1, or -1 for nobody and where absent.
-
-    Notes
-    -----
-    Viterbi 1967, over all rows at once; rows do not know of one another.
+    The last column of `cost` (R, T, S + 1) is nobody's; changing the owner is cheap where `cut`
+    (R, T). Owners (R, T) are 0 to S - 1, or -1 for nobody and where absent.
     """
     change = np.where(cut | ~present, CHANGE_AT_CUT, CHANGE)
     total, back = cost[:, 0].copy(), np.zeros(cost.shape, dtype=np.int16)
@@ -368,19 +341,11 @@ def follow(cost, cut, present):
     return np.where(present & (owner != nobody), owner, -1)
 
 
-def one_row_each(owner, cost):
+def one_row_each(owner: NDArray, cost: NDArray) -> NDArray:
     """Give each person at most one row of a camera in each frame: the one that fits best.
 
-    Parameters
-    ----------
-    owner : (P, T) int
-        From `follow`.
-    cost : (P, T, S + 1) float
-
-    Returns
-    -------
-    index : (S, T) int
-        Row of each person, -1 for none.
+    `owner` (P, T) comes from `follow`, `cost` is (P, T, S + 1); the result (S, T) is the row of
+    each person, -1 for none.
     """
     count = cost.shape[2] - 1
     index = np.full((count, owner.shape[1]), -1)
@@ -391,7 +356,7 @@ def one_row_each(owner, cost):
     return index
 
 
-def _smoothed(cost, half=5):
-    """Return the mean over neighbouring frames, so that two rows do not take turns."""
+def _smoothed(cost: NDArray, half: int = 5) -> NDArray:
+    """Return the mean over neighbouring frames, so that two rows do not alternate."""
     total = np.cumsum(np.pad(cost, ((0, 0), (half + 1, half)), mode="edge"), axis=1)
     return (total[:, 2 * half + 1 :] - total[:, : -2 * half - 1]) / (2 * half + 1)

@@ -1,0 +1,68 @@
+"""Where a row of a camera may change its person."""
+
+import numpy as np
+import pytest
+
+from courtside.reconstruction.association import rows
+
+JOINTS = np.array([[-10, 0], [10, 0], [-10, 100], [10, 100], [0, 50]], float)
+TRUNK = [0, 1, 2, 3]
+
+
+def row(x, y=300.0):
+    """Return (T, 5, 2) a body 100 px tall at places x (T,)."""
+    return JOINTS + np.stack([np.asarray(x, float), np.full(len(x), y)], axis=-1)[:, None]
+
+
+def test_a_steady_walk_is_one_piece_with_exact_centres():
+    x = 100 + 4.0 * np.arange(20)
+    found = rows.describe(row(x)[None], TRUNK)
+    assert len(set(found.piece[0])) == 1
+    np.testing.assert_allclose(found.centre[0], np.stack([x, np.full(20, 350.0)], axis=1))
+    np.testing.assert_allclose(found.height_px, 100)
+
+
+def test_steadying_averages_five_frames():
+    noise = np.random.default_rng(1).normal(0, 1, 4000)
+    found = rows.describe(row(500 + noise)[None], TRUNK)
+    assert len(set(found.piece[0])) == 1
+    assert found.centre[0, 5:-5, 0].std() == pytest.approx(1 / np.sqrt(5), rel=0.08)
+
+
+def test_a_gap_and_a_jump_cut():
+    x = 100 + 4.0 * np.arange(20)
+    x[12:] += 60
+    xy = row(x)[None]
+    xy[0, 5] = np.nan
+    found = rows.describe(xy, TRUNK)
+    assert found.piece[0, 5] == -1
+    assert not found.present[0, 5]
+    assert {0, 6, 12} <= set(np.flatnonzero(found.cut[0])) <= {0, 6, 12, 13}
+    assert np.isnan(found.centre[0, 5]).all()
+
+
+def test_rows_that_come_close_are_cut_there_and_numbers_differ():
+    one, other = 100 + 4.0 * np.arange(60), 340 - 4.0 * np.arange(60)
+    found = rows.describe(np.stack([row(one), row(other)]), TRUNK)
+    near = np.abs(one - other) < rows.CLOSE * 100
+    assert found.cut[:, near].all()
+    clear = np.abs(one - other) > 2 * rows.CLOSE * 100
+    assert not found.cut[:, clear][:, 1:].any()
+    assert not set(found.piece[0]) & set(found.piece[1])
+    assert found.piece[0, 0] != found.piece[0, -1]
+
+
+def test_a_body_seen_in_part_still_has_its_trunk_as_centre():
+    xy = row(np.full(9, 200.0))[None]
+    xy[0, :, [0, 4]] = np.nan
+    found = rows.describe(xy, TRUNK)
+    assert found.present.all()
+    np.testing.assert_allclose(
+        found.centre[0, 4], np.add(np.mean(JOINTS[[1, 2, 3]], axis=0), (200, 300))
+    )
+
+
+def test_an_empty_row_has_nothing():
+    found = rows.describe(np.full((1, 3, 5, 2), np.nan), TRUNK)
+    assert not found.present.any()
+    assert (found.piece == -1).all()

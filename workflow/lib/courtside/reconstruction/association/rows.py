@@ -1,0 +1,130 @@
+"""Tracklet rows of one camera: body centres, sizes, and cuts where a row may change its body."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
+# Share of the body's height: a centre that deviates more from its course is another body.
+JUMP = 0.15
+CLOSE = 0.4  # share of the body's height: rows with closer centres may swap their bodies
+AROUND = 2  # frames before and after such an encounter in which they may still swap
+SMOOTHING = 2  # frames before and after that are averaged into a centre
+MIN_SHARE = 0.4  # share of the joints that must be seen for a row to count
+# Standard deviation of a joint: share of the body's height, plus px.
+SIGMA_SHARE, SIGMA_PX = 0.02, 2.0
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The P rows of one camera in T frames, before any comparison across views.
+
+    Attributes
+    ----------
+    present : (P, T) bool
+        Whether the row shows a body.
+    centre : (P, T, 2) float
+        Mean of the trunk's joints over at most five frames, px; NaN where absent.
+    height_px : (P, T) float
+        From the highest to the lowest joint; NaN where absent.
+    sigma_px : (P,) float
+        Expected standard deviation of a joint, per axis.
+    cut : (P, T) bool
+        True where the row may show another body than in the frame before.
+    piece : (P, T) int
+        Number of the uncut piece, unique within this camera; -1 where absent.
+    """
+
+    present: NDArray
+    centre: NDArray
+    height_px: NDArray
+    sigma_px: NDArray
+    cut: NDArray
+    piece: NDArray
+
+
+def describe(xy: NDArray, trunk: Sequence[int]) -> Rows:
+    """Describe the rows of one camera, keypoints `xy` (P, T, J, 2) in px, NaN where missing.
+
+    The mean of the joints `trunk` (shoulders and hips) is the body's centre. A row is cut after
+    each frame without a body, where its centre jumps off its course, and in every frame in which
+    another body is close enough for a tracker to confuse them.
+    """
+    seen = np.isfinite(xy[..., 0])
+    present = seen.mean(axis=-1) >= MIN_SHARE
+    centre = np.where(present[..., None], _centre(xy, seen, trunk), np.nan)
+    present &= np.isfinite(centre[..., 0])
+    ys = xy[..., 1]
+    height = np.fmax.reduce(ys, axis=-1) - np.fmin.reduce(ys, axis=-1)
+    height = np.where(present & (height > 0), height, np.nan)
+    typical = np.array(
+        [np.median(h[np.isfinite(h)]) if np.isfinite(h).any() else 0 for h in height]
+    )
+    before = np.zeros_like(present)
+    before[:, 1:] = present[:, :-1]
+    limit = (JUMP * typical + SIGMA_PX)[:, None]
+    broken = present & (~before | (_off_course(centre) > limit))
+    cut = broken | (present & _close_to_another(centre, typical))
+    centre = _smoothed(centre, np.where(present, np.cumsum(broken, axis=1), -1))
+    number = np.cumsum(cut, axis=1) + np.cumsum(cut.sum(axis=1))[:, None] - cut.sum(axis=1)[:, None]
+    piece = np.where(present, number, -1)
+    return Rows(present, centre, height, SIGMA_SHARE * typical + SIGMA_PX, cut, piece)
+
+
+def _centre(xy: NDArray, seen: NDArray, trunk: Sequence[int]) -> NDArray:
+    """Return the mean of the trunk's joints, or of all if less than half the trunk is seen."""
+    mean: list[NDArray] = []
+    for joints in (list(trunk), list(range(xy.shape[2]))):
+        count = seen[:, :, joints].sum(axis=-1)[..., None]
+        enough = count * 2 >= len(joints) if not mean else count > 0
+        total = np.nansum(xy[:, :, joints], axis=2)
+        mean.append(np.where(enough, total / np.maximum(count, 1), np.nan))
+    return np.where(np.isfinite(mean[0]), mean[0], mean[1])
+
+
+def _off_course(centre: NDArray) -> NDArray:
+    """Return the distance (P, T), px, of each centre from the course of the two frames before it.
+
+    It is 0 where unknown.
+    """
+    off = np.zeros(centre.shape[:2])
+    bend = centre[:, 2:] - 2 * centre[:, 1:-1] + centre[:, :-2]
+    off[:, 2:] = np.nan_to_num(np.linalg.norm(bend, axis=-1))
+    step = np.linalg.norm(np.diff(centre, axis=1), axis=-1)
+    # After a gap there is no course yet: then the place itself must not jump twice as far.
+    alone = np.isfinite(step[:, 1:]) & ~np.isfinite(bend[..., 0])
+    off[:, 2:] = np.where(alone, step[:, 1:] / 2, off[:, 2:])
+    return off
+
+
+def _smoothed(centre: NDArray, run: NDArray) -> NDArray:
+    """Return the symmetric mean over neighbouring frames of one unbroken run."""
+    total, count = centre.copy(), np.ones(run.shape)
+    for shift in range(1, SMOOTHING + 1):
+        whole = np.zeros(run.shape, dtype=bool)
+        middle = slice(shift, -shift)
+        whole[:, middle] = (run[:, : -2 * shift] == run[:, 2 * shift :]) & (run[:, middle] >= 0)
+        whole[:, middle] &= run[:, middle] == run[:, 2 * shift :]
+        pair = np.zeros_like(centre)
+        pair[:, middle] = np.nan_to_num(centre[:, : -2 * shift] + centre[:, 2 * shift :])
+        total += np.where(whole[..., None], pair, 0.0)
+        count += 2 * whole
+    return total / count[..., None]
+
+
+def _close_to_another(centre: NDArray, typical: NDArray) -> NDArray:
+    """Return (P, T) bool: another row of this camera is close."""
+    close = np.zeros(centre.shape[:2], dtype=bool)
+    for one in range(len(centre)):
+        for other in range(one + 1, len(centre)):
+            apart = np.linalg.norm(centre[one] - centre[other], axis=-1)
+            near = np.nan_to_num(apart, nan=np.inf) < CLOSE * max(typical[one], typical[other])
+            close[one] |= near
+            close[other] |= near
+    wide = close.copy()
+    for shift in range(1, AROUND + 1):
+        wide[:, shift:] |= close[:, :-shift]
+        wide[:, :-shift] |= close[:, shift:]
+    return wide
