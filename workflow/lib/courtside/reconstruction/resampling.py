@@ -77,7 +77,7 @@ def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[Keypoints
     return replace(view, time_s=np.asarray(time_s, dtype=float), **per_frame), view.time_s[at]
 
 
-def _cubic(values: NDArray, known: NDArray, left, right, share: NDArray, longest_s) -> NDArray:
+def _cubic(values, known, left, right, share, longest_s) -> NDArray:
     """Return values (P, T, J, 2) between frames, linear where the cubic lacks a frame."""
     share = share[:, None, None]
     before, after = values[:, left], values[:, right]

@@ -1,61 +1,71 @@
 """Clock offsets and drifts of fixed cameras, from the people that they see."""
 
 import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import epipolar
+from courtside.geometry.camera import Camera
 from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.statistics import autocorrelation
 from courtside.study.errors import InputError
 from courtside.synchronisation import clock_adjustment, smooth_tracks
 from courtside.synchronisation.epipolar import Epipolar
 from courtside.synchronisation.speed import Speeds
 
-MAX_OFFSET_S = 10.0
-MIN_SCORE = 0.3
-FEWEST_FRAMES = 30
-MAX_UNCERTAINTY_S = 0.02
-PRIOR_DRIFT = (
-    100e-6  # ASSUME: standard deviation of cameras' drifts; quartz clocks run within 200 ppm
-)
-HOPELESS = 10.0  # a drift less sure than so many priors is not sought
-KNOWN_DRIFT = 0.5  # of the prior: less is found out, more is mostly assumed
-READOUT_SPREAD_S = 0.01  # ASSUME: rolling shutters need up to 20 ms or so from top to bottom
-SMOOTHING = 0.85  # of the longest frame interval: less would draw offsets to half frames
+MAX_OFFSET_S = 10.0  # ASSUME: cameras are started by hand within this time
+MIN_SCORE = 0.3  # the default of Pose2Sim
+FEWEST_FRAMES = 30  # ASSUME: a second of motion
+MAX_UNCERTAINTY_S = 0.02  # ASSUME: an offset less certain than half a frame at 25 Hz is not used
+# ASSUME: standard deviation of cameras' drifts; quartz clocks run within 200 ppm.
+PRIOR_DRIFT = 100e-6
+HOPELESS = 10.0  # ASSUME: drifts are not estimated where they are less certain than 10 priors
+KNOWN_DRIFT = 0.5  # share of the prior: a larger uncertainty means a mostly assumed drift
+READOUT_SPREAD_S = 0.01  # ASSUME: rolling shutters need up to about 20 ms from top to bottom
+SMOOTHING = 0.85  # of the longest frame interval: less would bias offsets to half frames
 PARTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 
 
-def synchronise(views, cameras=None, *, max_offset_s=MAX_OFFSET_S, min_score=MIN_SCORE):
+def synchronise(
+    views: Sequence[Keypoints2D],
+    cameras: Sequence[Camera] | None = None,
+    *,
+    max_offset_s: float = MAX_OFFSET_S,
+    min_score: float = MIN_SCORE,
+) -> dict[str, Clock]:
     """Find the clock of every camera against the first one's.
 
     Parameters
     ----------
     views : list of Keypoints2D, length C
-        Tracklets need not be persons, nor of one number or order in all views.
+        Their tracklets may differ in number, order and persons.
     cameras : list of Camera, length C, optional
         In the order of `views`. Without them only the rhythm of the motion is compared.
     max_offset_s : float
-        Offsets beyond are not tried.
+        Larger offsets are not tried.
     min_score : float
         Keypoints below it are not used.
 
     Returns
     -------
     clocks : dict of str to Clock
-        By camera; `records.sync.fault_line` says whether they may be used.
+        By camera; `records.devices.clocks.fault_line` tells whether they may be used.
 
     Raises
     ------
     InputError
-        If a camera has hardly any frames.
+        If a camera has fewer than `FEWEST_FRAMES` frames.
 
     Notes
     -----
-    First every offset is tried on a coarse grid, camera after camera, the surest first. Then offsets and
-    drifts of all cameras are adjusted together: with cameras the epipolar distances of all joints are
-    made least, without them the products of the joints' speeds largest. Sound is not used.
+    First every offset is tried on a coarse grid, camera after camera, the surest first. Then
+    offsets and drifts of all cameras are adjusted together: with cameras, to minimise the epipolar
+    distances of all joints; without, to maximise the products of the joints' speeds. Sound is not
+    used.
     """
     _check(views)
     time_s = _times(views[0].time_s)
@@ -66,7 +76,7 @@ def synchronise(views, cameras=None, *, max_offset_s=MAX_OFFSET_S, min_score=MIN
         sure = [camera for camera, at in placed.items() if not at.candidates_s]
         offset_s = [placed[c].offset_s if c in sure else 0.0 for c in range(len(views))]
         pairs = evidence.match(time_s + np.array(offset_s)[:, None], sure)
-        sure = _connected(pairs)
+        sure = sorted(_connected(pairs))
         adjusted = _adjust(evidence, offset_s, sure, time_s)
     rows = [_row(view) for view in views]
     clocks = {views[0].camera: Clock(status="reference", note="the take's clock")}
@@ -80,16 +90,16 @@ def synchronise(views, cameras=None, *, max_offset_s=MAX_OFFSET_S, min_score=MIN
     return clocks
 
 
-def _check(views):
+def _check(views: Sequence[Keypoints2D]) -> None:
     for view in views:
         if len(view.time_s) < FEWEST_FRAMES:
             raise InputError(
-                f"camera {view.camera}: expected {FEWEST_FRAMES} frames or more to synchronise by, found "
-                f"{len(view.time_s)}; record a longer take"
+                f"camera {view.camera}: expected {FEWEST_FRAMES} frames or more to synchronise by, "
+                f"found {len(view.time_s)}; record a longer take"
             )
 
 
-def _evidence(views, cameras, min_score):
+def _evidence(views, cameras, min_score) -> Epipolar | Speeds:
     step_s = max(float(np.median(np.diff(view.time_s))) for view in views)
     tracks = []
     for at, view in enumerate(views):
@@ -102,13 +112,13 @@ def _evidence(views, cameras, min_score):
     return Epipolar(cameras, tracks) if cameras else Speeds(tracks)
 
 
-def _times(time_s):
+def _times(time_s: NDArray) -> NDArray:
     """Return uniform times (T,) over those of the first camera."""
     step_s = float(np.median(np.diff(time_s)))
     return time_s[0] + step_s * np.arange(round((time_s[-1] - time_s[0]) / step_s) + 1)
 
 
-def _connected(pairs):
+def _connected(pairs: list[tuple[int, int]]) -> set[int]:
     """Return the cameras that pairs connect with camera 0, directly or through others."""
     known = {0}
     for _ in pairs:
@@ -116,8 +126,8 @@ def _connected(pairs):
     return known
 
 
-def _adjust(evidence, offset_s, sure, time_s):
-    """Adjust the clocks of the sure cameras; with no hope for a drift, the offsets alone."""
+def _adjust(evidence, offset_s, sure, time_s) -> clock_adjustment.Adjusted:
+    """Adjust the clocks of the sure cameras; offsets alone if the drifts cannot be determined."""
     unknowns = np.array([2 * (camera in sure) for camera in range(len(offset_s))])
     unknowns[0] = 0
     adjusted = clock_adjustment.adjust(evidence.terms, offset_s, time_s, unknowns)
@@ -127,18 +137,18 @@ def _adjust(evidence, offset_s, sure, time_s):
     return clock_adjustment.adjust(evidence.terms, offset_s, time_s, np.minimum(unknowns, 1))
 
 
-def _overlap(view, own, time_s):
+def _overlap(view: Keypoints2D, own: NDArray, time_s: NDArray) -> NDArray:
     """Return the times of the reference clock at which a camera ran."""
     return time_s[(own >= view.time_s[0]) & (own <= view.time_s[-1])]
 
 
-def _row(view):
-    """Return at what share of the picture's height the persons usually are."""
+def _row(view: Keypoints2D) -> float:
+    """Return the persons' median y, as a share of the picture's height."""
     seen = np.isfinite(view.xy[..., 1])
     return float(np.median(view.xy[..., 1][seen])) / view.size[1] if seen.any() else 0.5
 
 
-def _found(adjusted, camera, overlap, time_s, rows_apart):
+def _found(adjusted, camera, overlap, time_s, rows_apart) -> Clock:
     drift, at = adjusted.drift[camera], slice(2 * camera, 2 * camera + 2)
     covariance = adjusted.covariance[at, at]
     offset_s = adjusted.offset_s[camera] - drift * adjusted.centre_s
@@ -152,15 +162,12 @@ def _found(adjusted, camera, overlap, time_s, rows_apart):
     uncertainty_s = float(np.sqrt(variance.max() + (READOUT_SPREAD_S * rows_apart) ** 2))
     sure = uncertainty_s <= MAX_UNCERTAINTY_S
     known = drift_spread < KNOWN_DRIFT * PRIOR_DRIFT
-    note = (
-        "offset and drift adjusted"
-        if known
-        else "offset adjusted; the take says little of the drift"
-    )
+    note = "offset and drift adjusted"
+    if not known:
+        note = "offset adjusted; the take says little of the drift"
     if not sure:
-        note = (
-            f"uncertain by {1e3 * uncertainty_s:.0f} ms: too little fast motion seen by two cameras"
-        )
+        much = f"{1e3 * uncertainty_s:.0f} ms"
+        note = f"uncertain by {much}: too little fast motion seen by two cameras"
     return Clock(
         float(offset_s),
         float(1e6 * drift),
@@ -171,11 +178,14 @@ def _found(adjusted, camera, overlap, time_s, rows_apart):
     )
 
 
-def _not_found(placed):
+def _not_found(placed: "Placed | None") -> Clock:
     if placed is None or not placed.candidates_s:
-        note = "it sees no person together with another camera"
-        unknown = {"uncertainty_s": np.nan, "drift_uncertainty_ppm": np.nan}
-        return Clock(**unknown, status="unknown", note=note)
+        return Clock(
+            uncertainty_s=np.nan,
+            drift_uncertainty_ppm=np.nan,
+            status="unknown",
+            note="it sees no person together with another camera",
+        )
     unknown = len(placed.candidates_s) >= MOST_CANDIDATES
     return Clock(
         placed.offset_s,
@@ -188,15 +198,16 @@ def _not_found(placed):
     )
 
 
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 SEPARATE_S = 0.25  # minima closer than this are one
 DISTINCT = 3.0  # standard deviations by which the best offset must beat another one
 FEWEST = 0.15  # share of the times of a pair that must overlap at an offset
-MOST_CANDIDATES = 5  # as many other offsets as this: nothing is known
+MOST_CANDIDATES = 5  # with this many other offsets, the offset is unknown
 
 
 @dataclass(frozen=True)
 class Placed:
-    """Where one camera came to lie.
+    """Coarse offset of one camera.
 
     Attributes
     ----------
@@ -211,32 +222,33 @@ class Placed:
     """
 
     offset_s: float
-    candidates_s: tuple
+    candidates_s: tuple[float, ...]
     distinct: float
-    through: tuple
+    through: tuple[int, ...]
 
 
-def place(scan, n_cameras, max_offset_s, step_s):
-    """Place all cameras against camera 0.
+def place(
+    scan: Callable[[int, int, NDArray], NDArray], n_cameras: int, max_offset_s: float, step_s: float
+) -> dict[int, Placed]:
+    """Find coarse offsets of all cameras against camera 0.
 
     Parameters
     ----------
     scan : callable
-        `scan(a, b, lags_s)` returns the loss (N, L) of camera b against a, at N times of camera a and
-        offsets of b's clock against a's; NaN where the two share nothing.
-    n_cameras : int
+        `scan(a, b, lags_s)` returns the loss (N, L) of camera b against a, at N times of camera a
+        and offsets of b's clock against a's; NaN where they have nothing in common.
     max_offset_s, step_s : float
         The offsets tried.
 
     Returns
     -------
     placed : dict of int to Placed
-        In the order of placing, camera 0 first. A camera that no other can be compared with lacks.
+        In the order of placing, camera 0 first, without cameras that no other can be compared with.
     """
     count = int(np.ceil(max_offset_s / step_s))
     offsets_s = step_s * np.arange(-count, count + 1)
     placed = {0: Placed(0.0, (), np.inf, ())}
-    losses = {camera: {} for camera in range(1, n_cameras)}
+    losses: dict[int, dict[int, NDArray]] = {camera: {} for camera in range(1, n_cameras)}
     while losses:
         for camera, known in losses.items():
             for other in _sure(placed):
@@ -250,24 +262,15 @@ def place(scan, n_cameras, max_offset_s, step_s):
     return placed
 
 
-def _sure(placed):
+def _sure(placed: dict[int, Placed]) -> list[int]:
     return [camera for camera, at in placed.items() if not at.candidates_s]
 
 
-def choose(offsets_s, losses):
-    """Choose the offset of one camera.
+def choose(offsets_s: NDArray, losses: Mapping[int, NDArray]) -> Placed:
+    """Choose the offset of one camera among uniform `offsets_s` (L,).
 
-    Parameters
-    ----------
-    offsets_s : (L,) float
-        Uniform.
-    losses : dict of int to (N, L) float
-        Against each camera that is placed; NaN where nothing is compared.
-
-    Returns
-    -------
-    placed : Placed
-        With an offset of NaN where nothing overlaps.
+    `losses` (N, L) against each placed camera are NaN where nothing is compared. The offset is NaN
+    where nothing overlaps.
     """
     loss = np.concatenate(list(losses.values()))
     curve = _curve(loss)
@@ -285,8 +288,8 @@ def choose(offsets_s, losses):
     )
 
 
-def _curve(loss):
-    """Return the mean loss (L,), drawn to that of an arbitrary offset where little overlaps."""
+def _curve(loss: NDArray) -> NDArray:
+    """Return the mean loss (L,), shrunk to that of an arbitrary offset where little overlaps."""
     known = np.isfinite(loss)
     count = known.sum(axis=0)
     few = FEWEST * max(count.max(), 1)
@@ -295,19 +298,19 @@ def _curve(loss):
     return np.where(count >= max(few, 3), curve, np.nan)
 
 
-def minima(curve, apart):
-    """Return the places of local minima of a curve (L,), lowest first, none within `apart` of a lower one."""
+def minima(curve: NDArray, apart: int) -> list[int]:
+    """Return local minima of a curve (L,), lowest first, none within `apart` of a lower one."""
     filled = np.where(np.isfinite(curve), curve, np.inf)
     padded = np.pad(filled, 1, constant_values=np.inf)
     local = (filled <= padded[:-2]) & (filled <= padded[2:]) & np.isfinite(curve)
-    kept = []
+    kept: list[int] = []
     for at in sorted(np.flatnonzero(local), key=lambda place: filled[place]):
         if all(abs(at - other) > apart for other in kept):
             kept.append(int(at))
     return kept
 
 
-def _margin(best, other):
+def _margin(best: NDArray, other: NDArray) -> float:
     """Return by how many standard deviations the loss `other` (N,) is above `best` (N,)."""
     both = np.isfinite(best) & np.isfinite(other)
     if both.sum() >= max(10, 0.3 * np.isfinite(best).sum()):

@@ -1,19 +1,25 @@
-"""Offsets and drifts of all clocks together, from what every pair of cameras says at every moment."""
+"""Offsets and drifts of all clocks together, from the losses of every pair of cameras over time."""
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import stats
 
-STEPS = 12
-SMALLEST_S = 1e-5  # the adjustment ends with a smaller step
-LARGEST_S = 0.05  # no step is larger
-COVERAGE = 0.90
-MEMORY_S = 1.5  # ASSUME: what two spans of this length say of the clocks is nearly independent
-FEWEST_BLOCKS = 8  # but a take is cut into so many at least
+STEPS = 12  # Newton steps at most; SMALLEST_S is usually reached earlier
+SMALLEST_S = 1e-5  # the adjustment ends with a smaller step: far below a millisecond
+LARGEST_S = 0.05  # limit of a step, about a frame: the loss is smooth only over such times
+COVERAGE = 0.90  # of the intervals that the study states
+MEMORY_S = 1.5  # ASSUME: two spans of this length carry nearly independent information
+FEWEST_BLOCKS = 8  # but a take is cut into at least this many blocks
 PARTITIONS = 3  # ways to cut, averaged
-EQUAL = 0.6  # so many blocks count: fast motion, and with it what is known, comes in bursts
-SMALLEST_CURVATURE = 1e-3
+# ASSUME: effective share of the blocks: fast motion, and with it information, comes in bursts.
+EQUAL = 0.6
+SMALLEST_CURVATURE = 1e-3  # relative to the scaled steepness: a flatter direction is undetermined
+
+# Losses of pairs of cameras: see `adjust`.
+Terms = Callable[[NDArray], Mapping[tuple[int, int], tuple[NDArray, ...]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,45 +31,44 @@ class Adjusted:
     offset_s, drift : (C,) float
         At `centre_s` of the reference clock; the drift without unit.
     covariance : (2 C, 2 C) float
-        Of offset 0, drift 0, offset 1, ...; zero for what was not sought, infinite where nothing holds it.
+        Of offset 0, drift 0, offset 1, ...; zero for fixed parameters, infinite for undetermined
+        ones.
     centre_s : float
     """
 
-    offset_s: np.ndarray
-    drift: np.ndarray
-    covariance: np.ndarray
+    offset_s: NDArray
+    drift: NDArray
+    covariance: NDArray
     centre_s: float
 
-    def own(self, camera, time_s):
+    def own(self, camera: int, time_s: NDArray) -> NDArray:
         """Return what a camera's clock shows at times of the reference clock."""
         return time_s + self.offset_s[camera] + self.drift[camera] * (time_s - self.centre_s)
 
 
-def adjust(terms, offset_s, time_s, unknowns):
+def adjust(
+    terms: Terms, offset_s: Sequence[float] | NDArray, time_s: NDArray, unknowns: NDArray
+) -> Adjusted:
     """Find the offsets and drifts that minimise the loss of all pairs.
 
     Parameters
     ----------
     terms : callable
         `terms(own)`, with `own` (C, T) what each clock shows, returns a dict of pairs (a, b) to
-        `(slope, curvature, steepness)`, (T,) each: first derivative, second derivative and the part of
-        the second one that is never negative, of the pair's loss by the offset of b against a.
+        `(slope, curvature, steepness)`, (T,) each: first derivative, second derivative and its
+        never negative part, of the pair's loss by the offset of b against a.
     offset_s : (C,) float
-        Where to start; camera 0 stays.
+        Start values; camera 0 stays.
     time_s : (T,) float
         Times of the reference clock.
     unknowns : (C,) int
-        2 where offset and drift are to be found, 1 where the drift is zero, 0 for a clock that stays.
-
-    Returns
-    -------
-    adjusted : Adjusted
+        2 to estimate offset and drift, 1 for the offset with zero drift, 0 for a fixed clock.
 
     Notes
     -----
-    Newton's method. The covariance is that of the jackknife over blocks of time (MacKinnon & White 1985):
-    it holds whatever the noise of neighbouring frames and of pairs with a camera in common has in
-    common. It is widened as Student's t for the number of blocks.
+    Newton's method. The covariance is that of the jackknife over blocks of time (MacKinnon & White
+    1985), valid for correlated noise of neighbouring frames and of pairs with a common camera. It
+    is widened as Student's t for the number of blocks.
     """
     centre_s = float(time_s.mean())
     free = _free(unknowns)
@@ -73,9 +78,9 @@ def adjust(terms, offset_s, time_s, unknowns):
         slope, curvature, steepness = _normal(terms(_own(state, lever, time_s)), lever, free)
         step = np.zeros(state.size)
         step[free] = _step(slope.sum(axis=0), curvature.sum(axis=0), steepness.sum(axis=0))
-        step = step.reshape(state.shape)
-        largest = np.abs(step @ lever[[0, -1]].T).max(initial=0.0)
-        state += step * min(1.0, LARGEST_S / max(largest, 1e-300))
+        move = step.reshape(state.shape)
+        largest = np.abs(move @ lever[[0, -1]].T).max(initial=0.0)
+        state += move * min(1.0, LARGEST_S / max(largest, 1e-300))
         if largest < SMALLEST_S:
             break
     slope, curvature, steepness = _normal(terms(_own(state, lever, time_s)), lever, free)
@@ -85,15 +90,10 @@ def adjust(terms, offset_s, time_s, unknowns):
     return Adjusted(state[:, 0], state[:, 1], whole, centre_s)
 
 
-def with_prior(adjusted, spread):
-    """Return clocks that also obey what is known of drifts before any recording.
+def with_prior(adjusted: Adjusted, spread: float) -> Adjusted:
+    """Apply a prior of standard deviation `spread`, without unit, about zero to all drifts.
 
-    Parameters
-    ----------
-    adjusted : Adjusted
-        With a finite covariance.
-    spread : float
-        Standard deviation of a camera's drift about zero, without unit.
+    The covariance of `adjusted` must be finite.
     """
     drifts = np.arange(3, len(adjusted.covariance), 2)
     gain = adjusted.covariance[:, drifts] @ np.linalg.inv(
@@ -105,19 +105,19 @@ def with_prior(adjusted, spread):
     return Adjusted(state[:, 0], state[:, 1], covariance, adjusted.centre_s)
 
 
-def _free(unknowns):
-    """Return the places of the parameters to find among offset 0, drift 0, offset 1, ..."""
+def _free(unknowns: NDArray) -> NDArray:
+    """Return the indices of the free parameters among offset 0, drift 0, offset 1, ..."""
     return np.array(
         [2 * c + k for c, count in enumerate(unknowns) for k in range(count)], dtype=int
     )
 
 
-def _own(state, lever, time_s):
+def _own(state: NDArray, lever: NDArray, time_s: NDArray) -> NDArray:
     return time_s + state @ lever.T
 
 
-def _normal(pairs, lever, free):
-    """Return slopes (T, K), curvatures and steepnesses (T, K, K) of every moment, by the free parameters."""
+def _normal(pairs, lever, free) -> tuple[NDArray, ...]:
+    """Return slopes (T, K), curvatures and steepnesses (T, K, K) by the free parameters."""
     size = free.max(initial=0) + 2
     slopes = np.zeros((len(lever), size))
     seconds = np.zeros((2, len(lever), size, size))
@@ -131,8 +131,8 @@ def _normal(pairs, lever, free):
     return slopes[:, free], *seconds[:, :, free][..., free]
 
 
-def _step(slope, curvature, steepness):
-    """Return Newton's step where the curvature is fit for it, else the surer one of Gauss and Newton."""
+def _step(slope: NDArray, curvature: NDArray, steepness: NDArray) -> NDArray:
+    """Return Newton's step if the curvature is positive enough, else the Gauss-Newton step."""
     if not len(slope):
         return slope
     scale = np.sqrt(np.maximum(np.diag(steepness), 1e-300))
@@ -141,8 +141,8 @@ def _step(slope, curvature, steepness):
     return -(np.linalg.pinv(newton if fit else gauss, hermitian=True) @ (slope / scale)) / scale
 
 
-def _covariance(slopes, curvature, steepness, memory):
-    """Return the covariance (K, K) by leaving out blocks of time; infinite without enough curvature."""
+def _covariance(slopes: NDArray, curvature: NDArray, steepness: NDArray, memory: float) -> NDArray:
+    """Return the covariance (K, K) by leaving out blocks of time; infinite without curvature."""
     scale = np.sqrt(np.maximum(np.diag(steepness.sum(axis=0)), 1e-300))
     slopes, curvature = slopes / scale, curvature / np.outer(scale, scale)
     size = len(scale)
@@ -158,7 +158,7 @@ def _covariance(slopes, curvature, steepness, memory):
     return found / np.outer(scale, scale) * student(EQUAL * (len(slopes) / length - 1)) ** 2
 
 
-def _moves(slopes, curvature):
+def _moves(slopes: NDArray, curvature: NDArray) -> NDArray:
     """Return how the parameters move (B, K) as each block is left out."""
     rest = curvature.sum(axis=0) - curvature
     held = np.linalg.eigvalsh(rest).min(axis=1) > SMALLEST_CURVATURE
@@ -166,7 +166,7 @@ def _moves(slopes, curvature):
     return np.linalg.solve(rest, slopes[..., None])[..., 0]
 
 
-def student(freedom):
-    """Return by what factor Student's interval is wider than the normal one."""
+def student(freedom: float) -> float:
+    """Return the ratio of Student's interval to the normal one."""
     tail = (1 + COVERAGE) / 2
     return float(stats.t.ppf(tail, freedom) / stats.norm.ppf(tail))

@@ -1,36 +1,42 @@
 """Clock offsets and drifts of devices, from claps and motion."""
 
 import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.events.claps import Clap
+from courtside.events.detect import Events
 from courtside.records.devices.clocks import Clock
+from courtside.records.devices.device_motion import DeviceMotion
 from courtside.study.errors import InputError
 from courtside.synchronisation import clock_adjustment, motion_signals
 from courtside.synchronisation.motion_signals import Signals
 
-PRIOR_DRIFT = (
-    200e-6  # ASSUME: standard deviation of devices' drifts; of phones and suits 200 ppm is not rare
-)
-# ASSUME: a network or an inertial suit errs with the pose, and that seems to move the motion in time.
+# ASSUME: standard deviation of devices' drifts; 200 ppm is not rare for phones and suits.
+PRIOR_DRIFT = 200e-6
+# ASSUME: a network or an inertial suit errs with the pose, which looks like a shift in time.
 MOTION_BIAS_S = 0.005
-LEAST_CORRELATION = 0.3  # of the motions, median over the signals, for them to say anything
-HOPELESS = 10.0  # a drift less sure than so many priors is not sought
-DISAGREE = 3.0  # standard deviations between clap and motion that are worth a word
-MAX_UNCERTAINTY_S = 0.03
+LEAST_CORRELATION = 0.3  # ASSUME: least median correlation of the signals for the motion to be used
+HOPELESS = 10.0  # ASSUME: a drift less certain than this many priors is not estimated
+DISAGREE = 3.0  # standard deviations between clap and motion that the note mentions
+MAX_UNCERTAINTY_S = 0.03  # ASSUME: a less certain clock, about a frame, stops the take
+
+Pairs = list[tuple[Clap, Clap]]
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What is known of one source's clock.
+    """Clock of one source and the estimates that it combines.
 
     Attributes
     ----------
     clock : Clock
-        Against the reference source: events shown at its own time are the same events. It holds whatever
-        delay the device has.
+        Against the reference source, by the times of the same events. It includes the device's
+        delay.
     claps : list of (Clap, Clap)
         Pairs, of the reference and of this source.
     clap_offset_s, clap_uncertainty_s : float
@@ -41,14 +47,14 @@ class Found:
         By the motion alone, at the middle of what both recorded.
     motion_drift_ppm, motion_drift_uncertainty_ppm : float
     disagree_s : float
-        Offset by the motion less that by the claps, at one time.
+        Offset by the motion minus offset by the claps, at one time.
     latency_s, latency_uncertainty_s : float
-        The device's stated delay. Its clock as such is off by `clock.offset_s` less this delay (if the
-        reference has none).
+        The device's stated delay. The offset of the clock itself is `clock.offset_s` minus this
+        delay (if the reference has none).
     """
 
     clock: Clock
-    claps: list
+    claps: Pairs
     clap_offset_s: float = np.nan
     clap_uncertainty_s: float = np.nan
     clap_drift_ppm: float = np.nan
@@ -62,7 +68,14 @@ class Found:
     latency_uncertainty_s: float = 0.0
 
 
-def synchronise(motions, happened, *, devices=None, known=None, latency=None):
+def synchronise(
+    motions: Sequence[DeviceMotion],
+    happened: Mapping[str, Events],
+    *,
+    devices: Mapping[str, str] | None = None,
+    known: Mapping[str, Clock] | None = None,
+    latency: Mapping[str, tuple[float, float]] | None = None,
+) -> dict[str, Found]:
     """Find the clock of every source against the first one's.
 
     Parameters
@@ -72,22 +85,24 @@ def synchronise(motions, happened, *, devices=None, known=None, latency=None):
     happened : dict of str to Events
         Of each source, reference included.
     devices : dict of str to str, optional
-        The device of each source: those of one device share its clock. Each its own by default.
+        The device of each source; sources of one device share its clock. By default each is its
+        own.
     known : dict of str to Clock, optional
-        Clocks against the reference that are known already; they are taken as they are.
+        Clocks against the reference that are used as they are.
     latency : dict of str to (float, float), optional
-        Stated delay of a source and its standard deviation, s. It is reported, not taken off: places must
-        be compared at the times of the same event.
+        Stated delay of a source and its standard deviation, s. It is reported, not subtracted:
+        places must be compared at the times of the same event.
 
     Returns
     -------
     found : dict of str to Found
-        `found[source].clock`; of the reference, its status is `reference`.
+        By source; the clock of the reference has the status `reference`.
 
     Raises
     ------
     InputError
-        If the claps of a source cannot be paired with those of the reference, or leave its clock uncertain.
+        If the claps of a source cannot be paired with those of the reference, or leave its clock
+        uncertain.
     """
     reference, *others = motions
     devices, known, latency = devices or {}, known or {}, latency or {}
@@ -110,17 +125,17 @@ def synchronise(motions, happened, *, devices=None, known=None, latency=None):
     }
 
 
-def _stated(latency):
+def _stated(latency: tuple[float, float] | None) -> dict[str, float]:
     return dict(zip(("latency_s", "latency_uncertainty_s"), latency or (0.0, 0.0), strict=True))
 
 
-def _device(devices, motion):
+def _device(devices: Mapping[str, str], motion: DeviceMotion) -> str:
     return devices.get(motion.source, motion.source)
 
 
-def _shared(found, motions, devices):
+def _shared(found, motions, devices) -> dict[str, Found]:
     """Give the sources of one device the surest of their clocks."""
-    surest = {}
+    surest: dict[str, str] = {}
     for motion in motions:
         device = _device(devices, motion)
         best = surest.get(device, motion.source)
@@ -130,7 +145,7 @@ def _shared(found, motions, devices):
     return {source: found[taken.get(source, source)] for source in found}
 
 
-def _against(reference, motion, happened):
+def _against(reference, motion, happened) -> Found:
     """Find the clock of one source against another."""
     where = f"{motion.source} against {reference.source}"
     claps = happened[reference.source].claps, happened[motion.source].claps
@@ -146,10 +161,10 @@ def _against(reference, motion, happened):
     return _joined(pairs, moved, reference, where)
 
 
-def _likeness(signals, reference, motion):
-    """Return a function of an offset: how alike the motions are with it, a correlation."""
+def _likeness(signals, reference, motion) -> Callable[[float], float]:
+    """Return a function of an offset: the correlation of the motions with it."""
 
-    def likeness(offset_s):
+    def likeness(offset_s: float) -> float:
         time_s = _both(reference, motion, offset_s)
         if len(time_s) < 2:
             return -1.0
@@ -158,7 +173,7 @@ def _likeness(signals, reference, motion):
     return likeness
 
 
-def _both(reference, motion, offset_s):
+def _both(reference: DeviceMotion, motion: DeviceMotion, offset_s: float) -> NDArray:
     """Return uniform times of the reference at which both ran."""
     step_s = float(np.median(np.diff(reference.time_s)))
     start = max(reference.time_s[0], motion.time_s[0] - offset_s)
@@ -166,8 +181,8 @@ def _both(reference, motion, offset_s):
     return start + step_s * np.arange(max(0, int((stop - start) / step_s)))
 
 
-def _by_motion(signals, reference, motion, offset_s):
-    """Return the clock that the whole motion gives, `clock_adjustment.Adjusted`, or None."""
+def _by_motion(signals, reference, motion, offset_s) -> clock_adjustment.Adjusted | None:
+    """Return the clock by the whole motion, or None if the motion does not determine it."""
     time_s = _both(reference, motion, offset_s)
     if len(time_s) < 2:
         return None
@@ -185,8 +200,8 @@ def _by_motion(signals, reference, motion, offset_s):
     return adjusted
 
 
-def _joined(pairs, moved, reference, where):
-    """Join claps and motion: offset, the motion's own bias, and drift, by least squares."""
+def _joined(pairs, moved, reference, where) -> Found:
+    """Combine claps and motion by least squares: offset, the motion's own bias, and drift."""
     at_s = np.array([first.time_s for first, _ in pairs])
     apart_s = np.array([second.time_s - first.time_s for first, second in pairs])
     sigma_s = np.array([np.hypot(*(clap.uncertainty_s for clap in pair)) for pair in pairs])
@@ -210,9 +225,9 @@ def _joined(pairs, moved, reference, where):
     if spread_s > MAX_UNCERTAINTY_S:
         raise InputError(
             f"{where}: expected claps and motion that place its clock within "
-            f"{1e3 * MAX_UNCERTAINTY_S:.0f} ms, found {1e3 * spread_s:.0f} ms with {len(pairs)} clap(s) at "
-            f"{', '.join(f'{t:.2f}' for t in at_s)} s; clap again at the end, or give its offset_s under "
-            "clocks of the take"
+            f"{1e3 * MAX_UNCERTAINTY_S:.0f} ms, found {1e3 * spread_s:.0f} ms with {len(pairs)} "
+            f"clap(s) at {', '.join(f'{t:.2f}' for t in at_s)} s; clap again at the end, or give "
+            "its offset_s under clocks of the take"
         )
     clock = Clock(
         offset_s=float(state[0] - state[2] * centre_s),
@@ -225,8 +240,8 @@ def _joined(pairs, moved, reference, where):
     return Found(clock, pairs, **numbers)
 
 
-def _alone(pairs, at_s, apart_s, sigma_s, moved, state, centre_s):
-    """Return what claps and motion say by themselves."""
+def _alone(pairs, at_s, apart_s, sigma_s, moved, state, centre_s) -> dict[str, float]:
+    """Return the estimates of claps and motion by themselves."""
     weight = sigma_s**-2 / (sigma_s**-2).sum()
     mean_s = float(weight @ at_s)
     spread = float(np.sqrt((sigma_s**-2 * (at_s - mean_s) ** 2).sum()))
@@ -249,7 +264,7 @@ def _alone(pairs, at_s, apart_s, sigma_s, moved, state, centre_s):
     return numbers
 
 
-def _note(pairs, moved, numbers):
+def _note(pairs: Pairs, moved: clock_adjustment.Adjusted | None, numbers: dict[str, float]) -> str:
     line = f"{len(pairs)} clap(s) paired"
     if not moved:
         return f"{line}; the motions are too little alike to say more"
@@ -260,26 +275,29 @@ def _note(pairs, moved, numbers):
     return line
 
 
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 SAME_S = 0.12  # claps that differ by less, after the offset, may be one
-SAME_PPM = 500.0  # of the time between two claps
+SAME_PPM = 500.0  # tolerance of drift, of the time between two claps
 BETTER = 0.15  # correlation by which the motion must prefer one pairing
 
 
-def pair(first, second, likeness, where):
+def pair(
+    first: Sequence[Clap], second: Sequence[Clap], likeness: Callable[[float], float], where: str
+) -> Pairs:
     """Pair the claps of two devices.
 
     Parameters
     ----------
-    first, second : list of courtside.events.claps.Clap
     likeness : callable
-        Of an offset in seconds: how alike the motions of both are with it, a correlation.
+        Correlation of the motions of both with an offset in seconds.
     where : str
-        To begin the line of an error.
+        Start of an error message.
 
     Returns
     -------
     pairs : list of (Clap, Clap)
-        As many as one offset explains; of several such offsets, the one with the motions more alike.
+        The most that one offset explains; of several such offsets, the one with the more similar
+        motions.
 
     Raises
     ------
@@ -300,19 +318,20 @@ def pair(first, second, likeness, where):
         times = [", ".join(f"{clap.time_s:.2f}" for clap in claps) for claps in (first, second)]
         offsets = ", ".join(f"{offset_s(pairs):.2f}" for _, pairs in best)
         raise InputError(
-            f"{where}: expected claps that pair in one way, found {len(best)} ways (offsets {offsets} s): "
-            f"claps at {times[1]} s against {times[0]} s; give the device's offset_s under clocks of the take"
+            f"{where}: expected claps that pair in one way, found {len(best)} ways (offsets "
+            f"{offsets} s): claps at {times[1]} s against {times[0]} s; give the device's offset_s "
+            "under clocks of the take"
         )
     return best[0][1]
 
 
-def offset_s(pairs):
-    """Return the mean offset of the second device of pairs of claps, surer ones counting more."""
+def offset_s(pairs: Pairs) -> float:
+    """Return the mean offset of the second device of pairs of claps, weighted by their variance."""
     weight = [1 / (a.uncertainty_s**2 + b.uncertainty_s**2) for a, b in pairs]
     return float(np.average([b.time_s - a.time_s for a, b in pairs], weights=weight))
 
 
-def _matched(first, second, anchor, offset):
+def _matched(first: Sequence[Clap], second: Sequence[Clap], anchor: Clap, offset: float) -> Pairs:
     """Return the pairs of claps that an offset explains, given at one clap of the first device."""
     pairs = []
     for one in first:

@@ -1,50 +1,54 @@
-"""What calibrated cameras say about their clocks: the pixels of one moment lie on epipolar lines."""
+"""Loss of clock offsets with calibrated cameras: joints at one time lie on epipolar lines."""
 
+from collections.abc import Collection, Sequence
 from itertools import combinations, permutations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from courtside.geometry import epipolar
+from courtside.geometry.camera import Camera
 from courtside.synchronisation import smooth_tracks
 
-SCAN_TIMES = 120  # moments of a camera that are compared at every offset
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
+SCAN_TIMES = 120  # times of a camera that are compared at every offset: costs grow with it
 SCAN_STEP_S = 1 / 15
-SCALE_OF_PERSON = 0.2  # a miss of this share of the joints' spread counts half
-CLIP = 3.0  # misses count up to so many such shares where their slow part is taken off
-FINER = 0.5  # what is left then is measured on a scale this much finer
+SCALE_OF_PERSON = 0.2  # an error of this share of the joints' spread has half the full loss
+CLIP = 3.0  # errors are cut off at this many such shares before their slow part is removed
+FINER = 0.5  # scale of the remaining errors, relative to the first scale
 LARGEST_MATCH = 0.55  # mean loss up to which two tracklets may show one person
-FADE = 4.0  # standard deviations at which a miss has a quarter of its weight
-SMALLEST_PX = 0.3  # ASSUME: no network is better
-WINDOW_S = 3.0  # misses that last longer are the network's, not the clock's
-NOISE_OF_MAD = 1.4826
-PROBE_S = 2e-3  # the step of numerical derivatives
+FADE = 4.0  # standard deviations at which an error has a quarter of its weight
+SMALLEST_PX = 0.3  # no network is more precise
+WINDOW_S = 3.0  # slower errors are the network's, not the clock's
+
+NOISE_OF_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
+PROBE_S = 2e-3  # step of numerical derivatives: small against a frame
+
+Sample = tuple[
+    NDArray, NDArray, NDArray
+]  # value, velocity and acceleration of a track, (T, J, 2) each
 
 
 class Epipolar:
     """Loss of pairs of cameras from the epipolar distances of all joints.
 
-    Parameters
-    ----------
-    cameras : list of Camera, length C
-    tracks : list of Track, length C
-        Straight px of `epipolar.straight_px`, smoothed alike.
+    Tracks are straight px of `epipolar.straight_px`, one per camera, all smoothed with one kernel.
     """
 
     scan_step_s = SCAN_STEP_S
 
-    def __init__(self, cameras, tracks):
+    def __init__(self, cameras: Sequence[Camera], tracks: Sequence[smooth_tracks.Track]) -> None:
         self.tracks = tracks
         self.matrix = {
             (a, b): epipolar.fundamental(cameras[a], cameras[b])
             for a, b in permutations(range(len(cameras)), 2)
         }
         self.scale_px = [SCALE_OF_PERSON * spread_px(track.values) for track in tracks]
-        self.count = len(tracks)
-        self.matches = {}
+        self.matches: dict[tuple[int, int], list[tuple[int, int]]] = {}
 
-    def scan(self, a, b, lags_s):
-        """Return the loss (N, L) of camera b against a at N times of a, for offsets of b against a."""
+    def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
+        """Return the loss (N, L) of camera b against a, at N times of a, by the offset of b."""
         track_a, track_b = self.tracks[a], self.tracks[b]
         every = max(1, track_a.values.shape[1] // SCAN_TIMES)
         at = np.arange(0, track_a.values.shape[1], every)
@@ -57,13 +61,13 @@ class Epipolar:
         losses = np.stack(
             [self._of_persons(line, track_b.values, index, b, window) for line in lines]
         )
-        # Every person of the camera that sees fewer has the one of the other camera who fits best.
+        # Each person of the camera with fewer persons gets the best match of the other camera.
         more = int(losses.shape[0] <= losses.shape[1])
         loss = np.nanmean(np.fmin.reduce(losses, axis=more), axis=0)
         return np.where(inside, loss, np.nan)
 
-    def _of_persons(self, line, values, index, b, window):
-        """Return the loss (Q, N, L) of one tracklet's lines (N, J, 3) against each person of camera b."""
+    def _of_persons(self, line, values, index, b, window) -> NDArray:
+        """Return the loss (Q, N, L) of one tracklet's lines (N, J, 3) against each person of b."""
         found = []
         for person in values.astype(np.float32):
             xy = person[index]
@@ -72,8 +76,8 @@ class Epipolar:
             found.append(self._two_losses(distance, self.scale_px[b], window))
         return np.stack(found)
 
-    def _two_losses(self, distance, scale_px, window):
-        """Return the mean loss of misses (N, L, J), and of what is left without their slow part."""
+    def _two_losses(self, distance: NDArray, scale_px: float, window: int) -> NDArray:
+        """Return the mean loss of errors (N, L, J), with and without their slow part."""
         limit = CLIP * scale_px
         known = np.isfinite(distance)
         clipped = np.where(known, np.clip(distance, -limit, limit), 0)
@@ -81,20 +85,11 @@ class Epipolar:
         left = np.where(known, left, np.nan)
         return (_mean_loss(distance, scale_px) + _mean_loss(left, FINER * scale_px)) / 2
 
-    def match(self, own, used):
-        """Find which tracklets of pairs of cameras show one person.
+    def match(self, own: NDArray, used: Collection[int]) -> list[tuple[int, int]]:
+        """Match the tracklets of pairs of cameras that show one person.
 
-        Parameters
-        ----------
-        own : (C, T) float
-            What each clock shows, to the step of the scan.
-        used : list of int
-            The cameras to compare.
-
-        Returns
-        -------
-        pairs : list of (int, int)
-            Of cameras that see one person at least together.
+        `own` (C, T) is what each clock shows, to the step of the scan; `used` are the cameras to
+        compare. Return the pairs of cameras that share at least one person.
         """
         self.matches = {}
         sampled = self._sample(own)
@@ -104,34 +99,34 @@ class Epipolar:
             )
             loss = np.where(np.isfinite(loss), loss, 1.0)
             best = (loss == loss.min(axis=0)) | (loss == loss.min(axis=1, keepdims=True))
-            found = [tuple(at) for at in np.argwhere(best & (loss <= LARGEST_MATCH)).tolist()]
+            found = [(p, q) for p, q in np.argwhere(best & (loss <= LARGEST_MATCH)).tolist()]
             if found:
                 self.matches[a, b] = found
         return list(self.matches)
 
-    def _between(self, a, b, xy_a, xy_b):
+    def _between(self, a: int, b: int, xy_a: NDArray, xy_b: NDArray) -> float:
         distance = epipolar.distance_px(self.matrix[a, b], xy_a, xy_b)
         scale = min(self.scale_px[a], self.scale_px[b])
         loss = _mean_loss(distance, scale)
         return np.nanmean(loss) if np.isfinite(loss).any() else np.nan
 
-    def terms(self, own):
-        """Return what each pair says, as `clock_adjustment.adjust` asks for."""
+    def terms(self, own: NDArray) -> dict[tuple[int, int], tuple[NDArray, ...]]:
+        """Return the terms of each pair for `clock_adjustment.adjust`."""
         sampled = self._sample(own)
-        result = {}
+        result: dict[tuple[int, int], list[NDArray]] = {}
         for pair, matches in self.matches.items():
             for p, q in matches:
                 result.setdefault(pair, []).append(self._of(pair, sampled, p, q, own))
         return {pair: tuple(np.sum(parts, axis=0)) for pair, parts in result.items()}
 
-    def _sample(self, own):
+    def _sample(self, own: NDArray) -> list[list[Sample]]:
         """Return per camera the tracklets as (value, velocity, acceleration), (T, J, 2) each."""
         return [
             list(zip(*smooth_tracks.sample(track, time_s), strict=True))
             for track, time_s in zip(self.tracks, own, strict=True)
         ]
 
-    def _of(self, pair, sampled, p, q, own):
+    def _of(self, pair, sampled, p, q, own) -> NDArray:
         miss, slope, bend = self._derivatives(pair, sampled[pair[0]][p], sampled[pair[1]][q])
         known = np.isfinite(miss) & np.isfinite(slope) & np.isfinite(bend)
         miss, slope, bend = (np.where(known, part, 0.0) for part in (miss, slope, bend))
@@ -149,8 +144,8 @@ class Epipolar:
         series = (weight * left * slope, curvature, steep)
         return np.stack([part.sum(axis=1) for part in series]) / sigma_px**2
 
-    def _derivatives(self, pair, first, second):
-        """Return the miss (T, J) and its derivatives by the offset of the second camera."""
+    def _derivatives(self, pair, first, second) -> tuple[NDArray, NDArray, NDArray]:
+        """Return the error (T, J) and its derivatives by the offset of the second camera."""
         misses = []
         for half in (-PROBE_S / 2, 0.0, PROBE_S / 2):
             xy_a, xy_b = (
@@ -162,7 +157,7 @@ class Epipolar:
         return here, (after - before) / (2 * PROBE_S), (after - 2 * here + before) / PROBE_S**2
 
 
-def spread_px(values):
+def spread_px(values: NDArray) -> float:
     """Return the median spread of a person's joints in the picture, px; of tracks (P, T, J, 2)."""
     seen = np.isfinite(values).all(axis=-1)
     usual = values[seen.mean(axis=-1) > 0.5]
@@ -171,8 +166,8 @@ def spread_px(values):
     return max(1.0, float(np.median(np.linalg.norm(np.nanstd(usual, axis=1), axis=-1))))
 
 
-def _mean_loss(distance, scale_px):
-    """Return the mean over joints, the last axis, of a loss from 0 to 1; NaN without half of them."""
+def _mean_loss(distance: NDArray, scale_px: float) -> NDArray:
+    """Return the mean over joints (last axis) of a loss from 0 to 1; NaN without half of them."""
     square = (distance / scale_px) ** 2
     loss = square / (1 + square)
     known = np.isfinite(loss)
@@ -181,7 +176,7 @@ def _mean_loss(distance, scale_px):
     return np.where(count >= max(1, loss.shape[-1] // 2), total / np.maximum(count, 1), np.nan)
 
 
-def _slow(values, weight, window):
+def _slow(values: NDArray, weight: NDArray, window: int) -> NDArray:
     """Return the weighted running mean over time of values (T, J)."""
     blur = {"size": window, "axis": 0, "mode": "constant"}
     total = ndimage.uniform_filter1d(weight * values, **blur)

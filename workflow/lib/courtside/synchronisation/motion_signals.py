@@ -1,23 +1,29 @@
-"""What the motion of a body looks like to every device, whatever its axes, its place and its scale.
+"""Signals of a body's motion that every device measures, whatever its axes, place and scale.
 
-Distances of joints, which nothing changes; and, where a T-pose has given axes, places of the limbs against
-the trunk: they keep apart what a camera sees well and what it guesses, height and width from depth.
+These are distances of joints, which no rotation changes; and, where a T-pose gives common axes,
+places of the limbs relative to the trunk: they separate what a camera sees well, height and width,
+from depth.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.body_frame import frame
-from courtside.events import tpose as tposes
+from courtside.events import tpose
+from courtside.events.tpose import TPose
+from courtside.records.devices.device_motion import DeviceMotion
 from courtside.synchronisation import smooth_tracks
 
-SMOOTH_S = 0.03  # standard deviation of the Gaussian, at least
-SMOOTH_STEPS = 0.85  # of the longest frame interval: less would draw offsets to half frames
-SLOW_S = 0.2  # what changes slower than this is taken off: depth errs by where a body stands
+SMOOTH_S = 0.03  # ASSUME: least standard deviation of the Gaussian
+SMOOTH_STEPS = 0.85  # of the longest frame interval: less would bias offsets to half frames
+SLOW_S = 0.2  # ASSUME: slower changes are removed: errors of depth depend on where a body stands
 LIMBS = tuple(
     f"{side}_{p}" for p in ("elbow", "wrist", "knee", "ankle") for side in ("left", "right")
 )
 TRUNK = tuple(f"{side}_{p}" for p in ("shoulder", "hip") for side in ("left", "right"))
-CLIP = 6.0  # signals count up to this many times their usual size
+CLIP = 6.0  # ASSUME: signals are limited to this many standard deviations
 PAIRS = (
     ("left_wrist", "right_wrist"),
     ("left_wrist", "left_shoulder"),
@@ -39,16 +45,15 @@ PAIRS = (
 
 
 class Signals:
-    """Loss of two devices from the products of their signals, as `clock_adjustment.adjust` asks for.
+    """Loss of two devices from the products of their signals, for `clock_adjustment.adjust`.
 
-    Parameters
-    ----------
-    first, second : courtside.records.devices.device_motion.DeviceMotion
-    axes : (2, 3, 3) float, optional
-        Rows are the same three directions in the frame of each. Without them only distances are compared.
+    The rows of `axes` (2, 3, 3) are the same three directions in the frame of each device. Without
+    them only distances are compared.
     """
 
-    def __init__(self, first, second, axes=None):
+    def __init__(
+        self, first: DeviceMotion, second: DeviceMotion, axes: NDArray | None = None
+    ) -> None:
         step_s = max(float(np.median(np.diff(each.time_s))) for each in (first, second))
         sigma_s = max(SMOOTH_S, SMOOTH_STEPS * step_s)
         names = set(first.joints.tolist()) & set(second.joints.tolist())
@@ -65,8 +70,8 @@ class Signals:
         ]
         self.weight = np.ones(values[0].shape[1])
 
-    def sampled(self, own):
-        """Return value, slope and bend (T, K) of both devices where their clocks show `own` (2, T)."""
+    def sampled(self, own: NDArray) -> list[list[NDArray]]:
+        """Return value, slope, bend (T, K) of both devices at their clocks' times `own` (2, T)."""
         both = [
             [part[0, :, :, 0] for part in smooth_tracks.sample(track, time_s)]
             for track, time_s in zip(self.tracks, own, strict=True)
@@ -74,19 +79,19 @@ class Signals:
         known = np.isfinite(both[0][0]) & np.isfinite(both[1][0])
         return [[np.where(known, part, 0.0) for part in one] for one in both]
 
-    def correlation(self, own):
-        """Return the correlation of each signal (K,) where the clocks show `own` (2, T); 0 where unknown."""
+    def correlation(self, own: NDArray) -> NDArray:
+        """Return the correlation (K,) of each signal where the clocks show `own` (2, T), else 0."""
         first, second = (one[0] for one in self.sampled(own))
         size = np.sqrt((first**2).sum(axis=0) * (second**2).sum(axis=0))
         return (first * second).sum(axis=0) / np.where(size > 0, size, np.inf)
 
-    def weigh(self, own):
-        """Give each signal the weight of its share of common motion to noise, at clocks about right."""
+    def weigh(self, own: NDArray) -> None:
+        """Weight each signal by its ratio of common motion to noise, at roughly right clocks."""
         common = np.clip(self.correlation(own), 0.0, 0.99)
         self.weight = common / (1 - common**2)
 
-    def terms(self, own):
-        """Return slope, curvature and steepness (T,) of minus the products, by the second one's offset."""
+    def terms(self, own: NDArray) -> dict[tuple[int, int], tuple[NDArray, ...]]:
+        """Return slope, curvature, steepness (T,) of minus the products, by the second's offset."""
         (value_a, slope_a, bend_a), (value_b, slope_b, bend_b) = self.sampled(own)
         slope = -0.5 * (value_a * slope_b - slope_a * value_b) @ self.weight
         curvature = -0.25 * (value_a * bend_b - 2 * slope_a * slope_b + bend_a * value_b)
@@ -94,24 +99,23 @@ class Signals:
         return {(0, 1): (slope, curvature @ self.weight, steep @ self.weight)}
 
 
-def common_axes(motions, spells):
-    """Return three directions in the frames of two devices, such that noise in one says nothing of another.
+def common_axes(motions: Sequence[DeviceMotion], spells: Sequence[TPose]) -> NDArray:
+    """Return three directions in the frames of two devices along which noise is uncorrelated.
 
     Parameters
     ----------
-    motions : sequence of two DeviceMotion
-    spells : sequence of two courtside.events.tpose.TPose
+    spells : sequence of two TPose
         Of the same T-pose: the body's axes join the devices' frames.
 
     Returns
     -------
     axes : (2, 3, 3) float
-        Rows are directions in each device's frame: the principal axes of the noise of both at rest. So the
-        depth of a camera is kept apart from width and height wherever it stood.
+        Rows are directions in each device's frame: the principal axes of the noise of both at rest.
+        They separate a camera's depth from width and height wherever it stood.
     """
     rows, noise = [], np.zeros((3, 3))
     for motion, spell in zip(motions, spells, strict=True):
-        at = {name: motion.joint(name)[spell.frames] for name in tposes.JOINTS}
+        at = {name: motion.joint(name)[spell.frames] for name in tpose.JOINTS}
         still = {name: np.nanmedian(path, axis=0) for name, path in at.items()}
         hips, shoulders = (still[f"left_{p}"] + still[f"right_{p}"] for p in ("hip", "shoulder"))
         axes, unit_m = frame.axes(
@@ -125,22 +129,22 @@ def common_axes(motions, spells):
     return np.array([own.T @ axes for axes in rows])
 
 
-def _distances(motion, pairs):
+def _distances(motion: DeviceMotion, pairs: Sequence[tuple[str, str]]) -> NDArray:
     distances = [
         np.linalg.norm(motion.joint(one) - motion.joint(other), axis=1) for one, other in pairs
     ]
     return np.stack(distances, axis=1)
 
 
-def _places(motion, limbs, rows):
-    """Return the places of limbs against the trunk along three directions, (T, 3 L)."""
+def _places(motion: DeviceMotion, limbs: Sequence[str], rows: NDArray) -> NDArray:
+    """Return the places of limbs relative to the trunk along three directions, (T, 3 L)."""
     trunk = np.mean([motion.joint(name) for name in TRUNK], axis=0)
     places = [(motion.joint(name) - trunk) @ rows.T for name in limbs]
     return np.concatenate(places, axis=1)
 
 
-def _track(motion, values, sigma_s):
-    """Return signals (T, K) of a device as a Track (1, T, K, 1), of usual size 1."""
+def _track(motion: DeviceMotion, values: NDArray, sigma_s: float) -> smooth_tracks.Track:
+    """Return signals (T, K) of a device as a Track (1, T, K, 1), of standard deviation 1."""
     values = np.where(motion.performed[:, None], values, np.nan)[None, :, :, None]
     fast = smooth_tracks.build(motion.time_s, values, sigma_s)
     slow = smooth_tracks.build(motion.time_s, values, SLOW_S)

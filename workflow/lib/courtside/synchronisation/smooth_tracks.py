@@ -1,44 +1,40 @@
-"""Tracks of one camera, smoothed and read at any time with their velocity and acceleration."""
+"""Smoothed tracks of one camera or device, with velocity and acceleration at any time."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
-LONGEST_GAP = 3  # missing frames that are bridged
-REACH = 3.0  # the kernel ends at this many standard deviations
+LONGEST_GAP = 3  # ASSUME: missing frames that are bridged, 0.1 s at 30 Hz
+REACH = 3.0  # standard deviations at which the kernel is cut off: 0.3 % of its weight is beyond
 LONGEST_STEP = 1.5  # in frames: further apart, a frame is missing
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """Values on uniform times.
+    """Values (P, T, J, K) on uniform times, NaN where unknown.
 
-    Attributes
-    ----------
-    start_s, step_s : float
-        Times on the camera's own clock; a step is half a frame.
-    values : (P, T, J, K) float
-        NaN where unknown.
+    Times start at `start_s` on the camera's own clock; a step is half a frame.
     """
 
     start_s: float
     step_s: float
-    values: np.ndarray
+    values: NDArray
 
     @property
-    def stop_s(self):
+    def stop_s(self) -> float:
         """Time of the last value."""
         return self.start_s + self.step_s * (self.values.shape[1] - 1)
 
 
-def build(time_s, values, sigma_s):
+def build(time_s: NDArray, values: NDArray, sigma_s: float) -> Track:
     """Smooth tracks with a Gaussian.
 
     Parameters
     ----------
     time_s : (T,) float
-        Frame times; rising, perhaps with dropped frames.
+        Frame times; increasing, perhaps with dropped frames.
     values : (P, T, J, K) float
         NaN where missing.
     sigma_s : float
@@ -47,15 +43,15 @@ def build(time_s, values, sigma_s):
     Returns
     -------
     track : Track
-        With two values per frame.
-        Up to `LONGEST_GAP` missing frames are bridged by lines; longer gaps stay, and so does the reach
-        of the kernel about them.
+        With two values per frame. Up to `LONGEST_GAP` missing frames are bridged linearly; longer
+        gaps stay NaN, with the kernel's reach about them.
 
     Notes
     -----
-    Both cameras of a pair must be smoothed alike: a linear filter moves no event in time. Without it the
-    noise of interpolated tracks would be lowest half-way between frames, and draw every offset there; with
-    it, and values half-way that are means of their own, the noise is even within 1 %.
+    Both cameras of a pair need the same kernel: a symmetric filter shifts no event in time. Without
+    it the noise of interpolated tracks would be lowest half-way between frames and bias every
+    offset there; with it, and half-way values that are means of their own, the noise is even within
+    1 %.
     """
     step_s = float(np.median(np.diff(time_s)))
     count = round((time_s[-1] - time_s[0]) / step_s) + 1
@@ -67,8 +63,8 @@ def build(time_s, values, sigma_s):
     return Track(float(time_s[0]), step_s / 2, smooth)
 
 
-def _smoothed(values, sigma, ahead):
-    """Return the Gaussian mean about the places `ahead` of each frame; `sigma` and `ahead` in frames."""
+def _smoothed(values: NDArray, sigma: float, ahead: float) -> NDArray:
+    """Return the Gaussian mean about the places `ahead` of each frame; all in frames."""
     reach = int(np.ceil(REACH * sigma))
     weight = np.exp(-0.5 * ((np.arange(-reach, reach + 1) - ahead) / sigma) ** 2)
     weight[weight < np.exp(-0.5 * REACH**2)] = 0.0
@@ -76,8 +72,8 @@ def _smoothed(values, sigma, ahead):
     return ndimage.correlate1d(values, weight, axis=1, mode="constant", cval=np.nan)
 
 
-def _on_grid(time_s, values, uniform, step_s):
-    """Interpolate linearly over missing values, but over no gap longer than `LONGEST_GAP` frames."""
+def _on_grid(time_s: NDArray, values: NDArray, uniform: NDArray, step_s: float) -> NDArray:
+    """Interpolate linearly over missing values, except gaps longer than `LONGEST_GAP` frames."""
     persons, _, joints, parts = values.shape
     result = np.full((persons, len(uniform), joints, parts), np.nan)
     longest = (LONGEST_GAP + LONGEST_STEP) * step_s
@@ -96,23 +92,12 @@ def _on_grid(time_s, values, uniform, step_s):
     return result
 
 
-def sample(track, time_s):
-    """Read tracks at times of the camera's own clock.
+def sample(track: Track, time_s: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Return value, velocity and acceleration (P, N, J, K) at times (N,) of the camera's own clock.
 
-    Parameters
-    ----------
-    track : Track
-    time_s : (N,) float
-
-    Returns
-    -------
-    value, velocity, acceleration : (P, N, J, K) float
-        Per second and per second squared; NaN where one of the four values around is unknown.
-
-    Notes
-    -----
-    The cubic through the two values beside, with their central differences as slopes (Catmull & Rom
-    1974), which changes smoothly from one interval to the next.
+    They are per second and per second squared, NaN where one of the four values around is unknown.
+    The interpolant is the cubic through the two values beside, with their central differences as
+    slopes (Catmull & Rom 1974), whose slope is continuous.
     """
     place = (np.asarray(time_s) - track.start_s) / track.step_s
     left = np.floor(place).astype(int)

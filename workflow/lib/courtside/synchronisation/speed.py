@@ -1,34 +1,33 @@
-"""What cameras of unknown place say about their clocks: joints are fast at the same moments everywhere."""
+"""Loss of clock offsets without calibration: joints are fast at the same times in all views."""
 
+from collections.abc import Collection, Sequence
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.synchronisation import smooth_tracks
 
-SCAN_TIMES = 450  # moments of a camera that are compared at every offset
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
+SCAN_TIMES = 450  # times of a camera that are compared at every offset: costs grow with it
 SCAN_STEP_S = 1 / 30
-CLIP = 3.0  # speeds count up to this many times their usual size
+CLIP = 3.0  # speeds are limited to this many times their median
 
 
 class Speeds:
     """Loss of pairs of cameras from products of the speeds of all joints, persons summed.
 
-    Parameters
-    ----------
-    tracks : list of Track, length C
-        Pixels, smoothed alike.
+    Tracks are in px, one per camera, all smoothed with one kernel.
     """
 
     scan_step_s = SCAN_STEP_S
 
-    def __init__(self, tracks):
+    def __init__(self, tracks: Sequence[smooth_tracks.Track]) -> None:
         self.tracks = [_features(track) for track in tracks]
-        self.count = len(tracks)
-        self.pairs = []
+        self.pairs: list[tuple[int, int]] = []
 
-    def scan(self, a, b, lags_s):
-        """Return the loss (N, L) of camera b against a at N times of a, for offsets of b against a."""
+    def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
+        """Return the loss (N, L) of camera b against a, at N times of a, by the offset of b."""
         track_a, track_b = self.tracks[a], self.tracks[b]
         first = track_a.values[0].reshape(track_a.values.shape[1], -1)
         at = np.arange(0, len(first), max(1, len(first) // SCAN_TIMES))
@@ -43,13 +42,13 @@ class Speeds:
         known = inside & seen_a[:, None] & seen_b[np.where(inside, index, 0)]
         return np.where(known, -product / first.shape[1], np.nan)
 
-    def match(self, own, used):
+    def match(self, own: NDArray, used: Collection[int]) -> list[tuple[int, int]]:
         """Return all pairs of the cameras `used`: the speeds of all persons are summed."""
         self.pairs = list(combinations(sorted(used), 2))
         return self.pairs
 
-    def terms(self, own):
-        """Return what each pair says, as `clock_adjustment.adjust` asks for."""
+    def terms(self, own: NDArray) -> dict[tuple[int, int], tuple[NDArray, ...]]:
+        """Return the terms of each pair for `clock_adjustment.adjust`."""
         sampled = [
             [np.nan_to_num(part[0]) for part in smooth_tracks.sample(track, time_s)]
             for track, time_s in zip(self.tracks, own, strict=True)
@@ -57,8 +56,8 @@ class Speeds:
         return {(a, b): _product_terms(sampled[a], sampled[b]) for a, b in self.pairs}
 
 
-def _products(first, second, index):
-    """Return the products (N, L) of first (N, K) with the rows of second (T, K) that `index` names."""
+def _products(first: NDArray, second: NDArray, index: NDArray) -> NDArray:
+    """Return the products (N, L) of first (N, K) with the rows `index` of second (T, K)."""
     result = np.zeros(index.shape)
     for row, (values, places) in enumerate(zip(first, index, strict=True)):
         asked = places[places >= 0]
@@ -69,21 +68,21 @@ def _products(first, second, index):
     return result
 
 
-def _product_terms(first, second):
-    """Return slope, curvature and steepness (T,) of minus the product, by the offset of the second."""
+def _product_terms(first: list[NDArray], second: list[NDArray]) -> tuple[NDArray, ...]:
+    """Return slope, curvature and steepness (T,) of minus the product, by the second's offset."""
     (value_a, slope_a, bend_a), (value_b, slope_b, bend_b) = first, second
     slope = -0.5 * (value_a * slope_b - slope_a * value_b)
     curvature = -0.25 * (value_a * bend_b - 2 * slope_a * slope_b + bend_a * value_b)
-    # With equal values on both sides the curvature is that of the values' own change.
+    # With equal values on both sides the curvature is that of the values' own slopes.
     steep = 0.25 * (slope_a**2 + slope_b**2) * 2
     return tuple(part.sum(axis=(1, 2)) for part in (slope, curvature, steep))
 
 
-def _features(track):
-    """Return a track (1, T, J, 2) of vertical and total speed per size of the person, persons summed.
+def _features(track: smooth_tracks.Track) -> smooth_tracks.Track:
+    """Return a track (1, T, J, 2) of vertical and total speed per person's size, persons summed.
 
-    Speeds downwards count as negative; of the total speed its mean is taken off. Neither changes when a
-    camera stands elsewhere on the floor, the first hardly at all.
+    Downward speeds are negative; the total speed has its mean removed. Both change little when a
+    camera stands elsewhere on the floor, the vertical speed hardly at all.
     """
     values = track.values
     velocity = (values[:, 2:] - values[:, :-2]) / (2 * track.step_s)
@@ -100,7 +99,7 @@ def _features(track):
     return smooth_tracks.Track(track.start_s, track.step_s, summed)
 
 
-def _size(values):
+def _size(values: NDArray) -> NDArray:
     """Return the spread of each person's joints, (P, T, 1, 1) px, the median over the take."""
     centre = np.nanmedian(values, axis=2, keepdims=True)
     spread = np.nanmedian(np.linalg.norm(values - centre, axis=-1), axis=(1, 2))

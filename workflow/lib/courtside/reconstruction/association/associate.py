@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera
 from courtside.reconstruction.association import candidates, linking
-from courtside.reconstruction.association.rows import Rows, describe
+from courtside.reconstruction.association.rows import describe
 from courtside.study.errors import InputError
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
@@ -154,9 +154,7 @@ def _alone(xy: Sequence[NDArray], n_frames: int) -> Association:
     )
 
 
-def _candidates(
-    cameras, xy, rows: Sequence[Rows], time_s, mirror
-) -> tuple[NDArray, candidates.Candidates]:
+def _candidates(cameras, xy, rows, time_s, mirror) -> tuple[NDArray, candidates.Candidates]:
     step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else EVERY_S
     instants = np.arange(0, len(time_s), max(1, round(EVERY_S / step_s)))
     parts = []
@@ -188,8 +186,9 @@ def _name_frames(cameras, rows, time_s, instants, found, chosen, n_persons, net_
     found_alone, chosen = found_alone[known], chosen[known]
     if not len(chosen):
         raise InputError(
-            f"{', '.join(camera.name for camera in cameras)}: expected people whom two views see "
-            "at one place, found none; check the calibration, the synchronisation and the 2D keypoints"
+            f"{', '.join(camera.name for camera in cameras)}: expected people whom two views "
+            "see at one place, found none; check the calibration, the synchronisation and the 2D "
+            "keypoints"
         )
     places = [(time_s[instants[c >= 0]], found.xyz[c[c >= 0]]) for c in chosen]
     along = [linking.along(time_s, *place) for place in places]
