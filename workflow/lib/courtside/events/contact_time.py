@@ -1,42 +1,35 @@
-"""When a falling distance meets its floor: the corner of a hinge, between frames, with its uncertainty."""
+"""Contact time of a closing distance, between frames: the corner of a hinge, with uncertainty."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
-FEWEST = 7
-SMOOTHINGS_S = np.linspace(0.0, 0.06, 13)  # standard deviations of a Gaussian
-USUAL_S = 0.01  # what they usually are
-STEP_S = 0.001
-SMALLEST = 1e-4  # metres: no device is better
-LEAST_REBOUND = 0.3  # of the speed before: a filter swings over by less
-BEND = (
-    6.0  # ASSUME: m/s2, half the usual change of the closing speed; arms close within half a second
-)
-# ASSUME: skin and wrists give for some milliseconds after the first touch; until they rest, or turn back.
+FEWEST = 7  # ASSUME: values that a fit needs
+SMOOTHINGS_S = np.linspace(0.0, 0.06, 13)  # standard deviations of the Gaussians tried
+USUAL_S = 0.01  # ASSUME: their usual size
+STEP_S = 0.001  # grid of contact times: small against their uncertainty
+SMALLEST = 1e-4  # metres: no device is more precise
+LEAST_REBOUND = 0.3  # ASSUME: of the speed before; the overshoot of a filter is less
+# ASSUME: m/s2, half the usual change of the closing speed; arms close within half a second.
+BEND = 6.0
+# ASSUME: skin and wrists yield for some milliseconds after the first touch, until they rest
+# (False) or rebound (True).
 GIVE_S = {False: 0.003, True: 0.008}
-MOST_MEMORY = 0.8
+MOST_MEMORY = 0.8  # ASSUME: limit of the correlation, estimated from short series
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise of a distance.
-
-    Attributes
-    ----------
-    sd : float
-        Standard deviation, metres.
-    memory : float
-        Correlation of neighbouring frames.
-    """
+    """Noise of a distance: standard deviation `sd`, m, and correlation of neighbouring frames."""
 
     sd: float = 0.0
     memory: float = 0.0
 
     @classmethod
-    def of(cls, still):
-        """Return that of distances (n,) of a body that holds still, less a steady change."""
+    def of(cls, still: NDArray) -> "Noise":
+        """Return the noise of distances (n,) of a body that holds still, minus a linear trend."""
         still = np.asarray(still)[np.isfinite(still)]
         if len(still) < FEWEST:
             return cls()
@@ -51,19 +44,19 @@ class Noise:
 
 @dataclass(frozen=True)
 class Corner:
-    """A corner.
+    """The corner of a hinge.
 
     Attributes
     ----------
     time_s : float
     uncertainty_s : float
-        Standard deviation; 90 % of errors should lie within 1.645 of it.
+        Standard deviation; 90 % of errors should be within 1.645 of it.
     floor : float
-        What the distance falls to.
+        Distance at contact.
     slope : float
-        By how much it falls per second when it gets there.
+        Closing speed at contact, per second.
     smoothing_s : float
-        Standard deviation of the Gaussian that rounds the corner, the mean of what the data allow.
+        Standard deviation of the Gaussian that smooths the corner, averaged over the likelihood.
     rises : bool
         The distance rises again at once: a rebound.
     residual : float
@@ -79,26 +72,30 @@ class Corner:
     residual: float
 
 
-def fit(time_s, distance, near_s, reach_s, *, usual_s=USUAL_S, noise=Noise(), rebounds=True):
+def fit(
+    time_s: NDArray,
+    distance: NDArray,
+    near_s: float,
+    reach_s: float,
+    *,
+    usual_s: float = USUAL_S,
+    noise: Noise = Noise(),
+    rebounds: bool = True,
+) -> Corner:
     """Fit a corner.
 
     Parameters
     ----------
     time_s, distance : (n,) float
-        Of the fall and the floor behind it, or of the fall and the rebound's rise; metres.
+        Of the fall and the floor after it, or of the fall and the rebound's rise; metres.
     near_s, reach_s : float
-        The corner is sought at `near_s`, give or take `reach_s`.
+        The corner is searched within `reach_s` of `near_s`.
     usual_s : float
-        Standard deviation of the Gaussian that stands for the device's own smoothing, as far as it is known:
-        wider ones are less likely by a half-normal law of this scale.
+        Usual standard deviation of the device's own smoothing: the scale of a half-normal prior.
     noise : Noise
-        At least so large; larger where the hinge fits worse.
+        Lower limit; larger where the hinge fits worse.
     rebounds : bool
         Whether the distance may rise again.
-
-    Returns
-    -------
-    corner : Corner
 
     Raises
     ------
@@ -107,46 +104,45 @@ def fit(time_s, distance, near_s, reach_s, *, usual_s=USUAL_S, noise=Noise(), re
 
     Notes
     -----
-    Before the corner a parabola, behind it a constant, or a parabola that rises; all convolved with a
-    Gaussian. Every corner time and width of a grid is tried, the other numbers by least squares (Aitken's,
-    for noise with memory; bends held by what arms can do); time and uncertainty are mean and standard
-    deviation by the likelihood. A rise is preferred where it is likelier after its two extra numbers are
-    paid for (Schwarz 1978).
+    Before the corner a parabola, after it a constant or a rising parabola, all convolved with a
+    Gaussian. Every corner time and width of a grid is tried, with the other parameters by least
+    squares (Aitken's, for correlated noise; bends limited to what arms can do). Time and
+    uncertainty are mean and standard deviation under the likelihood. A rise is preferred if its
+    likelihood pays for its two extra parameters (Schwarz 1978).
     """
     known = np.isfinite(distance)
     time_s, distance = np.asarray(time_s)[known], np.asarray(distance)[known]
     if len(time_s) < FEWEST:
         raise ValueError(f"expected {FEWEST} distances or more, found {len(time_s)}")
     corners_s = near_s + np.arange(-reach_s, reach_s + STEP_S / 2, STEP_S)
-    hinges = [
-        _hinge(time_s, distance, corners_s, noise, rises) for rises in (False, True)[: 1 + rebounds]
-    ]
-    hinges = [hinge for hinge in hinges if hinge is not None]
+    forms = (False, True)[: 1 + rebounds]
+    tried = [_hinge(time_s, distance, corners_s, noise, rises) for rises in forms]
+    hinges = [hinge for hinge in tried if hinge is not None]
     if not hinges:
         raise ValueError("expected a distance that falls to a floor, found none")
-    # Both forms are judged by the noise that the better one leaves, or the device has at rest.
+    # Both models are judged by the residuals of the better one, or the device's noise at rest.
     scale = max(noise.sd, min(hinge.scale for hinge in hinges), SMALLEST)
     return max((_corner(hinge, scale, usual_s) for hinge in hinges), key=lambda one: one[0])[1]
 
 
 @dataclass(frozen=True, eq=False)
 class _Hinge:
-    """Hinges of one form at every corner time and smoothing: squares (C, S), numbers (C, S, K)."""
+    """Hinges of one form at every corner time and smoothing: squares (C, S), values (C, S, K)."""
 
     rises: bool
-    corners_s: np.ndarray
-    square: np.ndarray
-    values: np.ndarray
+    corners_s: NDArray
+    square: NDArray
+    values: NDArray
     n: int
 
     @property
-    def scale(self):
+    def scale(self) -> float:
         freedom = max(self.n - self.values.shape[-1] - 1, 1)
         return float(np.sqrt(self.square.min() / freedom))
 
 
-def _hinge(time_s, distance, corners_s, noise, rises):
-    """Fit every hinge of one form; None where it has too many numbers or none falls."""
+def _hinge(time_s, distance, corners_s, noise, rises) -> _Hinge | None:
+    """Fit every hinge of one form; None if it has too many parameters or none falls."""
     count = 4 + 2 * rises
     if len(time_s) < count + 2:
         return None
@@ -170,8 +166,8 @@ def _hinge(time_s, distance, corners_s, noise, rises):
     return _Hinge(rises, corners_s, np.where(falls, square, np.inf), values, len(time_s))
 
 
-def _corner(hinge, scale, usual_s):
-    """Return (score, Corner) of the hinges of one form, with noise of a standard deviation `scale`."""
+def _corner(hinge: _Hinge, scale: float, usual_s: float) -> tuple[float, Corner]:
+    """Return score and corner of the hinges of one form, with noise of sigma `scale`."""
     log = -0.5 * hinge.square / scale**2 - 0.5 * (SMOOTHINGS_S / usual_s) ** 2
     weight = np.exp(log - log.max())
     weight /= weight.sum()
@@ -190,16 +186,16 @@ def _corner(hinge, scale, usual_s):
     return score, corner
 
 
-def _white(rows, memory):
-    """Return rows (..., n, K) without what each has of the one before (Prais & Winsten 1954)."""
+def _white(rows: NDArray, memory: float) -> NDArray:
+    """Return rows (..., n, K), decorrelated from the one before (Prais & Winsten 1954)."""
     white = rows.copy()
     white[..., 1:, :] -= memory * rows[..., :-1, :]
     white[..., 1:, :] /= np.sqrt(1 - memory**2)
     return white
 
 
-def _design(left_s, sigma_s, rises):
-    """Return columns (..., n, K): constant, fall and its bend before the corner, rise and its bend behind."""
+def _design(left_s: NDArray, sigma_s: NDArray, rises: bool) -> NDArray:
+    """Return columns (..., n, K): constant, fall and its bend, perhaps rise and its bend."""
     columns = [np.broadcast_to(1.0, np.broadcast_shapes(left_s.shape, sigma_s.shape))]
     columns += _ramps(left_s, sigma_s)
     if rises:
@@ -207,7 +203,7 @@ def _design(left_s, sigma_s, rises):
     return np.stack(np.broadcast_arrays(*columns), axis=-1)
 
 
-def _ramps(left_s, sigma_s):
+def _ramps(left_s: NDArray, sigma_s: NDArray) -> list[NDArray]:
     """Return the mean of max(u, 0) and of its square for u normal about `left_s`."""
     sigma_s = np.maximum(sigma_s, 1e-9)
     ratio = left_s / sigma_s

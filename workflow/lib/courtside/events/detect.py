@@ -1,13 +1,18 @@
 """T-poses and claps of every source of a take, and the tables that list them."""
 
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from courtside.events import claps as clapping
-from courtside.events import tpose as tposes
+from courtside.events import tpose
+from courtside.events.claps import Clap
+from courtside.events.tpose import TPose
 from courtside.records.devices.clocks import Clock
+from courtside.records.devices.device_motion import DeviceMotion
 from courtside.study.errors import InputError
 
 
@@ -15,16 +20,17 @@ from courtside.study.errors import InputError
 class Events:
     """T-poses and claps of one source, on its own clock."""
 
-    tposes: list
-    claps: list
+    tposes: list[TPose]
+    claps: list[Clap]
 
 
-def shown(motions, devices, stated=()):
-    """Return the `Events` of all sources of a take.
+def shown(
+    motions: Sequence[DeviceMotion], devices: Mapping[str, str], stated: Collection[str] = ()
+) -> dict[str, Events]:
+    """Find the events of all sources of a take.
 
     Parameters
     ----------
-    motions : list of DeviceMotion
     devices : dict of str to str
         The device of each source.
     stated : collection of str
@@ -33,9 +39,9 @@ def shown(motions, devices, stated=()):
     Returns
     -------
     happened : dict of str to Events
-        By source. Of the sources of one device one must show a clap: they have one clock, and a source with
-        T-poses but without a clap has the claps of its device's first source that shows any. A device that
-        is alone needs none.
+        By source. One source of each device must show a clap, because they share a clock. A source
+        with T-poses but without a clap gets the claps of its device's first source with claps. A
+        device that is alone needs none.
 
     Raises
     ------
@@ -44,24 +50,26 @@ def shown(motions, devices, stated=()):
     """
     happened, faults = {}, {}
     for motion in motions:
-        spells, claps = [], []
+        spells: list[TPose] = []
+        claps: list[Clap] = []
         try:
-            spells = tposes.find(motion)
+            spells = tpose.find(motion)
             claps = clapping.find(motion, spells)
         except InputError as error:
             faults[motion.source] = error
         happened[motion.source] = Events(spells, claps)
     clapped = {devices[source] for source, each in happened.items() if each.claps} | set(stated)
-    for source, error in faults.items():
+    for source, fault in faults.items():
         if devices[source] not in clapped and len(set(devices.values())) > 1:
-            raise error
+            raise fault
     return {source: _with_claps(source, happened, devices) for source in happened}
 
 
-def _with_claps(source, happened, devices):
-    """Return the events of a source; without a clap, with those that its device shows in another source.
+def _with_claps(source: str, happened: dict[str, Events], devices: Mapping[str, str]) -> Events:
+    """Return the events of a source; without claps, with those of its device's other sources.
 
-    Hands that point to a depth camera hide what is behind them: it sees bent arms where its colour does not.
+    Hands that point to a depth camera hide what is behind them: it sees bent arms, its colour
+    camera does not.
     """
     own = happened[source]
     if own.claps or not own.tposes:
@@ -93,19 +101,20 @@ EVENT_COLUMNS = [
 ]
 
 
-def wrists(motions, clocks=None):
+def wrists(
+    motions: Sequence[DeviceMotion], clocks: Mapping[str, Clock] | None = None
+) -> pd.DataFrame:
     """Return the distance of the wrists over time.
 
     Parameters
     ----------
-    motions : list of DeviceMotion
     clocks : dict of str to Clock, optional
-        Of each source against the reference; without one time_s is the source's own.
+        Of each source against the reference; without one `time_s` is the source's own.
 
     Returns
     -------
-    rows : pandas.DataFrame
-        source, time_s: on the reference clock, own_time_s, distance_m: in space, empty where missing.
+    rows : DataFrame
+        source, time_s: on the reference clock, own_time_s, distance_m: in space, empty if missing.
     """
     clocks = clocks or {}
     parts = [
@@ -122,22 +131,20 @@ def wrists(motions, clocks=None):
     return pd.concat(parts, ignore_index=True)
 
 
-def events(motions, clocks=None):
-    """Return T-poses, claps, and times at which hands come together without a clap, as they are found.
+def events(
+    motions: Sequence[DeviceMotion], clocks: Mapping[str, Clock] | None = None
+) -> pd.DataFrame:
+    """Return T-poses, claps, and times at which hands come together without a clap.
 
-    Parameters
-    ----------
-    motions : list of DeviceMotion
-    clocks : dict of str to Clock, optional
-        As for `wrists`.
+    Clocks are those of `wrists`.
 
     Returns
     -------
-    rows : pandas.DataFrame
+    rows : DataFrame
         source; event: `tpose_start`, `tpose_stop`, `clap` or `none`; number: of the T-pose, from 1;
-        time_s: on the reference clock; own_time_s; uncertainty_s: of claps; used: whether it is a clap to go
-        by or belongs to a T-pose; why: if not used. A source without a T-pose has one row that says so:
-        nothing is raised.
+        time_s: on the reference clock; own_time_s; uncertainty_s: of claps; used: whether the clap
+        counts or it belongs to a T-pose; why: if not used. A source without a T-pose has one row
+        with the reason; no error is raised.
     """
     clocks = clocks or {}
     rows = [row for motion in motions for row in _events(motion)]
@@ -149,9 +156,9 @@ def events(motions, clocks=None):
     return table
 
 
-def _events(motion):
+def _events(motion: DeviceMotion) -> Iterator[dict[str, object]]:
     try:
-        spells = tposes.find(motion)
+        spells = tpose.find(motion)
     except InputError as error:
         spells, why = [], str(error)
         yield {"source": motion.source, "event": "none", "used": False, "why": why}
@@ -168,13 +175,8 @@ def _events(motion):
         yield row
 
 
-def checks(found):
-    """Return what each clock rests on: one row per source, the numbers of `devices.Found`.
-
-    Parameters
-    ----------
-    found : dict of str to courtside.synchronisation.devices.Found
-    """
+def checks(found: Mapping[str, Any]) -> pd.DataFrame:  # Any: the type is in a higher room
+    """Return one row per source: the estimates of its `synchronisation.devices.Found`."""
     rows = []
     for source, one in found.items():
         clock = {key: getattr(one.clock, key) for key in ("offset_s", "drift_ppm", "uncertainty_s")}

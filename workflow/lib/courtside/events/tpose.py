@@ -1,32 +1,32 @@
-"""T-poses found in the motion of any device: arms straight out to the sides, square to the trunk, still.
+"""T-poses in the motion of any device: arms straight out to the sides, square to the trunk, still.
 
-All is measured by the body alone, because devices differ in what axis is up. Single frames of a network's
-depth are too noisy for an arm to look straight: joints are medians over a third of a second.
+All measures are relative to the body, because devices differ in their up axis. Depth of single
+frames is too noisy to tell straight arms: joints are medians over a third of a second.
 """
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import rotations
 from courtside.kinematics import filtering
+from courtside.records.devices.device_motion import DeviceMotion
 from courtside.study.errors import InputError
 
-MEDIAN_S = 0.35  # joints are medians over that
-STILL_S = 0.5  # speeds are differences over that
-LEAST_S = 0.5  # a T-pose lasts so long at least
-APART_S = 0.3  # spells with less between them are one
-STRAIGHT_DEG = 35.0  # an elbow bends less
-LEVEL_DEG = 20.0  # each arm is that near to square to the trunk
-SIDEWAYS_DEG = 35.0  # and that near to the line of the shoulders
-SPEED_PER_S = 0.4  # half wrist spans per second, of each wrist against the trunk
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
+MEDIAN_S = 0.35  # joints are medians over this time
+STILL_S = 0.5  # speeds are differences over this time
+LEAST_S = 0.5  # least duration of a T-pose
+APART_S = 0.3  # spells with a shorter gap are one
 LIMITS = {
-    "bend_deg": STRAIGHT_DEG,
-    "level_deg": LEVEL_DEG,
-    "sideways_deg": SIDEWAYS_DEG,
-    "speed_per_s": SPEED_PER_S,
+    "bend_deg": 35.0,  # of each elbow
+    "level_deg": 20.0,  # of each arm, from square to the trunk
+    "sideways_deg": 35.0,  # of each arm, from the line of the shoulders
+    "speed_per_s": 0.4,  # of each wrist against the trunk, half wrist spans per second
 }
-HELD = 21  # frames of a rest pose that is held
+HELD = 21  # frames that a rest pose is repeated for: more than the medians and speeds need
 SIDES = ("left", "right")
 JOINTS = tuple(f"{side}_{part}" for part in ("shoulder", "elbow", "wrist", "hip") for side in SIDES)
 
@@ -42,15 +42,14 @@ class TPose:
     first, stop : int
         Its frames are `first <= frame < stop`.
     bend_deg : float
-        Of the elbows: 0 with shoulder, elbow and wrist in line; median over the spell, the worse arm.
-    level_deg : float
-        Of the arms from square to the trunk, likewise.
-    sideways_deg : float
-        Of the arms from the line of the shoulders, seen along the trunk, likewise.
+        Of the elbows: 0 with shoulder, elbow and wrist in line; median over the spell, worse arm.
+    level_deg, sideways_deg : float
+        Of the arms from square to the trunk, and, seen along the trunk, from the line of the
+        shoulders; likewise.
     speed_per_s : float
         Of the wrists against the trunk, half wrist spans per second, likewise.
     cost : float
-        Mean square of these four over their limits: what says which spell is best.
+        Mean square of these four over their limits: the best spell has the least.
     """
 
     start_s: float
@@ -64,38 +63,35 @@ class TPose:
     cost: float
 
     @property
-    def frames(self):
+    def frames(self) -> slice:
         """The spell as a slice of the device's frames."""
         return slice(self.first, self.stop)
 
-    def as_dict(self):
+    def as_dict(self) -> dict[str, float]:
         """Return the numbers for JSON."""
         return asdict(self)
 
 
-def find(motion, *, least_s=LEAST_S, limits=None):
-    """Find all T-poses of a take.
+def find(
+    motion: DeviceMotion, *, least_s: float = LEAST_S, limits: Mapping[str, float] | None = None
+) -> list[TPose]:
+    """Find all T-poses of a take, in order of time, one or more.
 
     Parameters
     ----------
-    motion : courtside.records.devices.device_motion.DeviceMotion
-        Frames that nobody performed are passed over.
+    motion : DeviceMotion
+        Frames that nobody performed are ignored.
     least_s : float
-        Of stillness.
+        Least duration.
     limits : dict of str to float, optional
         In place of some of `LIMITS`.
-
-    Returns
-    -------
-    tposes : list of TPose
-        In order of time, one or more.
 
     Raises
     ------
     InputError
-        If there is none; the line says what came nearest, and when.
+        If there is none; the message tells what came nearest, and when.
     """
-    limits = LIMITS | (limits or {})
+    limits = LIMITS | dict(limits or {})
     measures = measure(motion)
     over = np.stack([measures[key] / limit for key, limit in limits.items()])
     good = (over <= 1).all(axis=0)
@@ -109,25 +105,14 @@ def find(motion, *, least_s=LEAST_S, limits=None):
     return [_tpose(motion.time_s, measures, limits, *spell) for spell in spells]
 
 
-def rest(motion, *, limits=None):
-    """Return the T-pose of the frames that nobody performed: the rest pose of a device's own model.
+def rest(motion: DeviceMotion, *, limits: Mapping[str, float] | None = None) -> TPose:
+    """Return the rest pose of a device's own model, from the frames that nobody performed.
 
-    It gives unit and axes of a take without a T-pose, in the frame that goes with the trunk; where the body
-    stood is not in it.
-
-    Parameters
-    ----------
-    motion : courtside.records.devices.device_motion.DeviceMotion
-        One run of frames at its beginning that nobody performed.
-    limits : dict of str to float, optional
-        In place of some of `LIMITS`.
-
-    Raises
-    ------
-    InputError
-        If there are no such frames, or they show another pose.
+    It gives unit and axes of a take without a T-pose, in the frame that moves with the trunk, but
+    not where the body stood. The motion must begin with one run of such frames; `limits` replace
+    some of `LIMITS`. Raise InputError if there are no such frames, or they show another pose.
     """
-    limits = LIMITS | (limits or {})
+    limits = LIMITS | dict(limits or {})
     runs = filtering.runs(~motion.performed)
     if not len(runs):
         raise InputError(f"{motion.source}: expected a rest pose, found none; film a T-pose")
@@ -145,30 +130,24 @@ def rest(motion, *, limits=None):
     return TPose(start_s, stop_s, int(first), int(stop), cost=cost, **middle)
 
 
-def best(tposes):
+def best(tposes: Sequence[TPose]) -> TPose:
     """Return the T-pose of least cost."""
     return min(tposes, key=lambda tpose: tpose.cost)
 
 
-def measure(motion):
-    """Measure how near every frame is to a T-pose.
+def measure(motion: DeviceMotion) -> dict[str, NDArray]:
+    """Measure how close every frame is to a T-pose.
 
-    Parameters
-    ----------
-    motion : courtside.records.devices.device_motion.DeviceMotion
-
-    Returns
-    -------
-    measures : dict of str to (T,) float
-        The keys of `LIMITS`, as `TPose` has them, the worse of both sides; NaN where a joint is missing or
-        the frame was not performed.
+    The keys are those of `LIMITS`, the values (T,) as in `TPose`, of the worse side; NaN if a joint
+    is missing or the frame was not performed. Raise InputError if the motion lacks a joint of
+    `JOINTS`.
     """
     names = list(motion.joints)
     missing = [name for name in JOINTS if name not in names]
     if missing:
         raise InputError(
-            f"{motion.source}: expected the joints {list(JOINTS)} to find a T-pose, missing: {missing}; "
-            "correct the device's joint map"
+            f"{motion.source}: expected the joints {list(JOINTS)} to find a T-pose, "
+            f"missing: {missing}; correct the device's joint map"
         )
     step_s = float(np.median(np.diff(motion.time_s))) if len(motion.time_s) > 1 else 1.0
     xyz = np.where(motion.performed[:, None, None], motion.xyz, np.nan)
@@ -189,7 +168,7 @@ def measure(motion):
     return measures | {"speed_per_s": np.maximum(*speeds)}
 
 
-def _arm(at, side, up, outwards):
+def _arm(at, side, up, outwards) -> dict[str, NDArray]:
     upper = rotations.unit(at[f"{side}_elbow"] - at[f"{side}_shoulder"])
     fore = rotations.unit(at[f"{side}_wrist"] - at[f"{side}_elbow"])
     whole = rotations.unit(at[f"{side}_wrist"] - at[f"{side}_shoulder"])
@@ -200,8 +179,8 @@ def _arm(at, side, up, outwards):
     }
 
 
-def _medians(values, length):
-    """Return running medians (T, J, 3) over about `length` frames, where more than half of them are known."""
+def _medians(values: NDArray, length: float) -> NDArray:
+    """Return running medians (T, J, 3) over about `length` frames, if most of them are known."""
     half = max(0, int(length // 2))
     ends = np.full((half, *values.shape[1:]), np.nan)
     windows = np.lib.stride_tricks.sliding_window_view(
@@ -213,8 +192,8 @@ def _medians(values, length):
     return medians
 
 
-def _speed(path, reach, span_s):
-    """Return the speed (T,) of a path (T, 3) over the frames before and after, NaN at the ends."""
+def _speed(path: NDArray, reach: int, span_s: float) -> NDArray:
+    """Return the speed (T,) of a path (T, 3) over the frames before and after; NaN at the ends."""
     speed = np.full(len(path), np.nan)
     if len(path) > 2 * reach:
         apart = np.linalg.norm(path[2 * reach :] - path[: -2 * reach], axis=1)
@@ -222,22 +201,22 @@ def _speed(path, reach, span_s):
     return speed
 
 
-def _dot(first, second):
+def _dot(first: NDArray, second: NDArray) -> NDArray:
     return np.einsum("ti,ti->t", first, second)
 
 
-def _level(vectors, up):
-    """Return directions without their part along the trunk."""
+def _level(vectors: NDArray, up: NDArray) -> NDArray:
+    """Return directions without their component along the trunk."""
     return rotations.unit(vectors - _dot(vectors, up)[:, None] * up)
 
 
-def _degrees(cosine):
+def _degrees(cosine: NDArray) -> NDArray:
     return np.degrees(np.arccos(np.clip(cosine, -1, 1)))
 
 
-def _joined(runs, time_s):
-    """Join runs of frames with hardly anything between them."""
-    joined = []
+def _joined(runs: Iterable[tuple[int, int]], time_s: NDArray) -> list[tuple[int, int]]:
+    """Join runs of frames with a gap shorter than `APART_S`."""
+    joined: list[tuple[int, int]] = []
     for first, stop in runs:
         if joined and time_s[first] - time_s[joined[-1][1] - 1] < APART_S:
             joined[-1] = (joined[-1][0], stop)
@@ -246,7 +225,7 @@ def _joined(runs, time_s):
     return joined
 
 
-def _tpose(time_s, measures, limits, first, stop):
+def _tpose(time_s, measures, limits, first, stop) -> TPose:
     spell = slice(first, stop)
     middle = {key: float(np.nanmedian(measures[key][spell])) for key in limits}
     cost = float(np.mean([(middle[key] / limit) ** 2 for key, limit in limits.items()]))
@@ -260,7 +239,7 @@ def _tpose(time_s, measures, limits, first, stop):
     )
 
 
-def _nearest(motion, measures, over, good, limits, least_s):
+def _nearest(motion, measures, over, good, limits, least_s) -> str:
     words = ", ".join(f"{key} <= {limit:g}" for key, limit in limits.items())
     line = f"{motion.source}: expected a T-pose ({words}, for {least_s:g} s), found none"
     worst = np.where(np.isfinite(over).all(axis=0), over.max(axis=0), np.inf)
