@@ -1,18 +1,22 @@
-"""Lift the 2D joints of a colour picture into space by the depth camera beside it."""
+"""Lift the 2D joints of a colour picture into 3D by the depth camera beside it."""
 
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
-from courtside.depth.surfaces import TRUNK, Sampler, Sampling
+from courtside.depth.surfaces import TRUNK, DepthRig, Sampler, Sampling
 from courtside.geometry import camera, rotations
+from courtside.geometry.camera import Camera
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason, skeleton
+from courtside.records.keypoints.keypoints import Keypoints2D
 
-# How deep a joint lies behind the skin that a camera sees, metres, from any side; the radius of the limb
-# there. ASSUME: limbs are round: half of circumference / pi of adults' medians in ANSUR II (Gordon et al.
-# 2014: wrist 0.17, elbow about 0.27, ankle 0.23, knee about 0.38 m), rounded to 5 mm; shoulder and hip
-# about half the depth of the chest and pelvis at their place. Joints of the face lie on the skin.
+# Depth of a joint behind the visible skin from any side, metres: the radius of the limb there.
+# ASSUME: limbs are round: half of circumference / pi of adults' medians in ANSUR II (Gordon et al.
+# 2014: wrist 0.17, elbow about 0.27, ankle 0.23, knee about 0.38 m), rounded to 5 mm; shoulder and
+# hip about half the depth of the chest and pelvis there. Joints of the face lie on the skin.
 # Measured values of a session should replace these.
 SKIN_TO_JOINT_M = {
     "shoulder": 0.05,
@@ -31,17 +35,27 @@ SKIN_TO_JOINT_M = {
     "head_top": 0.08,
 }
 ON_SKIN = ("nose", "eye", "eye_inner", "eye_outer", "mouth")
-LEAST_RADIUS_M = 0.02
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
+LEAST_RADIUS_M = 0.02  # of the limb at a joint, for the size of its window
 LAG = 0.75  # of the colour frames' interval: an older or newer depth picture shows another pose
-BONE_TOLERANCE, BONE_TOLERANCE_M = 0.25, 0.06  # of its length, and at the least
-FEWEST = 10  # frames that tell a bone's length
-FROM_BODY_M = {True: 0.4, False: 1.1}  # a joint of the trunk, and another, from the trunk's depth
-COVERED_M = 0.05  # a limb's skin and what is seen at a joint that it covers agree to this
+BONE_TOLERANCE, BONE_TOLERANCE_M = 0.25, 0.06  # share of a bone's length, and least tolerance
+FEWEST = 10  # frames that a bone's median length needs
+FROM_BODY_M = {True: 0.4, False: 1.1}  # largest depth from the trunk: joints of the trunk, others
+COVERED_M = 0.05  # a limb covers a joint if the depths of both agree to this
 
 
 def lift_take(
-    source, view, depth_frames, rig, *, bones, baseline_m, skin_m=None, beyond_m=None, sampling=None
-):
+    source: str,
+    view: Keypoints2D,
+    depth_frames: Iterable[tuple[float, NDArray]],
+    rig: DepthRig,
+    *,
+    bones: Sequence[tuple[str, str]],
+    baseline_m: float,
+    skin_m: Mapping[str, float] | None = None,
+    beyond_m: Mapping[str, float] | None = None,
+    sampling: Sampling | None = None,
+) -> tuple[DeviceMotion, NDArray]:
     """Lift the joints of one person over a take.
 
     Parameters
@@ -53,24 +67,23 @@ def lift_take(
     depth_frames : iterable of (float, (h, w) uint16)
         Time and depth, in order of time; one is held at a time.
     rig : DepthRecording
-        Or anything with its `colour`, `depth`, `colour_from_depth`, `depth_unit_m`.
+        Or anything with the attributes of `DepthRig`.
     bones : sequence of (str, str)
         Pairs of joints whose distance is constant.
     baseline_m : float
         Between the imagers that depth comes from; for the noise.
     skin_m : dict of str to float, optional
-        How deep each joint lies behind the skin, by its name or its name without side; `SKIN_TO_JOINT_M`
-        where absent.
+        Depth of each joint behind the skin, by its name or its name without side; by default
+        `SKIN_TO_JOINT_M`.
     beyond_m : dict of str to float, optional
-        How far the network places a joint beyond the end of its limb (`skeleton.PARENT`), by the joint's name
-        without side, which is taken off; 0 where absent.
-    sampling : Sampling, optional
+        How far the network places a joint beyond the end of its limb (`skeleton.PARENT`), by the
+        joint's name without side; it is subtracted. By default 0.
 
     Returns
     -------
     motion : DeviceMotion
-        In the colour camera's axes (x right, y down, z forward), metres. The reason is `NO_DEPTH` where
-        there is no depth or another part of the body is in front, else that of the 2D joint.
+        In the colour camera's axes (x right, y down, z forward), metres. The reason is `NO_DEPTH`
+        if there is no depth or another part of the body is in front, else that of the 2D joint.
     sigma_m : (T, J) float
         Standard deviation along the viewing ray by the noise of the depth alone.
 
@@ -81,9 +94,9 @@ def lift_take(
 
     Notes
     -----
-    Each joint has up to three candidate surfaces. Of these the nearest is taken whose joint keeps the
-    lengths of the bones (medians over the take), from the trunk outwards. A joint without one is missing:
-    what covers it is seen.
+    Each joint has up to three candidate surfaces: the nearest one whose joint keeps the lengths of
+    the bones (medians over the take) is used, from the trunk outwards. A joint without one is
+    missing: only the surface that covers it is visible.
     """
     if len(view.xy) != 1 or (np.diff(view.time_s) <= 0).any():
         raise ValueError("expected keypoints of one person at increasing times")
@@ -120,13 +133,10 @@ def lift_take(
     return motion, sampler.sigma_z(depth)
 
 
-def by_joint(names, table):
+def by_joint(names: Sequence[str], table: Mapping[str, float]) -> NDArray:
     """Return the table's value of each joint (J,), by its name or its name without side.
 
-    Raises
-    ------
-    ValueError
-        If a joint is not in the table.
+    Raise ValueError if a joint is not in the table.
     """
     plain = [name.removeprefix("left_").removeprefix("right_") for name in names]
     table = dict.fromkeys(ON_SKIN, 0.0) | dict(table)
@@ -136,21 +146,13 @@ def by_joint(names, table):
     return np.array([table.get(n, table.get(p)) for n, p in zip(names, plain, strict=True)])
 
 
-def nearest_frames(times_s, frames, most_s):
-    """Yield for each time the frame taken nearest to it.
+def nearest_frames(
+    times_s: NDArray, frames: Iterable[tuple[float, NDArray]], most_s: float
+) -> Iterator[NDArray | None]:
+    """Yield for each increasing time the frame taken nearest to it.
 
-    Parameters
-    ----------
-    times_s : (T,) float
-        Increasing.
-    frames : iterable of (float, object)
-        In order of time.
-    most_s : float
-        A frame farther off is none.
-
-    Yields
-    ------
-    frame : object or None
+    `frames` are (time, frame) in order of time. It is None if the nearest is farther off than
+    `most_s`.
     """
     frames = iter(frames)
     before, after = None, next(frames, None)
@@ -160,10 +162,10 @@ def nearest_frames(times_s, frames, most_s):
         near = [frame for frame in (before, after) if frame is not None]
         best = min(near, key=lambda frame: abs(frame[0] - time_s), default=None)
         close = best is not None and abs(best[0] - time_s) <= most_s
-        yield best[1] if close else None
+        yield best[1] if best is not None and close else None
 
 
-def _sampled(sampler, xy, times_s, depth_frames):
+def _sampled(sampler: Sampler, xy, times_s, depth_frames) -> tuple[NDArray, NDArray]:
     """Return the surfaces (T, J, 3) and the depth of the body (T,), metres."""
     z, z_body = np.full((*xy.shape[:2], 3), np.nan), np.full(len(xy), np.nan)
     interval_s = np.median(np.diff(times_s)) if len(times_s) > 1 else 1.0
@@ -173,8 +175,8 @@ def _sampled(sampler, xy, times_s, depth_frames):
     return z, z_body
 
 
-def _behind_skin(colour, xy, z, skin):
-    """Return where the joints are (T, J, 3 surfaces, 3): behind the skin along the viewing ray."""
+def _behind_skin(colour: Camera, xy: NDArray, z: NDArray, skin: NDArray) -> NDArray:
+    """Return the joints (T, J, 3 surfaces, 3), behind the skin along the viewing ray."""
     plane = camera.undistort(colour, xy)
     ray = np.concatenate([plane, np.ones((*plane.shape[:2], 1))], axis=-1)
     along = z[..., np.newaxis] * ray[:, :, np.newaxis]
@@ -182,8 +184,8 @@ def _behind_skin(colour, xy, z, skin):
     return along + (skin[:, np.newaxis] * unit)[:, :, np.newaxis]
 
 
-def _drawn_back(xyz, names, beyond_m):
-    """Return joints (T, J, 3) moved towards their parents; those without a parent in the frame stay."""
+def _drawn_back(xyz: NDArray, names: Sequence[str], beyond_m: Mapping[str, float]) -> NDArray:
+    """Return joints (T, J, 3) moved towards their parents, where these are known."""
     moved = xyz.copy()
     for (joint, beyond), side in product(beyond_m.items(), ("left", "right")):
         ends = f"{side}_{skeleton.PARENT[joint]}", f"{side}_{joint}"
@@ -194,15 +196,15 @@ def _drawn_back(xyz, names, beyond_m):
     return moved
 
 
-def _chain(names, bones, is_trunk):
+def _chain(names, bones, is_trunk) -> list[tuple[int, int | None]]:
     """Return (joint, parent or None) from the trunk outwards; every joint once."""
-    neighbours = {k: [] for k in range(len(names))}
+    neighbours: dict[int, list[int]] = {k: [] for k in range(len(names))}
     for a, b in bones:
         if a in names and b in names:
             neighbours[names.index(a)].append(names.index(b))
             neighbours[names.index(b)].append(names.index(a))
     trunk = [int(k) for k in np.flatnonzero(is_trunk)]
-    parents = dict.fromkeys(trunk)
+    parents: dict[int, int | None] = dict.fromkeys(trunk)
     for start in [None, *range(len(names))]:
         if start is not None:
             parents.setdefault(start, None)
@@ -216,8 +218,8 @@ def _chain(names, bones, is_trunk):
     return list(parents.items())
 
 
-def _lengths(xyz, chain):
-    """Return the length of the bone from each joint to its parent, metres, by the medians over the take."""
+def _lengths(xyz: NDArray, chain: list[tuple[int, int | None]]) -> dict[int, float]:
+    """Return the median length of the bone from each joint to its parent, metres."""
     lengths = {}
     for joint, parent in chain:
         if parent is None:
@@ -228,15 +230,16 @@ def _lengths(xyz, chain):
     return lengths
 
 
-def _choose(joints_at, z, z_body, chain, lengths, is_trunk):
-    """Return the surface that is each joint's, by joint; none for those that have none."""
-    chosen = {}
+def _choose(joints_at, z, z_body, chain, lengths, is_trunk) -> dict[int, int]:
+    """Return the surface of each joint, by joint; none for joints without one."""
+    chosen: dict[int, int] = {}
     for joint, parent in chain:
         surfaces = [k for k in range(z.shape[1]) if np.isfinite(joints_at[joint, k, 2])]
         limit = FROM_BODY_M[bool(is_trunk[joint])]
         surfaces = [k for k in surfaces if abs(z[joint, k] - z_body) <= limit]
-        if is_trunk[joint]:  # what is in front of the trunk is not the trunk
-            surfaces.sort(key=lambda k, joint=joint: abs(z[joint, k] - z_body))
+        if is_trunk[joint]:  # the nearest surface may be in front of the trunk
+            off_m = np.abs(z[joint] - z_body)
+            surfaces.sort(key=off_m.__getitem__)
         if parent in chosen and joint in lengths:
             anchor, length = joints_at[parent, chosen[parent]], lengths[joint]
             slack = max(BONE_TOLERANCE * length, BONE_TOLERANCE_M)
@@ -247,8 +250,8 @@ def _choose(joints_at, z, z_body, chain, lengths, is_trunk):
     return chosen
 
 
-def _uncover(chosen, xy, z, radius_px, chain, is_trunk):
-    """Leave out joints of the trunk where a limb lies over them in the picture and is what is seen there."""
+def _uncover(chosen, xy, z, radius_px, chain, is_trunk) -> None:
+    """Remove joints of the trunk that a limb covers in the picture at the depth seen there."""
     limbs = [
         (a, b) for a, b in chain if b in chosen and a in chosen and not (is_trunk[a] or is_trunk[b])
     ]
@@ -264,10 +267,10 @@ def _uncover(chosen, xy, z, radius_px, chain, is_trunk):
                 break
 
 
-def summary(motion, sigma_m):
-    """Return a line for the log: how many joints have depth, and how exact it is."""
+def summary(motion: DeviceMotion, sigma_m: NDArray) -> str:
+    """Return a log line: the share of joints with depth, and its precision."""
     seen = np.isin(motion.reason, (missing_reason.OK, missing_reason.NO_DEPTH))
-    lifted = np.count_nonzero(motion.reason == missing_reason.OK) / max(np.count_nonzero(seen), 1)
+    lifted = np.count_nonzero(motion.reason == missing_reason.OK) / max(int(seen.sum()), 1)
     known = sigma_m[np.isfinite(sigma_m)]
     sigma_mm = 1000 * np.median(known) if len(known) else np.nan
     return f"{motion.source}: {lifted:.1%} of the joints seen have depth, noise {sigma_mm:.1f} mm"

@@ -1,29 +1,20 @@
-"""One person of one camera: who it is, and the body that the network guesses by itself."""
+"""One person of one camera: who it is, and the metric body that the network estimates by itself."""
 
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints2D
 
 
-def main_person(view):
-    """Return the keypoints of the person nearest to the camera in each frame, as one tracklet.
+def main_person(view: Keypoints2D) -> Keypoints2D:
+    """Return the person nearest to the camera in each frame, as one tracklet (P = 1).
 
-    Parameters
-    ----------
-    view : Keypoints2D
-        With any number of tracklets.
-
-    Returns
-    -------
-    view : Keypoints2D
-        With one (P = 1); unseen where there is nobody.
-
-    Notes
-    -----
-    The nearest is the one whose joints span most of the picture: single-view sessions have one subject.
+    The nearest is the one whose joints span most of the picture: single-view sessions have one
+    subject. The tracklet is unseen where there is nobody.
     """
     n_people, n_frames, n_joints = view.score.shape
     if n_people == 0:
@@ -46,7 +37,7 @@ def main_person(view):
     return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in fields})
 
 
-def landmarks(source, view, time_s=None):
+def landmarks(source: str, view: Keypoints2D, time_s: NDArray | None = None) -> DeviceMotion:
     """Return the network's own metric body of the main person as a motion.
 
     Parameters
@@ -56,12 +47,12 @@ def landmarks(source, view, time_s=None):
     view : Keypoints2D
         With any number of tracklets and `xyz_in_body`.
     time_s : (T,) float, optional
-        Times on the device's clock; the view's where absent.
+        Times on the device's clock; by default the view's.
 
     Returns
     -------
     motion : DeviceMotion
-        About the centre of the hips, axes as in cam (x right, y down, z forward), metres.
+        Relative to the centre of the hips, axes as in cam (x right, y down, z forward), metres.
     """
     person = main_person(view)
     xyz, reason = person.xyz_in_body[0], person.reason[0]

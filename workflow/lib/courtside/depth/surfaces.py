@@ -1,38 +1,54 @@
-"""What a depth camera sees at the 2D joints of one frame: the surfaces inside each limb, nearest first."""
+"""Surfaces that a depth camera sees at the 2D joints of one frame, nearest first."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera, depth_registration, rotations
+from courtside.geometry.camera import Camera
 
-N_SURFACES = 3
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
-COARSE_PX = 6.0  # half a window where the size of the body in the picture is not known yet
-REACH_M = (0.5, 12.0)  # distances that a cut-out of the depth picture must hold
-GROWTHS = (1.0, 1.5, 2.0)  # windows tried where the first lies in a hole
+# ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
+N_SURFACES = 3  # of a joint: the limb, one in front, one behind
+COARSE_PX = 6.0  # half a window while the size of the body in the picture is unknown
+REACH_M = (0.5, 12.0)  # distances that a cut-out of the depth picture must hold: a gymnasium
+GROWTHS = (1.0, 1.5, 2.0)  # relative sizes of windows, if the first lies in a hole
 ROUNDS = 3  # of the robust plane
 LEAST_WINDOW_PX = 2.0  # depth pixels: half a window
 
 
+class DepthRig(Protocol):
+    """A depth camera beside a colour camera, such as `devices.depth_recording.DepthRecording`."""
+
+    @property
+    def colour(self) -> Camera: ...  # noqa: D102
+    @property
+    def depth(self) -> Camera: ...  # noqa: D102
+    @property
+    def colour_from_depth(self) -> NDArray: ...  # noqa: D102
+    @property
+    def depth_unit_m(self) -> float: ...  # noqa: D102
+
+
 @dataclass(frozen=True)
 class Sampling:
-    """How depth is sampled.
+    """Parameters of depth sampling.
 
     Attributes
     ----------
     window : float
         Half the side of the window about a joint, in radii of the limb there.
-    min_pixels : int
-        A surface with fewer depth pixels is none.
-    min_share : float
-        A surface with a smaller share of the window's depth pixels is none.
+    min_pixels, min_share : int, float
+        A surface needs this many depth pixels, and this share of the window's.
     bandwidth_m : float
         Depth within which pixels belong to one surface; twice the noise is added.
     edge_m : float
-        A pixel that differs by more from a neighbour is mixed of two surfaces and left out.
+        A pixel that differs by more from a neighbour mixes two surfaces and is excluded.
     disparity_px : float
-        Standard deviation of the disparity: the noise is `z**2 * disparity_px / (focal_px * baseline_m)`.
+        Standard deviation of the disparity: the noise is
+        `z**2 * disparity_px / (focal_px * baseline_m)`.
     """
 
     window: float = 0.7
@@ -40,38 +56,36 @@ class Sampling:
     min_share: float = 0.2
     bandwidth_m: float = 0.02
     edge_m: float = 0.06
-    # ASSUME: a tenth of a pixel, as the makers of stereo depth cameras state for textured surfaces ("RMS
-    # subpixel").
+    # ASSUME: as makers of stereo depth cameras state for textured surfaces ("RMS subpixel").
     disparity_px: float = 0.1
 
 
 class Sampler:
     """Samples the frames of one recording.
 
-    Parameters
-    ----------
-    rig : DepthRecording
-        Or anything with its `colour`, `depth`, `colour_from_depth`, `depth_unit_m`.
-    radius_m : (J,) float
-        Of the limb at each joint.
-    is_trunk : (J,) bool
-        Joints that tell how far the body is.
-    baseline_m : float
-    sampling : Sampling
+    `radius_m` (J,) is that of the limb at each joint; joints with `is_trunk` (J,) tell how far the
+    body is.
     """
 
-    def __init__(self, rig, radius_m, is_trunk, baseline_m, sampling):
+    def __init__(
+        self,
+        rig: DepthRig,
+        radius_m: NDArray,
+        is_trunk: NDArray,
+        baseline_m: float,
+        sampling: Sampling,
+    ) -> None:
         self.rig, self.sampling = rig, sampling
         self.radius_m, self.is_trunk = np.asarray(radius_m), np.asarray(is_trunk)
         self.rays = depth_registration.rays(rig.depth)
         self.noise_per_m2 = sampling.disparity_px / (rig.depth.K[0, 0] * baseline_m)
         self.pixel = rig.colour.K[0, 0] / rig.depth.K[0, 0]  # colour px to one depth px
 
-    def sigma_z(self, z):
+    def sigma_z(self, z: NDArray | float) -> NDArray:
         """Return the standard deviation of depth at a distance, metres."""
         return self.noise_per_m2 * z**2
 
-    def surfaces(self, xy, depth):
+    def surfaces(self, xy: NDArray, depth: NDArray) -> tuple[NDArray, float]:
         """Find the surfaces at the joints of one frame.
 
         Parameters
@@ -86,7 +100,7 @@ class Sampler:
         z : (J, 3) float
             Along the colour camera's axis, metres, nearest first; NaN beyond those found.
         z_body : float
-            Where the trunk is; NaN where there is no depth at any joint.
+            Depth of the trunk; NaN if there is no depth at any joint.
         """
         found = np.full((len(xy), N_SURFACES), np.nan)
         part = self._cut_out(xy)
@@ -107,8 +121,8 @@ class Sampler:
             found[joint] = self._at(xy[joint], half_px[joint], self.radius_m[joint], (x, y, z))
         return found, z_body
 
-    def _cut_out(self, xy):
-        """Return the part of the depth picture that holds the joints, as slices."""
+    def _cut_out(self, xy: NDArray) -> tuple[slice, slice] | None:
+        """Return the part of the depth picture that holds the joints."""
         known = xy[np.isfinite(xy).all(axis=-1)]
         if not len(known):
             return None
@@ -126,8 +140,8 @@ class Sampler:
         last = np.maximum(np.ceil(np.nanmax(seen, axis=0)).astype(int) + 3, 0)
         return slice(first[1], last[1]), slice(first[0], last[0])
 
-    def _edges(self, depth_m, z):
-        """Say which pixels are mixed of two surfaces: they differ from a neighbour that has depth."""
+    def _edges(self, depth_m: NDArray, z: NDArray) -> NDArray:
+        """Return which pixels mix two surfaces: they differ from a neighbour that has depth."""
         limit = self.sampling.edge_m + 3 * self.sigma_z(np.nan_to_num(z))
         depth_m = np.where(depth_m > 0, depth_m, np.nan)
         edge = np.zeros(depth_m.shape, dtype=bool)
@@ -139,7 +153,7 @@ class Sampler:
             edge[high] |= step > limit[high]
         return edge
 
-    def _body(self, xy, x, y, z):
+    def _body(self, xy, x, y, z) -> float:
         wanted = np.isfinite(xy).all(axis=-1)
         if (wanted & self.is_trunk).any():
             wanted &= self.is_trunk
@@ -149,7 +163,7 @@ class Sampler:
         medians = [np.median(values) for values in near if len(values)]
         return float(np.median(medians)) if medians else np.nan
 
-    def _at(self, centre, half_px, radius_m, pixels):
+    def _at(self, centre, half_px, radius_m, pixels) -> NDArray:
         """Return the surfaces (3,) at one joint."""
         found = np.full(N_SURFACES, np.nan)
         x, y, z = pixels
@@ -167,30 +181,19 @@ class Sampler:
             found[k] = plane_at_origin(x[near], y[near], z[near], mode, self._width(mode))
         return found
 
-    def _width(self, z):
+    def _width(self, z: NDArray | float) -> NDArray:
         return self.sampling.bandwidth_m + 2 * self.sigma_z(z)
 
 
-def modes_of(z, width_m, sampling):
-    """Return the depths that most pixels share, nearest first.
+def modes_of(z: NDArray, width_m: float | NDArray, sampling: Sampling) -> list[float]:
+    """Return the depths that most pixels share, nearest first, of depths `z` (N,) in metres.
 
-    Parameters
-    ----------
-    z : (N,) float
-        Metres.
-    width_m : float
-        Pixels within it count together.
-    sampling : Sampling
-
-    Returns
-    -------
-    modes : list of float
-        At most three, farther from one another than twice the width.
+    Pixels within `width_m` count together. At most three, more than twice the width apart.
     """
     z = np.sort(z)
     count = np.searchsorted(z, z + width_m, side="right") - np.searchsorted(z, z - width_m)
     least = max(sampling.min_pixels, sampling.min_share * len(z))
-    modes = []
+    modes: list[float] = []
     while len(modes) < N_SURFACES and len(z) and count.max() >= least:
         best = count == count.max()
         modes.append(float(np.median(z[best])))
@@ -199,8 +202,10 @@ def modes_of(z, width_m, sampling):
     return sorted(modes)
 
 
-def plane_at_origin(x, y, z, mode, width_m):
-    """Return the depth at (0, 0) of the plane through a limb's pixels, which others mix with.
+def plane_at_origin(
+    x: NDArray, y: NDArray, z: NDArray, mode: float, width_m: float | NDArray
+) -> float:
+    """Return the depth at (0, 0) of the plane through a limb's pixels, robust to other surfaces.
 
     Parameters
     ----------
@@ -209,9 +214,9 @@ def plane_at_origin(x, y, z, mode, width_m):
     z : (N,) float
         Metres.
     mode : float
-        Depth to begin from.
+        Start depth.
     width_m : float
-        Scale of what belongs to the surface.
+        Scale of the surface's depths.
 
     Returns
     -------
@@ -220,14 +225,14 @@ def plane_at_origin(x, y, z, mode, width_m):
 
     Notes
     -----
-    Weighted least squares in a few rounds (Tukey's biweight), so that a slanting limb is not read at its
+    Iterated weighted least squares (Tukey's biweight), so that a slanting limb is not read at its
     nearest end.
     """
     level = np.full(len(z), mode)
     basis = np.column_stack([np.ones(len(z)), x, y])
     for _ in range(ROUNDS):
         weight = np.clip(1 - ((z - level) / (3 * width_m)) ** 2, 0, None) ** 2
-        # A little weight against slopes: a few pixels in a row tell none across it.
+        # A weak prior against slopes: a few pixels in a row determine none across it.
         normal = basis.T @ (basis * weight[:, np.newaxis]) + np.diag([0, 1e-3, 1e-3]) * len(z)
         if not weight.sum() > 0 or np.linalg.cond(normal) > 1e12:
             return mode
