@@ -1,1 +1,9 @@
-"""Moving pictures: reading, writing, frames of a walk, static pictures, movement of a fixed camera."""
+"""Video files and pictures of fixed cameras: the only room that uses PyAV.
+
+reader: probe, frame_times, frames, extract_frames, read_frame, write_png, sharpness.
+packets, decoder: list_packets, pictures (every frame checked, damage reported).
+writer: write_video (H.264, the same bytes for the same pictures).
+images, walk_frames: read; frames, spread, extract, read_photo (walks as video or photos).
+static_picture: temporal_median, static_picture, check_still, check_light.
+camera_movement, shake_tracking: movement (between two pictures), measure_take (in every frame).
+"""

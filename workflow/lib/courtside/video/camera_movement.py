@@ -1,51 +1,53 @@
-"""How far a fixed camera's picture moved, and the turn of the camera that explains it."""
+"""Movement of a fixed camera's picture, and the camera rotation that explains it."""
 
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
+# ASSUME: this block has no source but the development sessions (CONTRIBUTING.md).
 N_FEATURES = 4000  # ORB features that find a large movement
 N_CORNERS = 600  # corners that measure it
-CELL = 0.02  # fewest picture widths between two corners: people get no more than their area
-CONTRAST = 0.01  # picture widths: brightness and contrast are evened out at this scale
-MIN_CONTRAST = 4.0  # grey levels; flatter surroundings are not stretched further
+CELL = 0.02  # least distance of corners, picture widths: people get no more than their area
+CONTRAST = 0.01  # picture widths: scale at which brightness and contrast are normalised
+MIN_CONTRAST = 4.0  # grey levels; flatter surroundings are not amplified further
 WINDOW_PX = 21  # of a tracked corner
-MAX_RETURN_PX = 0.2  # a corner tracked there and back must come this close
+MAX_RETURN_PX = 0.2  # a corner tracked forth and back must return this close
 MAX_ERROR_PX = 1.0  # of an inlier
-MIN_MATCHES = 20  # inliers below which nothing is said
-MIN_SPREAD = 0.1  # of the shorter side: standard deviation of the inliers' places, at least
+MIN_MATCHES = 20  # with fewer inliers the movement is unknown
+MIN_SPREAD = 0.1  # least standard deviation of the inliers' places, of the shorter side
 
 
 @dataclass(frozen=True)
 class Movement:
-    """How a fixed camera's picture moved between two pictures, as a similarity about its centre.
+    """Similarity about the picture's centre between two pictures of a fixed camera.
 
     Attributes
     ----------
     shift_px : (2,) float
-        Where the content of the picture's centre went: right, down; pixels.
+        Movement of the content at the picture's centre: right, down; pixels.
     zoom : float
-        Scale of the other picture over the reference; 1 for none.
+        Scale of the other picture relative to the reference; 1 for none.
     rotation_deg : float
-        Clockwise turn of the content, as seen on the picture.
+        Clockwise rotation of the content, as seen on the picture.
     n_matches : int
-        Background points that agree. Below `MIN_MATCHES`, or where they do not spread over the picture,
-        the rest is NaN: nothing can be said.
+        Background points that agree. If they are fewer than required, or do not spread over the
+        picture, the rest is NaN.
     """
 
-    shift_px: np.ndarray
+    shift_px: NDArray
     zoom: float
     rotation_deg: float
     n_matches: int
 
     @property
-    def known(self):
+    def known(self) -> bool:
         """Whether enough points agree to tell."""
         return bool(np.isfinite(self.zoom))
 
-    def row(self):
-        """Return it as a row of a table: dict of shift_x_px, shift_y_px, zoom_percent, and so on."""
+    def row(self) -> dict[str, float]:
+        """Return a table row: shift_x_px, shift_y_px, zoom_percent, rotation_deg, n_matches."""
         return {
             "shift_x_px": round(float(self.shift_px[0]), 3) + 0.0,
             "shift_y_px": round(float(self.shift_px[1]), 3) + 0.0,
@@ -55,37 +57,28 @@ class Movement:
         }
 
 
-def unknown(n_matches=0):
-    """Return the movement of which nothing can be said."""
+def unknown(n_matches: int = 0) -> Movement:
+    """Return an undetermined movement."""
     return Movement(np.full(2, np.nan), np.nan, np.nan, n_matches)
 
 
-def movement(reference, other, *, min_matches=MIN_MATCHES):
+def movement(reference: NDArray, other: NDArray, *, min_matches: int = MIN_MATCHES) -> Movement:
     """Measure how a fixed camera's picture moved, from its background.
 
     Parameters
     ----------
     reference, other : (H, W, 3) uint8
-        Two pictures of one size, BGR, such as a camera's static picture and a frame of a take.
+        BGR, such as a camera's static picture and a frame of a take; ValueError if sizes differ.
     min_matches : int
-        Fewest agreeing background points.
-
-    Returns
-    -------
-    movement : Movement
-        From reference to other; NaN where too few points agree.
-
-    Raises
-    ------
-    ValueError
-        If the pictures differ in size.
+        With fewer agreeing background points the result is NaN.
 
     Notes
     -----
-    Corners are tracked there and back (Lucas & Kanade 1981, pyramidal) on pictures of evened contrast, once
-    from where they were and once from where ORB features place them; the start with more agreeing corners
-    counts. People and shadows are the outliers of a similarity fitted by RANSAC. A camera that panned or
-    tilted is described near the centre only: towards the edges its picture moves a little more.
+    Corners are tracked forth and back (Lucas & Kanade 1981, pyramidal) on pictures of normalised
+    contrast, once from their old places and once from where ORB features predict them; the start
+    with more agreeing corners counts. People and shadows are the outliers of a similarity fitted by
+    RANSAC. For a camera that panned or tilted this holds near the centre only: towards the edges
+    its picture moves a little more.
     """
     if reference.shape != other.shape:
         raise ValueError(f"pictures of two sizes: {reference.shape} and {other.shape}")
@@ -108,8 +101,8 @@ def movement(reference, other, *, min_matches=MIN_MATCHES):
     )
 
 
-def _even_contrast(image):
-    """Return grey values with brightness and contrast evened out, so that exposure does not matter."""
+def _even_contrast(image: NDArray) -> NDArray:
+    """Return grey values with normalised brightness and contrast, against exposure changes."""
     grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.float32)
     sigma = CONTRAST * grey.shape[1]
     high = grey - cv2.GaussianBlur(grey, (0, 0), sigma)
@@ -118,9 +111,9 @@ def _even_contrast(image):
     return np.clip(scaled, 0, 255).round().astype(np.uint8)
 
 
-def _roughly(before, after):
-    """Return the similarity that ORB features suggest, in a list; an empty one without."""
-    orb = cv2.ORB_create(N_FEATURES)
+def _roughly(before: NDArray, after: NDArray) -> list[NDArray]:
+    """Return a list of the similarity that ORB features suggest; empty if there is none."""
+    orb = cv2.ORB.create(N_FEATURES)
     (points, first), (others, second) = (
         orb.detectAndCompute(image, None) for image in (before, after)
     )
@@ -133,24 +126,32 @@ def _roughly(before, after):
     return [matrix] if len(inliers) else []
 
 
-def _track(before, after, corners, start):
-    """Return (N, 2) corners and where they went, those that are found again on the way back."""
+def _track(before, after, corners, start) -> tuple[NDArray, NDArray]:
+    """Return (N, 2) corners and their new places, those that are found again on the way back."""
     guess = cv2.transform(corners, start).astype(np.float32)
-    options = {
-        "winSize": (WINDOW_PX, WINDOW_PX),
-        "maxLevel": 3,
-        "flags": cv2.OPTFLOW_USE_INITIAL_FLOW,
-        "criteria": (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 0.003),
-    }
-    found, there, _ = cv2.calcOpticalFlowPyrLK(before, after, corners, guess, **options)
-    back, again, _ = cv2.calcOpticalFlowPyrLK(after, before, found, corners.copy(), **options)
+    found, there = _flow(before, after, corners, guess)
+    back, again = _flow(after, before, found, corners.copy())
     returned = np.linalg.norm(back - corners, axis=2)[:, 0] < MAX_RETURN_PX
     good = (there[:, 0] > 0) & (again[:, 0] > 0) & returned
     return corners[good, 0], found[good, 0]
 
 
-def _fit(x_before, x_after, max_error_px=MAX_ERROR_PX):
-    """Fit a similarity by RANSAC; return it (2, 3) and the inliers (N, 2) before, none where it fails."""
+def _flow(before, after, corners, guess) -> tuple[NDArray, NDArray]:
+    found, status, _ = cv2.calcOpticalFlowPyrLK(
+        before,
+        after,
+        corners,
+        guess,
+        winSize=(WINDOW_PX, WINDOW_PX),
+        maxLevel=3,
+        flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+        criteria=(cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 0.003),
+    )
+    return found, status
+
+
+def _fit(x_before, x_after, max_error_px=MAX_ERROR_PX) -> tuple[NDArray, NDArray]:
+    """Fit a similarity (2, 3) by RANSAC; return it and the inliers (N, 2) before, if any."""
     nothing = np.eye(2, 3), np.empty((0, 2))
     if len(x_before) < 3:
         return nothing
@@ -161,31 +162,28 @@ def _fit(x_before, x_after, max_error_px=MAX_ERROR_PX):
     return nothing if matrix is None else (matrix, x_before[mask[:, 0] > 0])
 
 
-MOST_OFF_PX = 3.0  # of an inlier, before the model is bent to the lens
-SCALE_PX = (0.03, 1.0)  # least and most noise of a tracked corner that is believed, per axis
-TUKEY = 4.685  # standard deviations beyond which a corner counts nothing
-N_STEPS = 8
-LEAST_SHARE = 0.25  # of the corners in the picture: fewer that agree may be a person
-# How the lens bends the movement, k and p of `moved`: mean and standard deviation over usual lenses, 45 to
-# 80 degrees across.
+MOST_OFF_PX = 3.0  # ASSUME: of an inlier, before the lens is modelled
+SCALE_PX = (0.03, 1.0)  # ASSUME: limits of a tracked corner's noise, per axis
+TUKEY = 4.685  # standard deviations at which a corner's weight is 0: 95 % efficiency
+N_STEPS = 8  # of reweighting
+LEAST_SHARE = 0.25  # ASSUME: of the corners in the picture: fewer that agree may be a person
+# Effect of the lens on the movement, k and p of `moved`: mean and standard deviation over usual
+# lenses, 45 to 80 degrees across.
 LENS_MEAN, LENS_SIGMA = np.array([0.0, 0.35]), np.array([0.12, 0.25])
 
 
-def moved(places, model):
-    """Return how far a turn of the camera moves each place, all with half of the longer side as unit.
+def moved(places: NDArray, model: NDArray) -> NDArray:
+    """Return how far a rotation of the camera moves each place (N, 2), in half longer sides.
 
     Parameters
     ----------
     places : (N, 2) float
         From the picture's centre.
     model : (6,) float
-        Shift of the centre x, y; linear change a - 1 and b of the similarity [[a, -b], [b, a]]; and of the
-        lens, k and p: the centre's shift t is (1 + k r^2) t + p x (x . t) at x. A pinhole has k = 0 and
-        p = (that half / focal length)^2, distortion k1 adds k1 p0 and 2 k1 p0 of that p0, to third order.
-
-    Returns
-    -------
-    by : (N, 2) float
+        Shift of the centre x, y; linear change a - 1 and b of the similarity [[a, -b], [b, a]];
+        and, for the lens, k and p: the centre's shift t is (1 + k r^2) t + p x (x . t) at x. A
+        pinhole has k = 0 and p = (that half / focal length)^2 = p0; distortion k1 adds k1 p0 to k
+        and 2 k1 p0 to p, to third order.
     """
     shift, (scale, turn, k, p) = model[:2], model[2:]
     x, y = places.T
@@ -199,7 +197,7 @@ def moved(places, model):
     )
 
 
-def _jacobian(places, model):
+def _jacobian(places: NDArray, model: NDArray) -> NDArray:
     """Return the derivative of `moved` by the model, (N, 2, 6)."""
     shift, (k, p) = model[:2], model[4:]
     x, y = places.T
@@ -215,57 +213,57 @@ def _jacobian(places, model):
 
 @dataclass(frozen=True)
 class Fit:
-    """A movement that tracked points agree about.
+    """A movement that tracked points agree on.
 
     Attributes
     ----------
     model : (6,) float
-        As `moved` takes it; NaN where too few agree.
+        For `moved`; NaN where too few agree.
     sigma : float
-        Standard deviation of the shift per axis, half of the longer side as unit; NaN as `model`.
+        Standard deviation of the shift per axis, unit: half of the longer side; NaN as `model`.
     n_matches : int
         Points that agree.
     """
 
-    model: np.ndarray
+    model: NDArray
     sigma: float
     n_matches: int
 
     @property
-    def known(self):
+    def known(self) -> bool:
         """Whether enough points agree."""
         return bool(np.isfinite(self.sigma))
 
 
-def unknown_turn(n_matches=0):
-    """Return the fit of which nothing can be said."""
+def unknown_turn(n_matches: int = 0) -> Fit:
+    """Return an undetermined fit."""
     return Fit(np.full(6, np.nan), np.nan, n_matches)
 
 
-def fit_turn(places, moved_px, shape, n_corners):
-    """Find the movement that tracked points agree about.
+def fit_turn(places: NDArray, moved_px: NDArray, shape: tuple[int, ...], n_corners: int) -> Fit:
+    """Find the movement that tracked points agree on.
 
     Parameters
     ----------
     places : (N, 2) float
         From the picture's centre, half of its longer side as unit.
     moved_px : (N, 2) float
-        By how much each was found to have moved, px.
+        Measured movement of each, px.
     shape : (int, int)
         Height and width of the picture, px.
     n_corners : int
-        How many were looked for.
+        Number of corners that were searched.
 
     Returns
     -------
     found : Fit
-        Unknown where fewer than `MIN_MATCHES` points or a quarter of those looked for agree, or those do not
-        spread over the picture.
+        Unknown if fewer than `MIN_MATCHES` points or a quarter of those searched agree, or if those
+        do not spread over the picture.
 
     Notes
     -----
-    Random samples of a similarity (RANSAC, Fischler & Bolles 1981) start it, weighted least squares with
-    Tukey's weights finish it.
+    A similarity by RANSAC (Fischler & Bolles 1981) is the start of weighted least squares with
+    Tukey's weights.
     """
     if len(places) < MIN_MATCHES:
         return unknown_turn()
@@ -292,8 +290,8 @@ def fit_turn(places, moved_px, shape, n_corners):
     return Fit(model, float(sigma), n_matches)
 
 
-def _refine(places, tracked, model, inliers, scale_limits):
-    """Finish a fit by iterated weights; return model, sigma of the shift per axis, inliers (N,)."""
+def _refine(places, tracked, model, inliers, scale_limits) -> tuple[NDArray, float, NDArray]:
+    """Refine a fit by iterated weights; return model, sigma of the shift per axis, inliers (N,)."""
     scale = scale_limits[1]
     weights = inliers.astype(float)
     for _ in range(N_STEPS):

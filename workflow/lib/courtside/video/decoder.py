@@ -1,19 +1,23 @@
-"""Decode video so that no loss passes in silence, and stand its pictures upright.
+"""Decode video, report every lost or damaged frame, and turn pictures upright.
 
-Every decoded frame is held against the list of packets. What no decoder can see is altered bytes that still
-decode: they are rare in H.264 and MPEG-4 and common in MJPEG, VP8 and VP9, which carry no redundancy.
+Every decoded frame is compared with the list of packets. No decoder can detect altered bytes that
+still decode: they are rare in H.264 and MPEG-4 and common in MJPEG, VP8 and VP9, which carry no
+redundancy.
 """
 
 import operator
 from collections import deque
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import av
 import numpy as np
 from av.error import FFmpegError
 from av.video.reformatter import Interpolation, VideoReformatter
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError, reading
-from courtside.video.packets import damage, opened, raise_logged
+from courtside.video.packets import Listing, damage, opened, raise_logged
 
 STRICT = {"err_detect": "crccheck+bitstream+buffer+explode"}
 ONE = 65536  # display matrices are in 16.16 fixed point
@@ -22,18 +26,16 @@ ONE = 65536  # display matrices are in 16.16 fixed point
 class _DamageError(Exception):
     """The frame with this index cannot be trusted."""
 
-    def __init__(self, index, why):
+    def __init__(self, index: int, why: str) -> None:
         super().__init__(why)
         self.index = index
 
 
-def decode_checked(listing, first, stop):
-    """Decode the frames `first` to `stop - 1` on one thread, each held against the list of packets.
+def decode_checked(listing: Listing, first: int, stop: int) -> Iterator[tuple[int, av.VideoFrame]]:
+    """Decode the frames `first` to `stop - 1` on one thread, each checked against the packets.
 
     Parameters
     ----------
-    listing : Listing
-        From `list_packets`.
     first, stop : int
         Indices into `listing.pts`, `first < stop`.
 
@@ -47,12 +49,12 @@ def decode_checked(listing, first, stop):
     Raises
     ------
     InputError
-        If a frame is missing or damaged. Those before it have then been yielded.
+        At the first missing or damaged frame, after those before it.
     """
     keys = listing.key_pts[listing.key_pts <= listing.pts[first]].tolist()
     key = int(np.searchsorted(listing.pts, keys[-1])) if keys else 0
-    # A seek may land too late, and a decoder may need a start before the nearest key frame: then two
-    # key frames earlier, at last from the start of the file.
+    # A seek may land too late, and a decoder may need to start before the nearest key frame. Then
+    # try two key frames earlier, and at last the start of the file.
     seeks = [None] if listing.by_order else [*keys[:0:-2][:2], None]
     for seek in seeks:
         done = first
@@ -67,15 +69,15 @@ def decode_checked(listing, first, stop):
                 raise InputError(damage(listing, error.index, str(error))) from error
 
 
-def _in_order(listing, key, stop, seek):
-    """Yield index and frame from the key frame on; raise at the first that is not the one expected.
+def _in_order(listing, key, stop, seek) -> Iterator[tuple[int, av.VideoFrame]]:
+    """Yield index and frame from the key frame on; raise at the first unexpected one.
 
-    A frame waits until all that were decoded before it have come out undamaged: it may lean on one
-    that is shown later.
+    A frame waits until all that were decoded before it have come out undamaged, because it may
+    depend on one that is shown later.
     """
     expected = 0 if listing.by_order else key
     last = listing.leans_on[expected:stop].max()
-    held = deque()
+    held: deque[tuple[int, av.VideoFrame]] = deque()
     why = "frame {} is missing"
     try:
         for frame in _decode(listing, int(listing.pts[expected]), seek):
@@ -95,8 +97,8 @@ def _in_order(listing, key, stop, seek):
     raise _DamageError(held[0][0] if held else expected, why.format(expected))
 
 
-def _decode(listing, key_pts, seek):
-    """Yield what the decoder makes of the packets from the key frame on; faults before do not matter."""
+def _decode(listing: Listing, key_pts: int, seek: int | None) -> Iterator[av.VideoFrame]:
+    """Yield the decoded frames from the key frame on; faults before it are ignored."""
     with opened(listing.path) as (container, stream):
         context = stream.codec_context
         context.options = STRICT
@@ -120,13 +122,13 @@ def _decode(listing, key_pts, seek):
             yield from (f for f in decoded if f.pts is None or f.pts >= key_pts)
 
 
-def pictures(listing, wanted, crop_px):
+def pictures(
+    listing: Listing, wanted: Sequence[int], crop_px: tuple[int, int, int, int] | None
+) -> Iterator[tuple[int, NDArray]]:
     """Decode wanted frames into upright pictures; those between are decoded but not converted.
 
     Parameters
     ----------
-    listing : Listing
-        From `list_packets`.
     wanted : sequence of int
         Indices into `listing.pts`, increasing, at least one.
     crop_px : (4,) int or None
@@ -146,27 +148,27 @@ def pictures(listing, wanted, crop_px):
     """
     reformatter, matrix = VideoReformatter(), None
     shape, rest = None, iter(wanted)
-    target = next(rest)
+    target: int | None = next(rest)
     for index, frame in decode_checked(listing, wanted[0], wanted[-1] + 1):
         if index != target:
             continue
         target = next(rest, None)
-        if (
-            matrix is None
-        ):  # of the whole stream; reading it keeps a frame until garbage is collected
+        # It holds for the whole stream; reading it keeps a frame until garbage is collected.
+        if matrix is None:
             matrix = display_matrix(listing.path, frame)
         with reading(listing.path, "pictures that fit the memory", kinds=(MemoryError,)):
             image = _picture(frame, reformatter, matrix)
-        if image.shape != (shape or image.shape):
+        if shape is not None and image.shape != shape:
             raise InputError(
                 f"{listing.path}: expected pictures of one size, {shape[1]}x{shape[0]}, found "
-                f"{image.shape[1]}x{image.shape[0]} at frame {index}: export the video again at one size"
+                f"{image.shape[1]}x{image.shape[0]} at frame {index}: "
+                "export the video again at one size"
             )
         shape = image.shape
         yield index, image if crop_px is None else _cropped(listing.path, image, crop_px)
 
 
-def _picture(frame, reformatter, matrix):
+def _picture(frame: av.VideoFrame, reformatter: VideoReformatter, matrix: NDArray) -> NDArray:
     """Convert a stored frame into an upright BGR picture."""
     # Bicubic, as OpenCV converts: the pictures are the same to the last bit.
     stored = reformatter.reformat(
@@ -177,15 +179,8 @@ def _picture(frame, reformatter, matrix):
     return np.ascontiguousarray(turned[::y_sign, ::x_sign])
 
 
-def display_matrix(path, frame):
-    """Read how a stored frame is turned and mirrored for display.
-
-    Parameters
-    ----------
-    path : Path
-        The file, for the message.
-    frame : av.VideoFrame
-        As stored.
+def display_matrix(path: Path, frame: av.VideoFrame) -> NDArray:
+    """Read how a stored frame is turned and mirrored for display (ISO/IEC 14496-12, section 6.2.2).
 
     Returns
     -------
@@ -195,16 +190,13 @@ def display_matrix(path, frame):
     Raises
     ------
     InputError
-        If it is not a turn by quarters.
-
-    Notes
-    -----
-    ISO/IEC 14496-12, section 6.2.2.
+        If it is not a rotation by quarters; the message names `path`.
     """
     data = frame.side_data.get("DISPLAYMATRIX")
     if data is None:
         return np.eye(2, dtype=int)
-    matrix = np.frombuffer(data, np.int32).reshape(3, 3)[:2, :2] / ONE
+    buffer = memoryview(data)  # type: ignore[arg-type]  # PyAV's stubs declare an object
+    matrix = np.frombuffer(buffer, np.int32).reshape(3, 3)[:2, :2] / ONE
     rounded = np.rint(matrix).astype(int)
     quarter = np.array_equal(np.abs(rounded).sum(0), [1, 1]) and abs(np.linalg.det(rounded)) == 1
     if not quarter or np.abs(matrix - rounded).max() > 0.01:
@@ -215,13 +207,13 @@ def display_matrix(path, frame):
     return rounded
 
 
-def _cropped(path, image, crop_px):
+def _cropped(path: Path, image: NDArray, crop_px: Sequence[int]) -> NDArray:
     """Copy the part (left, top, width, height) of a picture."""
     left, top, width, height = crop = tuple(operator.index(value) for value in crop_px)
     right, bottom = left + width, top + height
     if not (0 <= left < right <= image.shape[1] and 0 <= top < bottom <= image.shape[0]):
         raise InputError(
-            f"{path}: expected a crop (left, top, width, height) within {image.shape[1]}x{image.shape[0]}, "
-            f"found {crop}: correct it"
+            f"{path}: expected a crop (left, top, width, height) within "
+            f"{image.shape[1]}x{image.shape[0]}, found {crop}: correct it"
         )
     return image[top:bottom, left:right].copy()

@@ -1,36 +1,37 @@
-"""Pictures in files, whatever the file holds: OpenCV says what is wrong in three ways, here it is one."""
+"""Pictures in files: OpenCV reports faults in three ways, here they all become an InputError."""
 
+import os
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.study.errors import DAMAGED, InputError, reading
 
 AGAIN = "copy it again from the camera"
 
 
-def read(path, flags=cv2.IMREAD_COLOR, *, what="a picture", advice=AGAIN):
-    """Read a picture.
+def read(
+    path: str | os.PathLike,
+    flags: int = cv2.IMREAD_COLOR,
+    *,
+    what: str = "a picture",
+    advice: str = AGAIN,
+) -> NDArray:
+    """Read a picture (H, W) or (H, W, 3), upright by its EXIF orientation unless `flags` differ.
 
     Parameters
     ----------
-    path : str or Path
     flags : int
         OpenCV's, such as `cv2.IMREAD_GRAYSCALE`.
     what, advice : str
-        What was expected and what to do, for messages.
-
-    Returns
-    -------
-    image : (H, W) or (H, W, 3) array
-        Upright as its EXIF orientation says unless the flags say otherwise.
+        What is expected and what to do, for messages.
 
     Raises
     ------
     InputError
-        If the file is missing, empty, no picture, damaged so that nothing can be made of it, or too large for
-        the memory.
+        If the file is missing, empty, no picture, too damaged, or too large for the memory.
     """
     path = Path(path)
     return decode(
@@ -38,17 +39,15 @@ def read(path, flags=cv2.IMREAD_COLOR, *, what="a picture", advice=AGAIN):
     )
 
 
-def decode(path, content, flags=cv2.IMREAD_COLOR, *, what="a picture", advice=AGAIN):
-    """Decode the content of a file that is read already; otherwise as `read`.
-
-    Parameters
-    ----------
-    path : str or Path
-        For messages.
-    content : bytes
-    flags, what, advice
-        As for `read`.
-    """
+def decode(
+    path: str | os.PathLike,
+    content: bytes,
+    flags: int = cv2.IMREAD_COLOR,
+    *,
+    what: str = "a picture",
+    advice: str = AGAIN,
+) -> NDArray:
+    """Decode the content of a file, as `read` does; `path` is for messages."""
     with reading(path, what, advice, kinds=(*DAMAGED, cv2.error)):
         image = cv2.imdecode(np.frombuffer(content, np.uint8), flags) if content else None
     if image is None:

@@ -1,26 +1,32 @@
-"""List the packets of a video file: when every frame is shown, and whether the file ends early.
+"""List the packets of a video file: when each frame is shown, and whether the file ends early.
 
-No pixel is decoded: it costs about a hundredth of decoding. Some cuts leave no trace: an MPEG stream
-(.ts, .mpg) or a live recording without a declared duration, cut between two frames.
+No pixel is decoded, which takes about a hundredth of the time. Some cuts leave no trace: an MPEG
+stream (.ts, .mpg) or a live recording without a declared duration, cut between two frames.
 """
 
 import contextlib
+import os
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
+from typing import cast
 
 import av
 import numpy as np
 from av.error import FFmpegError
 from av.stream import Disposition
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 
-# ffmpeg's Matroska reader, FFV1 decoder and packet reader ("") report damage in the log only.
+# ffmpeg's Matroska reader, FFV1 decoder and packet reader ("") report damage only in the log.
 ONLY_LOG = {"matroska,webm", "ffv1", ""}
-# Codecs whose frames AVI cannot put into the order of presentation: its packets carry no times.
+# Codecs whose presentation order AVI cannot store: its packets carry no times.
 UNORDERED = {"h264", "hevc"}
 MEND = "copy the file again from its camera or export it again"
+
+Packet = tuple[int | None, int | None, int | None, bool]  # pts, dts, duration, is key frame
 
 
 @dataclass(frozen=True)
@@ -30,11 +36,11 @@ class Listing:
     Attributes
     ----------
     path : Path
-        The file.
     pts : (T,) int
         When each frame is shown, increasing.
     leans_on : (T,) int
-        For each frame, the last shown of those decoded up to it: its picture may depend on that one.
+        For each frame, the last shown of those decoded up to it: its picture may depend on that
+        one.
     key_pts : (K,) int
         Those where decoding can begin.
     tick_s : Fraction
@@ -44,17 +50,17 @@ class Listing:
     n_declared : int or None
         Frames as the container declares them.
     problem : str
-        Why the file is shorter than it should be; empty where it is not.
+        Why the file is shorter than it should be; empty if it is not.
     last_dts : int
         Decoding time of the last whole packet: no frame up to this time is missing.
     by_order : bool
-        The container keeps no order of presentation: only counting tells which frame is decoded.
+        The container stores no presentation order: frames are identified by counting only.
     """
 
     path: Path
-    pts: np.ndarray
-    leans_on: np.ndarray
-    key_pts: np.ndarray
+    pts: NDArray
+    leans_on: NDArray
+    key_pts: NDArray
     tick_s: Fraction
     end: int
     n_declared: int | None
@@ -63,34 +69,27 @@ class Listing:
     by_order: bool
 
     @property
-    def times_s(self):
+    def times_s(self) -> NDArray:
         """Seconds since the first frame, (T,)."""
         return self.seconds(self.pts)
 
     @property
-    def duration_s(self):
+    def duration_s(self) -> float:
         """Seconds from the start of the first frame to the end of the last."""
         return float(self.seconds(self.end))
 
-    def seconds(self, ticks):
-        """Turn ticks into seconds since the first frame, rounding once."""
+    def seconds(self, ticks: int | NDArray) -> NDArray:
+        """Convert ticks into seconds since the first frame, with one rounding."""
         return (ticks - self.pts[0]) * self.tick_s.numerator / self.tick_s.denominator
 
 
-def list_packets(path, *, stop_s=None):
-    """List the frames of a video file by its packets, without decoding.
+def list_packets(path: str | os.PathLike, *, stop_s: float | None = None) -> Listing:
+    """List the whole frames of a video file by its packets, without decoding.
 
     Parameters
     ----------
-    path : str or Path
-        The file.
     stop_s : float or None
-        Where the wanted part ends, in seconds; a file cut short after that is accepted.
-
-    Returns
-    -------
-    listing : Listing
-        Only frames that are whole.
+        End of the wanted part, in seconds; a file cut short after that is accepted.
 
     Raises
     ------
@@ -109,46 +108,40 @@ def list_packets(path, *, stop_s=None):
     return replace(listing, pts=whole, leans_on=leans_on, end=end)
 
 
-def raise_logged(n_before):
-    """Raise what ffmpeg has only logged since it had logged `n_before` errors.
+def raise_logged(n_before: int) -> None:
+    """Raise an error that ffmpeg has only logged since its error count was `n_before`.
 
-    Parameters
-    ----------
-    n_before : int
-        Earlier count of `av.logging.get_last_error`.
-
-    Raises
-    ------
-    av.error.InvalidDataError
-        If the last of the errors since then is one that ffmpeg tells in no other way.
+    The count is that of `av.logging.get_last_error`. Raise av.error.InvalidDataError if the last
+    error since then is one that ffmpeg reports in no other way.
     """
     n_logged, last = av.logging.get_last_error()
-    if n_logged > n_before and last[1] in ONLY_LOG:
+    if last is not None and n_logged > n_before and last[1] in ONLY_LOG:
         raise av.error.InvalidDataError(0, last[2].strip())
 
 
-def _read_listing(path):
+def _read_listing(path: Path) -> Listing:
     """Read all packets and judge them."""
     with opened(path) as (container, stream):
         packets, n_read, problem = _whole_packets(container, stream)
-        if any(packet[0] is None for packet in packets):
+        stamped = [(p, d, n, key) for p, d, n, key in packets if p is not None]
+        if len(stamped) < len(packets):
             raise InputError(
                 f"{path}: expected a time stamp on every frame, found none: "
                 "put the video into a container that has them, such as MP4 or Matroska"
             )
         if not packets:
             raise InputError(f"{path}: expected frames, found {problem or 'none'}: {MEND}")
-        stored = np.array([packet[0] for packet in packets])
+        stored = np.array([packet[0] for packet in stamped])
         order = np.argsort(stored, kind="stable")
         pts = stored[order]
-        last = max(packets, key=lambda packet: packet[0])
+        last = max(stamped, key=lambda packet: packet[0])
         end = last[0] + (last[2] or int(np.median(np.diff(pts, prepend=pts[0] - 1))))
         listing = Listing(
             path=path,
             pts=pts,
             leans_on=np.maximum.accumulate(np.argsort(order))[order],
-            key_pts=np.array(sorted(packet[0] for packet in packets if packet[3]), dtype=int),
-            tick_s=stream.time_base,
+            key_pts=np.array(sorted(packet[0] for packet in stamped if packet[3]), dtype=int),
+            tick_s=cast(Fraction, stream.time_base),  # None only where nothing was read
             end=end,
             n_declared=stream.frames or None,
             problem=problem or _shortfall(container, stream, n_read, pts, end),
@@ -164,29 +157,29 @@ def _read_listing(path):
     return listing
 
 
-def _whole_packets(container, stream):
-    """Return (pts, dts, duration, is key) of the whole packets, how many were read, what was lost."""
+def _whole_packets(container, stream) -> tuple[list[Packet], int, str]:
+    """Return the whole packets, how many were read, and what was lost."""
     packets, n_read, corrupt = [], 0, False
     n_logged = av.logging.get_last_error()[0]
     try:
         for packet in container.demux(stream):
             raise_logged(n_logged)
             if packet.size == 0 and packet.pts is None:
-                break  # the demuxer's sign for the end
+                break  # the demuxer's end marker
             n_read += 1
             corrupt = packet.is_corrupt
             if packet.size and not packet.is_discard:
                 packets.append((packet.pts, packet.dts, packet.duration, packet.is_keyframe))
     except FFmpegError as error:
         return packets, n_read, f"the file breaks off ({error.strerror})"
-    # A damaged packet amid others is left to the decoder; at the end it is where the file was cut.
+    # The decoder judges a damaged packet amid others; at the end it is where the file was cut.
     if corrupt:
         return packets[:-1], n_read, f"packet {n_read - 1} is cut off and ends the file"
     return packets, n_read, ""
 
 
-def _shortfall(container, stream, n_read, pts, end):
-    """Say how the packets fall short of what the container declares; empty where they do not."""
+def _shortfall(container, stream, n_read, pts, end) -> str:
+    """Return how the packets fall short of what the container declares, or an empty text."""
     kind = container.format.name
     n_listed = len(stream.index_entries) if "mov" in kind else 0
     if n_read < n_listed:
@@ -200,7 +193,7 @@ def _shortfall(container, stream, n_read, pts, end):
     if kind == "avi":
         return ""
     declared_s, end_s = _declared_end_s(container, stream), float(end * stream.time_base)
-    # The last frame may last as long as any other, and sound a little longer than the pictures.
+    # The last frame may last as long as any other, and sound may outlast the pictures a little.
     spare_s = 1.5 * float(np.diff(pts).max(initial=1) * stream.time_base)
     if len(container.streams) > 1:
         spare_s += 0.5
@@ -212,8 +205,8 @@ def _shortfall(container, stream, n_read, pts, end):
     return ""
 
 
-def _declared_end_s(container, stream):
-    """Return when the pictures should end by the container's own word, 0 where it is silent."""
+def _declared_end_s(container, stream) -> float:
+    """Return when the pictures should end as the container declares it, 0 if it does not."""
     if stream.duration is not None:
         return float(stream.duration * stream.time_base)
     with contextlib.suppress(KeyError, ValueError):
@@ -223,41 +216,20 @@ def _declared_end_s(container, stream):
 
 
 @contextlib.contextmanager
-def opened(path):
-    """Open a video file and choose its stream of pictures.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Yields
-    ------
-    container : av.container.InputContainer
-        Open within the block.
-    stream : av.VideoStream
-        The main one, with a decoder.
+def opened(path: Path) -> Iterator[tuple[av.container.InputContainer, av.VideoStream]]:
+    """Open a video file, for the block, and choose its main stream of pictures.
 
     Raises
     ------
     InputError
-        If the file is missing, empty or no video.
+        If the file is missing, empty, no video, or of a codec without a decoder.
     """
     if not path.is_file():
         raise InputError(f"{path}: expected a video file, found none: correct the path")
     if not path.stat().st_size:
         raise InputError(f"{path}: expected a video, found an empty file: {MEND}")
     av.logging.set_level(av.logging.PANIC)  # ffmpeg's errors are counted, not printed
-    try:
-        # "file:" because ffmpeg takes what stands before a colon for a protocol.
-        container = av.open(f"file:{path}", metadata_errors="replace")
-    except FFmpegError as error:
-        reason = error.log[2].strip() if error.log else error.strerror
-        raise InputError(
-            f"{path}: expected a video, found a file without a readable header ({reason}): "
-            f"it is no video or was cut short; {MEND}"
-        ) from error
-    with container:
+    with _container(path) as container:
         stream = container.streams.best("video")
         kind = container.format.name
         lack = ""
@@ -269,26 +241,25 @@ def opened(path):
             lack = "a codec that this ffmpeg does not decode: export it as H.264"
         if lack:
             raise InputError(f"{path}: expected a video, found {lack}")
-        yield container, stream
+        yield container, cast(av.VideoStream, stream)
 
 
-def damage(listing, index, why):
-    """Word what is wrong with a file from one frame on, and what to do.
+def _container(path: Path) -> av.container.InputContainer:
+    try:
+        # "file:" because ffmpeg takes the part before a colon for a protocol.
+        return av.open(f"file:{path}", metadata_errors="replace")
+    except FFmpegError as error:
+        reason = error.strerror
+        if error.log:  # level, name, message
+            reason = error.log[2].strip()  # type: ignore[misc]  # PyAV's stub omits the third
+        raise InputError(
+            f"{path}: expected a video, found a file without a readable header ({reason}): "
+            f"it is no video or was cut short; {MEND}"
+        ) from error
 
-    Parameters
-    ----------
-    listing : Listing
-        Of the file.
-    index : int
-        The first frame that is not good.
-    why : str
-        What was expected and found.
 
-    Returns
-    -------
-    message : str
-        One line.
-    """
+def damage(listing: Listing, index: int, why: str) -> str:
+    """Return one line on what is wrong with a file from frame `index` on, and what to do."""
     if index == 0:
         return f"{listing.path}: {why}; no frame is known to be good: {MEND}"
     time_s = listing.times_s[index - 1]

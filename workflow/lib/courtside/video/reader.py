@@ -1,44 +1,46 @@
 """Read video files: exact frame times and upright pictures.
 
-PyAV decodes rather than OpenCV: the pictures are equal bit for bit and the speed is alike
-(benchmarks/decode_video.py), and it alone tells the time stamp of every packet, mirrored display
-matrices, and that a file is damaged or cut short.
+PyAV decodes rather than OpenCV: pictures and speed are the same (benchmarks/decode_video.py), and
+only PyAV gives the time stamp of every packet and mirrored display matrices, and detects damaged or
+cut files.
 """
 
+import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
 from courtside.video.decoder import decode_checked, display_matrix, pictures
-from courtside.video.packets import list_packets
+from courtside.video.packets import Listing, list_packets
 
 
 @dataclass(frozen=True)
 class VideoInfo:
-    """What a video file is.
+    """Properties of a video file.
 
     Attributes
     ----------
     path : Path
-        The file.
     size : (int, int)
         Width and height of the upright picture, in pixels.
     n_frames : int or None
-        Frames as the container declares them; None where it does not.
+        Frames as the container declares them, if it does.
     rate_hz : float
-        Frames per second, averaged over the file; NaN for a single frame. Off by up to the container's
-        tick over its length: Matroska keeps milliseconds.
+        Frames per second, averaged over the file; NaN for a single frame. Its error is at most the
+        container's tick over its length: Matroska keeps milliseconds.
     rotation_deg : int
-        How far the stored picture is turned clockwise to stand upright: 0, 90, 180 or 270.
+        Clockwise rotation that makes the stored picture upright: 0, 90, 180 or 270.
     duration_s : float
         From the start of the first frame to the end of the last.
     variable_rate : bool
-        Whether some interval between two frames differs from the average one by more than 1 % and one
-        tick of the container's clock.
+        Whether some frame interval differs from the average by more than 1 % and one tick of the
+        container's clock.
     """
 
     path: Path
@@ -50,25 +52,11 @@ class VideoInfo:
     variable_rate: bool
 
 
-def probe(path, *, stop_s=None):
+def probe(path: str | os.PathLike, *, stop_s: float | None = None) -> VideoInfo:
     """Describe a video file, after checking that no packet of it is missing.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    stop_s : float or None
-        Where a take is trimmed to end; a file cut short after that is accepted.
-
-    Returns
-    -------
-    info : VideoInfo
-        Size, rate, rotation, duration.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, no video, or ends early.
+    A file cut short after `stop_s`, where a take is trimmed to end, is accepted. Raise InputError
+    if the file is missing, no video, or ends early.
     """
     listing = list_packets(path, stop_s=stop_s)
     _, frame = next(decode_checked(listing, 0, 1))
@@ -86,37 +74,28 @@ def probe(path, *, stop_s=None):
     )
 
 
-def frame_times(path, *, stop_s=None):
-    """Return the time of every frame, without decoding one.
+def frame_times(path: str | os.PathLike, *, stop_s: float | None = None) -> NDArray:
+    """Return the time (T,) of every frame before `stop_s`, without decoding one.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    stop_s : float or None
-        Only frames before this; a file cut short after it is accepted.
-
-    Returns
-    -------
-    time_s : (T,) float
-        Seconds since the first frame, strictly increasing, from the container's time stamps.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, no video, ends early, or has no usable time stamps.
+    Times are seconds since the first frame, strictly increasing, from the container's time stamps.
+    A file cut short after `stop_s` is accepted. Raise InputError if the file is missing, no video,
+    ends early, or has no usable time stamps.
     """
     times_s = list_packets(path, stop_s=stop_s).times_s
     return times_s if stop_s is None else times_s[times_s < stop_s]
 
 
-def frames(path, *, start_s=None, stop_s=None, crop_px=None):
+def frames(
+    path: str | os.PathLike,
+    *,
+    start_s: float | None = None,
+    stop_s: float | None = None,
+    crop_px: tuple[int, int, int, int] | None = None,
+) -> Iterator[tuple[float, NDArray]]:
     """Decode a video one frame at a time.
 
     Parameters
     ----------
-    path : str or Path
-        The file.
     start_s, stop_s : float or None
         Only frames with `start_s <= time_s < stop_s`; None for the start or end of the file.
     crop_px : (4,) int or None
@@ -141,33 +120,30 @@ def frames(path, *, start_s=None, stop_s=None, crop_px=None):
         yield float(times_s[index]), image
 
 
-def extract_frames(path, every_s, *, start_s=None, stop_s=None, crop_px=None):
+def extract_frames(
+    path: str | os.PathLike,
+    every_s: float,
+    *,
+    start_s: float | None = None,
+    stop_s: float | None = None,
+    crop_px: tuple[int, int, int, int] | None = None,
+) -> Iterator[tuple[int, float, NDArray]]:
     """Decode the frames nearest to a regular grid of times.
 
     Parameters
     ----------
-    path : str or Path
-        The file.
     every_s : float
         Spacing of the grid, which begins at `start_s` (or 0) and ends with the last frame.
+        ValueError if it is not positive.
     start_s, stop_s, crop_px
-        As for `frames`.
+        As for `frames`, which also tells the errors.
 
     Yields
     ------
     frame_idx : int
         Index of the frame in the file. A frame nearest to several grid times comes once; of two
         equally near, the earlier is taken.
-    time_s : float
-        Seconds since the first frame of the file.
-    image : (H, W, 3) uint8
-        BGR, upright.
-
-    Raises
-    ------
-    ValueError
-        If `every_s` is not positive.
-    InputError
+    time_s, image
         As for `frames`.
     """
     if not every_s > 0:
@@ -182,47 +158,25 @@ def extract_frames(path, every_s, *, start_s=None, stop_s=None, crop_px=None):
         yield index, float(times_s[index]), image
 
 
-def read_frame(path, time_s):
-    """Decode the frame nearest to a time.
+def read_frame(path: str | os.PathLike, time_s: float) -> tuple[float, NDArray]:
+    """Decode the frame nearest to a time in seconds since the first frame.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    time_s : float
-        Seconds since the first frame of the file.
-
-    Returns
-    -------
-    time_s : float
-        The frame's own time.
-    image : (H, W, 3) uint8
-        BGR, upright.
-
-    Raises
-    ------
-    InputError
-        If the time lies outside the video, or as for `frames`.
+    Return the frame's own time and its picture (H, W, 3) uint8, BGR, upright. Raise InputError if
+    the time lies outside the video, or as for `frames`.
     """
     listing = list_packets(path, stop_s=time_s)
     if not 0 <= time_s <= listing.duration_s:
         raise InputError(
-            f"{path}: expected a time from 0 to {listing.duration_s:.3f} s, found {time_s}: correct it"
+            f"{path}: expected a time from 0 to {listing.duration_s:.3f} s, "
+            f"found {time_s}: correct it"
         )
     index = int(_nearest(listing.times_s, time_s))
     _, image = next(pictures(listing, [index], None))
     return float(listing.times_s[index]), image
 
 
-def write_png(path, image):
-    """Write a picture so that it appears under its name only when whole.
-
-    Parameters
-    ----------
-    path : str or Path
-        The PNG file.
-    image : (H, W, 3) or (H, W) uint8
-        BGR, or grey.
+def write_png(path: str | os.PathLike, image: NDArray) -> None:
+    """Write a picture (H, W, 3) BGR or (H, W) grey, uint8; the file appears only when whole.
 
     Raises
     ------
@@ -242,32 +196,22 @@ def write_png(path, image):
             temporary.write_bytes(data)
     except OSError as error:
         raise InputError(
-            f"{path}: expected to write {len(data)} bytes, found {error.strerror}: free or allow the space"
+            f"{path}: expected to write {len(data)} bytes, found {error.strerror}: "
+            "free or allow the space"
         ) from error
 
 
-def sharpness(image):
-    """Measure how sharp a picture is: the variance of the Laplacian of its grey values.
+def sharpness(image: NDArray) -> float:
+    """Return the sharpness of a picture (H, W, 3) uint8 BGR: the variance of the grey Laplacian.
 
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-        BGR.
-
-    Returns
-    -------
-    sharpness : float
-        Squared grey levels; larger is sharper. Only pictures of one scene and size compare.
-
-    Notes
-    -----
-    Pech-Pacheco et al. 2000, Diatom autofocusing in brightfield microscopy.
+    The unit is squared grey levels; larger is sharper. Only pictures of one scene and size compare
+    (Pech-Pacheco et al. 2000, Diatom autofocusing in brightfield microscopy).
     """
     return float(cv2.Laplacian(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.CV_64F).var())
 
 
-def _range(path, start_s, stop_s):
-    """List a file's packets and turn a range of times into a range of indices."""
+def _range(path, start_s, stop_s) -> tuple[Listing, int, int]:
+    """List a file's packets and convert a range of times into a range of indices."""
     listing = list_packets(path, stop_s=stop_s)
     times_s = listing.times_s
     first = 0 if start_s is None else len(times_s) - np.count_nonzero(times_s >= start_s)
@@ -280,6 +224,6 @@ def _range(path, start_s, stop_s):
     return listing, int(first), int(stop)
 
 
-def _nearest(times_s, wanted_s):
+def _nearest(times_s: NDArray, wanted_s: NDArray | float) -> NDArray:
     """Return the index of the time nearest to each wanted one; the earlier of two equally near."""
     return np.searchsorted((times_s[:-1] + times_s[1:]) / 2, wanted_s)

@@ -1,29 +1,32 @@
-"""How a fixed camera's picture moves during a take, frame by frame, against its static picture."""
+"""Movement of a fixed camera's picture in every frame of a take, relative to its static picture."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.video import camera_movement
 
+# ASSUME: the values up to SMALLER and SPARSE have no source but the development sessions.
 WIDEST_PX = 2048  # larger pictures are reduced: a camera's movement needs no more
 N_CORNERS = 300
-APART = 0.02  # fewest picture widths between two corners
-SURROUNDINGS = 0.012  # picture widths: what is even over that is taken away: light does not matter
+APART = 0.02  # least distance of corners, picture widths
+SURROUNDINGS = 0.012  # picture widths: the mean over this is removed, against changes of light
 WINDOW_PX, LEVELS = 21, 4  # of a tracked corner, and how often the picture is halved to find it
-SMALLER = 4  # how much smaller the pictures are that find a large movement
-# What the fit cannot see (coding of the video, lens, interpolation): on virtual pictures with known turns,
-# errors were 0.02 to 0.05 px where the corners' scatter alone promised 0.005 to 0.015.
-FLOOR_PX, FLOOR_SHARE = 0.03, 0.002  # the second of the shift
+SMALLER = 4  # reduction of the pictures that find a large movement
+# Errors outside the fit (video coding, lens, interpolation): on virtual pictures with known
+# rotations, errors were 0.02 to 0.05 px where the corners' scatter alone predicted 0.005 to 0.015.
+FLOOR_PX, FLOOR_SHARE = 0.03, 0.002  # the second is a share of the shift
 SPARSE = 32  # frames: the longest pause between two searches for a lost picture
 NAMES = ("shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "n_matches", "sigma_px")
 
 
 @dataclass(frozen=True)
 class Shift:
-    """Where the static picture's content is in a frame.
+    """Place of the static picture's content in a frame.
 
     Attributes
     ----------
@@ -32,43 +35,41 @@ class Shift:
     zoom : float
         Scale at the centre; 1 for none.
     rotation_deg : float
-        Clockwise turn about the centre, as seen on the picture.
+        Clockwise rotation about the centre, as seen on the picture.
     n_matches : int
-        Corners that agree; where too few do, the rest is NaN.
+        Corners that agree; with too few, the rest is NaN.
     sigma_px : float
         Standard deviation of `shift_px`, per axis.
     """
 
-    shift_px: np.ndarray
+    shift_px: NDArray
     zoom: float
     rotation_deg: float
     n_matches: int
     sigma_px: float
 
     @property
-    def known(self):
+    def known(self) -> bool:
         """Whether enough corners agree to tell."""
         return bool(np.isfinite(self.zoom))
 
 
 class Tracker:
-    """Follows the background of a fixed camera.
+    """Track the background of a fixed camera, given its static picture (H, W, 3) uint8, BGR.
 
-    Parameters
-    ----------
-    static : (H, W, 3) uint8
-        Its static picture, BGR, as free of people as can be.
+    The static picture should be as free of people as possible.
 
     Notes
     -----
-    Corners of the static picture are looked for in each frame (Lucas & Kanade 1981, pyramidal), from where
-    the last frame had them; always against the static picture, so that no error adds up. A camera that turns
-    about itself moves its picture's edges more than its centre, by an amount that depends on the lens: two
-    numbers describe it, found in each frame beside shift, turn and zoom, from what lenses usually do. People
-    are outliers: random samples (RANSAC) start the fit, Tukey's weights finish it.
+    Corners of the static picture are tracked in each frame (Lucas & Kanade 1981, pyramidal),
+    starting from the last frame's places but always against the static picture, so that no error
+    accumulates. The rotation of a camera moves its picture's edges more than its centre, by an
+    amount that depends on the lens: two numbers describe it, estimated in each frame beside shift,
+    rotation and zoom, with usual lenses as prior. People are outliers: RANSAC starts the fit,
+    Tukey's weights refine it.
     """
 
-    def __init__(self, static):
+    def __init__(self, static: NDArray) -> None:
         height, width = static.shape[:2]
         self.size = width, height
         self.shrink = -(-width // WIDEST_PX)
@@ -81,22 +82,10 @@ class Tracker:
         self._static, self._last = static, np.r_[np.zeros(4), camera_movement.LENS_MEAN]
         self._lost, self._next_search = 0, 0
 
-    def measure(self, frame):
-        """Measure where the static picture is in a frame.
+    def measure(self, frame: NDArray) -> Shift:
+        """Measure the place of the static picture in the next frame (H, W, 3) uint8, BGR.
 
-        Parameters
-        ----------
-        frame : (H, W, 3) uint8
-            The next frame, BGR.
-
-        Returns
-        -------
-        shift : Shift
-
-        Raises
-        ------
-        ValueError
-            If it differs in size from the static picture.
+        Raise ValueError if it differs in size from the static picture.
         """
         if frame.shape != self._static.shape:
             raise ValueError(f"pictures of two sizes: {self._static.shape} and {frame.shape}")
@@ -119,8 +108,8 @@ class Tracker:
             sigma_px=float(np.hypot(found.sigma * unit_px, floor_px)),
         )
 
-    def _search(self, grey, frame):
-        """Find the picture again: from rest, by correlation, else by features: slow, so not every time."""
+    def _search(self, grey: NDArray, frame: NDArray) -> camera_movement.Fit:
+        """Find a lost picture from rest, by correlation, or by features (slow, so not always)."""
         for shift_px in (np.zeros(2), self._correlate(grey)):
             found = self._follow(
                 grey, np.r_[shift_px / self._half, 0, 0, camera_movement.LENS_MEAN]
@@ -140,19 +129,18 @@ class Tracker:
             grey, np.r_[shift, linear.real - 1, linear.imag, camera_movement.LENS_MEAN]
         )
 
-    def _correlate(self, grey):
-        """Return the shift (2,) px that correlates best, whatever its size."""
+    def _correlate(self, grey: NDArray) -> NDArray:
+        """Return the shift (2,) px, of any size, that correlates best."""
         size = tuple(length // SMALLER for length in grey.shape[::-1])
-        pair = [
+        static, frame = (
             cv2.resize(image, size, interpolation=cv2.INTER_AREA).astype(np.float32)
             for image in (self._grey, grey)
-        ]
-        return SMALLER * np.array(
-            cv2.phaseCorrelate(*pair, cv2.createHanningWindow(size, cv2.CV_32F))[0]
         )
+        window = cv2.createHanningWindow(size, cv2.CV_32F)
+        return SMALLER * np.array(cv2.phaseCorrelate(static, frame, window)[0])
 
-    def _follow(self, grey, start):
-        """Track the corners from a guessed movement."""
+    def _follow(self, grey: NDArray, start: NDArray) -> camera_movement.Fit:
+        """Track the corners from a predicted movement."""
         guess = self._corners + self._half * camera_movement.moved(self._places, start)
         inside = ((guess >= 0) & (guess <= np.array(grey.shape[::-1]) - 1)).all(axis=1)
         if inside.sum() < camera_movement.MIN_MATCHES:
@@ -173,8 +161,8 @@ class Tracker:
             places[good], (moved - corners)[good], grey.shape, inside.sum()
         )
 
-    def _even(self, image):
-        """Return grey values, reduced, without what is even over the surroundings."""
+    def _even(self, image: NDArray) -> NDArray:
+        """Return grey values, reduced, minus their local mean."""
         grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
         if self.shrink > 1:
             size = tuple(length // self.shrink for length in self.size)
@@ -184,12 +172,14 @@ class Tracker:
         return cv2.addWeighted(grey, 1.0, cv2.blur(grey, (side, side)), -1.0, 128.0)
 
 
-def unknown(n_matches=0):
-    """Return the shift of which nothing can be said."""
+def unknown(n_matches: int = 0) -> Shift:
+    """Return an undetermined shift."""
     return Shift(np.full(2, np.nan), np.nan, np.nan, n_matches, np.nan)
 
 
-def measure_take(static, frames, first=0):
+def measure_take(
+    static: NDArray, frames: Iterable[tuple[float, NDArray]], first: int = 0
+) -> pd.DataFrame:
     """Measure the shake of a fixed camera over a take.
 
     Parameters
@@ -197,7 +187,7 @@ def measure_take(static, frames, first=0):
     static : (H, W, 3) uint8
         Its static picture, BGR.
     frames : iterable of (time_s, (H, W, 3) uint8)
-        The take, in order, such as `courtside.video.reader.frames` yields.
+        The take, in order, such as from `courtside.video.reader.frames`.
     first : int
         Index in the file of the first frame.
 

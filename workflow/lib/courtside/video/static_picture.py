@@ -1,33 +1,27 @@
-"""Still pictures of fixed cameras: their temporal median, whether the camera moved, and their light."""
+"""Static pictures of fixed cameras: temporal median, and checks of movement and light."""
+
+import os
+from collections.abc import Iterable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
-from courtside.video.camera_movement import MIN_MATCHES, movement, unknown
+from courtside.video.camera_movement import MIN_MATCHES, Movement, movement, unknown
 
 BAND_PX = 64  # rows of the median at a time: bounds the memory
 TAKE = "its static picture and in its take"
 AGAIN = "film the static picture and the walk again with the camera as in the take"
-BLACK_LEVEL, BLACK_SHARE = 20, 0.8  # too dark: so much of the picture is darker than that
+# ASSUME: a picture is too dark if this share of its pixels is below this level in all channels.
+BLACK_LEVEL, BLACK_SHARE = 20, 0.8
 
 
-def temporal_median(frames):
-    """Return the per-pixel median of pictures of one fixed camera: who walks about disappears.
+def temporal_median(frames: Iterable[NDArray]) -> NDArray:
+    """Return the median per pixel of pictures (H, W, 3) uint8 of a fixed camera; people disappear.
 
-    Parameters
-    ----------
-    frames : sequence of (H, W, 3) uint8, length T
-        Spread over the recording; a person must leave each place in more than half of them.
-
-    Returns
-    -------
-    image : (H, W, 3) uint8
-        Of an even number, the mean of the two middle values, half a level rounded up.
-
-    Raises
-    ------
-    ValueError
-        If there is no picture, or they differ in size.
+    A person must leave each place in more than half of the pictures. Of an even number, it is the
+    mean of the two middle values, half a level rounded up. Raise ValueError if there is no picture,
+    or they differ in size.
     """
     frames = list(frames)
     if not frames or len({frame.shape for frame in frames}) > 1:
@@ -42,8 +36,15 @@ def temporal_median(frames):
 
 
 def check_still(
-    camera, reference, other, *, max_shift_px, max_zoom_percent, where=TAKE, mend=AGAIN
-):
+    camera: str,
+    reference: NDArray,
+    other: NDArray,
+    *,
+    max_shift_px: float,
+    max_zoom_percent: float,
+    where: str = TAKE,
+    mend: str = AGAIN,
+) -> Movement:
     """Check that a fixed camera neither moved nor zoomed between two pictures.
 
     Parameters
@@ -51,18 +52,18 @@ def check_still(
     camera : str
         Its name, for the message.
     reference, other : (H, W, 3) uint8
-        Its static picture, and a picture of later, BGR.
+        Its static picture and a later picture, BGR.
     max_shift_px : float
-        Largest shift of the picture's centre; also of the middle of its sides by a turn, pixels.
+        Largest shift of the picture's centre; also of the middle of its sides by rotation, pixels.
     max_zoom_percent : float
         Largest change of scale.
     where, mend : str
-        What the pictures are from, and what to do, for the message.
+        Where the pictures are from and what to do, for the message.
 
     Returns
     -------
     movement : Movement
-        What was measured, within the limits.
+        The measured movement, within the limits.
 
     Raises
     ------
@@ -78,8 +79,9 @@ def check_still(
     found = movement(reference, other)
     if not found.known:
         raise InputError(
-            f"{start}, found only {found.n_matches} background points that agree (of {MIN_MATCHES} needed, "
-            f"spread over the picture): check that both are of this camera, in light, and {mend}"
+            f"{start}, found only {found.n_matches} background points that agree (of {MIN_MATCHES} "
+            "needed, spread over the picture): check that both are of this camera, in light, and "
+            f"{mend}"
         )
     shift_px = float(np.hypot(*found.shift_px))
     zoom_percent = 100 * (found.zoom - 1)
@@ -87,22 +89,27 @@ def check_still(
     within = (shift_px, abs(zoom_percent), abs(found.rotation_deg))
     if any(np.array(within) > (max_shift_px, max_zoom_percent, max_rotation_deg)):
         raise InputError(
-            f"{start}, found it shifted by {shift_px:.1f} px, zoomed by {zoom_percent:+.2f} % and turned by "
-            f"{found.rotation_deg:+.2f} deg (limits {max_shift_px:g} px, {max_zoom_percent:g} %, "
-            f"{max_rotation_deg:.2g} deg): {mend}"
+            f"{start}, found it shifted by {shift_px:.1f} px, zoomed by {zoom_percent:+.2f} % and "
+            f"turned by {found.rotation_deg:+.2f} deg (limits {max_shift_px:g} px, "
+            f"{max_zoom_percent:g} %, {max_rotation_deg:.2g} deg): {mend}"
         )
     return found
 
 
-def static_picture(camera, source, images, *, max_shift_px, max_zoom_percent):
+def static_picture(
+    camera: str,
+    source: str | os.PathLike,
+    images: Sequence[NDArray],
+    *,
+    max_shift_px: float,
+    max_zoom_percent: float,
+) -> tuple[NDArray, Movement]:
     """Make the static picture of a fixed camera, after checking that it stood still meanwhile.
 
     Parameters
     ----------
-    camera : str
-        Its name, for messages.
-    source : str or Path
-        The recording, for messages.
+    camera, source
+        Name and recording, for messages.
     images : list of (H, W, 3) uint8
         Spread over the recording, in order, BGR.
     max_shift_px, max_zoom_percent : float
@@ -113,7 +120,8 @@ def static_picture(camera, source, images, *, max_shift_px, max_zoom_percent):
     image : (H, W, 3) uint8
         The temporal median.
     movement : Movement
-        From the first to the last third; unknown for fewer than three pictures, which are not checked.
+        From the first to the last third; unknown for fewer than three pictures, which are not
+        checked.
 
     Raises
     ------
@@ -135,37 +143,13 @@ def static_picture(camera, source, images, *, max_shift_px, max_zoom_percent):
     return image, found
 
 
-def too_dark(image):
-    """Tell whether a picture is mostly black.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-        BGR.
-
-    Returns
-    -------
-    dark : bool
-        Whether 80 % of its pixels are below 20 of 255 in every channel.
-    """
+def too_dark(image: NDArray) -> bool:
+    """Return whether 80 % of a picture's pixels are below 20 of 255 in every channel."""
     return bool(np.mean(image.max(axis=2) < BLACK_LEVEL) > BLACK_SHARE)
 
 
-def check_light(path, image):
-    """Check that a picture is not mostly black.
-
-    Parameters
-    ----------
-    path : str or Path
-        Its file, for the message.
-    image : (H, W, 3) uint8
-        BGR.
-
-    Raises
-    ------
-    InputError
-        If it is.
-    """
+def check_light(path: str | os.PathLike, image: NDArray) -> None:
+    """Raise InputError if a picture (H, W, 3) uint8, BGR, from the file `path` is mostly black."""
     if too_dark(image):
         share = np.mean(image.max(axis=2) < BLACK_LEVEL)
         raise InputError(

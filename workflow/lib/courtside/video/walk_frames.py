@@ -1,11 +1,14 @@
-"""Frames of a walk, and of static recordings: from a video, or from photos in name order."""
+"""Frames of walks and static recordings: from a video, or from photos in name order."""
 
+import os
 import re
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 from courtside.video import images, reader
@@ -15,22 +18,25 @@ from courtside.video.static_picture import check_light
 
 PHOTOS = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")
 UNREADABLE = (".heic", ".heif", ".avif", ".dng", ".raw", ".cr2", ".cr3", ".nef", ".arw", ".orf")
-PHOTO = "a photo"
+PHOTO = "a photo"  # for messages
 SMALL_PX = 320  # width of the pictures that `courtside.sfm.usable.judge` compares
 
+Source = str | os.PathLike | Sequence[str | os.PathLike]
 
-def frames(source, *, every_s=None, every_frame=None):
+
+def frames(
+    source: Source, *, every_s: float | None = None, every_frame: int | None = None
+) -> Iterator[tuple[int, float, NDArray]]:
     """Decode the frames of a walk on a fixed grid, or all its photos.
 
     Parameters
     ----------
-    source : str, Path or list of them
-        A video; a photo, photos, or the folder of photos. Those come in name order, numbers by value, all
-        of them.
-    every_s : float or None
-        Spacing of the grid in seconds, as for `reader.extract_frames`.
-    every_frame : int or None
-        Or else: every so many frames of the video, from the first.
+    source : path or list of paths
+        A video; a photo, photos, or a folder of photos. All photos are used, in name order, numbers
+        by value.
+    every_s, every_frame : float, int
+        For a video, exactly one of them, positive (ValueError if not): spacing of the grid in
+        seconds, as for `reader.extract_frames`, or in frames, from the first.
 
     Yields
     ------
@@ -44,68 +50,49 @@ def frames(source, *, every_s=None, every_frame=None):
     Raises
     ------
     InputError
-        If the source is missing, damaged, holds no picture or pictures of several sizes, or a photo is mostly
-        black.
-    ValueError
-        If for a video not exactly one of `every_s` and `every_frame` is given, and positive.
+        If the source is missing, damaged, holds no picture or pictures of several sizes, or a photo
+        is mostly black.
     """
     paths = photo_paths(source)
     if paths:
         yield from ((at, np.nan, image) for at, image in enumerate(_photos(paths)))
     elif every_frame is None and every_s is not None:
-        yield from reader.extract_frames(_single(source), every_s)
+        yield from reader.extract_frames(_paths(source)[0], every_s)
     elif every_s is None and isinstance(every_frame, int) and every_frame > 0:
-        listing = list_packets(_single(source))
+        listing = list_packets(_paths(source)[0])
         for index, image in pictures(listing, range(0, len(listing.times_s), every_frame), None):
             yield index, float(listing.times_s[index]), image
     else:
         raise ValueError(f"one of every_s and every_frame, not {every_s} and {every_frame}")
 
 
-def spread(source, n_frames):
-    """Decode pictures spread evenly over a static recording, the first and the last among them.
+def spread(source: Source, n_frames: int) -> list[NDArray]:
+    """Decode at most `n_frames` pictures spread evenly over a static recording, with both ends.
 
-    Parameters
-    ----------
-    source : str, Path or list of them
-        As for `frames`.
-    n_frames : int
-        How many; fewer where it holds fewer.
-
-    Returns
-    -------
-    images : list of (H, W, 3) uint8
-        BGR, upright, of one size.
-
-    Raises
-    ------
-    InputError
-        As for `frames`.
+    They are (H, W, 3) uint8, BGR, upright, of one size. Source and errors are those of `frames`.
     """
     paths = photo_paths(source)
-    listing = None if paths else list_packets(_single(source))
-    n_available = len(paths) if paths else len(listing.times_s)
-    wanted = np.unique(np.linspace(0, n_available - 1, n_frames).round().astype(int)).tolist()
     if paths:
-        return list(_photos([paths[at] for at in wanted]))
-    return [image for _, image in pictures(listing, wanted, None)]
+        return list(_photos([paths[at] for at in _evenly(len(paths), n_frames)]))
+    listing = list_packets(_paths(source)[0])
+    return [image for _, image in pictures(listing, _evenly(len(listing.pts), n_frames), None)]
 
 
-def extract(found, folder):
-    """Write frames as PNG files `%06d.png`, the number being the frame's index, and describe them.
+def _evenly(n_available: int, n_wanted: int) -> list[int]:
+    return np.unique(np.linspace(0, n_available - 1, n_wanted).round().astype(int)).tolist()
 
-    Parameters
-    ----------
-    found : iterable of (frame_idx, time_s, image)
-        From `frames`.
-    folder : str or Path
+
+def extract(
+    found: Iterable[tuple[int, float, NDArray]], folder: str | os.PathLike
+) -> tuple[pd.DataFrame, list[NDArray]]:
+    """Write frames, from `frames`, as PNG files named `%06d.png` by the frame's index.
 
     Returns
     -------
     table : DataFrame
         One row per frame: `frame_idx`, `time_s`, `name`, `sharpness`.
     small : list of (h, 320) uint8
-        The same frames, grey, reduced by averaging (no larger than they were).
+        The same frames, grey, reduced by averaging (not enlarged).
     """
     rows, small = [], []
     for frame_idx, time_s, image in found:
@@ -116,60 +103,35 @@ def extract(found, folder):
     return pd.DataFrame(rows, columns=["frame_idx", "time_s", "name", "sharpness"]), small
 
 
-def photo_paths(source):
-    """List the photos that a source is.
+def photo_paths(source: Source) -> list[Path]:
+    """List the photos of a source in name order, numbers by value: photo 9 before photo 10.
 
-    Parameters
-    ----------
-    source : str, Path or list of them
-        A folder, photos, or a video.
-
-    Returns
-    -------
-    paths : list of Path
-        In name order, numbers by value: photo 9 before photo 10. Empty for a video.
-
-    Raises
-    ------
-    InputError
-        If there is no photo, or a picture of a form that cannot be read.
+    The list is empty for a video. Raise InputError if there is no photo, or one of a format that
+    cannot be read.
     """
-    single = _single(source)
-    if single is None:
-        paths = [Path(path) for path in source]
-    elif single.is_dir():
+    paths = _paths(source)
+    single = paths[0] if len(paths) == 1 else None
+    if single is not None and single.is_dir():
         paths = [path for path in single.iterdir() if not path.name.startswith(".")]
-    else:
-        paths = [single]
     for path in sorted(paths):
         if path.suffix.lower() in UNREADABLE:
             raise InputError(
-                f"{path}: expected photos as {' '.join(PHOTOS)}, found {path.suffix}: convert all to .jpg"
+                f"{path}: expected photos as {' '.join(PHOTOS)}, found {path.suffix}: "
+                "convert all to .jpg"
             )
     photos = sorted((p for p in paths if p.suffix.lower() in PHOTOS), key=_name_order)
     if not photos and (single is None or single.is_dir()):
         raise InputError(
-            f"{single or 'list of photos'}: expected photos as {' '.join(PHOTOS)}, found none: put them there"
+            f"{single or 'list of photos'}: expected photos as {' '.join(PHOTOS)}, found none: "
+            "put them there"
         )
     return photos
 
 
-def read_photo(path):
-    """Read a photo, upright as its EXIF orientation says.
+def read_photo(path: str | os.PathLike) -> NDArray:
+    """Read a photo (H, W, 3) uint8, BGR, upright by its EXIF orientation.
 
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    image : (H, W, 3) uint8
-        BGR.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, no picture, cut short, or mostly black.
+    Raise InputError if the file is missing, no picture, cut short, or mostly black.
     """
     path = Path(path)
     data = path.read_bytes() if path.is_file() else b""
@@ -180,34 +142,31 @@ def read_photo(path):
     return image
 
 
-def _photos(paths):
+def _photos(paths: Sequence[Path]) -> Iterator[NDArray]:
     size = None
     for path in paths:
         image = read_photo(path)
         found = f"{image.shape[1]}x{image.shape[0]}"
         if found != (size or found):
             raise InputError(
-                f"{path}: expected {size} pixels as in {paths[0].name}, found {found}: take all photos with "
-                "one camera, zoom and orientation, or leave this one out"
+                f"{path}: expected {size} pixels as in {paths[0].name}, found {found}: take all "
+                "photos with one camera, zoom and orientation, or leave this one out"
             )
         size = found
         yield image
 
 
-def _single(source):
-    """Return the only path of a source, None for several."""
-    if isinstance(source, str | Path):
-        return Path(source)
-    return Path(source[0]) if len(source) == 1 else None
+def _paths(source: Source) -> list[Path]:
+    return [Path(p) for p in ([source] if isinstance(source, str | os.PathLike) else source)]
 
 
-def _name_order(path):
+def _name_order(path: Path) -> tuple[list[int | str], str]:
     parts = re.split(r"(\d+)", path.stem)
     return [int(part) if at % 2 else part for at, part in enumerate(parts)], str(path)
 
 
-def _cut_short(data):
-    """Tell whether a JPEG lacks its end; OpenCV fills the rest with grey and says nothing."""
+def _cut_short(data: bytes) -> bool:
+    """Return whether a JPEG lacks its end; OpenCV fills the rest with grey and reports nothing."""
     if data[:2] != b"\xff\xd8":
         return False
     at = 2
@@ -216,7 +175,7 @@ def _cut_short(data):
     return data.find(b"\xff\xd9", at) < 0
 
 
-def _small(image):
+def _small(image: NDArray) -> NDArray:
     grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
     height, width = grey.shape
     if width <= SMALL_PX:

@@ -3,12 +3,15 @@
 PyAV encodes rather than OpenCV, whose wheels have no H.264 encoder.
 """
 
+import os
+from collections.abc import Iterable
 from fractions import Fraction
 from itertools import chain
 
 import av
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
@@ -17,26 +20,29 @@ KEYFRAME_EVERY = 12  # frames: seeking decodes no more than these
 LARGEST_DENOMINATOR = 10_000  # keeps the container's clock far below its 32 bits
 
 
-def write_video(path, frames, rate_hz, *, crf, effort="medium"):
-    """Write pictures as H.264 in yuv420p, at a constant rate.
+def write_video(
+    path: str | os.PathLike,
+    frames: Iterable[NDArray],
+    rate_hz: float,
+    *,
+    crf: float,
+    effort: str = "medium",
+) -> int:
+    """Write pictures as H.264 in yuv420p, at a constant rate; return how many.
 
     Parameters
     ----------
-    path : str or Path
-        The file; its suffix tells the container (`.mp4`). It appears under its name only when whole.
+    path : path
+        Its suffix chooses the container (`.mp4`). The file appears under its name only when whole.
     frames : iterable of (H, W, 3) uint8
         BGR, all of one even size.
     rate_hz : float
         Frames per second; frame k is shown at k / rate_hz.
     crf : float
-        Constant rate factor of x264: 0 loses only what yuv420p loses, 18 looks lossless, 28 is poor.
+        Constant rate factor of x264: 0 loses only what yuv420p loses, 18 looks lossless, 28 is
+        poor.
     effort : str
         Preset of x264: "veryfast" takes a third of the time of "medium".
-
-    Returns
-    -------
-    n_frames : int
-        How many were written.
 
     Raises
     ------
@@ -47,8 +53,9 @@ def write_video(path, frames, rate_hz, *, crf, effort="medium"):
 
     Notes
     -----
-    One thread: with more, x264 divides the bits among the frames differently from run to run. No macroblock
-    tree: on processors with AVX-512, x264's reads memory that is not its own, and no two runs are alike.
+    One thread: with more, x264 divides the bits among the frames differently from run to run. No
+    macroblock tree: with AVX-512, x264's reads memory that is not its own, and no two runs are
+    alike.
     """
     if not 0 < rate_hz < np.inf:
         raise ValueError(f"expected a positive rate_hz, found {rate_hz}")
@@ -67,14 +74,9 @@ def write_video(path, frames, rate_hz, *, crf, effort="medium"):
         ) from error
 
 
-def _encode(container, frames, shape, rate, crf, effort):
-    options = {
-        "preset": effort,
-        "crf": str(crf),
-        "g": str(KEYFRAME_EVERY),
-        "threads": "1",
-        "mbtree": "0",
-    }
+def _encode(container, frames, shape, rate, crf, effort) -> int:
+    options = {"preset": effort, "crf": str(crf), "g": str(KEYFRAME_EVERY)}
+    options |= {"threads": "1", "mbtree": "0"}
     stream = container.add_stream("libx264", rate=rate, options=options)
     stream.height, stream.width, _ = shape
     stream.pix_fmt = "yuv420p"
@@ -91,7 +93,7 @@ def _encode(container, frames, shape, rate, crf, effort):
     return count
 
 
-def _check(image, shape):
+def _check(image: NDArray, shape: tuple[int, ...]) -> None:
     if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3:
         raise ValueError(f"expected 8-bit BGR pictures, found {image.dtype} {image.shape}")
     if image.shape != tuple(shape):
