@@ -62,7 +62,7 @@ def test_a_hole_is_filled_from_around_it_within_limits():
 
 
 def test_mixed_pixels_at_edges_are_left_out():
-    """Pixels at the rim that lie between limb and wall, as stereo cameras give them, do not count."""
+    """Flying pixels between limb and wall, as stereo cameras produce them, do not count."""
     depth_m = seen(ball())
     inside = depth_m < 3
     rim = inside & ~(

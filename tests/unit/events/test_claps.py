@@ -59,7 +59,8 @@ def test_rebounding_hands_touch_first_at_the_event():
     found = found_at(device_takes.device(np.random.default_rng(0), take, rate_hz=60.0))
     for number, clap in enumerate(found, 1):
         assert clap.rebounds
-        # Palms give for 8 ms before they fly apart: the corner is there, and the uncertainty says so.
+        # Palms give for 8 ms before they fly apart: the corner is there, and the uncertainty says
+        # so.
         assert 0 < clap.time_s - take[2][f"clap_{number}"] < 0.013
         assert clap.uncertainty_s >= 0.008
 

@@ -8,7 +8,7 @@ from fixtures.cameras import sync_takes
 
 
 def hinge(time_s, corner_s, *, floor=0.1, slope=2.6, bend=3.0, rise=0.0, sigma_s=0.0):
-    """Return the distance before and behind a corner; smoothed numerically, not by the library's formula."""
+    """Return a distance with a corner, smoothed numerically, not by the library's formula."""
 
     def sharp(t):
         left = corner_s - t

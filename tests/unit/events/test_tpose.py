@@ -17,7 +17,7 @@ DEVICES = {
 
 
 def figure(left_arm=(0.58, 0, 0), right_arm=(-0.58, 0, 0), bend=0.0, n=60):
-    """Return a still body, x left, y up, z forward, with straight arms, or forearms bent to the front."""
+    """Return a still body (x left, y up, z forward), arms straight or forearms bent forward."""
     half = {"shoulder": (0.18, 0.5), "hip": (0.09, 0.0)}
     at = {}
     for side, sign, arm in (("left", 1, left_arm), ("right", -1, right_arm)):

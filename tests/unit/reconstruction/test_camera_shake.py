@@ -1,4 +1,4 @@
-"""Steadied keypoints: a known turn of a camera with a known lens is undone, by OpenCV's projection."""
+"""Steadied keypoints: OpenCV's projection of a known camera rotation is undone."""
 
 import logging
 
@@ -34,7 +34,7 @@ def turns(n, seed=0):
 
 
 def shake(vectors):
-    """Return the table that perfect measuring makes of turns: what the centre does, seen within a pixel."""
+    """Return the table of a perfect measurement of rotations, at the picture's centre."""
     arms = np.array([[0, 0], [0.5, 0], [-0.5, 0], [0, 0.5], [0, -0.5]])
     seen = cv2.undistortPoints(
         (CENTRE + arms)[:, None], K, DIST, criteria=(cv2.TERM_CRITERIA_COUNT, 100, 0)
@@ -52,7 +52,7 @@ def shake(vectors):
 
 
 def view(vectors, seed=1, joints=12):
-    """Return keypoints in the shaken pictures, the same in the still picture, of points about a court."""
+    """Return keypoints of points about a court in the shaken and in the still picture."""
     rng = np.random.default_rng(seed)
     shape = 2, len(vectors), joints
     xyz = rng.uniform([-5, -2.5, 5], [5, 2.5, 14], (*shape, 3))

@@ -1,4 +1,4 @@
-"""Joint offsets: known shares of known vectors are found, and taken off other bodies in other poses."""
+"""Joint offsets: known shares of known vectors are found, and removed from other bodies."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ ALONG_THIGH = 0.1
 
 
 def bodies(n, seed, size=1.0):
-    """Return (n, 12, 3): a standing body with limbs in random directions, turned about at random."""
+    """Return (n, 12, 3): a standing body in random orientation with random limb directions."""
     rng = np.random.default_rng(seed)
     found = np.zeros((n, 12, 3))
     for at, sign in ((0, 1.0), (6, -1.0)):
@@ -71,7 +71,7 @@ def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
 
 
 def test_shares_are_found_and_hold_for_bodies_of_another_size():
-    """The trunk is measured on the displaced body, so what is found is not SHARES but removes them."""
+    """The trunk is measured on the displaced body: the result differs from SHARES but removes them."""
     true = bodies(400, seed=1)
     table = joint_correction.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
     hips = table[table["joint"] == "hip"]

@@ -19,7 +19,7 @@ STRETCH = slice(40, 55)
 
 
 def straight_on(time_s=TIME_S):
-    """Return places (T, 2) of a walk along x at 1.2 m/s, sideways to a camera that looks along y."""
+    """Return a walk (T, 2) along x at 1.2 m/s, seen from the side by a camera along y."""
     return np.stack([1.2 * (time_s - time_s[-1] / 2), 0 * time_s], axis=1)
 
 

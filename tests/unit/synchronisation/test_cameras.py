@@ -1,4 +1,4 @@
-"""Whole takes: clocks of made-up and of real cameras, honest intervals, and what cannot be known."""
+"""Clocks of simulated and of real cameras over whole takes, and their stated intervals."""
 
 import json
 from dataclasses import replace
@@ -187,7 +187,7 @@ def later(view, n_frames):
 
 @pytest.fixture(scope="module")
 def walk():
-    """Return cameras and views of the real walk: 100 frames of four synchronised cameras at 60 Hz."""
+    """Return cameras and views of the real walk: 100 frames of four cameras at 60 Hz."""
     known = file_formats.read(FOLDER / "calibration" / "Calib.qca.txt")
     cut = (0, 0, 1080, 1920)
     known = [camera_models.crop(c, cut) if c.name in ("cam01", "cam02") else c for c in known]
@@ -195,7 +195,7 @@ def walk():
 
 
 @needs_real
-def test_real_synchronised_cameras_are_found_so(walk):
+def test_real_synchronised_cameras_have_no_offset(walk):
     found = camera_sync.synchronise(walk[1], walk[0])
     for camera in ("cam02", "cam03", "cam04"):
         assert found[camera].status == "found"

@@ -1,4 +1,4 @@
-"""Adjusting clocks: sinusoids whose offsets are known, noise whose effect is, priors, Student's factor."""
+"""Adjusted clocks: sinusoids of known offset, noise of known effect, priors, Student's factor."""
 
 from itertools import combinations
 
@@ -12,7 +12,7 @@ OMEGA = 2 * np.pi * np.array([0.31, 0.47, 0.83])
 
 
 def squares(noise, offsets, drifts):
-    """Return the terms of cameras that see three sinusoids: half squared differences of all pairs."""
+    """Return the terms of three sinusoids seen by cameras: half squared differences of pairs."""
 
     def signal(camera, own):
         time_s = (own - offsets[camera] + 15 * drifts[camera]) / (1 + drifts[camera])

@@ -111,7 +111,7 @@ def test_a_device_without_a_clap_is_refused_by_name():
 
 
 def test_other_peoples_claps_do_not_pair_silently():
-    """Motion of somebody else: the offset is the claps', and the note says that the motions differ."""
+    """With another person's motion the claps give the offset, and the note tells the difference."""
     rng = np.random.default_rng(0)
     first = device_takes.device(rng, device_takes.truth(0), **CAMERAS)
     second = device_takes.mocopi(rng, device_takes.truth(1))
@@ -132,7 +132,7 @@ def times(pairs):
     return [(a.time_s, b.time_s) for a, b in pairs]
 
 
-def test_intervals_decide():
+def test_claps_pair_by_their_intervals():
     pairs = devices.pair(claps(3.0, 20.0, 55.0), claps(13.01, 30.0, 65.02), nothing, "b")
     assert times(pairs) == [(3.0, 13.01), (20.0, 30.0), (55.0, 65.02)]
     assert devices.offset_s(pairs) == pytest.approx(10.01)
@@ -143,7 +143,7 @@ def test_a_clap_that_only_one_shows_is_left_out():
     assert times(pairs) == [(20.0, 30.0), (55.0, 65.0)]
 
 
-def test_a_fast_clock_still_pairs():
+def test_claps_of_a_fast_clock_still_pair():
     pairs = devices.pair(claps(0.0, 600.0), claps(5.0, 605.0 + 600 * 3e-4), nothing, "b")
     assert len(pairs) == 2
 

@@ -1,4 +1,4 @@
-"""What epipolar distances say of clocks: derivatives against differences, matches, lowest at the truth."""
+"""Epipolar loss of clocks: least at the truth, derivatives against differences, matches."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Signals do not change with axes, place or scale, and their products are greatest at the true offset."""
+"""Signals ignore axes, place and scale; their products are greatest at the true offset."""
 
 import numpy as np
 import pytest

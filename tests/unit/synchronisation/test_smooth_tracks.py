@@ -1,4 +1,4 @@
-"""Smoothed tracks: straight motion, the Gaussian's known gain, gaps, noise even at all fractions."""
+"""Smoothed tracks: straight motion, the Gaussian's gain, gaps, even noise at all fractions."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What joint speeds say of clocks: lowest at the truth without any camera, slopes against differences."""
+"""Loss of clocks by joint speeds: least at the truth, slopes against differences."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Movement of a fixed camera: known transforms of real pictures are measured, the unknowable is said."""
+"""Movement of a fixed camera: known transforms of real pictures, and undetermined ones."""
 
 import cv2
 import numpy as np
@@ -87,7 +87,7 @@ VECTORS = np.array([[0.001, -0.0012, 0.0005], [0.006, 0.007, -0.004], [0, 0, 0.0
 
 
 def tracked(vector, sigma_px, n_wrong=0, seed=0, n=220):
-    """Return places, movements in px by OpenCV's projection, with noise; the first `n_wrong` on a walker."""
+    """Return places and noisy movements in px by OpenCV; the first `n_wrong` are on a walker."""
     rng = np.random.default_rng(seed)
     xy = rng.uniform([20, 20], np.array(SIZE) - 20, (n, 2))
     seen = undistorted(xy)

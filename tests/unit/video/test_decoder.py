@@ -153,8 +153,8 @@ def test_altered_bytes_stop_at_the_last_good_frame(files, tmp_path, name, k):
     message = str(caught.value)
     assert str(path) in message and "\n" not in message
     index, time_s = re.search(r"last good frame is (\d+) at ([\d.]+) s", message).groups()
-    # Good for sure are the frames before all that may lean on the damaged one; a decoder that fails takes the
-    # frames with it that wait for their turn.
+    # Good for sure are the frames before all that may lean on the damaged one; a decoder that fails
+    # takes the frames with it that wait for their turn.
     assert good_frames(files[name], at) - 1 - 3 <= int(index) < damaged
     good = list(reader.frames(path, stop_s=float(time_s)))
     truth = list(reader.frames(files[name], stop_s=float(time_s)))
@@ -278,7 +278,7 @@ def test_a_slanted_picture_is_refused(tmp_path):
         ("odd.mp4", {"codec": "libx264", "pix_fmt": "yuv444p"}),
     ],
 )
-def test_odd_sizes(tmp_path, name, how):
+def test_pictures_of_odd_sizes_decode_as_with_opencv(tmp_path, name, how):
     path = write(tmp_path / name, size=(101, 77), n=8, **how)
     assert reader.probe(path).size == (101, 77)
     read = list(reader.frames(path))
@@ -339,7 +339,7 @@ def test_a_change_of_size_is_refused(tmp_path):
         list(reader.frames(path))
 
 
-def test_wanted_indices_only(files):
+def test_only_the_wanted_frames_come(files):
     listing = list_packets(files["b_frames.mp4"])
     read = list(decoder.pictures(listing, [3, 14, 15, 40], None))
     assert (

@@ -1,4 +1,4 @@
-"""Frame times against the times written; files cut short at known bytes; everything that is no video."""
+"""Frame times as written; files cut short at known bytes; files that are no video."""
 
 import re
 import struct

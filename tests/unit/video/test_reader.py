@@ -220,7 +220,7 @@ def test_a_real_file_cut_short_is_refused(tmp_path, name):
 
 
 def test_no_stored_frame_outlives_its_turn(constant):
-    """A frame whose side data is read refers to itself: without care all stay until garbage is collected."""
+    """A frame whose side data was read refers to itself and could stay until garbage collection."""
     gc.collect()
     gc.disable()
     try:

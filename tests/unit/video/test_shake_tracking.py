@@ -1,4 +1,4 @@
-"""Shake of a fixed camera: known turns through a known lens are measured, despite people and noise."""
+"""Shake of a fixed camera: known rotations through a known lens, with people and noise."""
 
 import cv2
 import numpy as np
@@ -29,7 +29,7 @@ def person():
 
 
 def turns():
-    """Tremor of 2 px rms, slow waves and fast, and from KNOCK on a turn by 0.45 degrees about any axis."""
+    """Tremor of 2 px rms, slow and fast, and from KNOCK on a rotation by 0.45 degrees."""
     time_s = np.arange(N_FRAMES)[:, None] / 30
     waves = np.sin(2 * np.pi * np.array([1.3, 4.1, 2.0]) * time_s + [0, 1, 2])
     vectors = 2 * np.sqrt(2) / K[0, 0] * waves * [1, 1, 0.3]

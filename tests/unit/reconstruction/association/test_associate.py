@@ -1,4 +1,4 @@
-"""Who is who over views and time: stick figures that cross, hide one another, leave, and bystanders."""
+"""Association over views and time: stick figures cross, occlude one another and leave."""
 
 from dataclasses import replace
 from types import SimpleNamespace

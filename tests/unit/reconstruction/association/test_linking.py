@@ -14,7 +14,7 @@ STEP_S = 0.1
 
 
 def candidates_of(paths, owners=None, missing=()):
-    """Return candidates, pieces and times of people on paths (P, N, 3), seen in two views by row = person.
+    """Return candidates, pieces and times of paths (P, N, 3), seen in two views, row = person.
 
     `missing` holds (person, instant) pairs; `owners` (P, N) the piece of each in both views.
     """
@@ -128,7 +128,8 @@ def test_players_rather_stay_in_their_half():
 
 
 def test_a_ray_of_one_view_carries_a_person_through_a_turn():
-    # Person 0 turns back while only one view sees it, and meets where person 1 was hidden all the time.
+    # Person 0 turns back while only one view sees it, and meets where person 1 was hidden all the
+    # time.
     n, camera = 40, np.array([0.0, -20.0, 1.0])
     x = np.concatenate([np.linspace(-2, 0, 20), np.linspace(0, -2, 20)])
     paths = np.stack([np.stack([x, 0 * x, 0 * x + 1], axis=1), np.tile([2.0, 0, 1], (n, 1))])

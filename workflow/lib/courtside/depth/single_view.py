@@ -38,21 +38,11 @@ def main_person(view: Keypoints2D) -> Keypoints2D:
 
 
 def landmarks(source: str, view: Keypoints2D, time_s: NDArray | None = None) -> DeviceMotion:
-    """Return the network's own metric body of the main person as a motion.
+    """Return the network's own metric body of the main person, as a motion named `source`.
 
-    Parameters
-    ----------
-    source : str
-        Name of the result: `d415-rgb`.
-    view : Keypoints2D
-        With any number of tracklets and `xyz_in_body`.
-    time_s : (T,) float, optional
-        Times on the device's clock; by default the view's.
-
-    Returns
-    -------
-    motion : DeviceMotion
-        Relative to the centre of the hips, axes as in cam (x right, y down, z forward), metres.
+    It is relative to the centre of the hips, axes as in cam (x right, y down, z forward), metres.
+    The view has any number of tracklets and `xyz_in_body`; `time_s` (T,) are times on the device's
+    clock, by default the view's.
     """
     person = main_person(view)
     xyz, reason = person.xyz_in_body[0], person.reason[0]

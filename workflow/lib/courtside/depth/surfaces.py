@@ -88,19 +88,10 @@ class Sampler:
     def surfaces(self, xy: NDArray, depth: NDArray) -> tuple[NDArray, float]:
         """Find the surfaces at the joints of one frame.
 
-        Parameters
-        ----------
-        xy : (J, 2) float
-            Px of the colour picture; NaN where missing.
-        depth : (h, w) uint16
-            In steps of the recording.
-
-        Returns
-        -------
-        z : (J, 3) float
-            Along the colour camera's axis, metres, nearest first; NaN beyond those found.
-        z_body : float
-            Depth of the trunk; NaN if there is no depth at any joint.
+        Joints `xy` (J, 2) are px of the colour picture, NaN where missing; `depth` (h, w) uint16 is
+        in steps of the recording. Return the depths (J, 3) along the colour camera's axis, metres,
+        nearest first, NaN beyond those found; and that of the trunk, NaN if there is no depth at
+        any joint.
         """
         found = np.full((len(xy), N_SURFACES), np.nan)
         part = self._cut_out(xy)
@@ -207,26 +198,10 @@ def plane_at_origin(
 ) -> float:
     """Return the depth at (0, 0) of the plane through a limb's pixels, robust to other surfaces.
 
-    Parameters
-    ----------
-    x, y : (N,) float
-        Px from the joint.
-    z : (N,) float
-        Metres.
-    mode : float
-        Start depth.
-    width_m : float
-        Scale of the surface's depths.
-
-    Returns
-    -------
-    z : float
-        Within the range of the pixels that count.
-
-    Notes
-    -----
-    Iterated weighted least squares (Tukey's biweight), so that a slanting limb is not read at its
-    nearest end.
+    Pixels are at `x`, `y` (N,) px from the joint with depths `z` (N,) m; `mode` is the start depth
+    and `width_m` the scale of the surface's depths. The result is within the range of the pixels
+    that count. Iterated weighted least squares (Tukey's biweight), so that a slanting limb is not
+    read at its nearest end.
     """
     level = np.full(len(z), mode)
     basis = np.column_stack([np.ones(len(z)), x, y])

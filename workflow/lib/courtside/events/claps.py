@@ -88,23 +88,11 @@ class Candidate:
 
 
 def find(motion: DeviceMotion, spells: Sequence[TPose]) -> list[Clap]:
-    """Find the claps of a take.
+    """Find the claps of a take, one or more, in order of time.
 
-    Parameters
-    ----------
-    spells : list of TPose
-        Of this motion, in order of time.
-
-    Returns
-    -------
-    claps : list of Clap
-        One or more, in order of time; at most one after each T-pose, its first.
-
-    Raises
-    ------
-    InputError
-        If there is none; the message lists when hands came together and why these times do not
-        count.
+    `spells` are the T-poses of this motion in order of time; each counts its first clap only. Raise
+    InputError if there is no clap; the message lists when hands came together and why these times
+    do not count.
     """
     found = candidates(motion, spells)
     claps = [one.clap for one in found if one.clap]

@@ -59,8 +59,6 @@ class Corner:
         Standard deviation of the Gaussian that smooths the corner, averaged over the likelihood.
     rises : bool
         The distance rises again at once: a rebound.
-    residual : float
-        Root mean square.
     """
 
     time_s: float
@@ -69,7 +67,6 @@ class Corner:
     slope: float
     smoothing_s: float
     rises: bool
-    residual: float
 
 
 def fit(
@@ -181,7 +178,6 @@ def _corner(hinge: _Hinge, scale: float, usual_s: float) -> tuple[float, Corner]
         slope=float((weight * hinge.values[..., 1]).sum()),
         smoothing_s=float((weight.sum(axis=0) * SMOOTHINGS_S).sum()),
         rises=hinge.rises,
-        residual=hinge.scale,
     )
     return score, corner
 

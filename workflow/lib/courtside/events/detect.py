@@ -106,15 +106,9 @@ def wrists(
 ) -> pd.DataFrame:
     """Return the distance of the wrists over time.
 
-    Parameters
-    ----------
-    clocks : dict of str to Clock, optional
-        Of each source against the reference; without one `time_s` is the source's own.
-
-    Returns
-    -------
-    rows : DataFrame
-        source, time_s: on the reference clock, own_time_s, distance_m: in space, empty if missing.
+    Clocks are of each source against the reference; without one `time_s` is the source's own.
+    Columns: source, time_s: on the reference clock, own_time_s, distance_m: in space, empty if
+    missing.
     """
     clocks = clocks or {}
     parts = [
@@ -136,15 +130,10 @@ def events(
 ) -> pd.DataFrame:
     """Return T-poses, claps, and times at which hands come together without a clap.
 
-    Clocks are those of `wrists`.
-
-    Returns
-    -------
-    rows : DataFrame
-        source; event: `tpose_start`, `tpose_stop`, `clap` or `none`; number: of the T-pose, from 1;
-        time_s: on the reference clock; own_time_s; uncertainty_s: of claps; used: whether the clap
-        counts or it belongs to a T-pose; why: if not used. A source without a T-pose has one row
-        with the reason; no error is raised.
+    Columns: source; event: `tpose_start`, `tpose_stop`, `clap` or `none`; number: of the T-pose,
+    from 1; time_s: on the reference clock, by the clocks of `wrists`; own_time_s; uncertainty_s: of
+    claps; used: whether the clap counts or it belongs to a T-pose; why: if not used. A source
+    without a T-pose has one row with the reason; no error is raised.
     """
     clocks = clocks or {}
     rows = [row for motion in motions for row in _events(motion)]

@@ -75,21 +75,11 @@ class TPose:
 def find(
     motion: DeviceMotion, *, least_s: float = LEAST_S, limits: Mapping[str, float] | None = None
 ) -> list[TPose]:
-    """Find all T-poses of a take, in order of time, one or more.
+    """Find all T-poses of a take, one or more, in order of time.
 
-    Parameters
-    ----------
-    motion : DeviceMotion
-        Frames that nobody performed are ignored.
-    least_s : float
-        Least duration.
-    limits : dict of str to float, optional
-        In place of some of `LIMITS`.
-
-    Raises
-    ------
-    InputError
-        If there is none; the message tells what came nearest, and when.
+    Frames that nobody performed are ignored. A T-pose lasts at least `least_s`; `limits` replace
+    some of `LIMITS`. Raise InputError if there is none; the message tells what came nearest, and
+    when.
     """
     limits = LIMITS | dict(limits or {})
     measures = measure(motion)

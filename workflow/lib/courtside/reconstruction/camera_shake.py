@@ -28,19 +28,12 @@ DONE_RAD = 1e-10  # far below any measurement
 
 
 def camera_turns(camera: Camera, table: DataFrame) -> NDArray:
-    """Return the rotation of the camera in each frame.
+    """Return the rotation vector (T, 3), radians, of the camera in each frame.
 
-    Returns
-    -------
-    shaken_from_still : (T, 3) float
-        Rotation vector, radians, from the camera axes as calibrated to those in the frame; NaN
-        where the shake is unknown.
-
-    Notes
-    -----
-    The model is a pure rotation: when the picture moves by ten pixels, the camera's centre moves by
-    about a millimetre. The rotation is the one that moves the picture's centre, and turns the
-    content there, as measured (Newton's method through the lens). Zoom is ignored.
+    It leads from the camera axes as calibrated to those in the frame, and is NaN where the shake is
+    unknown. The model is a pure rotation: when the picture moves by ten pixels, the camera's centre
+    moves by about a millimetre. The rotation is the one that moves the picture's centre, and turns
+    the content there, as measured (Newton's method through the lens). Zoom is ignored.
     """
     measured = np.column_stack(
         [table.shift_x_px, table.shift_y_px, np.radians(table.rotation_deg)]

@@ -243,18 +243,12 @@ def lengths(xyz: NDArray, joints: Sequence[str]) -> dict[tuple[str, str], float]
 def keep(points: Keypoints3D) -> Keypoints3D:
     """Move joints, as far as their uncertainty allows, so that limbs keep their length.
 
-    Returns
-    -------
-    points : Keypoints3D
-        With changed `xyz` of shoulders, elbows, wrists, hips, knees and ankles; missing joints and
-        limbs without a length (`lengths`) stay. The covariance stays as an upper bound: the lengths
-        come from the same joints, so wrong joints give wrong lengths.
-
-    Notes
-    -----
-    In each frame, the most probable places of a chain's three joints given their measured places,
-    their covariance (of keypoints and cameras) and the lengths: Gauss-Newton on the squared
-    Mahalanobis distances and the squared relative errors of length over `LENGTH_SIGMA`.
+    `xyz` of shoulders, elbows, wrists, hips, knees and ankles changes; missing joints and limbs
+    without a length (`lengths`) stay. In each frame these are the most probable places of a chain's
+    three joints given their measured places, their covariance (of keypoints and cameras) and the
+    lengths: Gauss-Newton on the squared Mahalanobis distances and the squared relative errors of
+    length over `LENGTH_SIGMA`. The covariance stays as an upper bound: the lengths come from the
+    same joints, so wrong joints give wrong lengths.
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d + np.nan_to_num(points.covariance_camera)

@@ -34,18 +34,12 @@ def common_times(views: Sequence[Keypoints2D], clocks: Sequence[Clock] | None = 
 def resample(
     view: Keypoints2D, time_s: NDArray, clock: Clock | None = None
 ) -> tuple[NDArray, NDArray]:
-    """Interpolate one camera's keypoints at times (T,) of the reference clock.
+    """Return one camera's xy (P, T, J, 2) and score (P, T, J) at times (T,) of the reference clock.
 
-    Returns
-    -------
-    xy, score : (P, T, J, 2) float, (P, T, J) float
-        NaN where a neighbouring frame is missing: gaps are not bridged. The score is the lower one.
-
-    Notes
-    -----
-    A cubic through the two frames before and the two after (Catmull & Rom 1974), a line where the
-    outer ones are missing: at 30 frames per second the line alone is 3 cm off at the turning point
-    of a wrist with 200 m/s2.
+    They are NaN where a neighbouring frame is missing: gaps are not bridged. The score is the lower
+    one. The interpolant is a cubic through the two frames before and the two after (Catmull & Rom
+    1974), a line where the outer ones are missing: at 30 frames per second the line alone is 3 cm
+    off at the turning point of a wrist with 200 m/s2.
     """
     own, known = (clock or Clock()).from_reference(time_s), view.time_s
     step_s = float(np.median(np.diff(known))) if len(known) > 1 else 1.0

@@ -207,18 +207,10 @@ MOST_CANDIDATES = 5  # with this many other offsets, the offset is unknown
 
 @dataclass(frozen=True)
 class Placed:
-    """Coarse offset of one camera.
+    """Coarse offset `offset_s` of one camera, to the step of the scan.
 
-    Attributes
-    ----------
-    offset_s : float
-        To the step of the scan.
-    candidates_s : tuple of float
-        Other offsets that the recording does not rule out.
-    distinct : float
-        Standard deviations between the best offset and the next one.
-    through : tuple of int
-        Cameras that it was compared with.
+    `candidates_s` are other offsets that the recording does not rule out, `distinct` the standard
+    deviations between the best offset and the next one, `through` the cameras it was compared with.
     """
 
     offset_s: float
@@ -232,18 +224,10 @@ def place(
 ) -> dict[int, Placed]:
     """Find coarse offsets of all cameras against camera 0.
 
-    Parameters
-    ----------
-    scan : callable
-        `scan(a, b, lags_s)` returns the loss (N, L) of camera b against a, at N times of camera a
-        and offsets of b's clock against a's; NaN where they have nothing in common.
-    max_offset_s, step_s : float
-        The offsets tried.
-
-    Returns
-    -------
-    placed : dict of int to Placed
-        In the order of placing, camera 0 first, without cameras that no other can be compared with.
+    `scan(a, b, lags_s)` returns the loss (N, L) of camera b against a, at N times of camera a and
+    offsets of b's clock against a's; NaN where they have nothing in common. Offsets up to
+    `max_offset_s` are tried in steps of `step_s`. The result is in the order of placing, camera 0
+    first, without cameras that no other can be compared with.
     """
     count = int(np.ceil(max_offset_s / step_s))
     offsets_s = step_s * np.arange(-count, count + 1)

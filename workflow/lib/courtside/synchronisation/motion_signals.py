@@ -100,18 +100,11 @@ class Signals:
 
 
 def common_axes(motions: Sequence[DeviceMotion], spells: Sequence[TPose]) -> NDArray:
-    """Return three directions in the frames of two devices along which noise is uncorrelated.
+    """Return three directions (2, 3, 3) in two devices' frames along which noise is uncorrelated.
 
-    Parameters
-    ----------
-    spells : sequence of two TPose
-        Of the same T-pose: the body's axes join the devices' frames.
-
-    Returns
-    -------
-    axes : (2, 3, 3) float
-        Rows are directions in each device's frame: the principal axes of the noise of both at rest.
-        They separate a camera's depth from width and height wherever it stood.
+    Rows are directions in each device's frame: the principal axes of the noise of both at rest, in
+    the two `spells` of the same T-pose, whose body axes join the devices' frames. They separate a
+    camera's depth from width and height wherever it stood.
     """
     rows, noise = [], np.zeros((3, 3))
     for motion, spell in zip(motions, spells, strict=True):

@@ -243,27 +243,11 @@ def unknown_turn(n_matches: int = 0) -> Fit:
 def fit_turn(places: NDArray, moved_px: NDArray, shape: tuple[int, ...], n_corners: int) -> Fit:
     """Find the movement that tracked points agree on.
 
-    Parameters
-    ----------
-    places : (N, 2) float
-        From the picture's centre, half of its longer side as unit.
-    moved_px : (N, 2) float
-        Measured movement of each, px.
-    shape : (int, int)
-        Height and width of the picture, px.
-    n_corners : int
-        Number of corners that were searched.
-
-    Returns
-    -------
-    found : Fit
-        Unknown if fewer than `MIN_MATCHES` points or a quarter of those searched agree, or if those
-        do not spread over the picture.
-
-    Notes
-    -----
-    A similarity by RANSAC (Fischler & Bolles 1981) is the start of weighted least squares with
-    Tukey's weights.
+    Points were at `places` (N, 2) from the picture's centre, in half longer sides, and moved by
+    `moved_px` (N, 2); `shape` is height and width of the picture, px, and `n_corners` the number of
+    corners searched. The fit is unknown if fewer than `MIN_MATCHES` points or a quarter of those
+    searched agree, or if those do not spread over the picture. A similarity by RANSAC (Fischler &
+    Bolles 1981) is the start of weighted least squares with Tukey's weights.
     """
     if len(places) < MIN_MATCHES:
         return unknown_turn()

@@ -182,15 +182,8 @@ def _picture(frame: av.VideoFrame, reformatter: VideoReformatter, matrix: NDArra
 def display_matrix(path: Path, frame: av.VideoFrame) -> NDArray:
     """Read how a stored frame is turned and mirrored for display (ISO/IEC 14496-12, section 6.2.2).
 
-    Returns
-    -------
-    matrix : (2, 2) int
-        Of -1, 0 and 1: `xy_shown = xy_stored @ matrix`, up to a shift.
-
-    Raises
-    ------
-    InputError
-        If it is not a rotation by quarters; the message names `path`.
+    The matrix (2, 2) of -1, 0 and 1 gives `xy_shown = xy_stored @ matrix`, up to a shift. Raise
+    InputError, which names `path`, if it is not a rotation by quarters.
     """
     data = frame.side_data.get("DISPLAYMATRIX")
     if data is None:

@@ -21,17 +21,9 @@ def read(
 ) -> NDArray:
     """Read a picture (H, W) or (H, W, 3), upright by its EXIF orientation unless `flags` differ.
 
-    Parameters
-    ----------
-    flags : int
-        OpenCV's, such as `cv2.IMREAD_GRAYSCALE`.
-    what, advice : str
-        What is expected and what to do, for messages.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, empty, no picture, too damaged, or too large for the memory.
+    `flags` are OpenCV's, such as `cv2.IMREAD_GRAYSCALE`; `what` is expected and `advice` tells what
+    to do, for messages. Raise InputError if the file is missing, empty, no picture, too damaged, or
+    too large for the memory.
     """
     path = Path(path)
     return decode(

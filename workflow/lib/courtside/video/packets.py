@@ -86,15 +86,8 @@ class Listing:
 def list_packets(path: str | os.PathLike, *, stop_s: float | None = None) -> Listing:
     """List the whole frames of a video file by its packets, without decoding.
 
-    Parameters
-    ----------
-    stop_s : float or None
-        End of the wanted part, in seconds; a file cut short after that is accepted.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, no video, without usable time stamps, or ends before `stop_s`.
+    A file cut short after `stop_s`, the end of the wanted part, is accepted. Raise InputError if
+    the file is missing, no video, without usable time stamps, or ends before `stop_s`.
     """
     listing = _read_listing(Path(path))
     if not listing.problem:
@@ -219,10 +212,7 @@ def _declared_end_s(container, stream) -> float:
 def opened(path: Path) -> Iterator[tuple[av.container.InputContainer, av.VideoStream]]:
     """Open a video file, for the block, and choose its main stream of pictures.
 
-    Raises
-    ------
-    InputError
-        If the file is missing, empty, no video, or of a codec without a decoder.
+    Raise InputError if the file is missing, empty, no video, or of a codec without a decoder.
     """
     if not path.is_file():
         raise InputError(f"{path}: expected a video file, found none: correct the path")

@@ -178,12 +178,7 @@ def read_frame(path: str | os.PathLike, time_s: float) -> tuple[float, NDArray]:
 def write_png(path: str | os.PathLike, image: NDArray) -> None:
     """Write a picture (H, W, 3) BGR or (H, W) grey, uint8; the file appears only when whole.
 
-    Raises
-    ------
-    InputError
-        If the disk refuses it.
-    ValueError
-        If `image` is not such a picture.
+    Raise InputError if the disk refuses it, ValueError if `image` is not such a picture.
     """
     if image.dtype != np.uint8 or image.ndim not in (2, 3) or image.size == 0:
         raise ValueError(f"not an 8-bit picture: {image.dtype} {image.shape}")

@@ -180,21 +180,10 @@ def unknown(n_matches: int = 0) -> Shift:
 def measure_take(
     static: NDArray, frames: Iterable[tuple[float, NDArray]], first: int = 0
 ) -> pd.DataFrame:
-    """Measure the shake of a fixed camera over a take.
+    """Return the `records.cameras.shake_table` of a fixed camera over a take.
 
-    Parameters
-    ----------
-    static : (H, W, 3) uint8
-        Its static picture, BGR.
-    frames : iterable of (time_s, (H, W, 3) uint8)
-        The take, in order, such as from `courtside.video.reader.frames`.
-    first : int
-        Index in the file of the first frame.
-
-    Returns
-    -------
-    table : DataFrame
-        One row per frame, as `courtside.records.cameras.shake_table` describes it.
+    Its static picture is (H, W, 3) uint8, BGR; `frames` are the take's times and pictures in order,
+    such as from `reader.frames`, the first of which has the index `first` in the file.
     """
     tracker, rows = Tracker(static), []
     for frame_idx, (time_s, image) in enumerate(frames, start=first):

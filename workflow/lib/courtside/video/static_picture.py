@@ -117,11 +117,9 @@ def static_picture(
 
     Returns
     -------
-    image : (H, W, 3) uint8
-        The temporal median.
-    movement : Movement
-        From the first to the last third; unknown for fewer than three pictures, which are not
-        checked.
+    image, movement : (H, W, 3) uint8, Movement
+        The temporal median; the movement from the first to the last third, unknown for fewer than
+        three pictures, which are not checked.
 
     Raises
     ------

@@ -87,12 +87,8 @@ def extract(
 ) -> tuple[pd.DataFrame, list[NDArray]]:
     """Write frames, from `frames`, as PNG files named `%06d.png` by the frame's index.
 
-    Returns
-    -------
-    table : DataFrame
-        One row per frame: `frame_idx`, `time_s`, `name`, `sharpness`.
-    small : list of (h, 320) uint8
-        The same frames, grey, reduced by averaging (not enlarged).
+    Return a table with one row per frame (`frame_idx`, `time_s`, `name`, `sharpness`) and the same
+    frames, grey, reduced by averaging to a width of 320 px (not enlarged).
     """
     rows, small = [], []
     for frame_idx, time_s, image in found:

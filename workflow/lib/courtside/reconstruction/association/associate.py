@@ -120,20 +120,11 @@ def associate(
 
 
 def on_frames(index: NDArray, time_s: NDArray, frame_s: NDArray) -> NDArray:
-    """Transfer row indices from common times to a camera's own frames.
+    """Transfer row indices (K, T) of `associate` to a camera's own frames, as (K, F).
 
-    Parameters
-    ----------
-    index : (K, T) int
-        From `associate`, at the uniform common times `time_s` (T,).
-    frame_s : (F,) float
-        Times of the camera's frames on the same clock.
-
-    Returns
-    -------
-    index : (K, F) int
-        From the nearest common time. Where that one has no row, from the time on the other side
-        of the frame, unless that row belongs to another person by then.
+    The uniform common times `time_s` (T,) and the times `frame_s` (F,) of the frames are of one
+    clock. A frame gets the row of the nearest common time. Where that one has no row, it gets the
+    row of the time on the frame's other side, unless that row belongs to another person by then.
     """
     right = np.clip(np.searchsorted(time_s, frame_s), 0, len(time_s) - 1)
     left = np.maximum(right - 1, 0)

@@ -280,23 +280,11 @@ def along(time_s: NDArray, at_s: NDArray, xyz: NDArray) -> tuple[NDArray, NDArra
 
 
 def costs(camera: Camera, rows: Rows, path: NDArray, sigma_m: NDArray, wanted: NDArray) -> NDArray:
-    """Return the cost of assigning each frame of each row to each person.
+    """Return the cost (P, T, S + 1) of assigning each frame of each row to each person.
 
-    Parameters
-    ----------
-    rows : Rows
-        P rows of T frames.
-    path : (S, T, 3) float
-        Metres; NaN for a person without any place.
-    sigma_m : (S, T) float
-        From `along`.
-    wanted : (S,) bool
-        Persons who get rows that nobody else explains while only this view sees them.
-
-    Returns
-    -------
-    cost : (P, T, S + 1) float
-        The last column is nobody's; all zero where the row is absent.
+    The last column is nobody's; all are zero where the row is absent. Persons have a `path` (S, T,
+    3) m, NaN without any place, of standard deviation `sigma_m` (S, T) as `along` returns it;
+    `wanted` (S,) persons get rows that nobody else explains while only this view sees them.
     """
     count = len(path)
     cost = np.zeros((*rows.present.shape, count + 1))
