@@ -71,7 +71,7 @@ def test_forward_is_where_toes_point_and_out_is_the_joints_own_side():
 
 
 def test_shares_are_found_and_hold_for_bodies_of_another_size():
-    """The trunk is measured on the displaced body: the result differs from SHARES but removes them."""
+    """The trunk is that of the displaced body: the result is not SHARES but removes them."""
     true = bodies(400, seed=1)
     table = joint_correction.estimate([(displaced(true), true, None)], JOINTS, JOINTS)
     hips = table[table["joint"] == "hip"]

@@ -1,4 +1,4 @@
-"""Joints of one colour picture in 3D, by a depth camera or by the network alone.
+"""Joints of one colour picture lifted into 3D by a depth camera.
 
 lifting: lift_take, by_joint, summary (2D joints lifted by depth).
 surfaces: Sampling, Sampler (surfaces at the joints of one frame).

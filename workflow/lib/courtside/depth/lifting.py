@@ -110,15 +110,8 @@ def lift_take(
     z, z_body = _sampled(sampler, xy, view.time_s, depth_frames)
     joints_at = _behind_skin(rig.colour, xy, z, skin)
     chain = _chain(names, bones, is_trunk)
-    lengths = _lengths(joints_at[:, :, 0], chain)
-    xyz = np.full((*xy.shape[:2], 3), np.nan)
-    depth = np.full(xy.shape[:2], np.nan)
     radius_px = radius_m * rig.colour.K[0, 0]
-    for t in range(len(xy)):
-        chosen = _choose(joints_at[t], z[t], z_body[t], chain, lengths, is_trunk)
-        _uncover(chosen, xy[t], z[t], radius_px, chain, is_trunk)
-        for joint, surface in chosen.items():
-            xyz[t, joint], depth[t, joint] = joints_at[t, joint, surface], z[t, joint, surface]
+    xyz, depth = _placed(joints_at, xy, z, z_body, radius_px, chain, is_trunk)
     xyz = _drawn_back(xyz, names, beyond_m or {})
     missing = np.isnan(xyz[..., 0]) & (view.reason[0] == missing_reason.OK)
     motion = DeviceMotion(
@@ -131,6 +124,19 @@ def lift_take(
         performed=np.ones(len(xy), dtype=bool),
     )
     return motion, sampler.sigma_z(depth)
+
+
+def _placed(joints_at, xy, z, z_body, radius_px, chain, is_trunk) -> tuple[NDArray, NDArray]:
+    """Return the joints (T, J, 3) on their surfaces, and the depths (T, J) of these."""
+    lengths = _lengths(joints_at[:, :, 0], chain)
+    xyz = np.full((*xy.shape[:2], 3), np.nan)
+    depth = np.full(xy.shape[:2], np.nan)
+    for t in range(len(xy)):
+        chosen = _choose(joints_at[t], z[t], z_body[t], chain, lengths, is_trunk)
+        _uncover(chosen, xy[t], z[t], radius_px, chain, is_trunk)
+        for joint, surface in chosen.items():
+            xyz[t, joint], depth[t, joint] = joints_at[t, joint, surface], z[t, joint, surface]
+    return xyz, depth
 
 
 def by_joint(names: Sequence[str], table: Mapping[str, float]) -> NDArray:
@@ -165,7 +171,7 @@ def nearest_frames(
         yield best[1] if best is not None and close else None
 
 
-def _sampled(sampler: Sampler, xy, times_s, depth_frames) -> tuple[NDArray, NDArray]:
+def _sampled(sampler, xy, times_s, depth_frames) -> tuple[NDArray, NDArray]:
     """Return the surfaces (T, J, 3) and the depth of the body (T,), metres."""
     z, z_body = np.full((*xy.shape[:2], 3), np.nan), np.full(len(xy), np.nan)
     interval_s = np.median(np.diff(times_s)) if len(times_s) > 1 else 1.0

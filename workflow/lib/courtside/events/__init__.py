@@ -1,4 +1,4 @@
-"""T-poses and claps, found in every source, timed by the contact of the hands.
+"""T-poses and claps: found in every source, timed by the contact of the hands.
 
 tpose: find, rest, best, measure.
 claps: find, candidates, separation, wrist_distance.

@@ -1,4 +1,4 @@
-"""From 2D keypoints of several cameras to one 3D skeleton per person.
+"""From 2D keypoints of several cameras to 3D: clocks applied, sides, fusion, shake, correction.
 
 resampling: common_times, resample, nearest (each camera's clock applied).
 left_right: swapped_views, apply_swaps (sides that a network confused).

@@ -1,4 +1,4 @@
-"""Offsets and drifts of clocks: of cameras by the people they see, of devices by claps and motion.
+"""Offsets and drifts of clocks: cameras by what they see, devices by claps and motion.
 
 cameras: synchronise (all fixed cameras against the first), place (coarse offsets).
 devices: synchronise (all sources against the first), pair (claps of two devices).

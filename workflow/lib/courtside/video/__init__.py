@@ -1,4 +1,4 @@
-"""Video files and pictures of fixed cameras: the only room that uses PyAV.
+"""Moving pictures: reading, writing, frames of a walk, static pictures, movement of a fixed camera.
 
 reader: probe, frame_times, frames, extract_frames, read_frame, write_png, sharpness.
 packets, decoder: list_packets, pictures (every frame checked, damage reported).
