@@ -1,4 +1,4 @@
-"""One person of one camera: who it is, and the metric body that the network estimates by itself."""
+"""The main person of a single camera, and the network's own estimate of the metric body."""
 
 from dataclasses import replace
 

@@ -37,7 +37,7 @@ class Noise:
         rest = still - np.polyval(np.polyfit(at, still, 1), at)
         own = (rest**2).sum()
         ratio = (rest[1:] * rest[:-1]).sum() / own if own > 0 else 0.0
-        # A short series looks less like itself than it is (Kendall 1954).
+        # The autocorrelation of a short series is biased low (Kendall 1954).
         ratio = (len(still) * ratio + 1) / (len(still) - 4)
         return cls(float(np.sqrt(own / (len(still) - 2))), float(np.clip(ratio, 0.0, MOST_MEMORY)))
 

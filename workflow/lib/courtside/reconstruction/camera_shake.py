@@ -97,7 +97,7 @@ def _solve(camera: Camera, measured: NDArray) -> NDArray:
     directions = _directions(camera, centre + arms)
     f = np.diag(camera.K)[:2]
     x, y, turn = measured.T
-    # Near the axis: what a small turn about the axes right, down and forward moves.
+    # Start: small rotations about the axes right, down and forward, near the optical axis.
     vectors = np.column_stack([-y / f[1], x / f[0], turn])
     for _ in range(N_STEPS):
         moved = _project(camera, directions @ Rotation.from_rotvec(vectors).as_matrix().mT)
@@ -300,7 +300,7 @@ def _split(level: NDArray, near: int, n: int) -> int:
     after = np.median(level[near:stop], axis=0)
     part = level[max(near - n // 2, 0) : min(near + n // 2 + 1, len(level))]
     gain = np.linalg.norm(part - after, axis=1) - np.linalg.norm(part - before, axis=1)
-    # A frame nearer to what is before adds to the sum, one nearer to what is after takes away.
+    # A frame nearer to the level before adds to the sum, one nearer to the level after subtracts.
     total = np.concatenate([[0.0], np.cumsum(gain)])
     return max(near - n // 2, 0) + int(total.argmax())
 

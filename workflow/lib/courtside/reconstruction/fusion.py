@@ -233,9 +233,8 @@ def with_cameras(
 
     Notes
     -----
-    # ASSUME: the error of a calibration varies little over a body, and little when single joints
-    # use
-    fewer views than the person does.
+    # ASSUME: the error of a calibration varies little over a body, and little if single joints use
+    # fewer views than the person does.
     """
     placed = np.isfinite(points.xyz)
     count = placed.sum(axis=2)

@@ -164,7 +164,7 @@ class _Group:
         exchanged = (np.arange(2 ** len(free))[:, None] >> np.arange(len(free))) & 1 == 1
         trials = np.repeat(flags[None], len(exchanged), axis=0)
         trials[:, free] = exchanged[..., None]
-        # With no view given, a reading and its mirror image contradict themselves alike.
+        # If all views are free, a hypothesis and its mirror image have the same disagreement.
         n_costed = len(trials) // 2 if len(free) == len(used) else len(trials)
         cost = disagreement(
             [self.cameras[at] for at in used],

@@ -165,7 +165,7 @@ def _whole_packets(container, stream) -> tuple[list[Packet], int, str]:
                 packets.append((packet.pts, packet.dts, packet.duration, packet.is_keyframe))
     except FFmpegError as error:
         return packets, n_read, f"the file breaks off ({error.strerror})"
-    # The decoder judges a damaged packet amid others; at the end it is where the file was cut.
+    # The decoder judges damaged packets, but a damaged last one shows where the file was cut.
     if corrupt:
         return packets[:-1], n_read, f"packet {n_read - 1} is cut off and ends the file"
     return packets, n_read, ""

@@ -93,7 +93,7 @@ def _off_course(centre: NDArray) -> NDArray:
     bend = centre[:, 2:] - 2 * centre[:, 1:-1] + centre[:, :-2]
     off[:, 2:] = np.nan_to_num(np.linalg.norm(bend, axis=-1))
     step = np.linalg.norm(np.diff(centre, axis=1), axis=-1)
-    # After a gap there is no course yet: then the place itself must not jump twice as far.
+    # After a gap there is no course yet: then the limit is twice as far, from the last place.
     alone = np.isfinite(step[:, 1:]) & ~np.isfinite(bend[..., 0])
     off[:, 2:] = np.where(alone, step[:, 1:] / 2, off[:, 2:])
     return off
