@@ -1,0 +1,50 @@
+"""Documents name only files that exist; the glossary says where every term lives."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+
+
+def tracked(*patterns):
+    done = subprocess.run(
+        ["git", "ls-files", *patterns], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    return [ROOT / name for name in done.stdout.splitlines() if (ROOT / name).is_file()]
+
+
+MARKDOWN = tracked("*.md")
+GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+
+
+def name(path):
+    return path.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("path", MARKDOWN, ids=name)
+def test_every_link_leads_to_a_file_or_folder(path):
+    links = LINK.findall(path.read_text(encoding="utf-8"))
+    assert [link for link in links if not (path.parent / link).exists()] == []
+
+
+def test_every_term_of_the_glossary_says_where_it_lives():
+    entries = re.split(r"^- (?=\*\*)", GLOSSARY, flags=re.M)[1:]
+    assert len(entries) > 50
+    assert [entry.split("**")[1] for entry in entries if not LINK.search(entry)] == []
+
+
+def test_terms_stand_once_and_in_alphabetical_order():
+    parts = [re.findall(r"^- \*\*(.+?)\*\*", part, flags=re.M) for part in GLOSSARY.split("\n## ")]
+    terms = [term for part in parts for term in part]
+    assert len(terms) == len(set(terms))
+    for part in parts:
+        assert part == sorted(part, key=str.lower)
+
+
+def test_the_readme_and_the_architecture_lead_to_the_glossary():
+    for document in (ROOT / "README.md", ROOT / "docs" / "architecture.md"):
+        assert "glossary.md" in document.read_text(encoding="utf-8")
