@@ -1,8 +1,10 @@
+// @ts-check
 "use strict";
 // The clicking page: what is marked where, undone and redone, saved and loaded.
 (() => {
   const given = courtside.data("clicking");
   const { court, frames, ends } = given;
+  /** @type {(id: string) => any} every page holds its elements, of whatever kind */
   const byId = (id) => document.getElementById(id);
   const KEEP = `courtside clicks ${given.stamp}`;
   const NEAR = 12; // screen px per picture px when the view goes to a point
@@ -76,7 +78,7 @@
     change([{ frame: frame().id, name, before, after }]);
   }
 
-  function place([x, y]) {
+  function place(/** @type {number[]} */ [x, y]) {
     const { size } = frame();
     if (x < -0.5 || y < -0.5 || x > size[0] - 0.5 || y > size[1] - 0.5) return say("That is outside the picture.");
     set(chosen, { x: rounded(x), y: rounded(y) });
@@ -294,7 +296,7 @@
       const cells = [item.name, placed(mark) ? `${mark.x.toFixed(1)}, ${mark.y.toFixed(1)}` : mark ? "not visible" : proposalOf(one, item.name) ? "proposed" : "–",
         off !== undefined && off !== null && fit.spare > 0 ? `${off.toFixed(1)} px` : ""];
       for (const words of cells) row.append(Object.assign(document.createElement("span"), { textContent: words }));
-      if (fit && fit.worst && fit.worst.suspicious && fit.worst.name === item.name) row.lastChild.className = "worst";
+      if (fit && fit.worst && fit.worst.suspicious && fit.worst.name === item.name) row.lastElementChild.className = "worst";
       // Only where the list scrolls by itself: on a narrow screen the page would leave the picture.
       const scrolls = getComputedStyle(list.closest(".side")).overflowY === "auto";
       if (item.name === chosen && scrolls && document.activeElement === document.body) row.scrollIntoView({ block: "nearest" });
@@ -368,13 +370,14 @@
   const chords = { z: (shift) => (shift ? redo() : undo()), y: () => redo(), s: () => save(current()) };
 
   document.addEventListener("keydown", (event) => {
-    if (event.altKey || event.target.closest("input, select, textarea, summary")) return;
+    const target = /** @type {Element} */ (event.target);
+    if (event.altKey || target.closest("input, select, textarea, summary")) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    const onButton = event.target.closest("button") && (key === "Enter" || key === " ");
+    const onButton = target.closest("button") && (key === "Enter" || key === " ");
     let action = null;
     if (event.ctrlKey || event.metaKey) action = chords[key] && (() => chords[key](event.shiftKey));
     else if (arrows[key]) action = () => nudge(...arrows[key].map((value) => value * (event.shiftKey ? 1 : FINE_PX)));
-    else if (/^[1-9]$/.test(key)) action = frames[key - 1] && (() => open(key - 1));
+    else if (/^[1-9]$/.test(key)) action = frames[Number(key) - 1] && (() => open(Number(key) - 1));
     else if (!onButton) action = keys[key];
     if (!action) return;
     event.preventDefault();

@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 // Drawings of the court: from above with its named points, and the chosen point magnified with the edges it names.
 const clickCourt = (() => {
@@ -71,7 +72,7 @@ const clickCourt = (() => {
     const left = x - 1.4 * dot - w, right = x + 1.4 * dot, sides = toLeft ? [left, right] : [right, left];
     const up = y - 0.7 * dot, down = y + 0.7 * dot + h, over = y - 1.5 * dot, under = y + 1.5 * dot + h;
     const tried = [...sides.flatMap((u) => [[u, up], [u, down]]), [x - w / 2, over], [x - w / 2, under], [sides[0], over - h], [sides[0], under + h]];
-    const box = ([u, v]) => [u, v - h, u + w, v];
+    const box = (/** @type {number[]} */ [u, v]) => [u, v - h, u + w, v];
     const meets = (a) => taken.some((b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]);
     const best = tried.find((corner) => !meets(box(corner))) || tried[0];
     taken.push(box(best));

@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 // How well the clicks of one picture fit the court: a homography of floor points, or a camera with a lens.
 const clickFit = (() => {

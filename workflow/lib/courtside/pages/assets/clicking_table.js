@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 // Tables of clicks as text: the same columns, checks and words as the workflow's own reader.
 const clickTables = (() => {
@@ -34,7 +35,10 @@ const clickTables = (() => {
     return rows;
   }
 
-  // Returns rows as objects; throws one line that says what is wrong and where.
+  /**
+   * Returns rows as objects; throws one line that says what is wrong and where.
+   * @returns {Record<string, any>[]}
+   */
   function read(name, text, columns) {
     const lines = cells(text).map((row, at) => [at + 1, row]).filter(([, row]) => row.some(Boolean));
     const header = lines.length ? lines[0][1] : [];

@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 // A picture on a canvas: zoom, pan, pinch, pixel grid, marks, magnifier. Pixel (0, 0) has its middle at (0, 0).
 const clickView = (() => {
@@ -15,8 +16,8 @@ const clickView = (() => {
     let showLoupe = true, waiting = false;
 
     const box = () => [canvas.clientWidth, canvas.clientHeight];
-    const toScreen = ([x, y]) => [(x + 0.5) * scale + shift[0], (y + 0.5) * scale + shift[1]];
-    const toPicture = ([u, v]) => [(u - shift[0]) / scale - 0.5, (v - shift[1]) / scale - 0.5];
+    const toScreen = (/** @type {number[]} */ [x, y]) => [(x + 0.5) * scale + shift[0], (y + 0.5) * scale + shift[1]];
+    const toPicture = (/** @type {number[]} */ [u, v]) => [(u - shift[0]) / scale - 0.5, (v - shift[1]) / scale - 0.5];
     const least = () => Math.min(box()[0] / size[0], box()[1] / size[1]) * 0.9;
     const ratio = () => window.devicePixelRatio || 1;
 
@@ -64,7 +65,7 @@ const clickView = (() => {
     }
 
     // The middle stays free, so that what is marked can be seen.
-    function paintMark(ctx, mark, [u, v], big = 1) {
+    function paintMark(ctx, mark, /** @type {number[]} */ [u, v], big = 1) {
       const colour = mark.chosen ? MARK : { placed: PLACED, proposed: PROPOSED, predicted: PREDICTED }[mark.kind];
       const reach = (mark.chosen ? 13 : 9) * big, free = (mark.kind === "placed" ? 3 : 5) * big;
       const outline = () => {
@@ -116,7 +117,7 @@ const clickView = (() => {
       loupe.classList.toggle("left", at[0] > box()[0] / 2);
     }
 
-    function zoomAt(factor, [u, v]) {
+    function zoomAt(factor, /** @type {number[]} */ [u, v]) {
       const [x, y] = toPicture([u, v]);
       scale = Math.min(Math.max(scale * factor, least()), MOST);
       shift = [u - (x + 0.5) * scale, v - (y + 0.5) * scale];

@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 // What every page may use: data and pictures inside the file, storage that may be forbidden, saving and copying.
 const courtside = (() => {

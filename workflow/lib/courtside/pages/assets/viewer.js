@@ -1,5 +1,15 @@
+// @ts-check
 "use strict";
 /* The 3D viewer: what is shown, when, and how keys, hand and clock change it. */
+
+/**
+ * The element of an id; of any kind, for the page holds it.
+ * @param {string} id
+ * @returns {any}
+ */
+function elementOf(id) {
+  return document.getElementById(id);
+}
 
 /** The eight corners of a box. */
 function corners(low, high) {
@@ -27,7 +37,9 @@ class Viewer {
       boneColour: (layer, ...where) => this.boneColour(layer, ...where),
       trailColour: (layer, joint) => (this.view.colour === "side" ? this.sideColour(joint) : this.view.layerColour(layer)),
     };
-    Object.assign(this, { playing: false, speed: 1, stale: true });
+    this.playing = false;
+    this.speed = 1;
+    this.stale = true;
     this.eye = new Eye();
     this.painter = new Painter(document.getElementById("canvas"), this.eye, this.scene);
     this.eye.fit(this.around());
@@ -126,7 +138,7 @@ class Viewer {
     this.stale = false;
     if (this.view.follow) this.follow();
     this.painter.frame(this.view);
-    const by = (id) => document.getElementById(id);
+    const by = elementOf;
     by("slider").value = this.frame;
     by("slider").setAttribute("aria-valuetext", `${this.view.time_s.toFixed(2)} seconds`);
     by("clock").textContent = `${this.view.time_s.toFixed(3)} s, frame ${this.frame}`;
@@ -164,8 +176,8 @@ class Viewer {
 
   choose(person, joint) {
     this.view.picked = person && joint ? { person, joint } : null;
-    document.getElementById("person").value = person || "";
-    document.getElementById("joint").value = joint || "";
+    elementOf("person").value = person || "";
+    elementOf("joint").value = joint || "";
     this.changed();
   }
 
@@ -183,7 +195,7 @@ class Viewer {
 }
 
 function wireTime(viewer) {
-  const by = (id) => document.getElementById(id);
+  const by = elementOf;
   by("slider").max = viewer.n_frames - 1;
   by("slider").addEventListener("input", () => { viewer.playing = false; viewer.goTo(Number(by("slider").value)); });
   by("play").addEventListener("click", () => (viewer.playing ? viewer.pause() : viewer.play()));
@@ -194,7 +206,7 @@ function wireTime(viewer) {
 
 function wirePanel(viewer) {
   const { view, scene } = viewer;
-  const by = (id) => document.getElementById(id);
+  const by = elementOf;
   const set = (key) => (value) => { view[key] = value; viewer.changed(); };
   by("layers").replaceChildren(...view.layers.map((layer) =>
     box(layer.name, layer.shown, (on) => { layer.shown = on; viewer.changed(); }, view.layerColour(layer))));
@@ -229,7 +241,7 @@ function wirePanel(viewer) {
 
 function wireJoints(viewer) {
   const { view } = viewer;
-  const by = (id) => document.getElementById(id);
+  const by = elementOf;
   const joints = [...new Set(view.layers.flatMap((layer) => layer.joints))];
   const persons = [...new Set(view.layers.flatMap((layer) => layer.persons))];
   options(by("person"), persons.map((name) => [name, name]), persons[0]);
@@ -247,7 +259,7 @@ function wireJoints(viewer) {
 function wireKeys(viewer) {
   const { eye, view } = viewer;
   const second = () => Math.max(1, Math.round(1 / viewer.step_s));
-  const moved = (act) => () => { act(); document.getElementById("view").value = "free"; viewer.changed(); };
+  const moved = (act) => () => { act(); elementOf("view").value = "free"; viewer.changed(); };
   const step = (count) => { viewer.pause(); viewer.goTo(viewer.frame + count); };
   const keys = {
     " ": () => (viewer.playing ? viewer.pause() : viewer.play()),
@@ -259,14 +271,17 @@ function wireKeys(viewer) {
     w: moved(() => eye.turn(0, 0.07)), s: moved(() => eye.turn(0, -0.07)),
     "+": moved(() => eye.zoom(0.87)), "-": moved(() => eye.zoom(1.15)), f: () => viewer.look("all"),
   };
+  /** @returns {NodeListOf<HTMLInputElement>} */
+  const switches = () => document.querySelectorAll("#layers input");
   document.addEventListener("keydown", (event) => {
-    const own = event.target.closest("select, textarea, input:not([type=range], [type=checkbox])");
-    const presses = event.key === " " && event.target.closest("button, input[type=checkbox]");
+    const target = /** @type {Element} */ (event.target);
+    const own = target.closest("select, textarea, input:not([type=range], [type=checkbox])");
+    const presses = event.key === " " && target.closest("button, input[type=checkbox]");
     if (own || presses || event.ctrlKey || event.metaKey || event.altKey) return;
     const layer = view.layers[Number(event.key) - 1];
     const act = keys[event.key] || keys[event.key.toLowerCase()];
     if (act) act(event);
-    else if (event.key >= "1" && event.key <= "9" && layer) document.querySelectorAll("#layers input")[layer.index].click();
+    else if (event.key >= "1" && event.key <= "9" && layer) switches()[layer.index].click();
     else return;
     event.preventDefault();
   });
@@ -277,7 +292,7 @@ function wireHand(viewer) {
   const canvas = painter.canvas;
   const fingers = new Map();
   let travelled = 0;
-  const moved = () => { document.getElementById("view").value = "free"; viewer.changed(); };
+  const moved = () => { elementOf("view").value = "free"; viewer.changed(); };
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("pointerdown", (event) => {
     canvas.setPointerCapture(event.pointerId);

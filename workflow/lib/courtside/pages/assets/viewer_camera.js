@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 /* The eye that looks at the scene: it circles about a target, z stays up. */
 

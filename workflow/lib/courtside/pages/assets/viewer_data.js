@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 /* Unpacks what pages/viewer/packing.py and pages/viewer/layers.py pack. */
 
@@ -29,6 +30,20 @@ function sizeOf(level) {
 
 /** One method's skeletons over time. */
 class Layer {
+  /** @type {string} */ name;
+  /** @type {string[]} */ joints;
+  /** @type {string[]} */ persons;
+  /** @type {number[]} */ time_s;
+  /** @type {number} number of frames */ length;
+  /** @type {number} place among the layers of the page */ index;
+  /** @type {number[]} the point, metres, that places are packed about */ middle;
+  /** @type {Int16Array} */ xyz;
+  /** @type {Int16Array} 1 where the joint is known */ known;
+  /** @type {Int16Array} */ reason;
+  /** @type {Int16Array | undefined} */ ellipsoid;
+  /** @type {Int16Array | undefined} */ error_px;
+  /** @type {Int16Array | undefined} */ n_views;
+
   static async unpack(content, middle, index) {
     const layer = new Layer();
     Object.assign(layer, content, { middle, index, length: content.time_s.length });

@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 /* Draws the scene on a 2D canvas: no graphics processor is asked for anything. */
 
@@ -18,7 +19,12 @@ function shade(value, most) {
 
 class Painter {
   constructor(canvas, eye, scene) {
-    Object.assign(this, { canvas, eye, scene, context: canvas.getContext("2d") });
+    /** @type {HTMLCanvasElement} */
+    this.canvas = canvas;
+    /** @type {Eye} */
+    this.eye = eye;
+    this.scene = scene;
+    this.context = canvas.getContext("2d");
     this.drawn = [];
     this.adapt();
   }

@@ -1,3 +1,4 @@
+// @ts-check
 "use strict";
 /* The words beside the picture: switches, legend, and the numbers of the picked joint. */
 
