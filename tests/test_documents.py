@@ -1,4 +1,4 @@
-"""Documents name only files that exist; the glossary says where every term lives."""
+"""Documents name only files that exist, their lines are short, the glossary leads to every term."""
 
 import re
 import subprocess
@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+LONGEST = 100
 LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 
 
@@ -48,3 +49,20 @@ def test_terms_stand_once_and_in_alphabetical_order():
 def test_the_readme_and_the_architecture_lead_to_the_glossary():
     for document in (ROOT / "README.md", ROOT / "docs" / "architecture.md"):
         assert "glossary.md" in document.read_text(encoding="utf-8")
+
+
+def long_lines(path):
+    """Return the lines above the limit; tables, pictures, code and links may be longer."""
+    found, code = [], False
+    for line in path.read_text(encoding="utf-8").splitlines():
+        code ^= line.lstrip().startswith("```")
+        exempt = code or line.lstrip().startswith(("|", "![")) or " " not in line.strip()
+        exempt = exempt or re.fullmatch("`[^`]*`", line)
+        if len(line) > LONGEST and not exempt:
+            found.append(line)
+    return found
+
+
+@pytest.mark.parametrize("path", [*MARKDOWN, *tracked("workflow/report/*.rst")], ids=name)
+def test_lines_are_short(path):
+    assert long_lines(path) == []
