@@ -1,6 +1,7 @@
 """Every cited work is in docs/references.bib, and every work there is cited."""
 
 import ast
+import html
 import re
 import subprocess
 import tokenize
@@ -17,6 +18,7 @@ AUTHOR_YEAR = re.compile(rf"(?<![\w-])({AUTHORS})(?:['’]s)?,? [(\[]?({YEAR}(?:
 KEY_IN_BRACKETS = re.compile(rf"\[([A-Za-z]+{YEAR})\b")
 NOT_AUTHORS = {"In", "Since", "From", "Until", "Before", "After", "College"}
 VENUES = {"journal", "booktitle", "publisher", "institution", "howpublished", "note"}
+SUFFIXES = {".py", ".smk", ".rst", ".md", ".html", ".yaml", ".csv"}
 CITING = ["workflow", "docs", "config", "benchmarks", "README.md", "CHANGELOG.md"]
 
 
@@ -75,7 +77,7 @@ def prose(path):
     if path.suffix == ".py":
         pieces = [*strings(ast.parse(text)), *comments(path)]
     else:
-        pieces = re.sub(r"^ *#+ ", "", text, flags=re.M).split("\n\n")
+        pieces = re.sub(r"^ *#+ ", "", html.unescape(text), flags=re.M).split("\n\n")
     for piece in pieces:
         yield " ".join(piece.split())
 
@@ -98,7 +100,7 @@ def cited():
     found = {}
     for name in done.stdout.splitlines():
         path = ROOT / name
-        if path.suffix not in {".py", ".smk", ".rst", ".md", ".yaml", ".csv"} or not path.is_file():
+        if path.suffix not in SUFFIXES or not path.is_file():
             continue
         for text in prose(path):
             for named, year in citations(text):
