@@ -97,7 +97,7 @@
     if (!proposal) return say(`There is no proposal for ${chosen} here.`);
     if (placed(markOf(frame(), chosen))) return say(`${chosen} is marked already; delete it first to take the proposal.`);
     const xy = [proposal.x, proposal.y];
-    if (view.scale() < LOOKED || !view.sees(xy)) { // nobody confirms what was not looked at
+    if (view.scale() < LOOKED || !view.sees(xy)) { // look at a proposal before confirming it
       view.centre(xy, Math.max(view.scale(), NEAR));
       return say(`Look at ${chosen} from near, then confirm again.`);
     }

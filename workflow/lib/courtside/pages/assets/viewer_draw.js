@@ -97,7 +97,7 @@ class Painter {
   cameras() {
     for (const camera of this.scene.cameras) {
       const away = Math.hypot(...camera.centre.map((value, axis) => value - this.eye.place[axis]));
-      if (away < HIDDEN_M) continue; // one looks through it
+      if (away < HIDDEN_M) continue; // the view is through this camera
       const corners = camera.corners;
       corners.forEach((corner) => this.line([camera.centre, corner], this.ink, 1, { alpha: 0.65 }));
       this.line(corners, this.ink, 1, { closed: true, fill: this.ink + "18", alpha: 0.65 });
