@@ -1,1 +1,10 @@
-"""What rules hand to each other: files with their units, checked when read."""
+"""Records that rules exchange: files with stated units, checked when read.
+
+npz
+    `read`, `write`: arrays with stated keys, shapes and kinds; `plain`: fields of a record.
+tables
+    `read`, `write`: CSV tables.
+
+Folders: `keypoints` (skeletons, people), `cameras` (clicks, frames, footage), `devices` (motion,
+clocks), `truth` (of simulated sessions; for evaluation only).
+"""

@@ -1,56 +1,51 @@
-"""Reading and writing npz files whose keys, shapes and types are stated and checked.
+"""Read and write npz files whose keys, shapes and types are stated and checked.
 
-Every file holds `format` (what it is, with a version) beside its arrays, and never a pickled object.
+Every file holds `format` (what it is, with a version) beside its arrays, and never a pickled
+object.
 """
 
+from collections.abc import Mapping
+from os import PathLike
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.study.errors import InputError, reading
 from courtside.study.execution.files import atomic
 
+# For each key its kind (of `KINDS`) and the names of its dimensions: one name means one length
+# throughout the file, a digit string a fixed length.
+Spec = Mapping[str, tuple[str, tuple[str, ...]]]
 KINDS = {"float": np.floating, "int": np.integer, "bool": np.bool_, "str": np.str_}
 
 
-def write(path, form, spec, arrays):
-    """Write arrays under their names, after checking them.
+def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, ArrayLike]) -> None:
+    """Write arrays under their names, after checking them; the file appears only when whole.
 
     Parameters
     ----------
-    path : str or Path
-        The npz file; it appears under its name only when whole.
     form : str
         What the file is and its version, such as `"courtside keypoints2d 1"`.
-    spec : dict of str to (str, tuple of str)
-        For each key the kind (`float`, `int`, `bool`, `str`) and the names of its dimensions; one
-        name means one length throughout the file, a digit string a fixed length.
     arrays : dict of str to array_like
         One array for each key of `spec`.
 
     Raises
     ------
     ValueError
-        If a key is missing or unknown, a kind or shape is not as stated, or `time_s` does not increase.
+        If a key is missing or unknown, a kind or shape is not as stated, or `time_s` does not
+        increase.
     """
-    arrays = {key: np.asarray(value) for key, value in arrays.items()}
-    fault = _fault(spec, arrays)
+    checked = {key: np.asarray(value) for key, value in arrays.items()}
+    fault = _fault(spec, checked)
     if fault:
         raise ValueError(f"{path}: {fault}")
     with atomic(path) as temporary, temporary.open("wb") as stream:
-        np.savez_compressed(stream, format=np.array(form), **arrays)
+        np.savez_compressed(stream, format=np.array(form), **checked)
 
 
-def read(path, form, spec):
-    """Read arrays written by `write`.
-
-    Parameters
-    ----------
-    path, form, spec
-        As for `write`.
-
-    Returns
-    -------
-    arrays : dict of str to ndarray
-        One array for each key of `spec`.
+def read(path: str | PathLike, form: str, spec: Spec) -> dict[str, NDArray]:
+    """Read arrays written by `write`: one for each key of `spec`.
 
     Raises
     ------
@@ -68,10 +63,15 @@ def read(path, form, spec):
     return found
 
 
-def _fault(spec, arrays):
+def plain(arrays: Mapping[str, NDArray]) -> dict[str, Any]:
+    """Return arrays as the fields of a record: those without dimensions become plain values."""
+    return {key: value.item() if value.ndim == 0 else value for key, value in arrays.items()}
+
+
+def _fault(spec: Spec, arrays: Mapping[str, NDArray]) -> str | None:
     if set(arrays) != set(spec):
         return f"expected keys {sorted(spec)}, found {sorted(arrays)}"
-    lengths = {}
+    lengths: dict[str, int] = {}
     for key, (kind, dimensions) in spec.items():
         array = arrays[key]
         if not np.issubdtype(array.dtype, KINDS[kind]):
@@ -84,7 +84,7 @@ def _fault(spec, arrays):
     return None
 
 
-def _fits(shape, dimensions, lengths):
+def _fits(shape: tuple[int, ...], dimensions: tuple[str, ...], lengths: dict[str, int]) -> bool:
     if len(shape) != len(dimensions):
         return False
     return all(

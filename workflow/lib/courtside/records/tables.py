@@ -1,6 +1,9 @@
-"""Writing and reading the CSV tables of the study: whole files, labels first, floats to 6 digits."""
+"""Write and read the CSV tables of the study: whole files, labels first, floats to 6 digits."""
 
+from collections.abc import Callable, Mapping
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -10,17 +13,21 @@ from courtside.study.execution.files import atomic
 REMAKE = "delete it and run the study again"
 
 
-def write(path, rows, labels=None, float_format="%.6g", about=None):
+def write(
+    path: str | PathLike,
+    rows: pd.DataFrame,
+    labels: Mapping[str, Any] | None = None,
+    float_format: str | None = "%.6g",
+    about: str | None = None,
+) -> None:
     """Write a table as CSV, whole or not at all.
 
     Parameters
     ----------
-    path : str or Path
-    rows : pandas.DataFrame
     labels : dict of str to str or number, optional
         Columns put before the others, the same in every row: session, take, how it was measured.
-    float_format : str
-        Of every number that is not whole.
+    float_format : str, optional
+        Format of every number that is not whole; shortest exact form if None.
     about : str, optional
         A comment for the first line.
     """
@@ -33,22 +40,19 @@ def write(path, rows, labels=None, float_format="%.6g", about=None):
         rows[columns].to_csv(file, index=False, float_format=float_format, lineterminator="\n")
 
 
-def read(path, what, fault_of, **options):
+def read(
+    path: str | PathLike, what: str, fault_of: Callable[[pd.DataFrame], str], **options: Any
+) -> pd.DataFrame:
     """Read a CSV table that another rule wrote.
 
     Parameters
     ----------
-    path : str or Path
     what : str
         What the table is, with its article: "a frame table".
     fault_of : callable
-        Takes the table; says in a few words what is wrong with it, and nothing where it is right.
+        Takes the table; returns in a few words what is wrong with it, empty if nothing is.
     **options
         Of `pandas.read_csv`.
-
-    Returns
-    -------
-    table : pandas.DataFrame
 
     Raises
     ------

@@ -1,1 +1,11 @@
-"""Clicks, frames and footage of cameras."""
+"""Clicks, frames, shake and footage of cameras.
+
+clicks, click_proposals
+    `read`, `write`: court points clicked, and those proposed for clicking.
+frame_table, frame_times, shake_table
+    `read`, `write`: CSV tables of frames; `frame_times.on_device_clock`.
+footage
+    `read`, `between`: a take by its cameras.
+image_names
+    `static`, `frame`, `are_static`: names in COLMAP's models.
+"""

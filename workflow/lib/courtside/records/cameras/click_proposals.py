@@ -1,4 +1,8 @@
-"""Proposed court points, to be confirmed by a person before anything uses them: one CSV row each."""
+"""Proposed court points, one CSV row each; a person confirms them before anything uses them."""
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,15 +17,13 @@ STATIC = 0  # frame_idx of the static picture
 WHAT = "a table of proposed court points"
 
 
-def write(path, proposals, points):
-    """Write proposals, and why there are none for the other points.
+def write(path: str | PathLike, proposals: Mapping[str, Any], points: Sequence[str]) -> None:
+    """Write proposals of court points, and why there are none for the other points.
 
     Parameters
     ----------
-    path : str or Path
     proposals : dict of str to courtside.calibration.click_proposals.proposals.Proposals
-        By camera.
-    points : sequence of str, length P
+        By camera; untyped here, for `calibration` stands above this room.
     """
     rows = [
         [camera, point, STATIC, *found.xy[at], found.sigma_px[at], found.confidence[at], reason]
@@ -31,28 +33,23 @@ def write(path, proposals, points):
     tables.write(path, pd.DataFrame(rows, columns=COLUMNS))
 
 
-def read(path, cameras, points):
-    """Read proposals as a page for clicking shows them.
-
-    Parameters
-    ----------
-    path : str or Path
-    cameras : sequence of str
-    points : sequence of str
-        Of the court.
+def read(
+    path: str | PathLike, cameras: Sequence[str], points: Sequence[str]
+) -> dict[str, dict[str, dict[str, float]]]:
+    """Read proposals as the page for clicking shows them.
 
     Returns
     -------
     proposals : dict of str to dict of str to dict
-        By camera and point: `x`, `y`, `sigma_px`; without those of which there is only a reason.
+        By camera and point: `x`, `y`, `sigma_px`; points without a proposal are left out.
 
     Raises
     ------
     InputError
-        If the file is no such table, or speaks of other cameras or points.
+        If the file is no such table, or names unknown cameras or points.
     """
 
-    def fault(table):
+    def fault(table: pd.DataFrame) -> str:
         if list(table.columns) != list(COLUMNS):
             return f"found the columns {', '.join(table.columns)}"
         table[list(NUMBERS)].astype(float)  # raises for others
@@ -62,7 +59,7 @@ def read(path, cameras, points):
     table = tables.read(path, WHAT, fault, dtype={"camera": str, "point": str})
     table = table.astype(dict.fromkeys(NUMBERS, float))
     given = table[np.isfinite(table["x_px"]) & np.isfinite(table["y_px"])]
-    found = {camera: {} for camera in cameras}
+    found: dict[str, dict[str, dict[str, float]]] = {camera: {} for camera in cameras}
     for row in given.itertuples():
         found[row.camera][row.point] = {"x": row.x_px, "y": row.y_px, "sigma_px": row.sigma_px}
     return found

@@ -2,9 +2,12 @@
 
 import csv
 import math
+from collections.abc import Collection, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
@@ -13,14 +16,14 @@ COLUMNS = ("camera", "point", "frame_idx", "x_px", "y_px")
 STATIC = 0  # frame_idx of the static picture
 
 
-def read(path, cameras, points):
+def read(path: str | PathLike, cameras: Sequence[str], points: Sequence[str]) -> dict[str, NDArray]:
     """Read clicked court points.
 
     Parameters
     ----------
     path : str or Path
-        CSV with the columns camera, point, frame_idx (0, the static picture), x_px, y_px (px of the video's
-        size, first pixel's centre at (0, 0)). A point that is hidden has no row.
+        CSV with the columns camera, point, frame_idx (0, the static picture), x_px, y_px (px of the
+        video's size, first pixel's centre at (0, 0)). A hidden point has no row.
     cameras : list of str
         Fixed cameras of the session.
     points : sequence of str, length P
@@ -34,12 +37,12 @@ def read(path, cameras, points):
     Raises
     ------
     InputError
-        If the file is no such table, a row names an unknown camera, point or frame, a position is no number,
-        or one camera has a point twice.
+        If the file is no such table, a row names an unknown camera, point or frame, a position is
+        not a number, or one camera has a point twice.
     """
     clicks = {camera: np.full((len(points), 2), np.nan) for camera in cameras}
     index = {point: at for at, point in enumerate(points)}
-    seen = {}
+    seen: dict[tuple[str, str], int] = {}
     for line, row in _rows(path):
         where = f"{path}: line {line}"
         camera = _known(where, "camera", row["camera"], clicks)
@@ -47,24 +50,16 @@ def read(path, cameras, points):
         _number(where, "frame_idx", row["frame_idx"], expected=STATIC)
         if (camera, point) in seen:
             raise InputError(
-                f"{where}: expected one click for point {point} in camera {camera}, found another in line "
-                f"{seen[camera, point]}; delete one"
+                f"{where}: expected one click for point {point} in camera {camera}, found another "
+                f"in line {seen[camera, point]}; delete one"
             )
         seen[camera, point] = line
         clicks[camera][index[point]] = [_number(where, key, row[key]) for key in ("x_px", "y_px")]
     return clicks
 
 
-def write(path, clicks, points):
-    """Write clicked court points as `read` takes them, without the missing ones.
-
-    Parameters
-    ----------
-    path : str or Path
-    clicks : dict of str to (P, 2) float
-        By camera, px; NaN where not clicked.
-    points : sequence of str, length P
-    """
+def write(path: str | PathLike, clicks: Mapping[str, NDArray], points: Sequence[str]) -> None:
+    """Write clicked points, (P, 2) px by camera, as `read` takes them; NaN rows are left out."""
     for camera, xy in clicks.items():
         if np.shape(xy) != (len(points), 2):
             raise ValueError(
@@ -79,8 +74,8 @@ def write(path, clicks, points):
                     writer.writerow([camera, point, STATIC, x, y])
 
 
-def _rows(path):
-    """Return (line number, row) of every row, the cells without blanks around them."""
+def _rows(path: str | PathLike) -> list[tuple[int, dict[str, str]]]:
+    """Return (line number, row) of every row, cells stripped."""
     try:
         with Path(path).open(newline="", encoding="utf-8-sig") as stream:
             table = csv.reader(stream, strict=True)
@@ -104,7 +99,7 @@ def _rows(path):
     return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
 
 
-def _known(where, what, name, names):
+def _known(where: str, what: str, name: str, names: Collection[str]) -> str:
     if name not in names:
         raise InputError(
             f"{where}: expected a {what} of {', '.join(names)}, found {name[:40]!r}; correct it or "
@@ -113,7 +108,7 @@ def _known(where, what, name, names):
     return name
 
 
-def _number(where, key, text, expected=None):
+def _number(where: str, key: str, text: str, expected: float | None = None) -> float:
     try:
         number = float(text)
     except ValueError:

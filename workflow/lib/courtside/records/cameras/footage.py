@@ -1,50 +1,39 @@
-"""A take by its cameras: where each stands, what it saw of whom, and what its clock shows."""
+"""A take by its cameras: their calibration, keypoints by person, clocks and videos."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
 from courtside.records.devices import clocks as sync
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints, people
-from courtside.records.keypoints.keypoints import Keypoints2D
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.study.errors import InputError
 
 
 @dataclass(frozen=True, eq=False)
 class Footage:
-    """What one camera gave.
-
-    Attributes
-    ----------
-    camera : Camera
-    view : Keypoints2D
-        By person.
-    clock : Clock
-    video : str or Path
-    """
+    """One camera of a take; `view` holds its keypoints by person."""
 
     camera: camera_models.Camera
     view: Keypoints2D
     clock: Clock
-    video: object
+    video: str | PathLike
 
-    def frame_at(self, time_s):
+    def frame_at(self, time_s: float) -> int:
         """Return the index of the frame nearest to a time of the reference clock."""
         return int(np.abs(self.view.time_s - self.clock.from_reference(time_s)).argmin())
 
-    def reference_s(self, frame):
-        """Return when a frame was taken, on the reference clock."""
+    def reference_s(self, frame: int) -> float:
+        """Return the time of a frame on the reference clock."""
         return float(self.clock.to_reference(self.view.time_s[frame]))
 
-    def reprojected(self, points, frame):
-        """Return the skeletons of a take as this camera's frame should show them.
-
-        Parameters
-        ----------
-        points : Keypoints3D
-        frame : int
+    def reprojected(self, points: Keypoints3D, frame: int) -> NDArray:
+        """Project the skeletons of a take into one frame of this camera.
 
         Returns
         -------
@@ -54,8 +43,9 @@ class Footage:
         return camera_models.project(self.camera, between(points, self.reference_s(frame)))
 
 
-def between(points, time_s):
-    """Return the skeletons (P, J, 3) of a `Keypoints3D` at a time, linearly between its frames."""
+def between(points: Keypoints3D, time_s: float) -> NDArray:
+    """Return the skeletons (P, J, 3) at a time, linearly between frames; NaN beyond the ends."""
+    # Within a thousandth of a frame a time counts as on that frame: times are rounded in files.
     known, tick = points.time_s, 1e-3 / max(points.rate_hz, 1) if len(points.time_s) > 1 else 1e-6
     if not known[0] - tick <= time_s <= known[-1] + tick:
         return np.full(points.xyz[:, 0].shape, np.nan)
@@ -68,20 +58,22 @@ def between(points, time_s):
     return (1 - share) * points.xyz[:, left] + share * points.xyz[:, right]
 
 
-def read(cameras_toml, pose2d_npz, people_npz, sync_json, videos, wanted=None):
+def read(
+    cameras_toml: str | PathLike,
+    pose2d_npz: Sequence[str | PathLike],
+    people_npz: str | PathLike,
+    sync_json: str | PathLike,
+    videos: Sequence[str | PathLike],
+    wanted: Sequence[str] | None = None,
+) -> list[Footage]:
     """Read what the cameras of a take gave.
 
     Parameters
     ----------
-    cameras_toml, people_npz, sync_json : str or Path
     pose2d_npz, videos : sequence of str or Path
-        Of each camera, in one order.
+        One for each camera, in one order.
     wanted : sequence of str, optional
         Cameras to return, in this order; all by default.
-
-    Returns
-    -------
-    footage : list of Footage
 
     Raises
     ------
@@ -89,7 +81,8 @@ def read(cameras_toml, pose2d_npz, people_npz, sync_json, videos, wanted=None):
         If a camera is not calibrated, has no clock, or none of the files is of a wanted one.
     """
     known = {camera.name: camera for camera in camera_models.read_toml(cameras_toml)}
-    who, (_, clocks), found = people.read(people_npz), sync.read(sync_json), {}
+    who, (_, clocks) = people.read(people_npz), sync.read(sync_json)
+    found: dict[str, Footage] = {}
     for path, video in zip(pose2d_npz, videos, strict=True):
         view = keypoints.read_2d(path)
         if wanted is not None and view.camera not in wanted:

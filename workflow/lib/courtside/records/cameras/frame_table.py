@@ -1,4 +1,6 @@
-"""The table of extracted frames: where each comes from, how sharp it is, whether it may be used."""
+"""The table of extracted frames: source, sharpness, and whether each may be used."""
+
+from os import PathLike
 
 import numpy as np
 import pandas as pd
@@ -7,25 +9,24 @@ from courtside.records import tables
 
 COLUMNS = ("frame_idx", "time_s", "name", "sharpness", "kept", "reason")
 NUMBERS = ("frame_idx", "time_s", "sharpness", "kept")
-REASONS = ("", "dark", "blurred", "duplicate")  # why a frame is not kept; none where it is
+REASONS = ("", "dark", "blurred", "duplicate")  # why a frame is not kept; empty if it is
 
 
-def write(path, table):
-    """Write a frame table as `read` takes it.
+def write(path: str | PathLike, table: pd.DataFrame) -> None:
+    """Write a frame table as CSV.
 
     Parameters
     ----------
-    path : str or Path
-        The CSV file.
     table : DataFrame
-        One row per extracted frame: `frame_idx` (of the video; of photos, the place in name order),
-        `time_s` (since the video's first frame; NaN for photos), `name` (of the PNG file), `sharpness`
-        (variance of the Laplacian, squared grey levels), `kept` (bool), `reason` ("" where kept).
+        One row per extracted frame: `frame_idx` (of the video; of photos, the place in name
+        order), `time_s` (since the video's first frame; NaN for photos), `name` (of the PNG file),
+        `sharpness` (variance of the Laplacian, squared grey levels), `kept` (bool), `reason` (""
+        where kept).
 
     Raises
     ------
     ValueError
-        If the table is not one.
+        If the table does not meet this description.
     """
     fault = _fault(table)
     if fault:
@@ -38,32 +39,16 @@ def write(path, table):
     tables.write(path, table, float_format=None)
 
 
-def read(path):
-    """Read a frame table.
-
-    Parameters
-    ----------
-    path : str or Path
-        The CSV file.
-
-    Returns
-    -------
-    table : DataFrame
-        As `write` describes it; `kept` is bool and `reason` a string.
-
-    Raises
-    ------
-    InputError
-        If the file is missing or no such table.
-    """
+def read(path: str | PathLike) -> pd.DataFrame:
+    """Read a table as `write` describes it; raise `InputError` if the file is no such table."""
     table = tables.read(
         path, "a frame table", _fault, keep_default_na=False, na_values={"time_s": [""]}
     )
     return table.loc[:, list(COLUMNS)].assign(kept=table["kept"].astype(bool))
 
 
-def _fault(table):
-    """Say in a few words what is wrong with a table; nothing where it is right."""
+def _fault(table: pd.DataFrame) -> str:
+    """Return in a few words what is wrong with a table; empty if nothing is."""
     missing = [name for name in COLUMNS if name not in table.columns]
     if missing:
         return f"found no column {', '.join(missing)}"

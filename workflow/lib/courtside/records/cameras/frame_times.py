@@ -1,49 +1,52 @@
-"""When each frame of a device's extracted video was taken, by the device's own clock."""
+"""When each frame of a device's extracted video was taken, on the device's own clock."""
 
 from dataclasses import dataclass, replace
+from os import PathLike
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.records import tables
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
 COLUMNS = ("frame_idx", "number", "time_s")
-LARGEST = 2**53  # a whole number, and so is each below
+LARGEST = 2**53  # up to here a float holds every whole number exactly
 
 
 @dataclass(frozen=True, eq=False)
 class FrameTimes:
-    """The frames of one stream of a device, and of the video made of them, whose rate is constant.
+    """The frames of one device stream, and of the constant-rate video made of them.
 
     Attributes
     ----------
     time_s : (T,) float
-        By the device's clock, increasing.
+        On the device's clock, increasing.
     number : (T,) int
-        As the device counted them; a gap is a frame that never came.
+        The device's own frame count; a gap is a lost frame.
     """
 
-    time_s: np.ndarray
-    number: np.ndarray
+    time_s: NDArray
+    number: NDArray
 
     @property
-    def n_missing(self):
-        """How many frames between the first and the last are missing by their numbers."""
+    def n_missing(self) -> int:
+        """Number of frames lost between the first and the last."""
         if not len(self.number):
             return 0
         return int(self.number[-1] - self.number[0] + 1 - len(self.number))
 
     @property
-    def rate_hz(self):
-        """Rate of the video: of the device between two frames, by the median; 30 for a single frame."""
+    def rate_hz(self) -> float:
+        """Rate of the video: from the median time between frames; 30 for a single frame."""
         if len(self.time_s) < 2:
-            return 30.0
+            return 30.0  # any rate will do: one frame has no interval
         return float(1 / np.median(np.diff(self.time_s)))
 
 
-def write(path, frames):
-    """Write a `FrameTimes` as CSV: frame_idx, number, time_s (to the microsecond)."""
+def write(path: str | PathLike, frames: FrameTimes) -> None:
+    """Write frame times as CSV: frame_idx, number, time_s (to the microsecond)."""
     rows = pd.DataFrame(
         {
             "frame_idx": np.arange(len(frames.time_s)),
@@ -54,37 +57,27 @@ def write(path, frames):
     tables.write(path, rows, float_format="%.6f")
 
 
-def read(path):
-    """Read a `FrameTimes`; raise `InputError` if the file is none."""
+def read(path: str | PathLike) -> FrameTimes:
+    """Read frame times; raise `InputError` if the file is no such table."""
     rows = tables.read(path, "a table of frame times", _fault)
     return FrameTimes(rows["time_s"].to_numpy(float), rows["number"].to_numpy(np.int64))
 
 
-def on_device_clock(view, frames_csv):
-    """Return the keypoints of an extracted video with times by the device's clock.
+def on_device_clock(view: Keypoints2D, frames_csv: str | PathLike) -> Keypoints2D:
+    """Return the keypoints of a whole extracted video with times on the device's clock.
 
-    Parameters
-    ----------
-    view : Keypoints2D
-        Of all frames of the video.
-    frames_csv : str or Path
-        As `write` makes it.
-
-    Raises
-    ------
-    InputError
-        If the counts of frames differ.
+    Raises `InputError` if the numbers of frames differ.
     """
     frames = read(frames_csv)
     if len(frames.time_s) != len(view.time_s):
         raise InputError(
-            f"{frames_csv}: expected {len(view.time_s)} frames, as keypoints of {view.camera} have, found "
-            f"{len(frames.time_s)}; detect poses in the whole extracted video"
+            f"{frames_csv}: expected {len(view.time_s)} frames, as keypoints of {view.camera} "
+            f"have, found {len(frames.time_s)}; detect poses in the whole extracted video"
         )
     return replace(view, time_s=frames.time_s)
 
 
-def _fault(rows):
+def _fault(rows: pd.DataFrame) -> str:
     if tuple(rows.columns) != COLUMNS:
         return f"found columns {list(rows.columns)}"
     numbers = rows.apply(pd.to_numeric, errors="coerce")

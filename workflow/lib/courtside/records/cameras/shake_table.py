@@ -1,10 +1,13 @@
-"""The table of a fixed camera's shake: where its static picture is in every frame of a take."""
+"""The table of a fixed camera's shake: where its static picture lies in every frame of a take."""
+
+from os import PathLike
 
 import numpy as np
 import pandas as pd
 
 from courtside.records import tables
 
+# ASSUME: rounding to these places stays far below the measurement noise of each column.
 DECIMALS = {
     "frame_idx": 0,
     "time_s": 6,
@@ -18,24 +21,23 @@ DECIMALS = {
 MEASURED = ("shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_px")
 
 
-def write(path, table):
-    """Write a shake table as `read` takes it.
+def write(path: str | PathLike, table: pd.DataFrame) -> None:
+    """Write a shake table as CSV.
 
     Parameters
     ----------
-    path : str or Path
-        The CSV file.
     table : DataFrame
-        One row per frame: `frame_idx` (of the file), `time_s` (on the camera's own clock), `shift_x_px` and
-        `shift_y_px` (of the content at the centre of the static picture: right, down), `rotation_deg` (of the
-        content about the centre, clockwise as seen), `zoom_percent` (its growth), `n_matches` (background
-        corners that agree), `sigma_px` (standard deviation of the shift, per axis). Where too few corners
-        agree, all but index, time and number are NaN.
+        One row per frame: `frame_idx` (of the file), `time_s` (on the camera's own clock),
+        `shift_x_px` and `shift_y_px` (of the content at the centre of the static picture: right,
+        down), `rotation_deg` (of the content about the centre, clockwise as seen), `zoom_percent`
+        (its growth), `n_matches` (background corners that agree), `sigma_px` (standard deviation
+        of the shift, per axis). Where too few corners agree, all but index, time and number are
+        NaN.
 
     Raises
     ------
     ValueError
-        If the table is not one.
+        If the table does not meet this description.
     """
     fault = _fault(table)
     if fault:
@@ -45,30 +47,14 @@ def write(path, table):
     tables.write(path, table, float_format=None)
 
 
-def read(path):
-    """Read a shake table.
-
-    Parameters
-    ----------
-    path : str or Path
-        The CSV file.
-
-    Returns
-    -------
-    table : DataFrame
-        As `write` describes it.
-
-    Raises
-    ------
-    InputError
-        If the file is missing or no such table.
-    """
+def read(path: str | PathLike) -> pd.DataFrame:
+    """Read a table as `write` describes it; raise `InputError` if the file is no such table."""
     table = tables.read(path, "a table of shake", _fault)
     return table.loc[:, list(DECIMALS)].astype(dict.fromkeys(("time_s", *MEASURED), float))
 
 
-def _fault(table):
-    """Say in a few words what is wrong with a table; nothing where it is right."""
+def _fault(table: pd.DataFrame) -> str:
+    """Return in a few words what is wrong with a table; empty if nothing is."""
     missing = [name for name in DECIMALS if name not in table.columns]
     if missing:
         return f"found no column {', '.join(missing)}"

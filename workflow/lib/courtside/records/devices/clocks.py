@@ -1,9 +1,13 @@
-"""Clocks of the cameras of a take against the first camera's: JSON with what is known of each."""
+"""Clocks of a take's cameras against the first camera's, with what is known of each, as JSON."""
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
+from os import PathLike
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.study.errors import InputError, reading
 from courtside.study.execution.files import read_json, write_json
@@ -22,7 +26,7 @@ class Clock:
     Attributes
     ----------
     offset_s : float
-        What it shows when the reference clock shows zero, seconds.
+        Its reading when the reference clock shows zero, seconds.
     drift_ppm : float
         How much faster it runs, millionths.
     uncertainty_s : float
@@ -31,8 +35,8 @@ class Clock:
     drift_uncertainty_ppm : float
         Standard deviation of the drift, millionths.
     status : str
-        `reference`, `found`, `assumed` (somebody said so), `ambiguous` (several offsets explain the
-        recording), `unknown` (none is explained well enough).
+        `reference`, `found`, `assumed` (the session states it), `ambiguous` (several offsets
+        explain the recording), `unknown` (none explains it well enough).
     note : str
         One line on how it was found, or why it was not.
     candidates_s : tuple of float
@@ -45,63 +49,52 @@ class Clock:
     drift_uncertainty_ppm: float = 0.0
     status: str = "assumed"
     note: str = ""
-    candidates_s: tuple = ()
+    candidates_s: tuple[float, ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.status not in STATUSES:
             raise ValueError(f"expected a status of {STATUSES}, found {self.status!r}")
         if not (math.isfinite(self.offset_s) and abs(self.drift_ppm) < 1e6):
             raise ValueError(f"expected a finite offset and drift, found {self}")
 
     @property
-    def usable(self):
-        """Whether triangulation may rest on it."""
+    def usable(self) -> bool:
+        """Whether triangulation may use it."""
         return self.status in USABLE
 
-    def from_reference(self, time_s):
-        """Return what this clock shows at times of the reference clock."""
+    def from_reference(self, time_s: ArrayLike) -> NDArray:
+        """Return the readings of this clock at times of the reference clock."""
         return np.asarray(time_s) * (1 + self.drift_ppm * 1e-6) + self.offset_s
 
-    def to_reference(self, time_s):
+    def to_reference(self, time_s: ArrayLike) -> NDArray:
         """Return the times of the reference clock at which this clock shows `time_s`."""
         return (np.asarray(time_s) - self.offset_s) / (1 + self.drift_ppm * 1e-6)
 
 
-def one_clock(cameras):
-    """Return the clocks of cameras that are known to share one, the first being the reference."""
+def one_clock(cameras: Iterable[str]) -> dict[str, Clock]:
+    """Return the clocks of cameras known to share one; the first is the reference."""
     first, *others = cameras
     said = Clock(note="the session says that the cameras share a clock")
     return {first: Clock(status="reference"), **dict.fromkeys(others, said)}
 
 
-def stated(numbers):
-    """Return clocks that somebody states.
+def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
+    """Return the clocks that a session states.
 
-    Parameters
-    ----------
-    numbers : dict of str to dict
-        For a camera or device `offset_s`, perhaps `drift_ppm` and `uncertainty_s`.
-
-    Returns
-    -------
-    clocks : dict of str to Clock
+    `numbers` holds for each camera or device `offset_s`, perhaps `drift_ppm` and `uncertainty_s`.
     """
     return {name: Clock(**clock, note="stated by the session") for name, clock in numbers.items()}
 
 
-def usable(clocks):
-    """Whether every clock of a dict of camera -> Clock may be used."""
+def usable(clocks: Mapping[str, Clock]) -> bool:
+    """Return whether every clock may be used."""
     return all(clock.usable for clock in clocks.values())
 
 
-def fault_line(where, clocks):
-    """Return one line that names the first camera whose clock may not be used, empty if all may.
+def fault_line(where: str | PathLike, clocks: Mapping[str, Clock]) -> str:
+    """Return a line on the first camera whose clock may not be used; empty if all may.
 
-    Parameters
-    ----------
-    where : str
-        File or take, to begin the line with.
-    clocks : dict of str to Clock
+    It begins with `where`: a file or a take.
     """
     for camera, clock in clocks.items():
         if not clock.usable:
@@ -115,29 +108,13 @@ def fault_line(where, clocks):
     return ""
 
 
-def wrist_error_mm(uncertainty_s, speed_m_s):
-    """Return how far a point moves within a time: the price of a clock's uncertainty, mm.
-
-    Parameters
-    ----------
-    uncertainty_s : float
-        Seconds.
-    speed_m_s : float
-        Speed of the point, such as a wrist in a smash, metres per second.
-    """
+def wrist_error_mm(uncertainty_s: float, speed_m_s: float) -> float:
+    """Return how far a wrist (or any point) moves within a clock's uncertainty, mm."""
     return 1e3 * uncertainty_s * speed_m_s
 
 
-def write(path, reference, clocks):
-    """Write the clocks of a take.
-
-    Parameters
-    ----------
-    path : str or Path
-    reference : str
-        The camera whose clock is the take's.
-    clocks : dict of str to Clock
-    """
+def write(path: str | PathLike, reference: str, clocks: Mapping[str, Clock]) -> None:
+    """Write the clocks of a take; `reference` is the camera whose clock is the take's."""
     if reference not in clocks:
         raise ValueError(f"expected the reference among {list(clocks)}, found {reference!r}")
     tables = {}
@@ -148,21 +125,12 @@ def write(path, reference, clocks):
     write_json(path, {"form": FORM, "reference": reference, "cameras": tables})
 
 
-def _json_number(value):
+def _json_number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def read(path):
-    """Read the clocks of a take.
-
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    reference : str
-    clocks : dict of str to Clock
+def read(path: str | PathLike) -> tuple[str, dict[str, Clock]]:
+    """Read the reference camera and the clocks of a take.
 
     Raises
     ------
@@ -180,7 +148,7 @@ def read(path):
     return content["reference"], clocks
 
 
-def _clock(table):
+def _clock(table: Mapping[str, Any]) -> Clock:
     numbers = {key: math.nan if table[key] is None else float(table[key]) for key in NUMBERS}
     candidates = tuple(float(at) for at in table["candidates_s"])
     return Clock(

@@ -1,10 +1,14 @@
-"""The skeleton that one device or one method of a single view gives for a take: a file between rules."""
+"""The skeleton of a take from one device or one single-view method: a file between rules."""
 
 from dataclasses import dataclass
+from os import PathLike
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records import npz
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError
 
 FORM = "courtside device motion 1"
@@ -21,47 +25,47 @@ SPEC = {
 
 @dataclass(frozen=True, eq=False)
 class DeviceMotion:
-    """One skeleton over time, in the device's own frame and by its own clock.
+    """One skeleton over time, in the device's own frame and on its own clock.
 
     Attributes
     ----------
     source : str
-        Where it comes from: `mocopi`, `d415-rgb`, `d415-depth`, `cameras`.
+        `mocopi`, `d415-rgb`, `d415-depth` or `cameras`.
     kind : str
         `inertial`, `rgb`, `rgbd` or `cameras`.
     joints : (J,) str
         Names as in `config/skeletons/`.
     time_s : (T,) float
-        Time of each frame on the device's own clock.
+        On the device's own clock.
     xyz : (T, J, 3) float
         Metres, in the device's own axes; NaN where missing.
     reason : (T, J) uint8
         `courtside.records.keypoints.missing_reason`.
     performed : (T,) bool
-        False for frames that nobody performed, like the rest pose in the first row of a mocopi file.
+        False for frames that nobody performed, like the rest pose in the first row of a mocopi
+        file.
     """
 
     source: str
     kind: str
-    joints: np.ndarray
-    time_s: np.ndarray
-    xyz: np.ndarray
-    reason: np.ndarray
-    performed: np.ndarray
+    joints: NDArray
+    time_s: NDArray
+    xyz: NDArray
+    reason: NDArray
+    performed: NDArray
 
-    def joint(self, name):
-        """Return the path (T, 3) of a joint, metres; raise `ValueError` if there is none of that name."""
+    def joint(self, name: str) -> NDArray:
+        """Return the path (T, 3) of a joint, metres; raise `ValueError` if there is none."""
         return self.xyz[:, list(self.joints).index(name)]
 
 
-def of_truth(truth, person):
-    """Return a person of a virtual take as a source that misses nothing.
+def of_truth(truth: Any, person: str) -> DeviceMotion:
+    """Return a person of a virtual take as a source without gaps.
 
     Parameters
     ----------
-    truth
-        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3), metres.
-    person : str
+    truth : TakeTruth
+        Untyped, for methods import this module and must not reach the truth.
     """
     xyz = truth.xyz[list(map(str, truth.person_id)).index(person)]
     complete = np.ones(len(truth.time_s), dtype=bool)
@@ -69,19 +73,8 @@ def of_truth(truth, person):
     return DeviceMotion("truth", "cameras", truth.joints, truth.time_s, xyz, reason, complete)
 
 
-def of_person(points, person, source="cameras"):
-    """Return one person of the fixed cameras as a source beside devices.
-
-    Parameters
-    ----------
-    points : courtside.records.keypoints.keypoints.Keypoints3D
-    person : str
-    source : str
-
-    Returns
-    -------
-    motion : DeviceMotion
-        In world, on the cameras' reference clock.
+def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> DeviceMotion:
+    """Return one person of the fixed cameras as a source: in world, on the reference clock.
 
     Raises
     ------
@@ -91,7 +84,8 @@ def of_person(points, person, source="cameras"):
     known = points.person_id.tolist()
     if person not in known:
         raise InputError(
-            f"person {person}: expected one of {known} of the fixed cameras; name the subject of the devices"
+            f"person {person}: expected one of {known} of the fixed cameras; name the subject of "
+            "the devices"
         )
     at = known.index(person)
     return DeviceMotion(
@@ -105,14 +99,11 @@ def of_person(points, person, source="cameras"):
     )
 
 
-def write(path, motion):
+def write(path: str | PathLike, motion: DeviceMotion) -> None:
     """Write a `DeviceMotion` to an npz file."""
     npz.write(path, FORM, SPEC, vars(motion))
 
 
-def read(path):
+def read(path: str | PathLike) -> DeviceMotion:
     """Read a `DeviceMotion` from an npz file; raise `InputError` if it is not one."""
-    arrays = npz.read(path, FORM, SPEC)
-    return DeviceMotion(
-        **{key: str(value) if value.ndim == 0 else value for key, value in arrays.items()}
-    )
+    return DeviceMotion(**npz.plain(npz.read(path, FORM, SPEC)))

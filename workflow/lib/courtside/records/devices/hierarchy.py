@@ -1,35 +1,36 @@
-"""A body as its device tells it: joints hung from one another, and their rotations over time."""
+"""A body as a device gives it: a tree of joints, and their rotations over time."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 NO_PARENT = -1
 
 
 @dataclass(frozen=True, eq=False)
 class Hierarchy:
-    """Joints and what each hangs from.
+    """Joints and their parents.
 
     Attributes
     ----------
     joints : tuple of str
-        Names, parents before their children; a file may name two joints alike.
+        Names, parents before their children; a file may use one name for two joints.
     parents : (J,) int
         Index of each joint's parent, below its own; `NO_PARENT` for a root.
     offsets : (J, 3) float
-        Place of each joint's origin in its parent's axes at rest, metres.
+        Position of each joint's origin in its parent's axes at rest, metres.
     ends : dict of str to (3,) float
-        Tips of the last bones (BVH's End Sites) in their joint's axes, metres. Of joints named
-        alike, the first one's.
+        Tips of the last bones (BVH's End Sites) in their joint's axes, metres; of the first joint
+        of each name.
     """
 
-    joints: tuple
-    parents: np.ndarray
-    offsets: np.ndarray
-    ends: dict = field(default_factory=dict)
+    joints: tuple[str, ...]
+    parents: NDArray
+    offsets: NDArray
+    ends: dict[str, NDArray] = field(default_factory=dict)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         size = len(self.joints)
         if self.parents.shape != (size,) or self.offsets.shape != (size, 3):
             raise ValueError(
@@ -45,23 +46,21 @@ class PosedHierarchy:
 
     Attributes
     ----------
-    hierarchy : Hierarchy
-        The joints.
     time_s : (T,) float
         Seconds on the device's own clock.
     translation : (T, J, 3) float
-        Each joint's origin in its parent's axes, metres: what the device tells, else the offset.
-        A root's is its place in the device's world.
+        Each joint's origin in its parent's axes, metres: the device's own values, else the offset.
+        A root's is its position in the device's world.
     parent_from_joint : (T, J, 3, 3) float
         Rotation of each joint's axes in its parent's.
     """
 
     hierarchy: Hierarchy
-    time_s: np.ndarray
-    translation: np.ndarray
-    parent_from_joint: np.ndarray
+    time_s: NDArray
+    translation: NDArray
+    parent_from_joint: NDArray
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         shape = (len(self.time_s), len(self.hierarchy.joints), 3)
         if self.translation.shape != shape or self.parent_from_joint.shape != (*shape, 3):
             raise ValueError(
@@ -70,26 +69,18 @@ class PosedHierarchy:
             )
 
 
-def forward(posed):
-    """Place every joint in the device's world: forward kinematics.
-
-    Parameters
-    ----------
-    posed : PosedHierarchy
-        Joints in their parents' axes.
+def forward(posed: PosedHierarchy) -> tuple[NDArray, NDArray]:
+    """Compute every joint's pose in the device's world: forward kinematics.
 
     Returns
     -------
     xyz : (T, J, 3) float
-        Joint origins in the device's world, metres.
+        Joint origins, metres.
     world_from_joint : (T, J, 3, 3) float
-        Rotation of each joint's axes in the device's world.
-
-    Notes
-    -----
-    One matrix product per joint, for all frames at once.
+        Rotation of each joint's axes.
     """
-    # Joints lead while solving: each joint's frames then lie together in memory.
+    # The joint axis comes first here: each joint's frames are then contiguous in memory, and one
+    # matrix product per joint solves all frames.
     local = np.ascontiguousarray(np.moveaxis(posed.parent_from_joint, 1, 0), dtype=float)
     places = np.ascontiguousarray(np.moveaxis(posed.translation, 1, 0), dtype=float)
     turned, xyz = np.empty_like(local), np.empty_like(places)

@@ -1,8 +1,9 @@
-"""One source's skeleton in the body's own frame and unit, on the reference clock: a file between rules."""
+"""One source's skeleton in the body's own frame and unit, on the reference clock."""
 
 from dataclasses import dataclass
+from os import PathLike
 
-import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records import npz
 
@@ -28,47 +29,45 @@ class BodyMotion:
     Attributes
     ----------
     source, kind : str
-        As of the `DeviceMotion` that it comes from.
+        Of the `DeviceMotion` that it comes from.
     joints : (J,) str
     time_s : (T,) float
         On the reference clock; the source's own frames, only those that somebody performed.
     fixed : (T, J, 3) float
-        Units (half the wrist span); in the frame of the T-pose, which stays where it was; NaN where missing.
+        Units (half the wrist span), in the fixed frame of the T-pose; NaN where missing.
     following : (T, J, 3) float
-        The same in a frame that goes with the trunk.
+        The same in a frame that moves with the trunk.
     reason : (T, J) uint8
         `courtside.records.keypoints.missing_reason`.
     unit_m : float
         Metres in a unit, by this source.
     tpose_s : (2,) float
-        When the T-pose of the frame began and ended, on the reference clock.
+        Begin and end of the frame's T-pose, on the reference clock.
     clap_s : (C,) float
         The claps that this source shows, on the reference clock.
     """
 
     source: str
     kind: str
-    joints: np.ndarray
-    time_s: np.ndarray
-    fixed: np.ndarray
-    following: np.ndarray
-    reason: np.ndarray
+    joints: NDArray
+    time_s: NDArray
+    fixed: NDArray
+    following: NDArray
+    reason: NDArray
     unit_m: float
-    tpose_s: np.ndarray
-    clap_s: np.ndarray
+    tpose_s: NDArray
+    clap_s: NDArray
 
-    def joint(self, name):
-        """Return the path (T, 3) of a joint in the fixed frame; raise `ValueError` if there is none."""
+    def joint(self, name: str) -> NDArray:
+        """Return the path (T, 3) of a joint in the fixed frame; raise `ValueError` if none."""
         return self.fixed[:, list(self.joints).index(name)]
 
 
-def write(path, motion):
+def write(path: str | PathLike, motion: BodyMotion) -> None:
     """Write a `BodyMotion` to an npz file."""
     npz.write(path, FORM, SPEC, vars(motion))
 
 
-def read(path):
+def read(path: str | PathLike) -> BodyMotion:
     """Read a `BodyMotion` from an npz file; raise `InputError` if it is not one."""
-    arrays = npz.read(path, FORM, SPEC)
-    plain = {"source": str, "kind": str, "unit_m": float}
-    return BodyMotion(**{key: plain.get(key, np.asarray)(value) for key, value in arrays.items()})
+    return BodyMotion(**npz.plain(npz.read(path, FORM, SPEC)))

@@ -1,32 +1,28 @@
-"""Joints that are computed from others, by one table: neck, head centre, mid-hip and the like."""
+"""Joints computed from others by one table: neck, head centre, mid-hip and the like."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from os import PathLike
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading
 
-SUM_TOLERANCE = 1e-9
+SUM_TOLERANCE = 1e-9  # far above the rounding of a sum of decimal fractions
 SEE = "see config/derived_joints.yaml"
-RIG = "rig"  # the skeleton of the truth of virtual sessions, as the table names it
+RIG = "rig"  # name in the table of the skeleton of virtual sessions' truth
 
 
 @dataclass(frozen=True)
 class Definition:
-    """How a derived joint is made.
-
-    Attributes
-    ----------
-    means : str
-        In words.
-    weights : dict of str to float
-        Of the source's joints; they sum to 1.
-    """
+    """How a derived joint is made: in words, and as weights of joints that sum to 1."""
 
     means: str
-    weights: dict
+    weights: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -40,38 +36,36 @@ class DerivedJoints:
         For each derived joint and skeleton the name of its definition.
     """
 
-    definitions: dict
-    joints: dict
+    definitions: dict[str, Definition]
+    joints: dict[str, dict[str, str]]
 
-    def definition(self, skeleton, name):
+    def definition(self, skeleton: str, name: str) -> str:
         """Return the name of the definition of a joint in a skeleton.
 
         Raises
         ------
         InputError
-            If the table has no such joint, or the joint none for this skeleton.
+            If the table has no such joint, or no definition of it for this skeleton.
         """
         known = self.joints.get(name, {})
         if skeleton not in known:
             raise InputError(
-                f"derived joint {name!r}: expected a definition for skeleton {skeleton!r}, found those for "
-                f"{sorted(known)}; add it to config/derived_joints.yaml"
+                f"derived joint {name!r}: expected a definition for skeleton {skeleton!r}, found "
+                f"those for {sorted(known)}; add it to config/derived_joints.yaml"
             )
         return known[skeleton]
 
-    def comparable(self, skeleton_a, skeleton_b, name):
-        """Say whether a joint has one definition in both skeletons; otherwise a comparison needs a mark."""
+    def comparable(self, skeleton_a: str, skeleton_b: str, name: str) -> bool:
+        """Return whether both skeletons define a joint alike; otherwise mark the comparison."""
         return self.definition(skeleton_a, name) == self.definition(skeleton_b, name)
 
-    def weights(self, skeleton, name, joints):
+    def weights(self, skeleton: str, name: str, joints: Iterable[str]) -> NDArray:
         """Return the weights of `joints` that make a derived joint or a plain one, (J,) float.
 
         Parameters
         ----------
-        skeleton : str
         name : str
-            A derived joint, or one of `joints` itself where the table has none of that name.
-        joints : sequence of str, length J
+            A derived joint, or one of `joints` itself if the table has none of that name.
 
         Raises
         ------
@@ -85,28 +79,19 @@ class DerivedJoints:
         missing = [part for part in parts if part not in joints]
         if missing:
             raise InputError(
-                f"derived joint {name!r}: expected the joints {sorted(parts)} in skeleton {skeleton!r}, "
-                f"missing: {missing}; correct config/derived_joints.yaml"
+                f"derived joint {name!r}: expected the joints {sorted(parts)} in skeleton "
+                f"{skeleton!r}, missing: {missing}; correct config/derived_joints.yaml"
             )
         return np.array([parts.get(joint, 0.0) for joint in joints])
 
 
-def read(path):
-    """Read a table of derived joints.
-
-    Parameters
-    ----------
-    path : str or Path
-        YAML with `definitions` and `joints`.
-
-    Returns
-    -------
-    table : DerivedJoints
+def read(path: str | PathLike) -> DerivedJoints:
+    """Read a table of derived joints: YAML with `definitions` and `joints`.
 
     Raises
     ------
     InputError
-        If a key is missing, weights do not sum to 1, or a joint names a definition that is not there.
+        If a key is missing, weights do not sum to 1, or a joint names an unknown definition.
     """
     content = yaml_files.read(path)
     what = (
@@ -124,12 +109,17 @@ def read(path):
     return DerivedJoints(definitions, joints)
 
 
-def _check(path, definitions, joints):
+def _check(
+    path: str | PathLike,
+    definitions: Mapping[str, Definition],
+    joints: Mapping[str, Mapping[str, str]],
+) -> None:
     for name, definition in definitions.items():
         total = sum(definition.weights.values())
         if not abs(total - 1.0) < SUM_TOLERANCE:
             raise InputError(
-                f"{path}: definitions.{name}: expected weights that sum to 1, found {total:g}; correct them"
+                f"{path}: definitions.{name}: expected weights that sum to 1, found {total:g}; "
+                "correct them"
             )
     for name, by_skeleton in joints.items():
         for skeleton, used in by_skeleton.items():
@@ -140,7 +130,9 @@ def _check(path, definitions, joints):
                 )
 
 
-def combine(xyz, covariance, reason, weights):
+def combine(
+    xyz: NDArray, covariance: NDArray, reason: NDArray, weights: NDArray
+) -> tuple[NDArray, NDArray, NDArray]:
     """Return a weighted sum of joints, with its covariance and reason.
 
     Parameters
@@ -148,7 +140,7 @@ def combine(xyz, covariance, reason, weights):
     xyz : (..., J, 3) float
         Metres.
     covariance : (..., J, 3, 3) float
-        Square metres; the errors of the joints are taken to be independent of one another.
+        Square metres; the errors of the joints are taken as independent.
     reason : (..., J) uint8
         `courtside.records.keypoints.missing_reason`.
     weights : (J,) float
@@ -156,8 +148,8 @@ def combine(xyz, covariance, reason, weights):
     Returns
     -------
     xyz, covariance, reason : (..., 3) float, (..., 3, 3) float, (...,) uint8
-        NaN where a joint with a weight is missing. The reason is the first of these joints' reasons that is
-        not OK, a missing joint's before that of an interpolated one.
+        NaN where a joint with a weight is missing. The reason is the first of these joints' reasons
+        that is not OK, a missing joint's before that of an interpolated one.
     """
     used = np.flatnonzero(weights)
     kept = np.asarray(weights)[used]
@@ -169,23 +161,17 @@ def combine(xyz, covariance, reason, weights):
     return total, spread, np.take_along_axis(codes, first[..., None], axis=-1)[..., 0]
 
 
-def of(points, table, skeleton, name):
-    """Return one derived joint of all persons and frames.
-
-    Parameters
-    ----------
-    points : Keypoints3D
-    table : DerivedJoints
-    skeleton : str
-        Name of the skeleton of `points`.
-    name : str
+def of(
+    points: Keypoints3D, table: DerivedJoints, skeleton: str, name: str
+) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    """Return one derived joint of all persons and frames; `points` are of `skeleton`.
 
     Returns
     -------
     xyz, covariance_2d, covariance_camera, reason
-        Arrays (P, T, 3), (P, T, 3, 3), (P, T, 3, 3), (P, T); see `combine`. The calibration's error is
-        nearly the same for neighbouring joints, so that it does not average out: its covariance is the
-        mean of the parts' weighted by size, which is never too small for weights that are not negative.
+        Arrays (P, T, 3), (P, T, 3, 3), (P, T, 3, 3), (P, T); see `combine`. The calibration's error
+        is nearly the same for neighbouring joints and does not average out: its covariance is the
+        weighted mean of the parts', which is never too small for weights that are not negative.
     """
     weights = table.weights(skeleton, name, points.joints)
     xyz, covariance, reason = combine(points.xyz, points.covariance_2d, points.reason, weights)
@@ -194,22 +180,13 @@ def of(points, table, skeleton, name):
     return xyz, covariance, camera, reason
 
 
-def append(points, table, skeleton, names):
-    """Return a record with derived joints behind its own.
+def append(
+    points: Keypoints3D, table: DerivedJoints, skeleton: str, names: Iterable[str]
+) -> Keypoints3D:
+    """Return a record with derived joints behind its own; names that it already has are left.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    table : DerivedJoints
-    skeleton : str
-    names : sequence of str
-        Names that the record already has are left as they are.
-
-    Returns
-    -------
-    longer : Keypoints3D
-        A derived joint rests on the fewest views of its parts, on a camera where all parts do, and has the
-        mean of their reprojection errors.
+    A derived joint has the fewest views of its parts, is accepted in a camera where all parts are,
+    and has the mean of their reprojection errors.
     """
     for name in names:
         if name not in points.joints:
@@ -217,7 +194,7 @@ def append(points, table, skeleton, names):
     return points
 
 
-def _append_one(points, table, skeleton, name):
+def _append_one(points: Keypoints3D, table: DerivedJoints, skeleton: str, name: str) -> Keypoints3D:
     used = np.flatnonzero(table.weights(skeleton, name, points.joints))
     xyz, covariance, camera, reason = of(points, table, skeleton, name)
     made = {

@@ -1,8 +1,9 @@
-"""The two tables of keypoints that rules hand to each other: 2D of one camera, 3D of one take."""
+"""The two tables of keypoints that rules exchange: 2D of one camera, 3D of one take."""
 
 from dataclasses import dataclass, replace
+from os import PathLike
 
-import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records import npz
 
@@ -42,34 +43,34 @@ class Keypoints2D:
     Attributes
     ----------
     camera, model : str
-        Camera and network names.
+        Names of camera and network.
     joints : (J,) str
-        Joint names, in the order of the network's skeleton.
+        In the order of the network's skeleton.
     size : (2,) int
         Width and height of the pictures, px.
     time_s : (T,) float
         Time of each frame on the camera's own clock.
     xy : (P, T, J, 2) float
-        Keypoints in px, first pixel centre at (0, 0), distorted as in the picture; NaN where missing.
+        Px, first pixel centre at (0, 0), distorted as in the picture; NaN where missing.
         P counts the tracklets of this camera: they are not yet persons.
     score : (P, T, J) float
         Confidence, 0 to 1; NaN where missing.
     reason : (P, T, J) uint8
         `courtside.records.keypoints.missing_reason`.
     xyz_in_body : (P, T, J, 3) float
-        The network's own metric guess about the hip centre, metres, axes as in cam (x right, y down,
-        z forward); NaN for networks without one.
+        The network's own metric guess relative to the hip centre, metres, axes as in cam (x right,
+        y down, z forward); NaN for networks without one.
     """
 
     camera: str
     model: str
-    joints: np.ndarray
-    size: np.ndarray
-    time_s: np.ndarray
-    xy: np.ndarray
-    score: np.ndarray
-    reason: np.ndarray
-    xyz_in_body: np.ndarray
+    joints: NDArray
+    size: NDArray
+    time_s: NDArray
+    xy: NDArray
+    score: NDArray
+    reason: NDArray
+    xyz_in_body: NDArray
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ class Keypoints3D:
     model : str
         Network that saw the keypoints.
     joints, person_id : (J,) str, (P,) str
-        Joint names; persons as the session names them.
+        Persons as the session names them.
     time_s : (T,) float
         Uniform times on the reference clock.
     xyz : (P, T, J, 3) float
@@ -91,36 +92,37 @@ class Keypoints3D:
     covariance_2d, covariance_camera : (P, T, J, 3, 3) float
         Covariance from the keypoints and from the calibration, square metres; NaN where unknown.
     n_views : (P, T, J) int
-        Views that the point rests on; 0 where it is missing.
+        Views used for the point; 0 where it is missing.
     reproj_error_px : (P, T, J, C) float
-        Distance of each camera's keypoint to the projected point, accepted or not; NaN without either.
+        Distance of each camera's keypoint to the projected point, accepted or not; NaN without
+        either.
     accepted : (P, T, J, C) bool
-        Whether the point rests on that camera's keypoint.
+        Whether that camera's keypoint was used for the point.
     reason : (P, T, J) uint8
         `courtside.records.keypoints.missing_reason`.
     """
 
-    cameras: np.ndarray
+    cameras: NDArray
     model: str
-    joints: np.ndarray
-    person_id: np.ndarray
-    time_s: np.ndarray
-    xyz: np.ndarray
-    covariance_2d: np.ndarray
-    covariance_camera: np.ndarray
-    n_views: np.ndarray
-    reproj_error_px: np.ndarray
-    accepted: np.ndarray
-    reason: np.ndarray
+    joints: NDArray
+    person_id: NDArray
+    time_s: NDArray
+    xyz: NDArray
+    covariance_2d: NDArray
+    covariance_camera: NDArray
+    n_views: NDArray
+    reproj_error_px: NDArray
+    accepted: NDArray
+    reason: NDArray
 
     @property
-    def rate_hz(self):
+    def rate_hz(self) -> float:
         """Frames per second of the uniform times; NaN for a single frame."""
         if len(self.time_s) < 2:
             return float("nan")
         return float((len(self.time_s) - 1) / (self.time_s[-1] - self.time_s[0]))
 
-    def between(self, start_s, stop_s):
+    def between(self, start_s: float, stop_s: float) -> "Keypoints3D":
         """Return the frames from one time to another, both included."""
         at = (self.time_s >= start_s) & (self.time_s <= stop_s)
         per_frame = [key for key, (_, shape) in SPEC_3D.items() if shape[:2] == ("P", "T")]
@@ -128,25 +130,21 @@ class Keypoints3D:
         return replace(self, time_s=self.time_s[at], **cut)
 
 
-def write_2d(path, keypoints):
+def write_2d(path: str | PathLike, keypoints: Keypoints2D) -> None:
     """Write a `Keypoints2D` to an npz file."""
     npz.write(path, FORM_2D, SPEC_2D, vars(keypoints))
 
 
-def read_2d(path):
+def read_2d(path: str | PathLike) -> Keypoints2D:
     """Read a `Keypoints2D` from an npz file; raise `InputError` if it is not one."""
-    return Keypoints2D(**_plain(npz.read(path, FORM_2D, SPEC_2D)))
+    return Keypoints2D(**npz.plain(npz.read(path, FORM_2D, SPEC_2D)))
 
 
-def write_3d(path, keypoints):
+def write_3d(path: str | PathLike, keypoints: Keypoints3D) -> None:
     """Write a `Keypoints3D` to an npz file."""
     npz.write(path, FORM_3D, SPEC_3D, vars(keypoints))
 
 
-def read_3d(path):
+def read_3d(path: str | PathLike) -> Keypoints3D:
     """Read a `Keypoints3D` from an npz file; raise `InputError` if it is not one."""
-    return Keypoints3D(**_plain(npz.read(path, FORM_3D, SPEC_3D)))
-
-
-def _plain(arrays):
-    return {key: str(value) if value.ndim == 0 else value for key, value in arrays.items()}
+    return Keypoints3D(**npz.plain(npz.read(path, FORM_3D, SPEC_3D)))

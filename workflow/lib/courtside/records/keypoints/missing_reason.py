@@ -11,7 +11,7 @@ REJECTED = 4  # views disagree: no subset of them meets the reprojection limit
 INTERPOLATED = 5  # a value filled in over a short gap (only in filtered results)
 OUT_OF_IMAGE = 6  # the network placed it outside the picture
 NO_DEPTH = 7  # a depth camera has no trusted depth there: a hole, an edge, something in front
-UNCERTAIN = 8  # placed, but known far worse than usual: left out of kinematics
+UNCERTAIN = 8  # placed, but far less certain than usual: left out of kinematics
 
 WORDS = {
     OK: "ok",

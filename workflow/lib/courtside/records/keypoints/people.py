@@ -1,15 +1,18 @@
 """Which tracklet of which camera is which person: the file between detection and triangulation."""
 
 from dataclasses import dataclass, replace
+from os import PathLike
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records import npz
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
 FORM = "courtside people 1"
-# Cameras have different numbers of frames: their tables lie behind one another.
+# Cameras differ in their numbers of frames: the tables are concatenated along the frames.
 SPEC = {
     "model": ("str", ()),
     "person_id": ("str", ("P",)),
@@ -31,27 +34,27 @@ class People:
     person_id : (P,) str
         Persons as the session names them.
     placed : (P,) float
-        Share of the take in which two views or more met in the person.
+        Share of the take in which two or more views agreed on the person's position.
     index : dict of str to (P, T) int
         By camera: which tracklet row shows the person in each of its T frames, -1 for none.
     """
 
     model: str
-    person_id: np.ndarray
-    placed: np.ndarray
-    index: dict
+    person_id: NDArray
+    placed: NDArray
+    index: dict[str, NDArray]
 
-    def assigned(self, view):
-        """Return a `Keypoints2D` by person instead of by tracklet; see the function of this name."""
+    def assigned(self, view: Keypoints2D) -> Keypoints2D:
+        """Return keypoints by person instead of by tracklet; see the function of this name."""
         if view.camera not in self.index:
             raise InputError(
-                f"{view.camera}: expected people of the cameras {', '.join(self.index)}, found none of "
-                "this camera; associate them again"
+                f"{view.camera}: expected people of the cameras {', '.join(self.index)}, found "
+                "none of this camera; associate them again"
             )
         return assigned(view, self.index[view.camera])
 
 
-def write(path, people):
+def write(path: str | PathLike, people: People) -> None:
     """Write a `People` to an npz file."""
     arrays = {
         "model": people.model,
@@ -64,7 +67,7 @@ def write(path, people):
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path):
+def read(path: str | PathLike) -> People:
     """Read a `People` from an npz file; raise `InputError` if it is not one."""
     found = npz.read(path, FORM, SPEC)
     if found["n_frames"].sum() != found["index"].shape[1] or (found["n_frames"] < 0).any():
@@ -77,7 +80,7 @@ def read(path):
     return People(str(found["model"]), found["person_id"], found["placed"], index)
 
 
-def assigned(view, index):
+def assigned(view: Keypoints2D, index: NDArray) -> Keypoints2D:
     """Return the keypoints of one camera by person instead of by tracklet.
 
     Parameters
@@ -95,7 +98,7 @@ def assigned(view, index):
     Raises
     ------
     InputError
-        If the index is of other frames or rows than the keypoints.
+        If the index has other frames or rows than the keypoints.
     """
     index, frames = np.asarray(index), len(view.time_s)
     if index.shape[1:] != (frames,) or index.max(initial=-1) >= len(view.xy):
@@ -105,7 +108,7 @@ def assigned(view, index):
         )
     known, row, at = index >= 0, np.maximum(index, 0), np.arange(frames)
 
-    def pick(values, missing):
+    def pick(values: NDArray, missing: float) -> NDArray:
         empty = ~known.reshape(*known.shape, *(1,) * (values.ndim - 2))
         return np.where(empty, missing, values[row, at]).astype(values.dtype)
 

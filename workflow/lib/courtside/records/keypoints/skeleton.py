@@ -1,7 +1,9 @@
 """Skeletons: ordered joints and bones, the limbs that all skeletons share, and symmetric pairs."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
+from os import PathLike
 from pathlib import Path
 
 from courtside.study.configuration import yaml_files
@@ -27,51 +29,39 @@ class Skeleton:
     groups : dict of str to tuple of str
         Named sets of joints, such as `limbs` or `face`.
     names : dict of str to str
-        What the device's own files call a joint, for the joints that they call otherwise.
+        Names of joints in the device's own files, where they differ from ours.
     """
 
     name: str
-    joints: tuple
-    bones: tuple
-    segments: dict
-    groups: dict
-    names: dict = field(default_factory=dict)
+    joints: tuple[str, ...]
+    bones: tuple[tuple[str, str], ...]
+    segments: dict[str, tuple[str, str]]
+    groups: dict[str, tuple[str, ...]]
+    names: dict[str, str] = field(default_factory=dict)
 
-    def index(self, joint):
-        """Return the position of a joint; raise `ValueError` if the skeleton has none of that name."""
+    def index(self, joint: str) -> int:
+        """Return the position of a joint; raise `ValueError` if there is none of that name."""
         return self.joints.index(joint)
 
-    def device_names(self):
-        """Return what the device calls each joint, in the order of `joints`, list of str."""
+    def device_names(self) -> list[str]:
+        """Return the device's names of the joints, in the order of `joints`."""
         return [self.names.get(joint, joint) for joint in self.joints]
 
-    def bone_indices(self):
+    def bone_indices(self) -> list[tuple[int, int]]:
         """Return the bones as pairs of positions in `joints`."""
         return [(self.joints.index(start), self.joints.index(end)) for start, end in self.bones]
 
-    def mirror(self):
-        """Return for each joint the index of the same joint of the other body side, (J,) list of int.
-
-        A joint without sides maps to itself.
-        """
+    def mirror(self) -> list[int]:
+        """Return for each joint the index of its counterpart on the other side, else its own."""
         return [self.joints.index(_other_side(joint)) for joint in self.joints]
 
-    def side_groups(self):
-        """Return the sets of joints whose sides a network confuses together: upper body and legs."""
+    def side_groups(self) -> list[list[str]]:
+        """Return the sets of joints whose sides a network swaps together: upper body and legs."""
         legs = set(self.groups["legs"]) | {"left_hip", "right_hip"}
         return [[j for j in self.joints if j not in legs], [j for j in self.joints if j in legs]]
 
-    def by_group(self, values):
-        """Spread values of joint groups over the joints.
-
-        Parameters
-        ----------
-        values : dict of str to float
-            One value for each group; together the groups must hold every joint.
-
-        Returns
-        -------
-        per_joint : list of float, length J
+    def by_group(self, values: Mapping[str, float]) -> list[float]:
+        """Return for each joint the value of its group.
 
         Raises
         ------
@@ -85,40 +75,34 @@ class Skeleton:
         unknown = [name for name in values if name not in self.groups]
         if missing or unknown:
             raise InputError(
-                f"skeleton {self.name}: expected groups of {sorted(self.groups)} that hold every joint, "
-                f"found {sorted(values)}; joints without a value: {missing}"
+                f"skeleton {self.name}: expected groups of {sorted(self.groups)} that hold every "
+                f"joint, found {sorted(values)}; joints without a value: {missing}"
             )
         return [owner[joint] for joint in self.joints]
 
 
-def _other_side(joint):
+def _other_side(joint: str) -> str:
     for side, other in SIDES.items():
         if joint.startswith(side):
             return other + joint.removeprefix(side)
     return joint
 
 
-def read(path):
-    """Read a skeleton file.
-
-    Parameters
-    ----------
-    path : str or Path
-        YAML with `joints`, `bones`, `segments`, `groups`, and for a device's `names`.
-
-    Returns
-    -------
-    skeleton : Skeleton
+def read(path: str | PathLike) -> Skeleton:
+    """Read a skeleton file: YAML with `joints`, `bones`, `segments`, `groups`, perhaps `names`.
 
     Raises
     ------
     InputError
-        If a key is missing, a joint stands twice in `joints`, a bone or segment is no pair, a bone, segment
-        or group names a joint that is not in `joints`, a side has no mirror, or `names` gives two joints one
-        name.
+        If a key is missing, a joint stands twice in `joints`, a bone or segment is no pair, a
+        bone, segment or group names a joint that is not in `joints`, a side has no mirror, or
+        `names` gives two joints one name.
     """
     content = yaml_files.read(path)
-    what = "lists `joints` and `bones` and mappings `segments` and `groups`, bones and segments of two joints"
+    what = (
+        "lists `joints` and `bones` and mappings `segments` and `groups`, "
+        "bones and segments of two joints"
+    )
     with reading(path, what, "see the files beside it"):
         skeleton = Skeleton(
             name=Path(path).stem,
@@ -132,15 +116,18 @@ def read(path):
     return skeleton
 
 
-def _check(path, skeleton):
+def _check(path: str | PathLike, skeleton: Skeleton) -> None:
     for at, joint in enumerate(skeleton.joints):
         if not isinstance(joint, str) or joint in skeleton.joints[:at]:
             raise InputError(
                 f"{path}: joints: expected names that differ, found {joint!r}; rename it"
             )
-    used = [*skeleton.bones, *skeleton.segments.values(), *skeleton.groups.values()]
-    used.append(tuple(skeleton.names))
-    used.append(tuple(_other_side(joint) for joint in skeleton.joints))
+    used: list[tuple[str, ...]] = [
+        *skeleton.bones,
+        *skeleton.segments.values(),
+        *skeleton.groups.values(),
+    ]
+    used += [tuple(skeleton.names), tuple(map(_other_side, skeleton.joints))]
     for joints in used:
         for joint in joints:
             if joint not in skeleton.joints:
@@ -152,8 +139,8 @@ def _check(path, skeleton):
     for at, name in enumerate(called):
         if not isinstance(name, str) or name in called[:at]:
             raise InputError(
-                f"{path}: names: expected a name for each joint that no other joint has, found {name!r}; "
-                "correct it"
+                f"{path}: names: expected a name for each joint that no other joint has, found "
+                f"{name!r}; correct it"
             )
 
 

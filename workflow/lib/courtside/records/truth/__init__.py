@@ -1,1 +1,7 @@
-"""The truth of simulated sessions and takes: read by evaluation only."""
+"""The truth of simulated sessions and takes; only evaluation reads it.
+
+session_truth
+    `read`, `write`: cameras, walks, court points.
+take_truth
+    `read`, `write`: joints, rackets, clocks, events, shake, devices.
+"""

@@ -1,12 +1,15 @@
-"""The truth of a virtual session: where its cameras, its walks and its court points really are.
+"""The truth of a virtual session: real poses of its cameras and walks, real court points.
 
-Only what evaluates a result may read it.
+Only code that evaluates a result may read it.
 """
 
 import zipfile
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.camera import Camera
 from courtside.records import npz
@@ -40,18 +43,18 @@ class Walk:
     time_s : (G,) float
         Time of each frame since the first: mid-exposure of the middle row.
     K, dist : (3, 3) float, (5,) float
-        The lens without the stabiliser's doing, px.
+        The lens without stabilisation, px.
     cam_from_world : (G, 3, 4) float
         Pose at `time_s`, metres.
     principal_point_px : (G, 2) float
         Principal point of each frame, which a stabiliser moves; equal to that of `K` without one.
     """
 
-    time_s: np.ndarray
-    K: np.ndarray
-    dist: np.ndarray
-    cam_from_world: np.ndarray
-    principal_point_px: np.ndarray
+    time_s: NDArray
+    K: NDArray
+    dist: NDArray
+    cam_from_world: NDArray
+    principal_point_px: NDArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,29 +69,24 @@ class Truth:
     court_points : (P,) str
         Names of the court's points.
     court_xyz : (P, 3) float
-        Where they really are, metres: painted lines lie millimetres off.
+        Their real positions, metres: painted lines lie millimetres off.
     """
 
-    cameras: list
-    walks: dict
-    court_points: np.ndarray
-    court_xyz: np.ndarray
+    cameras: list[Camera]
+    walks: dict[str, Walk]
+    court_points: NDArray
+    court_xyz: NDArray
 
 
-def write(path, cameras, walks, court_points, court_xyz):
-    """Write the truth of a session to an npz file.
-
-    Parameters
-    ----------
-    path : str or Path
-    cameras : list of Camera
-        The fixed cameras, at least one.
-    walks : dict of str to Walk
-    court_points : sequence of str
-    court_xyz : (P, 3) float
-        Metres.
-    """
-    arrays = {
+def write(
+    path: str | PathLike,
+    cameras: Sequence[Camera],
+    walks: Mapping[str, Walk],
+    court_points: Sequence[str],
+    court_xyz: NDArray,
+) -> None:
+    """Write the truth of a session with at least one fixed camera; `court_xyz` (P, 3) in metres."""
+    arrays: dict[str, ArrayLike] = {
         "camera": [camera.name for camera in cameras],
         "size": [camera.size for camera in cameras],
         "K": [camera.K for camera in cameras],
@@ -102,23 +100,8 @@ def write(path, cameras, walks, court_points, court_xyz):
     npz.write(path, FORM, _spec(walks), arrays)
 
 
-def read(path):
-    """Read the truth of a session.
-
-    Parameters
-    ----------
-    path : str or Path
-        As `write` wrote it.
-
-    Returns
-    -------
-    truth : Truth
-
-    Raises
-    ------
-    InputError
-        If the file is none of this form.
-    """
+def read(path: str | PathLike) -> Truth:
+    """Read the truth of a session; raise `InputError` if the file is not one of `write`."""
     names = _walk_names(path)
     arrays = npz.read(path, FORM, _spec(names))
     rows = zip(
@@ -133,19 +116,17 @@ def read(path):
     return Truth(cameras, walks, arrays["court_points"], arrays["court_xyz"])
 
 
-def _spec(walks):
-    spec = dict(SPEC)
-    for name in walks:
-        for key, (kind, dimensions) in WALK.items():
-            spec[f"{name}/{key}"] = (
-                kind,
-                tuple(part.format(f"G of {name}") for part in dimensions),
-            )
-    return spec
+def _spec(walks: Iterable[str]) -> npz.Spec:
+    of_walks = {
+        f"{name}/{key}": (kind, tuple(part.format(f"G of {name}") for part in dimensions))
+        for name in walks
+        for key, (kind, dimensions) in WALK.items()
+    }
+    return SPEC | of_walks
 
 
-def _walk_names(path):
-    """Return the walks that a file tells of; none of a file that `npz.read` will refuse."""
+def _walk_names(path: str | PathLike) -> list[str]:
+    """Return the names of the walks in a file; none of a file that `npz.read` will refuse."""
     try:
         with zipfile.ZipFile(path) as stored:
             names = [name.rpartition("/")[0] for name in stored.namelist()]

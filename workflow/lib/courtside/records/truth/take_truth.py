@@ -1,11 +1,14 @@
-"""The truth of one virtual take: where joints and rackets really were, and how cameras kept time and still.
+"""The truth of one virtual take: joints and rackets, clocks of the cameras, and how they shook.
 
-Only what evaluates a result may read it.
+Only code that evaluates a result may read it.
 """
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from os import PathLike
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records import npz
 
@@ -34,7 +37,7 @@ SPEC = {
 
 @dataclass(frozen=True, eq=False)
 class DeviceTruth:
-    """How a device really was.
+    """The truth of one device.
 
     Attributes
     ----------
@@ -45,11 +48,10 @@ class DeviceTruth:
     offset_s, drift_ppm : float
         Of its clock, as a camera's.
     latency_s : float
-        By how much it shows everything late: what happens at t_own by its clock is in its data at
-        t_own + latency_s.
+        Delay of its data: what happens at t_own on its clock is in its data at t_own + latency_s.
     from_world : (3, 4) float
-        World to the device's own axes, metres: of a camera its colour sensor's cam_from_world; of an inertial
-        suit as it is when the recording starts, for afterwards it drifts.
+        World to the device's own axes, metres: of a camera its colour sensor's cam_from_world; of
+        an inertial suit at the start of the recording, for afterwards it drifts.
     """
 
     kind: str
@@ -57,7 +59,7 @@ class DeviceTruth:
     offset_s: float
     drift_ppm: float
     latency_s: float
-    from_world: np.ndarray
+    from_world: NDArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,49 +69,46 @@ class TakeTruth:
     Attributes
     ----------
     time_s : (T,) float
-        Of each frame of the first camera (without cameras, the first device), whose clock is the reference,
-        and in the same steps before and after, as long as anything records: mid-exposure of the middle row.
+        Of each frame of the first camera (without cameras, the first device), whose clock is the
+        reference, and in the same steps before and after, as long as anything records: mid-exposure
+        of the middle row.
     joints : (J,) str
         Names of the virtual body's joints.
     person_id : (P,) str
     xyz : (P, T, J, 3) float
         World, metres.
     racket : (P, T, 2, 3) float
-        Top and butt; NaN of who has none.
+        Top and butt; NaN for a person without one.
     offset_s, drift_ppm : dict of str to float
         Of each camera, reference first: t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
     events : dict of str to dict of str to float
-        For each person when what happened, by the reference clock, s.
+        By person and event the time on the reference clock, s.
     shaken : dict of str to (F, 3, 4) float
-        Of cameras that did not stand still: cam_from_world at each of their frames, mid-exposure of the
-        middle row.
+        For cameras that moved: cam_from_world at each of their frames, mid-exposure of the middle
+        row.
     devices : dict of str to DeviceTruth
     """
 
-    time_s: np.ndarray
-    joints: np.ndarray
-    person_id: np.ndarray
-    xyz: np.ndarray
-    racket: np.ndarray
-    offset_s: dict
-    drift_ppm: dict
-    events: dict = field(default_factory=dict)
-    shaken: dict = field(default_factory=dict)
-    devices: dict = field(default_factory=dict)
+    time_s: NDArray
+    joints: NDArray
+    person_id: NDArray
+    xyz: NDArray
+    racket: NDArray
+    offset_s: dict[str, float]
+    drift_ppm: dict[str, float]
+    events: dict[str, dict[str, float]] = field(default_factory=dict)
+    shaken: dict[str, NDArray] = field(default_factory=dict)
+    devices: dict[str, DeviceTruth] = field(default_factory=dict)
 
 
-def write(path, truth):
+def write(path: str | PathLike, truth: TakeTruth) -> None:
     """Write the truth of a take to an npz file.
-
-    Parameters
-    ----------
-    path : str or Path
-    truth : TakeTruth
 
     Raises
     ------
     ValueError
-        If shapes disagree, the clocks are not of the same cameras, or events or devices are of nobody in it.
+        If shapes disagree, the clocks are not of the same cameras, or events or devices name an
+        unknown person.
     """
     people, cameras = [str(person) for person in truth.person_id], list(truth.offset_s)
     there = {*truth.events, *(device.person for device in truth.devices.values())}
@@ -142,26 +141,11 @@ def write(path, truth):
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path):
-    """Read the truth of a take.
-
-    Parameters
-    ----------
-    path : str or Path
-        As `write` wrote it.
-
-    Returns
-    -------
-    truth : TakeTruth
-
-    Raises
-    ------
-    InputError
-        If the file is none of this form.
-    """
+def read(path: str | PathLike) -> TakeTruth:
+    """Read the truth of a take; raise `InputError` if the file is not one of `write`."""
     arrays = npz.read(path, FORM, SPEC)
     cameras, people = arrays["camera"].tolist(), arrays["person_id"].tolist()
-    events = {person: {} for person in people}
+    events: dict[str, dict[str, float]] = {person: {} for person in people}
     happened = (arrays[key].tolist() for key in ("event_person", "event", "event_s"))
     for person, name, time_s in zip(*happened, strict=True):
         events.setdefault(person, {})[name] = time_s
@@ -175,7 +159,7 @@ def read(path):
     )
 
 
-def _of_devices(devices):
+def _of_devices(devices: Mapping[str, DeviceTruth]) -> dict[str, NDArray]:
     """Return the arrays of the devices' truth."""
     those = list(devices.values())
     clocks = [(device.offset_s, device.drift_ppm, device.latency_s) for device in those]
@@ -189,15 +173,14 @@ def _of_devices(devices):
     }
 
 
-def _devices(arrays):
-    """Return the devices' truth by name."""
+def _devices(arrays: Mapping[str, NDArray]) -> dict[str, DeviceTruth]:
     columns = (arrays[f"device_{key}"] for key in ("kind", "person", "clock", "from_world"))
     found = zip(arrays["device"].tolist(), *columns, strict=True)
     return {
-        name: DeviceTruth(str(kind), str(person), *map(float, clock), from_world)
+        name: DeviceTruth(str(kind), str(person), *clock.tolist(), from_world)
         for name, kind, person, clock, from_world in found
     }
 
 
-def _names(values):
+def _names(values: Iterable[object]) -> NDArray:
     return np.array(list(map(str, values)), dtype=str)
