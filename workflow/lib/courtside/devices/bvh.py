@@ -1,46 +1,48 @@
-"""BVH files: header, rows of motion, and the joints that they pose."""
+"""BVH files: header, rows of motion, and the poses of the joints."""
 
 import re
 import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from urllib.parse import quote, unquote
 
 import bvhio
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
 from courtside.study.errors import InputError
 
 CENTIMETRES_M = 0.01
-TURNED = {"X": (1, 2), "Y": (2, 0), "Z": (0, 1)}  # the columns that a turn about an axis mixes
+TURNED = {"X": (1, 2), "Y": (2, 0), "Z": (0, 1)}  # columns that a rotation about an axis mixes
 
 
-def read(path, *, unit_m=CENTIMETRES_M):
+def read(path: str | PathLike, *, unit_m: float = CENTIMETRES_M) -> PosedHierarchy:
     """Read a BVH file.
 
     Parameters
     ----------
-    path : str or Path
     unit_m : float
         Length of the file's unit, metres. BVH does not say it; mocopi's is the centimetre.
 
     Returns
     -------
     posed : PosedHierarchy
-        Joints in the file's order, by the file's names, which need not differ; axes as in the file; time
-        from zero. Position channels replace the offset, axis by axis.
+        Joints in the file's order, by the file's names, which need not be unique; axes as in the
+        file; time from zero. Position channels replace the offset, axis by axis.
 
     Raises
     ------
     InputError
-        If the file is not BVH; see `bvh_text.read`.
+        If the file is not BVH; see `read_text`.
 
     Notes
     -----
-    Meredith & Maddock 2001. Rotations are about the joint's own turned axes in the order of its CHANNELS:
-    Zrotation Xrotation Yrotation is R = Rz Rx Ry, Tait-Bryan, not the proper Euler angles (z-x-z) of some
-    descriptions.
+    Meredith & Maddock 2001. Rotations are about the joint's own rotated axes in the order of its
+    CHANNELS: Zrotation Xrotation Yrotation is R = Rz Rx Ry, Tait-Bryan, not the proper Euler angles
+    (z-x-z) of some descriptions.
     """
     text = read_text(path)
     names, parents, channels = _joints(text)
@@ -50,7 +52,7 @@ def read(path, *, unit_m=CENTIMETRES_M):
         offsets=text.offsets * unit_m,
         ends={names[at]: text.ends[at] * unit_m for at in sorted(text.ends, reverse=True)},
     )
-    columns = {}  # (joint, channel) -> column
+    columns: dict[tuple[int, str], int] = {}
     for joint, own in enumerate(channels):
         for channel in own:
             columns[joint, channel] = len(columns)
@@ -62,13 +64,15 @@ def read(path, *, unit_m=CENTIMETRES_M):
     )
 
 
-def _joints(text):
-    """Return the names, parents and channels of the joints, as bvhio finds them."""
+def _joints(text: "BvhText") -> tuple[list[str], list[int], list[Sequence[str]]]:
+    """Return the names, parents and channels of the joints, as bvhio reads them."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "hierarchy.bvh"
         path.write_text(f"{text.hierarchy}\nMOTION\nFrames: 0\nFrame Time: 0\n", encoding="ascii")
         root = bvhio.readAsBvh(str(path)).Root
-    names, parents, channels = [], [], []
+    names: list[str] = []
+    parents: list[int] = []
+    channels: list[Sequence[str]] = []
     waiting = [(root, NO_PARENT)]
     while waiting:
         joint, parent = waiting.pop()
@@ -79,7 +83,7 @@ def _joints(text):
     return names, parents, channels
 
 
-def _translations(text, columns):
+def _translations(text: "BvhText", columns: Mapping[tuple[int, str], int]) -> NDArray:
     """Return each joint's origin in its parent, (T, J, 3) in the file's unit."""
     found = np.repeat(text.offsets[None], len(text.rows), axis=0)
     for (joint, channel), column in columns.items():
@@ -88,8 +92,10 @@ def _translations(text, columns):
     return found
 
 
-def _rotations(rows, channels, columns):
-    """Return each joint's rotation in its parent, (T, J, 3, 3); joints of one order are turned together."""
+def _rotations(
+    rows: NDArray, channels: Sequence[Sequence[str]], columns: Mapping[tuple[int, str], int]
+) -> NDArray:
+    """Return each joint's rotation in its parent, (T, J, 3, 3); one order at a time."""
     found = np.tile(np.eye(3), (len(rows), len(channels), 1, 1))
     orders = [tuple(c for c in own if c.endswith("rotation")) for own in channels]
     for order in set(orders) - {()}:
@@ -108,21 +114,15 @@ def _rotations(rows, channels, columns):
 
 
 LARGEST = 1e9  # of any number: sums and products of such stay finite
+# ASSUME: far above what any program writes for a number; longer ones are damage.
 MAX_DIGITS = 40
 MAX_PER_CHANNEL = 100  # characters of a row for each channel, blanks included
 NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 EXPORT_AGAIN = "export the file again"
 
 
-def is_number(word, least=-LARGEST, most=LARGEST):
-    """Say whether a word is a plain decimal number between two bounds.
-
-    Parameters
-    ----------
-    word : str
-    least, most : float
-        The bounds, included.
-    """
+def is_number(word: str, least: float = -LARGEST, most: float = LARGEST) -> bool:
+    """Return whether a word is a plain decimal number from `least` to `most`, both included."""
     return (
         len(word) <= MAX_DIGITS
         and NUMBER.fullmatch(word) is not None
@@ -130,15 +130,15 @@ def is_number(word, least=-LARGEST, most=LARGEST):
     )
 
 
-def shown(word):
+def shown(word: str) -> str:
     """Return a word as an error shows it: short, on one line."""
     if not word:
         return "nothing"
     return repr(word if len(word) <= MAX_DIGITS else word[:MAX_DIGITS] + "...")
 
 
-def read_rows(path, text, at, n_frames, n_channels):
-    """Read the rows at the end of a BVH file.
+def read_rows(path: str | PathLike, text: str, at: int, n_frames: int, n_channels: int) -> NDArray:
+    """Read the rows of motion, (T, C) float.
 
     Parameters
     ----------
@@ -149,11 +149,7 @@ def read_rows(path, text, at, n_frames, n_channels):
     at : int
         Where in it the rows begin.
     n_frames, n_channels : int
-        Rows and columns that there must be.
-
-    Returns
-    -------
-    rows : (T, C) float
+        Expected rows and columns.
 
     Raises
     ------
@@ -181,8 +177,8 @@ def read_rows(path, text, at, n_frames, n_channels):
     return rows
 
 
-def _check_width(path, lines, first, n_channels):
-    """Refuse rows so wide that splitting them would already take long."""
+def _check_width(path: str | PathLike, lines: Sequence[str], first: int, n_channels: int) -> None:
+    """Raise `InputError` on rows so wide that splitting them would already take long."""
     most = MAX_PER_CHANNEL * n_channels
     for number, line in enumerate(lines, start=first):
         if len(line) > most:
@@ -192,7 +188,7 @@ def _check_width(path, lines, first, n_channels):
             )
 
 
-def _bad_row(path, lines, first, n_channels):
+def _bad_row(path: str | PathLike, lines: Sequence[str], first: int, n_channels: int) -> InputError:
     """Return the error of the first row that is not `n_channels` numbers."""
     for number, line in enumerate(lines, start=first):
         words = line.split()
@@ -217,25 +213,25 @@ CHANNELS = {
     f"{axis}{kind}".lower(): f"{axis}{kind}" for kind in ("position", "rotation") for axis in AXES
 }
 MAX_BYTES = 64 << 20  # 12 minutes of mocopi at 60 frames a second
+# ASSUME: far above any take and any body, far below what would fill the memory.
 MAX_LINES = 1_000_000
 MAX_JOINTS = 1000
-MAX_DEPTH = 100  # bvhio calls itself once a level
-MAX_JOINT_FRAMES = 5_000_000  # the rotations of all joints and frames then take 360 MB
 MAX_NAME = 100
 LONGEST_FRAME_S = 3600.0
+MAX_DEPTH = 100  # bvhio recurses once a level
+MAX_JOINT_FRAMES = 5_000_000  # the rotations of all joints and frames then take 360 MB
 FRAMES = re.compile(r"\s*frames\s*:[^\S\n]*(\S*)[^\S\n]*(?:\n|\Z)", re.IGNORECASE)
 FRAME_TIME = re.compile(r"\s*frame\s+time\s*:[^\S\n]*(\S*)[^\S\n]*(?:\n|\Z)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False)
 class BvhText:
-    """What a BVH file holds, checked.
+    """The checked content of a BVH file.
 
     Attributes
     ----------
     hierarchy : str
-        The hierarchy as bvhio reads it: capitals, one thing a line; names percent-encoded, so that they
-        are ASCII.
+        The hierarchy as bvhio reads it: capitals, one item a line; names percent-encoded to ASCII.
     offsets : (J, 3) float
         OFFSET of each joint in the file's order, in the file's unit.
     ends : dict of int to (3,) float
@@ -247,53 +243,55 @@ class BvhText:
     """
 
     hierarchy: str
-    offsets: np.ndarray
-    ends: dict
+    offsets: NDArray
+    ends: dict[int, NDArray]
     frame_time_s: float
-    rows: np.ndarray
+    rows: NDArray
 
 
 class _Words:
-    """The words of a text one after the other, and where they stand."""
+    """The words of a text in order, and their positions."""
 
-    def __init__(self, path, text):
+    def __init__(self, path: str | PathLike, text: str) -> None:
         self.path, self.text = path, text
         self.found = re.compile(r"\S+").finditer(text)
         self.start = self.end = 0
 
-    def take(self):
-        """Return the next word; an empty one at the end of the file."""
+    def take(self) -> str:
+        """Return the next word; empty at the end of the file."""
         match = next(self.found, None)
         self.start, self.end = match.span() if match else (len(self.text), len(self.text))
         return match.group() if match else ""
 
-    def expect(self, wanted, where):
+    def expect(self, wanted: str, where: str) -> str:
         word = self.take()
         if word.upper() != wanted:
             raise self.error(f"expected {wanted} {where}", word)
         return word
 
-    def number(self, where):
+    def number(self, where: str) -> float:
         word = self.take()
         if not is_number(word):
             raise self.error(f"expected a number {where}", word)
         return float(word)
 
-    def error(self, expected, word, mend=EXPORT_AGAIN):
+    def error(self, expected: str, word: str, mend: str = EXPORT_AGAIN) -> InputError:
         line = self.text.count("\n", 0, self.start) + 1
         return InputError(f"{self.path}: line {line}: {expected}, found {shown(word)}; {mend}")
 
 
 class _Reader:
-    """Reads the hierarchy, joint after joint, with a list of the open ones in place of recursion."""
+    """Reads the hierarchy joint by joint, with a list of open joints instead of recursion."""
 
-    def __init__(self, words):
+    def __init__(self, words: _Words) -> None:
         self.words = words
-        self.lines, self.offsets, self.ends = ["HIERARCHY"], [], {}
+        self.lines = ["HIERARCHY"]
+        self.offsets: list[list[float]] = []
+        self.ends: dict[int, list[float]] = {}
         self.n_channels = 0
-        self.open = []
+        self.open: list[tuple[int, str]] = []
 
-    def read(self):
+    def read(self) -> "_Reader":
         self.words.expect("HIERARCHY", "in front of the joints")
         self.words.expect("ROOT", "after HIERARCHY")
         self._joint("ROOT")
@@ -311,7 +309,7 @@ class _Reader:
                 raise self.words.error(f"expected JOINT, one End Site or }} in joint {name}", word)
         return self
 
-    def _joint(self, kind):
+    def _joint(self, kind: str) -> None:
         name = self.words.take()
         if not 0 < len(name) <= MAX_NAME or not name.isprintable() or name in ("{", "}"):
             raise self.words.error(
@@ -333,16 +331,16 @@ class _Reader:
             " ".join(["CHANNELS", str(len(channels)), *channels]),
         ]
 
-    def _offset(self, where):
+    def _offset(self, where: str) -> list[float]:
         self.words.expect("OFFSET", where)
         return [self.words.number(f"in OFFSET {where}") for _ in AXES]
 
-    def _channels(self, name):
+    def _channels(self, name: str) -> list[str]:
         self.words.expect("CHANNELS", f"after OFFSET of joint {name}")
         count = self.words.take()
         if count not in map(str, range(len(CHANNELS) + 1)):
             raise self.words.error(f"expected 0 to {len(CHANNELS)} CHANNELS of joint {name}", count)
-        channels = []
+        channels: list[str] = []
         for at in range(int(count)):
             word = self.words.take()
             channel = CHANNELS.get(word.lower())
@@ -356,7 +354,7 @@ class _Reader:
             channels.append(channel)
         return channels
 
-    def _end_site(self, index, name):
+    def _end_site(self, index: int, name: str) -> None:
         where = f"of the End Site of joint {name}"
         self.words.expect("SITE", f"after End in joint {name}")
         self.words.expect("{", f"at the start {where}")
@@ -364,22 +362,14 @@ class _Reader:
         self.words.expect("}", f"at the end {where}")
 
 
-def read_text(path):
-    """Read the text of a BVH file and check it.
-
-    Parameters
-    ----------
-    path : str or Path
-        BVH: one ROOT, keywords in any case, blanks and blank lines as they come.
-
-    Returns
-    -------
-    text : BvhText
+def read_text(path: str | PathLike) -> BvhText:
+    """Read the text of a BVH file and check it: one ROOT, keywords in any case, any whitespace.
 
     Raises
     ------
     InputError
-        If the file cannot be read, is not BVH, or is larger than anything a take can be; the line says where.
+        If the file cannot be read, is not BVH, or is larger than any take; the message names the
+        line.
     """
     text = _load(path)
     words = _Words(path, text)
@@ -400,7 +390,7 @@ def read_text(path):
     )
 
 
-def _load(path):
+def _load(path: str | PathLike) -> str:
     path = Path(path)
     try:
         if not path.is_file():
@@ -408,8 +398,8 @@ def _load(path):
         size = path.stat().st_size
         if size > MAX_BYTES:
             raise InputError(
-                f"{path}: expected a BVH file of at most {MAX_BYTES >> 20} MiB, found {size >> 20} MiB; "
-                "cut the take into pieces"
+                f"{path}: expected a BVH file of at most {MAX_BYTES >> 20} MiB, found {size >> 20} "
+                "MiB; cut the take into pieces"
             )
         text = path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except (OSError, UnicodeDecodeError) as error:
@@ -421,7 +411,7 @@ def _load(path):
     return text
 
 
-def _motion_header(words):
+def _motion_header(words: _Words) -> tuple[int, float, int]:
     """Return the number of frames, the frame time, and where the rows begin."""
     frames, at = _header(words, FRAMES, "`Frames: COUNT`", words.end)
     if not frames.isascii() or not frames.isdecimal() or len(frames) > len(str(MAX_JOINT_FRAMES)):
@@ -436,7 +426,7 @@ def _motion_header(words):
     return int(frames), float(time_s), at
 
 
-def _header(words, pattern, wanted, at):
+def _header(words: _Words, pattern: re.Pattern[str], wanted: str, at: int) -> tuple[str, int]:
     match = pattern.match(words.text, at)
     words.start = match.start(1) if match else at
     if not match:

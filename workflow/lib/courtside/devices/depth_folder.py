@@ -2,16 +2,16 @@
 
 The folder holds
 - `cameras.toml`: two cameras named `colour` and `depth` in the study's form (`name size matrix
-  distortions rotation
-  translation`; see `geometry.cameras.read_toml`), both placed in one frame of axes. Its `[metadata]` may
-  hold `unit` (of the translations: m, cm or mm; m where absent), `depth_unit_m` (metres of one step of
-  depth; 0.001 where absent) and `baseline_m` (between the imagers that depth comes from);
+  distortions rotation translation`; see `geometry.camera.read_toml`), both placed in one frame of
+  axes. Its `[metadata]` may hold `unit` (of the translations: m, cm or mm; m where absent),
+  `depth_unit_m` (metres of one step of depth; 0.001 where absent) and `baseline_m` (between the
+  imagers that depth comes from);
 - `colour.mp4` (or .mkv .mov .avi): the colour video;
 - `depth/`: one 16-bit PNG of one channel per frame, taken in the order of their names; 0 is a hole;
-- where a frame got lost or the clocks differ, `colour.csv` and `depth.csv` with the columns `number` (as
-  the camera
-  counted) and `time_s` (by one clock), one row per frame. Without them frame k of both is taken at the
-  time the video says, and the video and the folder must hold equally many.
+- where a frame was lost or the clocks differ, `colour.csv` and `depth.csv` with the columns
+`number`
+  (as the camera counted) and `time_s` (on one clock), one row per frame. Without them frame k of
+  both is taken at the time the video says, and the video and the folder must hold equally many.
 
     [colour]
     name = "colour"
@@ -29,12 +29,15 @@ The folder holds
 """
 
 import tomllib
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.geometry import camera as cameras
@@ -48,23 +51,13 @@ EXPORT = "export depth again, without conversion"
 STANDING_STILL = np.eye(3, 4)
 
 
-def read(path, name="rgbd"):
-    """Read such a folder.
-
-    Parameters
-    ----------
-    path : str or Path
-    name : str
-        Of the device in the study.
-
-    Returns
-    -------
-    recording : DepthRecording
+def read(path: str | PathLike, name: str = "rgbd") -> DepthRecording:
+    """Read such a folder; `name` is the device's in the study.
 
     Raises
     ------
     InputError
-        If a file is missing or not as described above. A damaged picture shows when it is read.
+        If a file is missing or not as described above. A damaged picture is found only when read.
     """
     folder = Path(path)
     toml = folder / "cameras.toml"
@@ -94,18 +87,19 @@ def read(path, name="rgbd"):
     )
 
 
-def _metadata(toml):
+def _metadata(toml: Path) -> tuple[float, float, tuple[str, ...]]:
     metadata = tomllib.loads(toml.read_text(encoding="utf-8-sig")).get("metadata", {})
     if not isinstance(metadata, dict):
         raise InputError(
             f"{toml}: expected a table [metadata], found {camera_fields.short(metadata)}"
         )
-    where, remarks = f"{toml}: [metadata]", ()
+    where = f"{toml}: [metadata]"
+    remarks: tuple[str, ...] = ()
     if "depth_unit_m" not in metadata:
         remarks = (f"no depth_unit_m in {toml}: {DEFAULT_UNIT_M} m assumed",)
     unit = metadata.get("depth_unit_m", DEFAULT_UNIT_M)
     depth_unit_m = float(camera_fields.numbers(where, "depth_unit_m", unit, ()))
-    if not 1e-6 <= depth_unit_m <= 0.1:
+    if not 1e-6 <= depth_unit_m <= 0.1:  # ASSUME: a micrometre to 10 cm covers any sensor
         raise InputError(
             f"{where}: expected depth_unit_m of 0.000001 to 0.1, found {depth_unit_m}; correct it"
         )
@@ -116,7 +110,7 @@ def _metadata(toml):
     return depth_unit_m, float(baseline_m), remarks
 
 
-def _film(folder):
+def _film(folder: Path) -> Path:
     found = [path for path in sorted(folder.glob("colour.*")) if path.suffix.lower() in VIDEOS]
     if len(found) != 1:
         names = [path.name for path in found]
@@ -126,15 +120,15 @@ def _film(folder):
     return found[0]
 
 
-def _pictures(folder):
+def _pictures(folder: Path) -> list[Path]:
     found = sorted(folder.glob("*.png"))
     if not found:
         raise InputError(f"{folder}: expected 16-bit PNG pictures of depth, found none; add them")
     return found
 
 
-def _indices(folder, film, n_depth):
-    """Return the `FrameTimes` of colour and of depth."""
+def _indices(folder: Path, film: Path, n_depth: int) -> tuple[FrameTimes, FrameTimes]:
+    """Return the frame times of colour and of depth."""
     times_s = reader.frame_times(film)
     tables = [folder / "colour.csv", folder / "depth.csv"]
     given = [path.is_file() for path in tables]
@@ -144,14 +138,14 @@ def _indices(folder, film, n_depth):
         raise InputError(f"{folder}: expected colour.csv and depth.csv, found one; add the other")
     if len(times_s) != n_depth:
         raise InputError(
-            f"{folder}: expected as many depth pictures as colour frames, {len(times_s)}, found {n_depth}; "
-            "add colour.csv and depth.csv that say when each was taken"
+            f"{folder}: expected as many depth pictures as colour frames, {len(times_s)}, found "
+            f"{n_depth}; add colour.csv and depth.csv that say when each was taken"
         )
     index = FrameTimes(times_s, np.arange(n_depth))
     return index, index
 
 
-def _table(path, n_frames):
+def _table(path: Path, n_frames: int) -> FrameTimes:
     with reading(path, "columns number (whole) and time_s", "correct them"):
         rows = pd.read_csv(path)
         times_s = rows["time_s"].to_numpy(dtype=float)
@@ -159,18 +153,20 @@ def _table(path, n_frames):
     rising = np.isfinite(times_s).all() and (np.diff(times_s) > 0).all()
     if len(rows) != n_frames or not rising or not (np.diff(numbers) > 0).all():
         raise InputError(
-            f"{path}: expected {n_frames} rows with rising number and time_s, one for each frame, found "
-            f"{len(rows)} rows or others; correct them"
+            f"{path}: expected {n_frames} rows with rising number and time_s, one for each frame, "
+            f"found {len(rows)} rows or others; correct them"
         )
     return FrameTimes(times_s, numbers)
 
 
-def _colour(film, times_s):
+def _colour(film: Path, times_s: NDArray) -> Iterator[tuple[float, NDArray]]:
     for time_s, (_, image) in zip(times_s.tolist(), reader.frames(film), strict=True):
         yield time_s, image
 
 
-def _depth(pictures, times_s, size):
+def _depth(
+    pictures: Sequence[Path], times_s: NDArray, size: tuple[int, int]
+) -> Iterator[tuple[float, NDArray]]:
     for path, time_s in zip(pictures, times_s.tolist(), strict=True):
         what = f"a 16-bit picture of one channel, {camera_fields.times(size)} px"
         image = images.read(path, cv2.IMREAD_UNCHANGED, what=what, advice=EXPORT)

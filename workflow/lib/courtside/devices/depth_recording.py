@@ -1,20 +1,23 @@
-"""A recording of a colour and depth camera, whatever file it comes from."""
+"""A recording of a colour and depth camera, independent of its file format."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
+from courtside.records.cameras.frame_times import FrameTimes
 
-DEFAULT_UNIT_M = 0.001  # what one step of a D400's depth means unless its option says otherwise
+DEFAULT_UNIT_M = 0.001  # one step of a D400's depth unless its option says otherwise
+Frames = Callable[[], Iterator[tuple[float, NDArray]]]
 
 
 @dataclass(frozen=True, eq=False)
 class DepthRecording:
-    """Colour and depth of one device, by its own clock.
+    """Colour and depth of one device, on its own clock.
 
     Attributes
     ----------
@@ -23,15 +26,16 @@ class DepthRecording:
     colour, depth : Camera
         Their `cam_from_world` is the identity: the world of each is its own view.
     colour_from_depth : (3, 4) float
-        From the depth camera's axes to the colour camera's, both x right, y down, z forward; metres.
+        From the depth camera's axes to the colour camera's, both x right, y down, z forward;
+        metres.
     depth_unit_m : float
         Metres of one step of the depth pictures; 0 in them is a hole.
     colour_frames : callable
-        Without arguments gives a new iterator of (time_s, (H, W, 3) uint8 BGR), in order of time.
+        Returns a new iterator of (time_s, (H, W, 3) uint8 BGR), in order of time.
     depth_frames : callable
-        Without arguments gives a new iterator of (time_s, (h, w) uint16), in order of time.
+        Returns a new iterator of (time_s, (h, w) uint16), in order of time.
     colour_index : callable
-        Without arguments gives the `FrameTimes` of the colour frames, without decoding a picture.
+        Returns the `FrameTimes` of the colour frames, without decoding a picture.
     baseline_m : float
         Between the two imagers that the depth comes from; NaN where the recording does not say.
     remarks : tuple of str
@@ -46,19 +50,20 @@ class DepthRecording:
     name: str
     colour: Camera
     depth: Camera
-    colour_from_depth: np.ndarray
+    colour_from_depth: NDArray
     depth_unit_m: float
-    colour_frames: Callable
-    depth_frames: Callable
-    colour_index: Callable
+    colour_frames: Frames
+    depth_frames: Frames
+    colour_index: Callable[[], FrameTimes]
     baseline_m: float = math.nan
-    remarks: tuple = ()
+    remarks: tuple[str, ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         moved = np.array(self.colour_from_depth, dtype=float)
         if moved.shape != (3, 4) or not np.isfinite(moved).all():
             raise ValueError(
-                f"expected colour_from_depth as (3, 4) finite numbers, found {camera_fields.short(moved)}"
+                "expected colour_from_depth as (3, 4) finite numbers, found "
+                f"{camera_fields.short(moved)}"
             )
         rotation = moved[:, :3]
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-4 or np.linalg.det(rotation) < 0:
@@ -69,6 +74,6 @@ class DepthRecording:
         object.__setattr__(self, "colour_from_depth", moved)
 
     @property
-    def separation_m(self):
+    def separation_m(self) -> float:
         """Distance between the centres of the colour and the depth camera, metres."""
         return float(np.linalg.norm(self.colour_from_depth[:, 3]))

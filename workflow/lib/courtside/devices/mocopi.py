@@ -1,44 +1,49 @@
 """mocopi: the BVH files of its app -> the motion of its 27 joints, by the study's names.
 
-The axes stay the app's: Y up, right-handed, X to the left of a person who faces Z. Lengths are centimetres
-there. Every file of the app opens with a row that nobody performed: the rest pose of its own model, all
-rotations zero.
+The axes stay the app's: Y up, right-handed, X to the left of a person who faces Z. Its lengths are
+centimetres. Every file of the app opens with a row that nobody performed: the rest pose of its own
+model, all rotations zero.
 """
 
 from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from os import PathLike
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.devices import bvh
 from courtside.records.devices import hierarchy
 from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError
 
 KIND = "inertial"
-RATES_HZ = (30.0, 50.0, 60.0)
+RATES_HZ = (30.0, 50.0, 60.0)  # of the app
 WRITTEN_TO_S = 0.6e-6  # the app writes its frame time with six decimals: 0.016667
-NO_TURN = 1e-6  # largest entry by which a rotation may differ from none
+NO_TURN = 1e-6  # rounding: largest entry by which a rotation may differ from the identity
 
 
-def read(path, skeleton, *, source="mocopi"):
-    """Read a file of the app.
+def read(
+    path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi"
+) -> tuple[DeviceMotion, PosedHierarchy]:
+    """Read a BVH file of the app.
 
     Parameters
     ----------
-    path : str or Path
-        BVH.
     skeleton : Skeleton
-        `config/skeletons/mocopi27.yaml`: its `names` say what the file calls each joint.
+        `config/skeletons/mocopi27.yaml`: its `names` are the file's names of the joints.
     source : str
         Name of the device in the take.
 
     Returns
     -------
     motion : DeviceMotion
-        Joints in the skeleton's order; metres in the app's axes; the clock starts at zero with the first row.
-        The rest pose in the first row is kept, as not performed.
+        Joints in the skeleton's order; metres in the app's axes; the clock starts at zero with the
+        first row. The rest pose in the first row is kept, as not performed.
     posed : PosedHierarchy
         The same motion as rotations, joints in the file's order by the study's names.
 
@@ -49,8 +54,8 @@ def read(path, skeleton, *, source="mocopi"):
 
     Notes
     -----
-    A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame times of 30, 50
-    and 60 frames a second are taken as these; others as written.
+    A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame
+    times of 30, 50 and 60 frames a second are taken as these; others as written.
     """
     posed = bvh.read(path)
     studied = dict(zip(skeleton.device_names(), skeleton.joints, strict=True))
@@ -72,7 +77,9 @@ def read(path, skeleton, *, source="mocopi"):
     return motion, posed
 
 
-def _check_joints(path, name, found, wanted):
+def _check_joints(
+    path: str | PathLike, name: str, found: Sequence[str], wanted: Collection[str]
+) -> None:
     missing = [joint for joint in wanted if joint not in found]
     unknown = [joint for joint in found if joint not in wanted]
     twice = [joint for joint, count in Counter(found).items() if count > 1]
@@ -80,13 +87,13 @@ def _check_joints(path, name, found, wanted):
         faults = {"missing": missing, "unknown": unknown, "twice": twice}
         told = "; ".join(f"{fault}: {', '.join(js)}" for fault, js in faults.items() if js)
         raise InputError(
-            f"{path}: expected the {len(wanted)} joints of {name}, found {len(found)}: {told}; give the file "
-            "that the app exported, or add the names to the skeleton's file"
+            f"{path}: expected the {len(wanted)} joints of {name}, found {len(found)}: {told}; "
+            "give the file that the app exported, or add the names to the skeleton's file"
         )
 
 
-def _renamed(shape, studied):
-    return hierarchy.Hierarchy(
+def _renamed(shape: Hierarchy, studied: Mapping[str, str]) -> Hierarchy:
+    return Hierarchy(
         joints=tuple(studied[joint] for joint in shape.joints),
         parents=shape.parents,
         offsets=shape.offsets,
@@ -94,8 +101,8 @@ def _renamed(shape, studied):
     )
 
 
-def _nominal(time_s):
-    """Return the times by the rate that the app means, if it is one of its rates."""
+def _nominal(time_s: NDArray) -> NDArray:
+    """Return the times at the app's exact rate, if the steps round to one of its rates."""
     if len(time_s) < 2:
         return time_s
     for rate_hz in RATES_HZ:
@@ -104,8 +111,8 @@ def _nominal(time_s):
     return time_s
 
 
-def _rest_rows(posed):
-    """Return which rows are the app's rest pose, (T,) bool: the first one, if nothing is turned in it."""
+def _rest_rows(posed: PosedHierarchy) -> NDArray:
+    """Return which rows are the app's rest pose, (T,) bool: only the first, without rotations."""
     found = np.zeros(len(posed.time_s), dtype=bool)
     found[:1] = (np.abs(posed.parent_from_joint[:1] - np.eye(3)) < NO_TURN).all()
     return found

@@ -1,29 +1,31 @@
 """Import skeletons that Nuitrack recorded.
 
 Accepted are
-- `.csv` of its recorder (documented in the maker's repository, `doc/CSV_Recorder.md`): columns
-  `timestamp` (the
-  sensor's, microseconds), `id` (of the user) and `JOINT_<NAME>.x .y .z` in metres; `serial` and `.rot`
-  are not used;
-- `.json` with the fields of its programming interface (`GET_SKELETON` of PyNuitrack): a list of frames,
-  or one frame
-  per line, each
+- `.csv` of its recorder (the maker's repository, `doc/CSV_Recorder.md`): columns `timestamp` (the
+  sensor's, microseconds), `id` (of the user) and `JOINT_<NAME>.x .y .z` in metres; `serial` and
+  `.rot` are not used;
+- `.json` with the fields of its programming interface (`GET_SKELETON` of PyNuitrack): a list of
+  frames, or one frame per line, each
   `{"timestamp": 1715151474879921, "skeletons": [{"user_id": 1, "left_wrist": {"real": [x, y, z],
-  "confidence": 0.75}, ...}]}` with `real` in millimetres; `projection`, `orientation` and `type` are not
-  used. In place of joints by name, a skeleton may hold `"joints": [{"type": "JOINT_LEFT_WRIST", "real":
-  ..., "confidence": ...}, ...]`, `type` being the name or the number of the interface. Capital letters do
-  not matter (`Timestamp`, `Real`), `real` may be `{"x": ..., "y": ..., "z": ...}`, and `confidence` may
-  be missing.
+  "confidence": 0.75}, ...}]}` with `real` in millimetres; `projection`, `orientation` and `type`
+  are not used. In place of joints by name, a skeleton may hold `"joints": [{"type":
+  "JOINT_LEFT_WRIST", "real": ..., "confidence": ...}, ...]`, `type` being the name or the number of
+  the interface. Letter case is ignored (`Timestamp`, `Real`), `real` may be
+  `{"x": ..., "y": ..., "z": ...}`, and `confidence` may be missing.
 
-Nuitrack's x is to the right of the picture, y up and z away from the camera: left-handed. Here y is
-turned down, so that the axes are those of a camera.
+Nuitrack's x points to the right of the picture, y up and z away from the camera: left-handed. Here
+y is negated, which gives the axes of a camera.
 """
 
 import json
+from collections.abc import Mapping, Sequence
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
@@ -33,15 +35,24 @@ from courtside.study.execution import log
 COLLARS = ("left_collar", "right_collar")  # one point under two names
 SIDED = ("collar", "shoulder", "elbow", "wrist", "hand", "fingertip")
 LEGS = ("hip", "knee", "ankle", "foot")
-NUMBERS = ("none", "head", "neck", "torso", "waist")  # of the interface, from 0
+NUMBERS: tuple[str, ...] = ("none", "head", "neck", "torso", "waist")  # of the interface, from 0
 NUMBERS += tuple(f"{side}_{joint}" for side in ("left", "right") for joint in SIDED)
 NUMBERS += tuple(f"{side}_{joint}" for side in ("left", "right") for joint in LEGS)
 UNITS_M = {".csv": 1.0, ".json": 0.001}
-TRUNK_M = (0.2, 1.0)  # from neck to waist, by the median: tells millimetres from metres
+# ASSUME: no median neck-to-waist distance lies outside; it tells millimetres from metres.
+TRUNK_M = (0.2, 1.0)
 EXPORT = "export the skeletons from Nuitrack again"
 
 
-def read(path, joints, source, *, min_confidence=0.5, user=None, unit_m=None):
+def read(
+    path: str | PathLike,
+    joints: Sequence[str],
+    source: str,
+    *,
+    min_confidence: float = 0.5,
+    user: int | None = None,
+    unit_m: float | None = None,
+) -> DeviceMotion:
     """Read one user's skeleton.
 
     Parameters
@@ -53,11 +64,11 @@ def read(path, joints, source, *, min_confidence=0.5, user=None, unit_m=None):
     source : str
         Name of the result.
     min_confidence : float
-        A joint below it is missing.
+        Joints below it are missing.
     user : int, optional
-        Whose; of the user seen in most frames where absent.
+        Default: the user seen in most frames.
     unit_m : float, optional
-        Of the coordinates; metres in a `.csv` and millimetres in a `.json` where absent.
+        Of the coordinates. Default: metres in a `.csv`, millimetres in a `.json`.
 
     Returns
     -------
@@ -78,9 +89,8 @@ def read(path, joints, source, *, min_confidence=0.5, user=None, unit_m=None):
     users, time_us, xyz, confidence = (_csv if kind == ".csv" else _json)(path, list(joints))
     chosen = _user(path, users, user)
     time_us, xyz, confidence = time_us[chosen], xyz[chosen], confidence[chosen]
-    newer = np.concatenate(
-        [[True], np.diff(np.maximum.accumulate(time_us)) > 0]
-    )  # rows are repeated
+    # The recorder repeats rows.
+    newer = np.concatenate([[True], np.diff(np.maximum.accumulate(time_us)) > 0])
     time_us, confidence = time_us[newer], confidence[newer]
     xyz = xyz[newer] * (UNITS_M[kind] if unit_m is None else unit_m) * (1.0, -1.0, 1.0)
     unseen = ~np.isfinite(xyz).all(axis=-1) | (xyz == 0).all(axis=-1)
@@ -101,13 +111,13 @@ def read(path, joints, source, *, min_confidence=0.5, user=None, unit_m=None):
     )
 
 
-def _user(path, users, user):
-    """Return which rows are the user's."""
+def _user(path: Path, users: NDArray, user: int | None) -> NDArray:
+    """Return which rows are the user's, (N,) bool."""
     known, counts = np.unique(users, return_counts=True)
     if not len(known) or (user is not None and user not in known):
         raise InputError(
-            f"{path}: expected a skeleton of {'a user' if user is None else f'user {user}'}, found users "
-            f"{known.tolist()}; {EXPORT} or name another"
+            f"{path}: expected a skeleton of {'a user' if user is None else f'user {user}'}, found "
+            f"users {known.tolist()}; {EXPORT} or name another"
         )
     user = known[counts.argmax()] if user is None else user
     if len(known) > 1:
@@ -115,7 +125,7 @@ def _user(path, users, user):
     return users == user
 
 
-def _check_size(path, xyz, joints):
+def _check_size(path: Path, xyz: NDArray, joints: list[str]) -> None:
     if not {"neck", "waist"} <= set(joints):
         return
     trunk = np.linalg.norm(xyz[:, joints.index("neck")] - xyz[:, joints.index("waist")], axis=-1)
@@ -124,18 +134,18 @@ def _check_size(path, xyz, joints):
     median_m = float(np.nanmedian(trunk))
     if not TRUNK_M[0] <= median_m <= TRUNK_M[1]:
         raise InputError(
-            f"{path}: expected {TRUNK_M[0]} to {TRUNK_M[1]} m from neck to waist, found {median_m:.3g} m; "
-            "say the unit of the coordinates (unit_m)"
+            f"{path}: expected {TRUNK_M[0]} to {TRUNK_M[1]} m from neck to waist, found "
+            f"{median_m:.3g} m; say the unit of the coordinates (unit_m)"
         )
 
 
-def _names(joint):
-    """Return the names of a joint in Nuitrack."""
+def _names(joint: str) -> tuple[str, ...]:
+    """Return Nuitrack's names of a joint."""
     return COLLARS if joint == "collar" else (joint,)
 
 
-def _csv(path, joints):
-    """Return users (N,), times (N,) us, places (N, J, 3) and confidences (N, J)."""
+def _csv(path: Path, joints: list[str]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    """Return users (N,), times (N,) us, positions (N, J, 3) and confidences (N, J)."""
     with reading(path, "columns timestamp, id and JOINT_<NAME>.x .y .z of each joint", EXPORT):
         rows = pd.read_csv(path, skipinitialspace=True)
         rows.columns = [str(name).strip().lower() for name in rows.columns]
@@ -145,7 +155,7 @@ def _csv(path, joints):
     return users, time_us, xyz, np.ones(xyz.shape[:2])
 
 
-def _columns(rows, joint):
+def _columns(rows: pd.DataFrame, joint: str) -> NDArray:
     found = [
         rows[[f"joint_{name}.{axis}" for axis in "xyz"]].to_numpy(dtype=float)
         for name in _names(joint)
@@ -153,9 +163,12 @@ def _columns(rows, joint):
     return np.mean(found, axis=0)
 
 
-def _json(path, joints):
-    """Return users (N,), times (N,) us, places (N, J, 3) and confidences (N, J)."""
-    users, time_us, xyz, confidence = [], [], [], []
+def _json(path: Path, joints: list[str]) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    """Return the same as `_csv`."""
+    users: list[int] = []
+    time_us: list[int] = []
+    xyz: list[list[list[float]]] = []
+    confidence: list[list[float]] = []
     what = "frames with timestamp and skeletons, their joints with real"
     with reading(path, what, EXPORT):
         for frame in _frames(path):
@@ -168,10 +181,10 @@ def _json(path, joints):
         numbers = np.array([users, time_us], dtype=np.int64)
     places = np.array(xyz, dtype=float).reshape(-1, len(joints), 3)
     sure = np.array(confidence, dtype=float).reshape(-1, len(joints))
-    return *numbers, places, sure
+    return numbers[0], numbers[1], places, sure
 
 
-def _frames(path):
+def _frames(path: Path) -> list[Any]:
     text = path.read_text(encoding="utf-8-sig")
     try:
         found = json.loads(text)
@@ -181,14 +194,14 @@ def _frames(path):
     return [found] if isinstance(found, dict) else found
 
 
-def _lower(value):
-    """Return parsed JSON with all keys in small letters."""
+def _lower(value: Any) -> Any:
+    """Return parsed JSON with all keys in lower case."""
     if isinstance(value, dict):
         return {key.lower(): _lower(item) for key, item in value.items()}
     return [_lower(item) for item in value] if isinstance(value, list) else value
 
 
-def _by_name(skeleton):
+def _by_name(skeleton: Mapping[str, Any]) -> Mapping[str, Any]:
     if "joints" not in skeleton:
         return skeleton
     named = {}
@@ -201,8 +214,8 @@ def _by_name(skeleton):
     return named
 
 
-def _joint(skeleton, joint):
-    """Return a joint's place, as written, and confidence; NaN where it is not there."""
+def _joint(skeleton: Mapping[str, Any], joint: str) -> tuple[list[float], float]:
+    """Return a joint's position, as written, and confidence; NaN where it is missing."""
     found = [skeleton[name] for name in _names(joint) if name in skeleton]
     if not found:
         return [np.nan] * 3, np.nan
@@ -210,7 +223,7 @@ def _joint(skeleton, joint):
     return np.mean(places, axis=0).tolist(), min(float(item.get("confidence", 1)) for item in found)
 
 
-def _place(real):
+def _place(real: Any) -> list[float]:
     values = [real[axis] for axis in "xyz"] if isinstance(real, dict) else real
     if len(values) != 3:
         raise ValueError(f"real of {len(values)} numbers")

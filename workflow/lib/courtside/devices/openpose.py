@@ -1,33 +1,49 @@
-"""Keypoint files of OpenPose and AlphaPose, and the people in them."""
+"""Keypoint files of OpenPose and AlphaPose, and the tracklets of the people in them."""
 
 import json
 import re
+from collections.abc import Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
+from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError, reading
 
-# BODY_25 and BODY_25B have 25 points each, in another order: the 9th is the middle of the hips, or an elbow.
+# BODY_25 and BODY_25B have 25 points each, in another order: the 9th is the mid-hip, or an elbow.
 MISTAKEN = ("body25", "body25b")
 MIDDLE_IN_BODY25 = (8, 9, 12)
-MIDDLE = 0.05  # of the person's size: so near to the middle of the hips lies a point that is it
+# ASSUME: a mid-hip lies within this share of the person's size of the middle of both hips; an elbow
+# does not.
+MIDDLE = 0.05
 
 
-def read(folder, skeleton, *, camera, model, size, time_s=None, rate_hz=None, trim_s=None):
-    """Read the keypoints of one camera.
+def read(
+    folder: str | PathLike,
+    skeleton: Skeleton,
+    *,
+    camera: str,
+    model: str,
+    size: tuple[int, int],
+    time_s: NDArray | None = None,
+    rate_hz: float | None = None,
+    trim_s: tuple[float, float] | None = None,
+) -> Keypoints2D:
+    """Read the keypoints of one camera: a tracklet for each person that could be followed.
 
     Parameters
     ----------
     folder : str or Path
-        Files `*.json`; the last number in a name counts the frames, and the lowest is that of the first.
-    skeleton : courtside.records.keypoints.skeleton.Skeleton
+        Files `*.json`; the last number in a name counts the frames, the lowest is the first frame.
+    skeleton : Skeleton
         Joints in the order of the files.
     camera, model : str
-        What the result is called.
+        Names for the result.
     size : (int, int)
         Width and height of the video, px.
     time_s : (T,) float, optional
@@ -35,18 +51,13 @@ def read(folder, skeleton, *, camera, model, size, time_s=None, rate_hz=None, tr
     rate_hz : float, optional
         In place of times: frames per second.
     trim_s : (start, stop), optional
-        Only frames from the one to before the other.
-
-    Returns
-    -------
-    keypoints : Keypoints2D
-        A tracklet for each person that could be followed.
+        Only frames from start to before stop.
 
     Raises
     ------
     InputError
-        If there are no such files, one is damaged or has another number of points, there are more frames
-        than in the video, or the points are those of another skeleton.
+        If there are no such files, one is damaged or has another number of points, there are more
+        frames than in the video, or the points are those of another skeleton.
     ValueError
         If not exactly one of `time_s` and `rate_hz` is given.
     """
@@ -57,8 +68,8 @@ def read(folder, skeleton, *, camera, model, size, time_s=None, rate_hz=None, tr
     n_frames = last - first + 1 if time_s is None else len(time_s)
     if last - first >= n_frames:
         raise InputError(
-            f"{folder}: expected frames of a video that has {n_frames}, found numbers {first} to {last}; "
-            "name the video that the files were made from"
+            f"{folder}: expected frames of a video that has {n_frames}, found numbers {first} to "
+            f"{last}; name the video that the files were made from"
         )
     empty = np.empty((0, len(skeleton.joints), 3))
     people = [empty] * n_frames
@@ -71,10 +82,10 @@ def read(folder, skeleton, *, camera, model, size, time_s=None, rate_hz=None, tr
     return _keypoints(tracks, skeleton, camera, model, size, times[kept])
 
 
-def _numbered(folder):
+def _numbered(folder: Path) -> dict[int, Path]:
     if not folder.is_dir():
         raise InputError(f"{folder}: expected a folder of JSON files, found none; correct the path")
-    files = {}
+    files: dict[int, Path] = {}
     for path in sorted(folder.glob("*.json")):
         digits = re.findall(r"[0-9]+", path.stem)
         if not digits:
@@ -84,8 +95,8 @@ def _numbered(folder):
         number = int(digits[-1])
         if number in files:
             raise InputError(
-                f"{path}: expected one file for frame {number}, found {files[number].name} as well; keep the "
-                "files of one camera in one folder"
+                f"{path}: expected one file for frame {number}, found {files[number].name} as "
+                "well; keep the files of one camera in one folder"
             )
         files[number] = path
     if not files:
@@ -95,7 +106,7 @@ def _numbered(folder):
     return files
 
 
-def _people(path, n_joints, skeleton):
+def _people(path: Path, n_joints: int, skeleton: str) -> NDArray:
     """Return the persons of a file, (K, J, 3); NaN where a point is unseen."""
     with reading(path, "OpenPose's JSON, `people` with `pose_keypoints_2d`", "export it again"):
         content = json.loads(path.read_text(encoding="utf-8-sig"))
@@ -104,8 +115,8 @@ def _people(path, n_joints, skeleton):
     for row in table:
         if row.shape != (3 * n_joints,):
             raise InputError(
-                f"{path}: expected {n_joints} points of skeleton {skeleton}, found {row.size / 3:g}; "
-                "name the skeleton that the files were made with"
+                f"{path}: expected {n_joints} points of skeleton {skeleton}, found "
+                f"{row.size / 3:g}; name the skeleton that the files were made with"
             )
     people = np.stack(table).reshape(-1, n_joints, 3) if table else np.empty((0, n_joints, 3))
     unseen = ~np.isfinite(people).all(axis=2) | (people[..., 2] <= 0)
@@ -113,8 +124,8 @@ def _people(path, n_joints, skeleton):
     return people[~unseen.all(axis=1)]
 
 
-def _check_order(folder, skeleton, people):
-    """Refuse points of BODY_25 under the name of BODY_25B, and the other way round."""
+def _check_order(folder: str | PathLike, skeleton: str, people: Sequence[NDArray]) -> None:
+    """Raise `InputError` if the points of BODY_25 are named BODY_25B, or the other way round."""
     if skeleton not in MISTAKEN:
         return
     everyone = np.concatenate(people)
@@ -126,12 +137,19 @@ def _check_order(folder, skeleton, people):
     found = "body25" if np.nanmedian(off) < MIDDLE else "body25b"
     if found != skeleton:
         raise InputError(
-            f"{folder}: expected the points of {skeleton}, found what looks like {found}, with as many "
-            "points in another order; name that skeleton"
+            f"{folder}: expected the points of {skeleton}, found what looks like {found}, with as "
+            "many points in another order; name that skeleton"
         )
 
 
-def _keypoints(tracks, skeleton, camera, model, size, times):
+def _keypoints(
+    tracks: NDArray,
+    skeleton: Skeleton,
+    camera: str,
+    model: str,
+    size: tuple[int, int],
+    times: NDArray,
+) -> Keypoints2D:
     xy, score = tracks[..., :2], np.clip(tracks[..., 2], 0, 1)
     reason = np.where(np.isfinite(score), missing_reason.OK, missing_reason.UNSEEN)
     with np.errstate(invalid="ignore"):
@@ -151,13 +169,14 @@ def _keypoints(tracks, skeleton, camera, model, size, times):
     )
 
 
-# ASSUME: people move by less than a third of their size in the picture from where they were last seen.
+# ASSUME: people move by less than a third of their size in the picture since last seen.
 FARTHEST = 0.33
-LONGEST_GAP = 10  # frames
-LEAST_SIZE_PX = 30.0  # of what is seen of a person: less says little of how far they may move
+LONGEST_GAP = 10  # frames. ASSUME: a person unseen for longer may be another one
+# ASSUME: smaller visible parts of a person say little of how far they may move.
+LEAST_SIZE_PX = 30.0
 
 
-def link(people):
+def link(people: Sequence[NDArray]) -> NDArray:
     """Follow persons through the frames of one camera.
 
     Parameters
@@ -172,11 +191,12 @@ def link(people):
 
     Notes
     -----
-    Each frame's persons are given to the tracks so that the median distances between keypoints that both have
-    are least in sum (Kuhn 1955); who is too far from all begins a new track. Crossing persons may be
-    exchanged.
+    Each frame's persons are assigned to the tracks so that the sum of median distances between
+    common keypoints is least (Kuhn 1955); a person too far from all tracks begins a new one.
+    Crossing persons may be swapped.
     """
-    tracks, last_seen = [], []
+    tracks: list[dict[int, NDArray]] = []
+    last_seen: list[int] = []
     for at, found in enumerate(people):
         open_tracks = [k for k, seen in enumerate(last_seen) if at - seen <= LONGEST_GAP]
         costs = np.full((len(found), len(open_tracks)), np.inf)
@@ -195,8 +215,8 @@ def link(people):
     return _stacked(tracks, people)
 
 
-def _distance(before, after):
-    """Return how far a person moved, as a share of what is allowed; inf without a common point."""
+def _distance(before: NDArray, after: NDArray) -> float:
+    """Return how far a person moved, as a share of the allowed; inf without a common point."""
     step = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
     both = np.isfinite(step)
     if not both.any():
@@ -206,7 +226,7 @@ def _distance(before, after):
     return float(np.median(step[both]) / size_px / FARTHEST)
 
 
-def _assign(costs):
+def _assign(costs: NDArray) -> dict[int, int]:
     """Return {row: column} of the pairs that are near enough."""
     if not costs.size:
         return {}
@@ -215,7 +235,7 @@ def _assign(costs):
     return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if near[r, c]}
 
 
-def _stacked(tracks, people):
+def _stacked(tracks: Sequence[Mapping[int, NDArray]], people: Sequence[NDArray]) -> NDArray:
     n_joints = people[0].shape[1] if people else 0
     whole = np.full((len(tracks), len(people), n_joints, 3), np.nan)
     for k, track in enumerate(tracks):

@@ -41,7 +41,8 @@ def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, Arra
     if fault:
         raise ValueError(f"{path}: {fault}")
     with atomic(path) as temporary, temporary.open("wb") as stream:
-        np.savez_compressed(stream, format=np.array(form), **checked)
+        # type: mypy takes the arrays for numpy's parameter allow_pickle, too.
+        np.savez_compressed(stream, format=np.array(form), **checked)  # type: ignore[arg-type]
 
 
 def read(path: str | PathLike, form: str, spec: Spec) -> dict[str, NDArray]:

@@ -1,13 +1,17 @@
-"""Lens models of RealSense cameras, brought to OpenCV's five coefficients.
+"""Lens models of RealSense cameras, converted to OpenCV's five coefficients.
 
-As the camera's software (librealsense, `rsutil.h`) projects points of the z = 1 plane:
-- Brown Conrady: what OpenCV has;
-- Modified and Inverse Brown Conrady: the tangential part acts on the points after the radial one. By
-  its name and the maker's documents the inverse model would lead from the picture to the plane; since 2021
-  the software takes both for the same, and so do its files.
+The camera's software (librealsense, `rsutil.h`) projects points of the z = 1 plane by
+- Brown Conrady: OpenCV's model;
+- Modified and Inverse Brown Conrady: the tangential part acts on the points after the radial one.
+By
+  its name and the maker's documents the inverse model would map the picture to the plane; since
+  2021 the software takes both as the same, and so do its files.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import least_squares
 
 from courtside.geometry import camera
@@ -16,10 +20,12 @@ from courtside.study.errors import InputError
 SAME = ("brown conrady", "plumb_bob", "none", "")
 OTHER = ("modified brown conrady", "inverse brown conrady")
 GRID = 25  # points along each side of the picture
-WORST_PX = 0.5
+WORST_PX = 0.5  # ASSUME: below the noise of keypoints, so that a worse fit would matter
 
 
-def five_coefficients(where, model, coefficients, K, size):
+def five_coefficients(
+    where: str, model: str, coefficients: ArrayLike, K: ArrayLike, size: Sequence[int]
+) -> NDArray:
     """Return OpenCV's k1 k2 p1 p2 k3 for a lens as a recording describes it.
 
     Parameters
@@ -36,7 +42,7 @@ def five_coefficients(where, model, coefficients, K, size):
     Returns
     -------
     dist : (5,) float
-        The same where the model is OpenCV's or all are 0; else fitted to within half a pixel.
+        Unchanged if the model is OpenCV's or all are 0; else fitted to within half a pixel.
 
     Raises
     ------
@@ -57,13 +63,13 @@ def five_coefficients(where, model, coefficients, K, size):
     dist, worst_px = _fit(given, np.asarray(K, dtype=float), size)
     if not worst_px <= WORST_PX:
         raise InputError(
-            f"{where}: expected a lens that OpenCV's five coefficients describe to {WORST_PX} px, found "
-            f"{worst_px:.1f} px ({model[:40]}); calibrate the colour camera with a chessboard"
+            f"{where}: expected a lens that OpenCV's five coefficients describe to {WORST_PX} px, "
+            f"found {worst_px:.1f} px ({model[:40]}); calibrate the colour camera with a chessboard"
         )
     return dist
 
 
-def _fit(given, K, size):
+def _fit(given: NDArray, K: NDArray, size: Sequence[int]) -> tuple[NDArray, float]:
     """Return OpenCV's coefficients, and their worst error in the picture, px."""
     focal = np.diag(K)[:2]
     columns, rows = (np.linspace(0, length - 1, GRID) for length in size)
@@ -71,16 +77,16 @@ def _fit(given, K, size):
     plane = (pixels - K[:2, 2]) / focal
     shown = modified(given, plane)
 
-    def miss(dist):
+    def miss(dist: NDArray) -> NDArray:
         return ((camera.distort(dist, plane) - shown) * focal).ravel()
 
     found = least_squares(miss, given).x
     return found, float(np.hypot(*miss(found).reshape(-1, 2).T).max())
 
 
-def modified(coefficients, normalised):
-    """Move points (..., 2) on the z = 1 plane to where a Modified Brown Conrady lens shows them."""
-    k1, k2, p1, p2, k3 = coefficients
+def modified(coefficients: ArrayLike, normalised: NDArray) -> NDArray:
+    """Distort points (..., 2) on the z = 1 plane as a Modified Brown Conrady lens does."""
+    k1, k2, p1, p2, k3 = np.asarray(coefficients)
     square = (normalised**2).sum(axis=-1)
     radial = 1 + square * (k1 + square * (k2 + square * k3))
     x, y = normalised[..., 0] * radial, normalised[..., 1] * radial

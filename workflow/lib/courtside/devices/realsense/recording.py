@@ -2,20 +2,25 @@
 
 A stream has the topic `/device_0/sensor_<n>/Depth_<n>` or `.../Color_<n>`, followed by `image/data`
 (pictures; in a `.db3` also `image/data/compressed` and `image/data/compressedDepth`, both PNG),
-`image/metadata`, `camera_info` (a `.bag`: `info/camera_info`) and `tf/<reference>`: the transform from
-the reference's axes to the stream's own. A `.bag` holds ROS messages, a `.db3` text
+`image/metadata`, `camera_info` (a `.bag`: `info/camera_info`) and `tf/<reference>`: the transform
+from the reference's axes to the stream's own. A `.bag` holds ROS messages, a `.db3` text
 (`width=640;height=480;fx=...`).
 """
 
 import functools
 import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.devices.realsense import lens, rosbag, text
+from courtside.devices.realsense.rosbag import Bag
 from courtside.geometry import camera_fields, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.cameras.frame_times import FrameTimes
@@ -29,28 +34,21 @@ RECORD = "record depth and colour together in the camera's program"
 STANDING_STILL = np.eye(3, 4)
 
 
-def read(path, name="realsense"):
-    """Read a recording.
-
-    Parameters
-    ----------
-    path : str or Path
-        The `.bag` or `.db3` file.
-    name : str
-        Of the device in the study.
+def read(path: str | PathLike, name: str = "realsense") -> DepthRecording:
+    """Read a `.bag` or `.db3` file; `name` is the device's in the study.
 
     Returns
     -------
     recording : DepthRecording
-        Times are the camera's own (its hardware clock where both streams have it). Frames that do not
-        come after the one before are left out, and counted in the log, as are frames missing by their
-        numbers.
+        Times are the camera's own (its hardware clock where both streams have it). Frames that are
+        not later than the one before are left out, and counted in the log, as are frames missing
+        by their numbers.
 
     Raises
     ------
     InputError
-        If the file is no such recording, damaged, or lacks a stream, its lens or its place. A fault
-        further in shows when the frames are read.
+        If the file is no such recording, damaged, or lacks a stream, its lens or its pose. Damage
+        further in is found when the frames are read.
     """
     path = Path(path)
     with rosbag.opened(path) as bag:
@@ -58,7 +56,8 @@ def read(path, name="realsense"):
         lenses = {kind: _camera(bag, streams[kind], f"{name}-{kind}") for kind in streams}
         domains = {kind: text.clock(bag, streams[kind]) for kind in streams}
         depth_unit_m, remark = _depth_unit(bag, streams["depth"])
-        moved, remarks = _colour_from_depth(bag, streams), (remark,) if remark else ()
+        moved = _colour_from_depth(bag, streams)
+        remarks: tuple[str, ...] = (remark,) if remark else ()
         baseline_m = _option(bag, streams["depth"], "Stereo Baseline", np.nan) / 1000
     own_clock = domains["depth"] == domains["colour"]
     if not own_clock:
@@ -84,9 +83,9 @@ def read(path, name="realsense"):
         raise InputError(f"{path}: {error}; {RECORD}") from error
 
 
-def _streams(bag):
+def _streams(bag: Bag) -> dict[str, str]:
     """Return the topics of both streams by `depth` and `colour`."""
-    found = {"Depth": set(), "Color": set()}
+    found: dict[str, set[str]] = {"Depth": set(), "Color": set()}
     for topic, count in bag.counts.items():
         match = PICTURES.fullmatch(topic)
         if match and count:
@@ -101,7 +100,7 @@ def _streams(bag):
     return {"depth": found["Depth"].pop(), "colour": found["Color"].pop()}
 
 
-def _camera(bag, stream, name):
+def _camera(bag: Bag, stream: str, name: str) -> Camera:
     where = f"{bag.path}: {stream}"
     info = bag.first(f"{stream}/info/camera_info") or bag.first(f"{stream}/camera_info")
     if info is None:
@@ -117,8 +116,8 @@ def _camera(bag, stream, name):
         raise InputError(f"{where}: {error}; {RECORD}") from error
 
 
-def _depth_unit(bag, stream):
-    """Return metres per step, and a remark where that is the default."""
+def _depth_unit(bag: Bag, stream: str) -> tuple[float, str]:
+    """Return metres per step, and a remark if that is the default."""
     unit = _option(bag, stream, "Depth Units", np.nan)
     if np.isnan(unit):
         unit = text.number_in(bag.first(f"{stream}/image/metadata"), "depth_units")
@@ -134,7 +133,7 @@ def _depth_unit(bag, stream):
     return float(f"{unit:.7g}"), ""  # stored as a 32-bit float: 0.001 there is 0.0010000000475
 
 
-def _option(bag, stream, option, absent):
+def _option(bag: Bag, stream: str, option: str, absent: float) -> float:
     """Return a setting of a stream's sensor."""
     sensor = stream.rpartition("/")[0]
     for name in (option, option.replace(" ", "_")):
@@ -144,31 +143,38 @@ def _option(bag, stream, option, absent):
     return absent
 
 
-def _colour_from_depth(bag, streams):
+def _colour_from_depth(bag: Bag, streams: Mapping[str, str]) -> NDArray:
     places = {}
     for kind, stream in streams.items():
         topics = [topic for topic in bag.counts if topic.startswith(f"{stream}/tf/")]
         found = bag.first(topics[0]) if len(topics) == 1 else None
         if found is None:
             raise InputError(
-                f"{bag.path}: {stream}: expected its place (tf), found {len(topics)} of them; {RECORD}"
+                f"{bag.path}: {stream}: expected its place (tf), found {len(topics)} of them; "
+                f"{RECORD}"
             )
         reference = topics[0].rpartition("/")[2].removeprefix("ref_")
         places[kind] = reference, text.place(f"{bag.path}: {stream}", found)
     (to_depth, depth_from), (to_colour, colour_from) = places["depth"], places["colour"]
     if to_depth != to_colour:
         raise InputError(
-            f"{bag.path}: expected depth and colour placed against one reference, found {to_depth} and "
-            f"{to_colour}; "
-            f"{RECORD}"
+            f"{bag.path}: expected depth and colour placed against one reference, found {to_depth} "
+            f"and {to_colour}; {RECORD}"
         )
     back = rotations.invert(depth_from)
     rotation = colour_from[:, :3] @ back[:, :3]
     return np.column_stack([rotation, colour_from[:, :3] @ back[:, 3] + colour_from[:, 3]])
 
 
-def _follow(path, name, own_clock, stream, camera, decode):
-    """Yield (time_s, number, picture) of a stream; no picture without `decode`."""
+def _follow(
+    path: Path,
+    name: str,
+    own_clock: bool,
+    stream: str,
+    camera: Camera,
+    decode: Callable[[Any], NDArray] | None,
+) -> Iterator[tuple[float, int, Any]]:
+    """Yield (time_s, number, picture) of a stream; picture is None without `decode`."""
     what, last_s, late, n, numbers = f"{name}: {stream.rpartition('/')[2]}", -np.inf, 0, 0, [0, 0]
     with rosbag.opened(path) as bag:
         stamps = text.stamps(bag, stream) if own_clock else {}
@@ -185,7 +191,9 @@ def _follow(path, name, own_clock, stream, camera, decode):
     log.logger.info("%s: %d frames, %d missing, %d out of order", what, n, missing, late)
 
 
-def _decoded(where, message, camera, decode):
+def _decoded(
+    where: str, message: Any, camera: Camera, decode: Callable[[Any], NDArray] | None
+) -> NDArray | None:
     if decode is None:
         return None
     try:
@@ -201,12 +209,12 @@ def _decoded(where, message, camera, decode):
     return picture
 
 
-def _pictures(followed):
+def _pictures(followed: Iterable[tuple[float, int, Any]]) -> Iterator[tuple[float, NDArray]]:
     for time_s, _, picture in followed:
         yield time_s, picture
 
 
-def _index(followed):
+def _index(followed: Iterable[tuple[float, int, Any]]) -> FrameTimes:
     rows = [(time_s, number) for time_s, number, _ in followed]
     return FrameTimes(
         np.array([time_s for time_s, _ in rows], dtype=float),

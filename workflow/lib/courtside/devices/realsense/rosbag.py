@@ -3,12 +3,16 @@
 import contextlib
 import itertools
 import struct
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import apsw
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from rosbags import rosbag1, rosbag2
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
@@ -16,41 +20,35 @@ from rosbags.typesys import Stores, get_typestore
 from courtside.geometry import camera_fields
 from courtside.study.errors import InputError
 
-READERS = {
+READERS: dict[str, tuple[Callable[[Path], Any], Stores, str]] = {
     ".bag": (rosbag1.Reader, Stores.ROS1_NOETIC, "deserialize_ros1"),
     ".db3": (rosbag2.Reader, Stores.ROS2_HUMBLE, "deserialize_cdr"),
 }
 # What rosbags, its parsers and its decompressors raise on damaged files.
+DAMAGED: tuple[type[Exception], ...]
 DAMAGED = (rosbag1.ReaderError, rosbag2.ReaderError, SerdeError, apsw.Error, struct.error)
 DAMAGED += (OSError, EOFError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError)
 DAMAGED += (AssertionError, RuntimeError, MemoryError)
 LARGEST_MESSAGE_BYTES = 1 << 28  # a 4K colour picture has 25 MB
-HOW = "copy it again from the camera's computer, or record again and stop the recording in its program"
+HOW = (
+    "copy it again from the camera's computer, "
+    "or record again and stop the recording in its program"
+)
 
 
 @dataclass(frozen=True, eq=False)
 class Bag:
-    """An open recording.
-
-    Attributes
-    ----------
-    path : Path
-    counts : dict of str to int
-        Messages on each topic.
-    """
+    """An open recording; `counts` is the number of messages on each topic."""
 
     path: Path
-    counts: dict
-    _reader: object
-    _parse: object
+    counts: dict[str, int]
+    _reader: Any  # rosbag1.Reader or rosbag2.Reader: they share what is used, but no base class
+    _parse: Callable[[bytes, str], Any]
 
-    def messages(self, topics):
+    def messages(self, topics: Iterable[str]) -> Iterator[tuple[str, int, Any]]:
         """Yield (topic, time_ns, message) of some topics, in order of time.
 
-        Raises
-        ------
-        InputError
-            If a message is damaged or missing.
+        Raises `InputError` if a message is damaged or missing.
         """
         wanted = [c for c in self._reader.connections if c.topic in set(topics)]
         if not wanted:
@@ -61,46 +59,38 @@ class Bag:
                     raise ValueError(f"a message of {len(raw)} bytes on {connection.topic}")
                 yield connection.topic, time_ns, self._parse(raw, connection.msgtype)
 
-    def first(self, topic):
-        """Return the first message on a topic; None where there is none."""
+    def first(self, topic: str) -> Any:
+        """Return the first message on a topic; None if there is none."""
         found = next(self.messages([topic]), None)
         return found[2] if found else None
 
-    def all(self, topic, limit=1000):
-        """Return the first messages on a topic, as many as `limit` at most."""
+    def all(self, topic: str, limit: int = 1000) -> list[Any]:
+        """Return the first messages on a topic, at most `limit`."""
         return [message for _, _, message in itertools.islice(self.messages([topic]), limit)]
 
 
 @contextlib.contextmanager
-def opened(path):
-    """Open a recording.
-
-    Parameters
-    ----------
-    path : str or Path
-        `.bag` of ROS 1 or `.db3` of ROS 2.
-
-    Yields
-    ------
-    bag : Bag
+def opened(path: str | PathLike) -> Iterator[Bag]:
+    """Open a recording: `.bag` of ROS 1 or `.db3` of ROS 2.
 
     Raises
     ------
     InputError
-        If the file is missing, none of these, cut short or damaged.
+        If the file is missing, neither of these, cut short or damaged.
     """
     path = Path(path)
     if path.suffix.lower() not in READERS or not path.is_file():
         found = f"a file named *{path.suffix}" if path.is_file() else "no file"
         raise InputError(
-            f"{path}: expected a recording in ROS format (.bag or .db3), found {found}; correct the path"
+            f"{path}: expected a recording in ROS format (.bag or .db3), found {found}; correct "
+            "the path"
         )
     kind, store, parser = READERS[path.suffix.lower()]
     parse = getattr(get_typestore(store), parser)
     with contextlib.ExitStack() as stack:
         with _guarded(path):
             reader = stack.enter_context(kind(path))
-            counts = {}
+            counts: dict[str, int] = {}
             for connection in reader.connections:
                 if not isinstance(connection.topic, str) or not connection.topic.isprintable():
                     raise ValueError("a topic without a readable name")
@@ -109,7 +99,7 @@ def opened(path):
 
 
 @contextlib.contextmanager
-def _guarded(path):
+def _guarded(path: Path) -> Iterator[None]:
     try:
         yield
     except InputError:
@@ -124,7 +114,7 @@ def _guarded(path):
 
 
 LARGEST_PX = 1 << 26  # of a picture: beyond any camera, below what would fill the memory
-DEPTH_HEADER_BYTES = 12  # of compressedDepth, before the PNG; it says nothing of 16-bit depth
+DEPTH_HEADER_BYTES = 12  # of compressedDepth, before the PNG; not needed for 16-bit depth
 DEPTHS = ("mono16", "16uc1", "z16")
 COLOURS = {  # encoding -> bytes per pixel and conversion to BGR
     "bgr8": (3, None),
@@ -141,13 +131,10 @@ COLOURS = {  # encoding -> bytes per pixel and conversion to BGR
 }
 
 
-def colour(message):
+def colour(message: Any) -> NDArray:
     """Return the colour picture (H, W, 3) uint8 BGR of a message.
 
-    Raises
-    ------
-    ValueError
-        If its encoding is not supported or it is damaged.
+    Raises `ValueError` if its encoding is not supported or it is damaged.
     """
     if hasattr(message, "format"):
         return _unpacked(message, message.data, cv2.IMREAD_COLOR)
@@ -163,7 +150,7 @@ def colour(message):
     return np.array(stored) if conversion is None else cv2.cvtColor(stored, conversion)
 
 
-def depth(message):
+def depth(message: Any) -> NDArray:
     """Return the depth picture (h, w) uint16 of a message; raise `ValueError` as `colour`."""
     if hasattr(message, "format"):
         kind = message.format.lower()
@@ -179,8 +166,8 @@ def depth(message):
     return bytes_of_16.view(kind)[..., 0].astype(np.uint16)
 
 
-def _rows(message, n_bytes):
-    """Return the bytes of a picture (H, W, n_bytes), without the padding of its rows."""
+def _rows(message: Any, n_bytes: int) -> NDArray:
+    """Return the bytes of a picture (H, W, n_bytes), without row padding."""
     height, width, step = int(message.height), int(message.width), int(message.step)
     data = np.asarray(message.data, dtype=np.uint8)
     whole = 0 < height * width <= LARGEST_PX and step >= width * n_bytes
@@ -192,7 +179,7 @@ def _rows(message, n_bytes):
     return data.reshape(height, step)[:, : width * n_bytes].reshape(height, width, n_bytes)
 
 
-def _unpacked(message, packed, flags):
+def _unpacked(message: Any, packed: Any, flags: int) -> NDArray:
     packed = np.asarray(packed, dtype=np.uint8)
     try:
         image = cv2.imdecode(packed, flags) if packed.size else None

@@ -1,26 +1,29 @@
-"""What a RealSense recording says beside the pictures, as messages (`.bag`) or text (`.db3`)."""
+"""Data of a RealSense recording beside its pictures, as messages (`.bag`) or text (`.db3`)."""
+
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from courtside.devices.realsense.rosbag import Bag
 from courtside.geometry import camera_fields
 from courtside.study.errors import InputError
 
-FIRST = (
-    60  # messages of metadata that hold those of the first frame: a .bag has about twenty for each
-)
+# Metadata messages to search: they include the first frame's, of which a .bag has about twenty.
+FIRST = 60
 HOW = "record again in the camera's program"
 
 
-def pairs(message):
-    """Return `key=value;key=value` of a text message as a dict; empty where it is none."""
+def pairs(message: Any) -> dict[str, str]:
+    """Return `key=value;key=value` of a text message as a dict; empty for other messages."""
     text = getattr(message, "data", "")
     if not isinstance(text, str):
         return {}
     return dict(item.split("=", 1) for item in text.split(";") if "=" in item)
 
 
-def number(message):
+def number(message: Any) -> float:
     """Return the number that a message holds, as text or not; NaN where there is none."""
     try:
         return float(message.data)
@@ -28,7 +31,7 @@ def number(message):
         return float("nan")
 
 
-def number_in(message, key):
+def number_in(message: Any, key: str) -> float:
     """Return a number of a text message; NaN where there is none."""
     try:
         return float(pairs(message)[key])
@@ -36,7 +39,7 @@ def number_in(message, key):
         return float("nan")
 
 
-def lens(where, info):
+def lens(where: str, info: Any) -> tuple[list[int], NDArray, str, NDArray]:
     """Return size, matrix (3, 3), name of the lens model and its coefficients.
 
     Parameters
@@ -56,7 +59,7 @@ def lens(where, info):
         model, coefficients = found.get("model", ""), found.get("coeffs", "0,0,0,0,0").split(",")
     elif hasattr(info, "distortion_model"):
         size = [info.width, info.height]
-        matrix = np.reshape(getattr(info, "K", getattr(info, "k", None)), (3, 3))
+        matrix = np.asarray(getattr(info, "K", getattr(info, "k", None))).reshape((3, 3))
         model = info.distortion_model
         coefficients = getattr(info, "D", getattr(info, "d", None))
     else:
@@ -67,22 +70,17 @@ def lens(where, info):
     return [int(length) for length in size], matrix, model, coefficients
 
 
-def place(where, message):
+def place(where: str, message: Any) -> NDArray:
     """Return `stream_from_reference` (3, 4), metres, of a `geometry_msgs/Transform` or text.
 
-    Parameters
-    ----------
-    where : str
-        File and stream: begins messages.
-    message : message
-        The text holds the rotation column by column.
+    `where` (file and stream) begins messages. The text holds the rotation column by column.
     """
     found = pairs(message)
     try:
         if found:
             rotation = np.array(found["rotation"].split(","), dtype=float).reshape(3, 3).T
             moved = np.array(found["translation"].split(","), dtype=float).reshape(3)
-            # six decimals in the file: brought back to the nearest rotation
+            # The file has six decimals: take the nearest rotation.
             left, _, right = np.linalg.svd(rotation)
             off = np.abs(left @ right - rotation).max()
             rotation = left @ right
@@ -92,6 +90,7 @@ def place(where, message):
             off = abs(np.linalg.norm(quaternion) - 1)
             rotation = Rotation.from_quat(quaternion).as_matrix()
             moved = np.array([shift.x, shift.y, shift.z])
+        # ASSUME: rounding stays below 1e-3, and the sensors of one camera within 1 m.
         if not off < 1e-3 or np.linalg.det(rotation) < 0 or not np.abs(moved).max() < 1:
             raise ValueError(f"rotation {off:.2g} off, translation {moved.tolist()} m")
     except (KeyError, ValueError, AttributeError, np.linalg.LinAlgError) as error:
@@ -102,8 +101,8 @@ def place(where, message):
     return np.column_stack([rotation, moved])
 
 
-def clock(bag, stream):
-    """Return the name of the clock that a stream's times come from; empty where the recording has none."""
+def clock(bag: Bag, stream: str) -> str:
+    """Return the name of the clock of a stream's times; empty if the recording has none."""
     for message in bag.all(f"{stream}/image/metadata", FIRST):
         if getattr(message, "key", "") == "timestamp_domain":
             return message.value
@@ -112,9 +111,9 @@ def clock(bag, stream):
     return ""
 
 
-def stamps(bag, stream):
-    """Return (number, time_s) on the camera's clock by the time of the message: a `.db3` has them apart."""
-    found = {}
+def stamps(bag: Bag, stream: str) -> dict[int, tuple[int, float]]:
+    """Return (number, time_s) on the camera's clock by message time: a `.db3` keeps them apart."""
+    found: dict[int, tuple[int, float]] = {}
     topic = f"{stream}/image/metadata"
     if "timestamp" not in pairs(bag.first(topic)):
         return found
@@ -125,16 +124,11 @@ def stamps(bag, stream):
     return found
 
 
-def stamp(message, time_ns, index, own_clock):
+def stamp(message: Any, time_ns: int, index: int, own_clock: bool) -> tuple[int, float]:
     """Return (number, time_s) of a picture by its own header.
 
-    Parameters
-    ----------
-    message : message
-    time_ns, index : int
-        Time in the recording, and place in the stream: used where the header has none.
-    own_clock : bool
-        False to take the time in the recording.
+    `time_ns`, the time in the recording, is used unless `own_clock`; `index`, the place in the
+    stream, where the header has no number.
     """
     header = message.header
     number = int(getattr(header, "seq", index))

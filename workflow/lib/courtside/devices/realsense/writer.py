@@ -1,23 +1,28 @@
-"""Write recordings as RealSense cameras' program did in ROS 1 format: file version 3, `.bag`."""
+"""Write recordings in the ROS 1 format of RealSense cameras' program: file version 3, `.bag`."""
 
 import itertools
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from os import PathLike
+from typing import Any
 
 import lz4.frame  # comes with rosbags
 import numpy as np
+from numpy.typing import NDArray
 from rosbags.rosbag1 import Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from scipy.spatial.transform import Rotation
 
+from courtside.geometry.camera import Camera
 from courtside.study.execution.files import atomic
 
-STATIC_NS = 1  # the time in the recording of everything that does not change
+STATIC_NS = 1  # time in the recording of everything constant
 STREAM_INFO = "uint32 fps\nstring encoding\nbool is_recommended\n"
+Frame = tuple[float, NDArray | None, NDArray | None]  # time_s, colour, depth
 CLOCK = "Hardware Clock"
 LENS = "Brown Conrady"
-# The camera's program reads no other kind of LZ4: independent blocks of 1 MiB and a checksum, as its own
-# files have.
+# The camera's program reads this LZ4 only: independent blocks of 1 MiB and a checksum.
 PACKING = {
     "block_size": lz4.frame.BLOCKSIZE_MAX1MB,
     "block_linked": False,
@@ -37,7 +42,7 @@ class Device:
         As the camera names itself.
     serial : str
     baseline_m : float
-        Between the imagers that depth comes from; not written where NaN.
+        Between the imagers that depth comes from; not written if NaN.
     rate_hz : int
         Nominal.
     """
@@ -48,22 +53,29 @@ class Device:
     rate_hz: int = 30
 
 
-def write(path, colour, depth, colour_from_depth, depth_unit_m, frames, *, device=None):
-    """Write colour and depth as a recording that `devices.realsense` and the camera's own program read.
+def write(
+    path: str | PathLike,
+    colour: Camera,
+    depth: Camera,
+    colour_from_depth: NDArray,
+    depth_unit_m: float,
+    frames: Iterable[Frame],
+    *,
+    device: Device | None = None,
+) -> int:
+    """Write colour and depth as a recording for `devices.realsense` and the camera's own program.
 
     Parameters
     ----------
     path : str or Path
         The `.bag` file; it appears under its name only when whole.
-    colour, depth : Camera
     colour_from_depth : (3, 4) float
         Metres.
     depth_unit_m : float
         Metres of one step of depth.
     frames : iterable of (float, (H, W, 3) uint8 or None, (h, w) uint16 or None)
-        Time on the camera's clock in seconds, not before 0; colour as BGR; depth, 0 where there is none.
-        None is a frame that got lost: its number is missing.
-    device : Device, optional
+        Time on the camera's clock in seconds, not before 0; colour as BGR; depth, 0 where there is
+        none. None is a lost frame: its number is missing.
 
     Returns
     -------
@@ -77,7 +89,7 @@ def write(path, colour, depth, colour_from_depth, depth_unit_m, frames, *, devic
 
     Notes
     -----
-    Pictures are compressed (LZ4) without loss. One is held at a time.
+    Pictures are compressed (LZ4) without loss. One is in memory at a time.
     """
     frames = iter(frames)
     first = next(frames, None)
@@ -100,33 +112,34 @@ def write(path, colour, depth, colour_from_depth, depth_unit_m, frames, *, devic
 
 
 class _Messages:
-    """Puts messages of any type on any topic."""
+    """Writes messages of any type to any topic."""
 
-    def __init__(self, writer):
-        self.writer, self.connections = writer, {}
+    def __init__(self, writer: Writer) -> None:
+        self.writer = writer
+        self.connections: dict[str, Any] = {}
         self.store = get_typestore(Stores.ROS1_NOETIC)
         self.store.register(get_types_from_msg(STREAM_INFO, "realsense_msgs/msg/StreamInfo"))
 
-    def make(self, kind, **values):
+    def make(self, kind: str, **values: Any) -> Any:
         return self.store.types[kind](**values)
 
-    def put(self, topic, kind, time_ns=STATIC_NS, **values):
+    def put(self, topic: str, kind: str, time_ns: int = STATIC_NS, **values: Any) -> None:
         if topic not in self.connections:
             self.connections[topic] = self.writer.add_connection(topic, kind, typestore=self.store)
         raw = self.store.serialize_ros1(self.make(kind, **values), kind)
         self.writer.write(self.connections[topic], time_ns, raw)
 
-    def put_pairs(self, topic, pairs, time_ns=STATIC_NS):
+    def put_pairs(self, topic: str, pairs: Mapping[str, object], time_ns: int = STATIC_NS) -> None:
         for key, value in pairs.items():
             self.put(topic, "diagnostic_msgs/msg/KeyValue", time_ns, key=key, value=str(value))
 
-    def header(self, number=0, time_s=0.0, frame=""):
+    def header(self, number: int = 0, time_s: float = 0.0, frame: str = "") -> Any:
         seconds, nanoseconds = divmod(round(time_s * 1e9), 10**9)
         stamp = self.make("builtin_interfaces/msg/Time", sec=seconds, nanosec=nanoseconds)
         return self.make("std_msgs/msg/Header", seq=number, stamp=stamp, frame_id=frame)
 
 
-def _describe(messages, device, depth_unit_m):
+def _describe(messages: _Messages, device: Device, depth_unit_m: float) -> None:
     messages.put("/file_version", "std_msgs/msg/UInt32", data=3)
     about = {"Name": device.model, "Serial Number": device.serial}
     messages.put_pairs("/device_0/info", about)
@@ -142,7 +155,14 @@ def _describe(messages, device, depth_unit_m):
         messages.put(f"{topic}/description", "std_msgs/msg/String", data=description)
 
 
-def _stream(messages, stream, camera, encoding, rate_hz, from_depth):
+def _stream(
+    messages: _Messages,
+    stream: str,
+    camera: Camera,
+    encoding: str,
+    rate_hz: int,
+    from_depth: NDArray,
+) -> None:
     messages.put(
         f"{stream}/info",
         "realsense_msgs/msg/StreamInfo",
@@ -176,7 +196,7 @@ def _stream(messages, stream, camera, encoding, rate_hz, from_depth):
     _place(messages, stream, from_depth)
 
 
-def _place(messages, stream, from_depth):
+def _place(messages: _Messages, stream: str, from_depth: NDArray) -> None:
     turn = Rotation.from_matrix(from_depth[:, :3]).as_quat()
     messages.put(
         f"{stream}/tf/0",
@@ -191,7 +211,9 @@ def _place(messages, stream, from_depth):
     )
 
 
-def _frame(messages, number, frame, cameras, start_s):
+def _frame(
+    messages: _Messages, number: int, frame: Frame, cameras: tuple[Camera, Camera], start_s: float
+) -> None:
     time_s, bgr, depth = frame
     colour_camera, depth_camera = cameras
     time_ns = STATIC_NS + 1 + max(round((time_s - start_s) * 1e9), 0)
@@ -205,14 +227,21 @@ def _frame(messages, number, frame, cameras, start_s):
         _picture(messages, COLOUR, (number, time_s, time_ns), stored, bgr.shape, "rgb8")
 
 
-def _check(picture, shape, kind):
+def _check(picture: NDArray, shape: tuple[int, ...], kind: type) -> None:
     if picture.shape != shape or picture.dtype != kind:
         raise ValueError(
             f"expected pictures {shape} {np.dtype(kind)}, found {picture.shape} {picture.dtype}"
         )
 
 
-def _picture(messages, stream, when, stored, shape, encoding):
+def _picture(
+    messages: _Messages,
+    stream: str,
+    when: tuple[int, float, int],
+    stored: NDArray,
+    shape: tuple[int, ...],
+    encoding: str,
+) -> None:
     number, time_s, time_ns = when
     messages.put(
         f"{stream}/image/data",

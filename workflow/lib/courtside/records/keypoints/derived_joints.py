@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from os import PathLike
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -206,7 +207,7 @@ def _append_one(points: Keypoints3D, table: DerivedJoints, skeleton: str, name: 
         "accepted": points.accepted[:, :, used].all(axis=2),
         "reproj_error_px": points.reproj_error_px[:, :, used].mean(axis=2),
     }
-    longer = {
+    longer: dict[str, Any] = {
         key: np.concatenate([getattr(points, key), value[:, :, None]], axis=2)
         for key, value in made.items()
     }

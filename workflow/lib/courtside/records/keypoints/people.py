@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from os import PathLike
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.records import npz
 from courtside.records.keypoints import missing_reason
@@ -56,7 +56,7 @@ class People:
 
 def write(path: str | PathLike, people: People) -> None:
     """Write a `People` to an npz file."""
-    arrays = {
+    arrays: dict[str, ArrayLike] = {
         "model": people.model,
         "person_id": people.person_id,
         "placed": people.placed,
@@ -108,7 +108,7 @@ def assigned(view: Keypoints2D, index: NDArray) -> Keypoints2D:
         )
     known, row, at = index >= 0, np.maximum(index, 0), np.arange(frames)
 
-    def pick(values: NDArray, missing: float) -> NDArray:
+    def pick(values: NDArray, missing: float | np.uint8) -> NDArray:
         empty = ~known.reshape(*known.shape, *(1,) * (values.ndim - 2))
         return np.where(empty, missing, values[row, at]).astype(values.dtype)
 

@@ -177,8 +177,10 @@ def _devices(arrays: Mapping[str, NDArray]) -> dict[str, DeviceTruth]:
     columns = (arrays[f"device_{key}"] for key in ("kind", "person", "clock", "from_world"))
     found = zip(arrays["device"].tolist(), *columns, strict=True)
     return {
-        name: DeviceTruth(str(kind), str(person), *clock.tolist(), from_world)
-        for name, kind, person, clock, from_world in found
+        name: DeviceTruth(
+            str(kind), str(person), float(offset), float(drift), float(late), from_world
+        )
+        for name, kind, person, (offset, drift, late), from_world in found
     }
 
 
