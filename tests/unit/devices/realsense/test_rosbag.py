@@ -1,5 +1,8 @@
 import struct
+from types import SimpleNamespace
 
+import cv2
+import numpy as np
 import pytest
 
 from courtside.devices.realsense import rosbag
@@ -72,3 +75,97 @@ def test_a_recording_cut_short_is_refused(bag, tmp_path, share):
     path.write_bytes(content[: int(share * len(content))])
     with pytest.raises(InputError, match="whole recording"), rosbag.opened(path):
         pass
+
+
+RNG = np.random.default_rng(3)
+BGR = RNG.integers(0, 256, (6, 8, 3), dtype=np.uint8)
+DEPTH = RNG.integers(0, 65536, (6, 8), dtype=np.uint16)
+
+
+def message(stored, encoding, pad=0, **changed):
+    rows = np.ascontiguousarray(stored).view(np.uint8).reshape(len(stored), -1)
+    rows = np.pad(rows, ((0, 0), (0, pad)))
+    values = {
+        "height": stored.shape[0],
+        "width": stored.shape[1],
+        "step": rows.shape[1],
+        "encoding": encoding,
+        "is_bigendian": 0,
+        "data": rows.ravel(),
+    }
+    return SimpleNamespace(**(values | changed))
+
+
+@pytest.mark.parametrize("pad", [0, 5])
+@pytest.mark.parametrize(
+    ("encoding", "stored"),
+    [
+        ("bgr8", BGR),
+        ("rgb8", BGR[..., ::-1]),
+        ("RGB8", BGR[..., ::-1]),
+        ("bgra8", np.dstack([BGR, np.full((6, 8), 9, np.uint8)])),
+        ("rgba8", np.dstack([BGR[..., ::-1], np.full((6, 8), 9, np.uint8)])),
+    ],
+)
+def test_colour_in_any_order(encoding, stored, pad):
+    assert np.array_equal(rosbag.colour(message(stored, encoding, pad)), BGR)
+
+
+def test_grey_becomes_equal_channels():
+    grey = BGR[..., 0]
+    assert np.array_equal(rosbag.colour(message(grey, "mono8")), np.dstack([grey] * 3))
+
+
+@pytest.mark.parametrize(("encoding", "luma"), [("yuyv", 0), ("uyvy", 1)])
+def test_yuv_without_colour_is_grey_of_its_luma(encoding, luma):
+    """ITU-R BT.601: luma 16 is black, 235 is white; 128 in both differences is no colour."""
+    stored = np.full((4, 8, 2), 128, dtype=np.uint8)
+    stored[:2, :, luma], stored[2:, :, luma] = 16, 235
+    found = rosbag.colour(message(stored, encoding))
+    assert np.abs(found[:2].astype(int)).max() <= 1
+    assert np.abs(found[2:].astype(int) - 255).max() <= 1
+
+
+@pytest.mark.parametrize("encoding", ["mono16", "16UC1", "z16"])
+@pytest.mark.parametrize("pad", [0, 6])
+def test_depth(encoding, pad):
+    assert np.array_equal(rosbag.depth(message(DEPTH, encoding, pad)), DEPTH)
+
+
+def test_depth_of_the_other_byte_order():
+    swapped = DEPTH.astype(">u2")
+    assert np.array_equal(rosbag.depth(message(swapped, "mono16", is_bigendian=1)), DEPTH)
+
+
+def test_packed_pictures():
+    png = cv2.imencode(".png", BGR)[1].ravel()
+    found = SimpleNamespace(format="rgb8; png compressed bgr8", data=png)
+    assert np.array_equal(rosbag.colour(found), BGR)
+    png = np.concatenate([np.zeros(12, np.uint8), cv2.imencode(".png", DEPTH)[1].ravel()])
+    found = SimpleNamespace(format="16UC1; compressedDepth png", data=png)
+    assert np.array_equal(rosbag.depth(found), DEPTH)
+
+
+@pytest.mark.parametrize(
+    ("decode", "wrong"),
+    [
+        (rosbag.colour, message(BGR, "bayer_rggb8")),
+        (rosbag.colour, message(BGR, "bgr8", height=7)),
+        (rosbag.colour, message(BGR, "bgr8", width=80)),
+        (rosbag.colour, message(BGR, "bgr8", height=0, data=np.zeros(0, np.uint8))),
+        (rosbag.colour, message(BGR, "bgr8", step=0)),
+        (rosbag.colour, message(BGR, "bgr8", width=2**31, height=2**31)),
+        (rosbag.depth, message(DEPTH, "32FC1")),
+        (rosbag.depth, message(DEPTH, "mono16", step=8)),
+        (rosbag.colour, SimpleNamespace(format="jpeg", data=np.zeros(9, np.uint8))),
+        (rosbag.colour, SimpleNamespace(format="jpeg", data=np.zeros(0, np.uint8))),
+        (rosbag.depth, SimpleNamespace(format="32FC1; compressedDepth", data=np.zeros(99))),
+        (
+            rosbag.depth,
+            SimpleNamespace(format="16UC1; png", data=cv2.imencode(".png", BGR)[1].ravel()),
+        ),
+    ],
+)
+def test_what_is_no_picture_is_refused(decode, wrong):
+    with pytest.raises(ValueError, match=r"expected|does not open"):
+        decode(wrong)
