@@ -96,7 +96,7 @@ def test_the_search_looks_near_the_foreground(finds):
     finder = Finder()
     if not finds:
         finder.detect = lambda _: []
-    region = tracking.detect_near(image, (200, 100, 40, 40), finder)
+    region = tracking.regions_near(image, (200, 100, 40, 40), finder)[0]
     assert (region.x, region.y) == pytest.approx((219.5, 119.5), abs=1)
 
 

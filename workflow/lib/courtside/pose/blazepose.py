@@ -1,13 +1,16 @@
 """BlazePose: the person detector and the 33-joint landmark network of MediaPipe Pose.
 
-Source: Bazarevsky et al. 2020, "BlazePose: On-device real-time body pose tracking". The steps around the
-networks follow MediaPipe 0.10.21 so closely that the joints agree with it to about 2 px.
+Source: Bazarevsky et al. 2020, "BlazePose: On-device real-time body pose tracking". The steps
+around the networks follow MediaPipe 0.10.21: the joints agree with it to about 2 px. Constants are
+its own.
 """
 
 import math
+from os import PathLike
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.pose import detector
 from courtside.pose.detector import Pose, Region
@@ -22,12 +25,12 @@ HEAT_MAP_REACH = 3  # a 7 x 7 window
 HEAT_MAP_MIN = 0.5
 
 
-def sigmoid(value):
+def sigmoid(value: NDArray) -> NDArray:
     """Return the logistic function of an array, without overflow."""
     return 1 / (1 + np.exp(-np.clip(value, -80, 80)))
 
 
-def anchors():
+def anchors() -> NDArray:
     """Return the detector's anchor centres, (2254, 2) float32, as fractions of its input."""
     centres = []
     for stride, per_cell in ANCHOR_LAYERS:
@@ -38,7 +41,7 @@ def anchors():
     return np.concatenate(centres).astype(np.float32)
 
 
-def region_from_points(centre, rim):
+def region_from_points(centre: NDArray, rim: NDArray) -> Region:
     """Return the region of a person from the two points that BlazePose gives for it.
 
     Parameters
@@ -49,7 +52,7 @@ def region_from_points(centre, rim):
     Returns
     -------
     region : Region
-        Turned so that the person stands upright in it, with a margin of a quarter.
+        Rotated so that the person stands upright in it, with a margin of a quarter.
     """
     toward = np.asarray(rim) - centre
     angle_rad = math.pi / 2 - math.atan2(-toward[1], toward[0])
@@ -59,22 +62,17 @@ def region_from_points(centre, rim):
 
 
 class BlazePoseDetector:
-    """The person detector of BlazePose.
+    """The person detector of BlazePose (`pose_detection`, converted).
 
-    Parameters
-    ----------
-    onnx_path : str or Path
-        `pose_detection`, converted.
-    min_score : float
-        Detections below this confidence, 0 to 1, are dropped.
+    Detections below the confidence `min_score`, 0 to 1, are dropped.
     """
 
-    def __init__(self, onnx_path, min_score=0.5):
+    def __init__(self, onnx_path: str | PathLike, min_score: float = 0.5) -> None:
         self.network = detector.open_network(onnx_path)
         self.min_score = min_score
         self.anchors = anchors()
 
-    def detect(self, image):
+    def detect(self, image: NDArray) -> list[Region]:
         """Return the regions of all persons in a (H, W, 3) uint8 BGR picture, best first."""
         height, width = image.shape[:2]
         whole = Region(width / 2, height / 2, max(height, width))
@@ -92,7 +90,7 @@ class BlazePoseDetector:
         return [region_from_points(*pair) for pair in points]
 
 
-def merge_overlapping(box, score):
+def merge_overlapping(box: NDArray, score: NDArray) -> list[NDArray]:
     """Join overlapping detections into their score-weighted mean, best first.
 
     Parameters
@@ -101,10 +99,6 @@ def merge_overlapping(box, score):
         Centre x, y, width, height, then anything else to average.
     score : (N,) float
         Weights.
-
-    Returns
-    -------
-    merged : list of (4 + K,) float
     """
     merged = []
     remaining = np.argsort(-score, kind="stable")
@@ -117,7 +111,7 @@ def merge_overlapping(box, score):
     return merged
 
 
-def overlap(one, many):
+def overlap(one: NDArray, many: NDArray) -> NDArray:
     """Return intersection over union of one box with (N, 4+) boxes; each is centre and size."""
     low = np.maximum(one[:2] - one[2:4] / 2, many[:, :2] - many[:, 2:4] / 2)
     high = np.minimum(one[:2] + one[2:4] / 2, many[:, :2] + many[:, 2:4] / 2)
@@ -126,21 +120,18 @@ def overlap(one, many):
 
 
 class BlazePoseLandmarks:
-    """The landmark network of BlazePose.
+    """The landmark network of BlazePose: `pose_landmark_full` or `_lite`, converted.
 
-    Parameters
-    ----------
-    onnx_path : str or Path
-        `pose_landmark_full` or `_lite`, converted, with outputs Identity (39 x 5 landmarks),
-        Identity_1 (presence), Identity_3 (heat maps), Identity_4 (39 x 3 metric landmarks).
+    Outputs: Identity (39 x 5 landmarks), Identity_1 (presence), Identity_3 (heat maps), Identity_4
+    (39 x 3 metric landmarks).
     """
 
     n_joints = N_JOINTS
 
-    def __init__(self, onnx_path):
+    def __init__(self, onnx_path: str | PathLike) -> None:
         self.network = detector.open_network(onnx_path)
 
-    def estimate(self, image, region):
+    def estimate(self, image: NDArray, region: Region) -> Pose:
         """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
         patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)
         patch = cv2.cvtColor(patch, cv2.COLOR_BGR2RGB)
@@ -162,7 +153,7 @@ class BlazePoseLandmarks:
         )
 
 
-def refine(fraction, heat_maps):
+def refine(fraction: NDArray, heat_maps: NDArray) -> NDArray:
     """Move each landmark to the centre of mass of its heat map around it.
 
     Parameters
@@ -175,7 +166,7 @@ def refine(fraction, heat_maps):
     Returns
     -------
     refined : (J, 2) float
-        Unchanged where the landmark lies outside, or no cell nearby reaches a probability of one half.
+        Unchanged if the landmark lies outside, or no cell nearby reaches a probability of one half.
     """
     height, width, _ = heat_maps.shape
     refined = fraction.copy()

@@ -1,44 +1,53 @@
-"""From a name in `config/models.yaml` to the code that runs such a network."""
+"""The code that runs a network, by its decoder's name in `config/models.yaml`."""
+
+from collections.abc import Sequence
+from os import PathLike
 
 from courtside.pose.blazepose import BlazePoseDetector, BlazePoseLandmarks
+from courtside.pose.detector import LandmarkNetwork, PersonDetector
 from courtside.pose.heatmaps import HeatmapLandmarks
 from courtside.study.errors import InputError
 
 
-def person_detector(onnx_path):
-    """Return the `PersonDetector` of an ONNX file; there is one kind, BlazePose's."""
+def person_detector(onnx_path: str | PathLike) -> PersonDetector:
+    """Open a person detector; there is one kind, BlazePose's."""
     return BlazePoseDetector(onnx_path)
 
 
-def landmark_network(onnx_path, joints, *, decoder, input_range=None, channels=None):
-    """Return the `LandmarkNetwork` of an ONNX file.
+def landmark_network(
+    onnx_path: str | PathLike,
+    joints: Sequence[str],
+    *,
+    decoder: str,
+    input_range: tuple[float, float] | None = None,
+    channels: str | None = None,
+) -> LandmarkNetwork:
+    """Open a landmark network.
 
     Parameters
     ----------
-    onnx_path : str or Path
-    joints : tuple of str
+    joints : sequence of str
         The skeleton's joints.
     decoder : {"blazepose", "heatmaps"}
     input_range, channels
         Of a heat-map network, see `courtside.pose.heatmaps.HeatmapLandmarks`.
-
-    Returns
-    -------
-    network : LandmarkNetwork
 
     Raises
     ------
     InputError
         If the network has another number of joints than its skeleton.
     """
+    network: LandmarkNetwork
     if decoder == "blazepose":
         network = BlazePoseLandmarks(onnx_path)
+    elif input_range is None or channels is None:
+        raise ValueError(f"{onnx_path}: a heat-map network needs input_range and channels")
     else:
         trunk = [at for at, joint in enumerate(joints) if joint.endswith(("_shoulder", "_hip"))]
         network = HeatmapLandmarks(onnx_path, input_range, channels, trunk)
     if network.n_joints != len(joints):
         raise InputError(
-            f"{onnx_path}: expected {len(joints)} joints as in its skeleton, found {network.n_joints}; "
-            "correct `skeleton` in config/models.yaml"
+            f"{onnx_path}: expected {len(joints)} joints as in its skeleton, found "
+            f"{network.n_joints}; correct `skeleton` in config/models.yaml"
         )
     return network

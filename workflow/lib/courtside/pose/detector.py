@@ -1,16 +1,18 @@
-"""What every pose network is to the rest of the study: an image and a region in, joints out.
+"""The interface of pose networks: an image and a region in, joints out.
 
 A network pair has two parts. A *person detector* finds regions in a picture; a *landmark network*
-places the joints in one region, and says which region to look at in the next frame.
+places the joints in one region, and returns the region to look at in the next frame.
 """
 
 import math
 from dataclasses import dataclass
+from os import PathLike
 from typing import Protocol
 
 import cv2
 import numpy as np
 import onnxruntime
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -44,16 +46,17 @@ class Pose:
     score : (J,) float
         Confidence of each joint, 0 to 1.
     xyz_in_body : (J, 3) float
-        The network's own metric guess about the hip centre, metres, axes as in cam; NaN without one.
+        The network's own metric guess relative to the hip centre, metres, axes as in cam; NaN
+        without one.
     presence : float
         Confidence that the region shows a person at all, 0 to 1.
     region : Region
         Where to look for the same person in the next frame.
     """
 
-    xy: np.ndarray
-    score: np.ndarray
-    xyz_in_body: np.ndarray
+    xy: NDArray
+    score: NDArray
+    xyz_in_body: NDArray
     presence: float
     region: Region
 
@@ -61,8 +64,9 @@ class Pose:
 class PersonDetector(Protocol):
     """Finds persons in a whole picture."""
 
-    def detect(self, image):
+    def detect(self, image: NDArray) -> list[Region]:
         """Return the regions of all persons in a (H, W, 3) uint8 BGR picture, best first."""
+        ...
 
 
 class LandmarkNetwork(Protocol):
@@ -70,24 +74,16 @@ class LandmarkNetwork(Protocol):
 
     n_joints: int
 
-    def estimate(self, image, region):
+    def estimate(self, image: NDArray, region: Region) -> Pose:
         """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
+        ...
 
 
-def open_network(path, threads=1):
+def open_network(path: str | PathLike, threads: int = 1) -> onnxruntime.InferenceSession:
     """Open an ONNX file for inference on the processor.
 
-    Parameters
-    ----------
-    path : str or Path
-        The ONNX file.
-    threads : int
-        Threads within one operator. One is fastest when files are worked on side by side: idle
-        threads of onnxruntime spin.
-
-    Returns
-    -------
-    session : onnxruntime.InferenceSession
+    `threads` work within one operator. One is fastest when several files are processed in
+    parallel: idle threads of onnxruntime spin.
     """
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
@@ -96,7 +92,9 @@ def open_network(path, threads=1):
     return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
 
 
-def cut_out(image, region, side_px, border=cv2.BORDER_CONSTANT):
+def cut_out(
+    image: NDArray, region: Region, side_px: int, border: int = cv2.BORDER_CONSTANT
+) -> NDArray:
     """Cut a rotated square out of a picture and scale it to a network's input.
 
     Parameters
@@ -104,7 +102,7 @@ def cut_out(image, region, side_px, border=cv2.BORDER_CONSTANT):
     image : (H, W, 3) uint8
         Any channel order.
     region : Region
-        What to cut; parts outside the picture are filled as `border` says.
+        Parts outside the picture are filled as `border` says.
     side_px : int
         Side of the result.
     border : int
@@ -134,14 +132,13 @@ def cut_out(image, region, side_px, border=cv2.BORDER_CONSTANT):
     )
 
 
-def to_picture(fraction, region):
+def to_picture(fraction: NDArray, region: Region) -> NDArray:
     """Map positions in a region, as fractions of its side, to the picture.
 
     Parameters
     ----------
     fraction : (..., 2) float
         (0, 0) is the region's first corner, (1, 1) the opposite one.
-    region : Region
 
     Returns
     -------
@@ -152,7 +149,7 @@ def to_picture(fraction, region):
     return centre + rotate((fraction - 0.5) * region.side, region.angle_rad)
 
 
-def rotate(xy, angle_rad):
+def rotate(xy: NDArray, angle_rad: float) -> NDArray:
     """Rotate plane vectors (..., 2) by an angle that turns x towards y."""
     cosine, sine = math.cos(angle_rad), math.sin(angle_rad)
     return xy @ np.array([[cosine, sine], [-sine, cosine]])

@@ -1,32 +1,30 @@
-"""Where a fixed camera sees something that is not the empty room: a box for the person detector."""
+"""Where a fixed camera sees something other than the empty room: boxes for the person detector."""
+
+from collections.abc import Iterable
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 SHRINK = 4  # the search runs on pictures a quarter the size
-OPEN_PX, CLOSE_PX = 3, 25  # at that size: specks removed, body parts joined
-MIN_SHARE = 5e-4  # of the picture's area; smaller changes are noise
+# ASSUME: sizes at that scale that remove specks and join the parts of one body.
+OPEN_PX, CLOSE_PX = 3, 25
+MIN_SHARE = 5e-4  # of the picture's area. ASSUME: smaller changes are noise
+Box = tuple[int, ...]  # x, y, width, height, px
 
 
 class Foreground:
-    """Changed regions against the background of one fixed camera.
+    """Changed regions against the background of one fixed camera, (H, W, 3) uint8.
 
-    Parameters
-    ----------
-    background : (H, W, 3) uint8
-    min_difference : float
-        A pixel has changed when one channel differs by more, of 255.
+    A pixel has changed if one channel differs by more than `min_difference`, of 255.
     """
 
-    def __init__(self, background, min_difference):
+    def __init__(self, background: NDArray, min_difference: float) -> None:
         self.background = _shrink(background)
         self.min_difference = min_difference
 
-    def boxes(self, image, without=()):
-        """Return boxes (x, y, width, height) in px around what changed, largest area first.
-
-        What changed inside the boxes `without`, in the same form, is left out.
-        """
+    def boxes(self, image: NDArray, without: Iterable[tuple[float, ...]] = ()) -> list[Box]:
+        """Return boxes around what changed, outside the boxes `without`, largest area first."""
         blue, green, red = cv2.split(cv2.absdiff(_shrink(image), self.background))
         difference = cv2.max(cv2.max(blue, green), red)
         mask = (difference > self.min_difference).astype(np.uint8)
@@ -45,13 +43,13 @@ class Foreground:
 
 
 class Whole:
-    """In place of a `Foreground` where one person stands large before a camera, all the time: anywhere."""
+    """In place of a `Foreground` if one person always fills much of the picture."""
 
-    def boxes(self, image, without=()):
-        """Return the whole picture as one box, whatever is known already."""
+    def boxes(self, image: NDArray, without: Iterable[tuple[float, ...]] = ()) -> list[Box]:
+        """Return the whole picture as one box, whatever `without` holds."""
         return [(0, 0, image.shape[1], image.shape[0])]
 
 
-def _shrink(image):
+def _shrink(image: NDArray) -> NDArray:
     size = (image.shape[1] // SHRINK, image.shape[0] // SHRINK)
     return cv2.resize(image, size, interpolation=cv2.INTER_AREA)

@@ -1,15 +1,21 @@
 """Networks that give one heat map per joint, such as convolutional pose machines.
 
-Wei et al. 2016, "Convolutional Pose Machines": the family of networks that the badminton study used.
+Wei et al. 2016, "Convolutional Pose Machines": the family of networks that the badminton study
+used.
 """
 
+from collections.abc import Sequence
+from os import PathLike
+
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.pose import detector
 from courtside.pose.detector import Pose, Region
 
+# ASSUME: a body grows by less than this from one frame to the next, head and hands included.
 MARGIN = 1.3  # the next region is the joints' extent times this
-BLUR = (0.25, 0.5, 0.25)  # smooths a map before its peak is taken
+BLUR = (0.25, 0.5, 0.25)  # binomial: smooths a map before its peak is taken
 
 
 class HeatmapLandmarks:
@@ -17,8 +23,6 @@ class HeatmapLandmarks:
 
     Parameters
     ----------
-    onnx_path : str or Path
-        The converted network.
     input_range : (float, float)
         Values that black and white pixels become.
     channels : {"rgb", "bgr"}
@@ -27,7 +31,13 @@ class HeatmapLandmarks:
         Joints whose mean peak is taken as the confidence that a person is there.
     """
 
-    def __init__(self, onnx_path, input_range, channels, presence_joints):
+    def __init__(
+        self,
+        onnx_path: str | PathLike,
+        input_range: tuple[float, float],
+        channels: str,
+        presence_joints: Sequence[int],
+    ) -> None:
         self.network = detector.open_network(onnx_path)
         source, target = self.network.get_inputs()[0], self.network.get_outputs()[0]
         self.input_name, self.side_px = source.name, source.shape[1]
@@ -35,10 +45,10 @@ class HeatmapLandmarks:
         self.input_range, self.channels = input_range, channels
         self.presence_joints = presence_joints
 
-    def estimate(self, image, region):
+    def estimate(self, image: NDArray, region: Region) -> Pose:
         """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture.
 
-        The region is cut out upright: such networks are not trained on turned persons.
+        The region is cut out upright: such networks are not trained on rotated persons.
         """
         region = Region(region.x, region.y, region.side)
         patch = detector.cut_out(image, region, self.side_px)
@@ -57,7 +67,7 @@ class HeatmapLandmarks:
         )
 
 
-def peaks(maps):
+def peaks(maps: NDArray) -> tuple[NDArray, NDArray]:
     """Find the peak of each heat map to a fraction of a cell.
 
     Parameters
@@ -87,13 +97,13 @@ def peaks(maps):
     return fraction, np.clip(maps.max(axis=(0, 1)), 0, 1).astype(float)
 
 
-def _smooth(maps, axis):
+def _smooth(maps: NDArray, axis: int) -> NDArray:
     padded = np.concatenate([maps.take([0], axis), maps, maps.take([-1], axis)], axis=axis)
     n = maps.shape[axis]
     return sum(w * padded.take(range(at, at + n), axis) for at, w in enumerate(BLUR))
 
 
-def _vertex(line, at):
+def _vertex(line: NDArray, at: int) -> float:
     if not 0 < at < len(line) - 1:
         return 0.0
     before, here, after = (float(line[at + step]) for step in (-1, 0, 1))
@@ -101,7 +111,7 @@ def _vertex(line, at):
     return 0.5 * (before - after) / bend if bend < 0 else 0.0
 
 
-def around(xy):
+def around(xy: NDArray) -> Region:
     """Return the upright region around joints (J, 2), px."""
     low, high = xy.min(axis=0), xy.max(axis=0)
     side = MARGIN * float((high - low).max())

@@ -1,34 +1,34 @@
-"""Pictures in which nobody can be recognised: faces hidden, what is around the persons made coarse."""
+"""Pictures in which nobody can be recognised: faces hidden, surroundings made coarse."""
+
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.pose import stick_drawing
 
-REACH = 1.6  # of the distance from the face's centre to its furthest joint
+# ASSUME: these cover hair, chin and limbs, and leave nothing to recognise.
+REACH = 1.6  # radius of the mosaic, of the distance from the face's centre to its furthest joint
 LEAST_SHARE = 0.012  # of the picture's height: the smallest radius
 GRAIN = 8  # mosaic cells across the face
 COARSE = 1 / 60  # of the picture's height: cells that surroundings are reduced to
-BODY = 0.18  # of a person's extent: how wide the body is around its bones
+BODY = 0.18  # of a person's extent: width of the body around its bones
 
 
-def blur_face(image, xy_face):
-    """Return a picture with the face hidden under a mosaic.
+def blur_face(image: NDArray, xy_face: NDArray) -> NDArray:
+    """Return a new picture with the face hidden under a mosaic.
 
     Parameters
     ----------
     image : (H, W, 3) uint8
     xy_face : (K, 2) float
-        Joints of one face, px; NaN are ignored. Nothing changes where all are.
-
-    Returns
-    -------
-    blurred : (H, W, 3) uint8
-        A new picture.
+        Joints of one face, px; NaN are ignored. Nothing changes if all are NaN.
 
     Notes
     -----
-    A mosaic of at most 8 cells across throws the detail away; a Gaussian could be sharpened again.
+    A mosaic of at most 8 cells across destroys the detail; a Gaussian blur could be sharpened
+    again.
     """
     known = xy_face[np.isfinite(xy_face).all(axis=1)]
     result = image.copy()
@@ -51,28 +51,21 @@ def blur_face(image, xy_face):
     return result
 
 
-def hide_faces(image, xy_of_faces):
-    """Return a picture with faces hidden.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-    xy_of_faces : sequence of (K, 2) float
-        The joints of each face; NaN are ignored.
-    """
+def hide_faces(image: NDArray, xy_of_faces: Iterable[NDArray]) -> NDArray:
+    """Return a picture with faces hidden, given the joints (K, 2) of each; NaN are ignored."""
     for xy in xy_of_faces:
         image = blur_face(image, np.asarray(xy))
     return image
 
 
-def only_persons(image, persons, bones):
-    """Return a picture that is sharp at some persons only, so that nobody else in it can be recognised.
+def only_persons(image: NDArray, persons: NDArray, bones: Sequence[tuple[int, int]]) -> NDArray:
+    """Return a picture that is sharp at some persons only, so that nobody else can be recognised.
 
     Parameters
     ----------
     image : (H, W, 3) uint8
     persons : (n, J, 2) float
-        Joints, px; NaN where unknown. Where nobody is known nothing is left sharp.
+        Joints, px; NaN where unknown. Without a known person nothing is left sharp.
     bones : sequence of (int, int)
 
     Returns
@@ -82,7 +75,7 @@ def only_persons(image, persons, bones):
 
     Notes
     -----
-    No detector is asked who else is there: those in the background are the ones that it misses.
+    No detector looks for others: it misses those in the background most often.
     """
     height, width = image.shape[:2]
     cell = max(1.0, height * COARSE)
@@ -99,16 +92,11 @@ def only_persons(image, persons, bones):
     return result
 
 
-def hide(image, persons, bones, xy_of_faces):
-    """Return a picture of some persons in which neither they nor anybody else can be recognised.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-    persons : (n, J, 2) float
-        As for `only_persons`.
-    bones : sequence of (int, int)
-    xy_of_faces : sequence of (K, 2) float
-        As for `hide_faces`.
-    """
+def hide(
+    image: NDArray,
+    persons: NDArray,
+    bones: Sequence[tuple[int, int]],
+    xy_of_faces: Iterable[NDArray],
+) -> NDArray:
+    """Return a picture in which neither these persons nor anybody else can be recognised."""
     return hide_faces(only_persons(image, persons, bones), xy_of_faces)

@@ -1,22 +1,33 @@
-"""Stick figures drawn into pictures."""
+"""Draw stick figures into pictures."""
+
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 FURTHEST_PX = 10_000  # from the picture's corner: OpenCV draws no further
+Colour = int | tuple[int, int, int]  # grey, or BGR
 
 
-def drawable(xy):
+def drawable(xy: NDArray) -> NDArray:
     """Return which joints (J, 2) px can be drawn, (J,) bool."""
     return np.isfinite(xy).all(axis=1) & (np.abs(xy) < FURTHEST_PX).all(axis=1)
 
 
-def pixel(place):
-    """Return a place as OpenCV takes it."""
+def pixel(place: NDArray) -> tuple[int, ...]:
+    """Return a position as OpenCV takes it."""
     return tuple(int(value) for value in np.round(place))
 
 
-def draw(image, persons, bones, colour, thick, radius):
+def draw(
+    image: NDArray,
+    persons: Iterable[NDArray],
+    bones: Sequence[tuple[int, int]],
+    colour: Colour,
+    thick: int,
+    radius: int,
+) -> None:
     """Draw persons into a picture, in place.
 
     Parameters

@@ -1,12 +1,16 @@
-"""One person followed through the pictures of one fixed camera."""
+"""Follow one person through the pictures of one fixed camera."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from courtside.pose.detector import Region
+from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
+from courtside.pose.foreground import Box, Foreground, Whole
 from courtside.records.keypoints import missing_reason
 
+# ASSUME: the foreground misses less than this of a body, and a track on it strays by less.
 SEARCH_MARGIN = 1.3  # the detector looks at the foreground box times this
 STRAY = 0.25  # a track whose middle leaves every foreground box by this share of the box is lost
 
@@ -27,40 +31,47 @@ class Track:
         Metres, see `courtside.pose.detector.Pose`.
     """
 
-    time_s: np.ndarray
-    xy: np.ndarray
-    score: np.ndarray
-    reason: np.ndarray
-    xyz_in_body: np.ndarray
+    time_s: NDArray
+    xy: NDArray
+    score: NDArray
+    reason: NDArray
+    xyz_in_body: NDArray
 
 
-def track_person(frames, detector, landmarks, foreground, *, min_presence, redetect):
-    """Follow the largest moving person through a video.
+def track_person(
+    frames: Iterable[tuple[float, NDArray]],
+    detector: PersonDetector,
+    landmarks: LandmarkNetwork,
+    foreground: Foreground | Whole,
+    *,
+    min_presence: float,
+    redetect: bool,
+) -> Track:
+    """Follow the largest moving person through a video: a track with one row per frame.
 
     Parameters
     ----------
     frames : iterable of (float, (H, W, 3) uint8)
         Time in seconds and picture, BGR.
     detector : PersonDetector
-        Asked when there is no track; it sees only the surroundings of the foreground, so that a person
-        who is small in the picture is large in its input.
+        Used when there is no track; it sees only the surroundings of the foreground, so that a
+        person who is small in the picture is large in its input.
     landmarks : LandmarkNetwork
-        Asked in every frame.
+        Used in every frame.
     foreground : Foreground
         Where the camera sees something new.
     min_presence : float
-        Below this confidence the network's answer is dropped and the person searched again, 0 to 1.
+        Below this confidence, 0 to 1, the network's answer is dropped and the person searched
+        again.
     redetect : bool
         Search in every frame instead of following: slower, and without memory.
-
-    Returns
-    -------
-    track : Track
-        One row per frame.
     """
-    times, rows, region = [], [], None
+    times: list[float] = []
+    rows: list[tuple[NDArray, ...]] = []
+    region: Region | None = None
     for time_s, image in frames:
-        boxes, pose = foreground.boxes(image), None
+        boxes = foreground.boxes(image)
+        pose: Pose | None = None
         if region is not None and not redetect:
             pose = landmarks.estimate(image, region)
         if pose is None or pose.presence < min_presence or strayed(pose.xy, boxes):
@@ -73,19 +84,15 @@ def track_person(frames, detector, landmarks, foreground, *, min_presence, redet
     return Track(np.array(times), xy, score, reason, xyz)
 
 
-def strayed(xy, boxes):
-    """Tell whether a track has left what moves, for a bystander or a poster.
+def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:
+    """Return whether a track has left what moves, for a bystander or a poster.
 
     Parameters
     ----------
     xy : (J, 2) float
         Joints, px.
     boxes : list of (x, y, width, height)
-        Foreground, px. Without any, nothing can be told: a person may stand still for long.
-
-    Returns
-    -------
-    strayed : bool
+        Foreground, px. Without any it returns False: a person may stand still for long.
     """
     middle = np.median(xy, axis=0)
     for x, y, width, height in boxes:
@@ -96,44 +103,20 @@ def strayed(xy, boxes):
     return bool(boxes)
 
 
-def _search(image, boxes, detector, landmarks):
-    """Return the pose in the best region near the largest foreground box, or None where there is none."""
+def _search(
+    image: NDArray, boxes: Sequence[Box], detector: PersonDetector, landmarks: LandmarkNetwork
+) -> Pose | None:
+    """Return the pose in the best region near the largest foreground box; None without a box."""
     if not boxes:
         return None
-    region = detect_near(image, boxes[0], detector)
+    region = regions_near(image, boxes[0], detector)[0]
     return landmarks.estimate(image, region)
 
 
-def detect_near(image, box, detector):
-    """Return the region of the person in or near a foreground box.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-    box : (x, y, width, height)
-        Pixels.
-    detector : PersonDetector
-
-    Returns
-    -------
-    region : Region
-        The detector's best answer; the box itself, upright, where it finds nobody.
-    """
-    return regions_near(image, box, detector)[0]
-
-
-def regions_near(image, box, detector):
+def regions_near(image: NDArray, box: Box, detector: PersonDetector) -> list[Region]:
     """Return the regions of all persons in or near a foreground box, best first.
 
-    Parameters
-    ----------
-    image, box, detector
-        As for `detect_near`.
-
-    Returns
-    -------
-    regions : list of Region
-        One at least: the box itself, upright, where the detector finds nobody.
+    Where the detector finds nobody, the only region is the box itself, upright.
     """
     x, y, width, height = box
     half = SEARCH_MARGIN * max(width, height) / 2
@@ -145,30 +128,27 @@ def regions_near(image, box, detector):
     return [Region(one.x + left, one.y + top, one.side, one.angle_rad) for one in found]
 
 
-def as_row(pose, n_joints, shape):
-    """Return what a `Track` holds of one frame.
+def as_row(
+    pose: Pose | None, n_joints: int, shape: Sequence[int] | None
+) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    """Return one frame of a `Track`.
 
     Parameters
     ----------
     pose : Pose or None
         None where nobody was found.
-    n_joints : int
     shape : (height, width, ...) of int
-        Of the picture, px; not looked at without a pose.
+        Of the picture, px; not used without a pose.
 
     Returns
     -------
     xy, score, reason, xyz_in_body : (J, 2), (J,), (J,), (J, 3)
         Joints outside the picture are NaN with that reason.
     """
-    if pose is None:
+    if pose is None or shape is None:
         xy, xyz = np.full((n_joints, 2), np.nan), np.full((n_joints, 3), np.nan)
-        return (
-            xy,
-            np.full(n_joints, np.nan),
-            np.full(n_joints, missing_reason.UNSEEN, np.uint8),
-            xyz,
-        )
+        unseen = np.full(n_joints, missing_reason.UNSEEN, np.uint8)
+        return xy, np.full(n_joints, np.nan), unseen, xyz
     size = np.array([shape[1], shape[0]])
     inside = ((pose.xy > -0.5) & (pose.xy < size - 0.5)).all(axis=1)
     xy = np.where(inside[:, None], pose.xy, np.nan)

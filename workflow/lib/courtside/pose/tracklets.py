@@ -1,59 +1,68 @@
-"""Several people followed at once through the pictures of one fixed camera, as tracklets.
+"""Follow several people at once through the pictures of one fixed camera, as tracklets.
 
-A tracklet is what certainly is one body: it ends where its tracker may have changed to another one.
+A tracklet certainly shows one body: it ends where its tracker may have changed to another one.
 """
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.pose import tracking
+from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
+from courtside.pose.foreground import Foreground, Whole
 from courtside.pose.tracking import Track
 
+# ASSUME: for people who play or walk, filmed at 25 frames a second or more; shares are of a body's
+# size in the picture.
 SEARCH_EVERY = 5  # frames between two searches for people who are not followed yet
 REST_S = 0.1  # a row stays empty for so long between two tracklets
-JUMP = 0.25  # of a body's size: a body that is further from its prediction is another one
-TWINS = (
-    0.12  # of a body's size: poses closer than this, on the average of their joints, are one body
-)
-MEETING = (
-    0.35  # of a body's size: bodies with middles closer than this may be taken for one another
-)
+JUMP = 0.25  # a body further from its prediction is another one
+TWINS = 0.12  # poses closer than this, on the average of their joints, are one body
+MEETING = 0.35  # bodies with middles closer than this may be taken for one another
 STEADY = 0.5  # share of the old velocity in the new one
-BODY_MARGIN = 0.15  # of a body's size: foreground this close to its joints is explained by it
+BODY_MARGIN = 0.15  # foreground this close to a body's joints is explained by it
 
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """One body that is followed: its row, its last pose, and its motion in px per frame."""
+    """One followed body: its row, its last pose, and its motion in px per frame."""
 
     row: int
-    pose: object
-    velocity: np.ndarray
+    pose: Pose
+    velocity: NDArray
 
     @property
-    def ahead(self):
+    def ahead(self) -> NDArray:
         return middle(self.pose) + self.velocity
 
     @property
-    def region(self):
+    def region(self) -> Region:
         x, y = self.velocity
         return replace(self.pose.region, x=self.pose.region.x + x, y=self.pose.region.y + y)
 
 
-def middle(pose):
-    """Return where a pose is, (2,) px: the median of its joints."""
+def middle(pose: Pose) -> NDArray:
+    """Return the position of a pose, (2,) px: the median of its joints."""
     return np.median(pose.xy, axis=0)
 
 
-def size_px(pose):
+def size_px(pose: Pose) -> float:
     """Return the longer side of the box around a pose's joints."""
     return float(np.ptp(pose.xy, axis=0).max())
 
 
 def track_people(
-    frames, detector, landmarks, foreground, *, max_people, min_presence, redetect=False
-):
+    frames: Iterable[tuple[float, NDArray]],
+    detector: PersonDetector,
+    landmarks: LandmarkNetwork,
+    foreground: Foreground | Whole,
+    *,
+    max_people: int,
+    min_presence: float,
+    redetect: bool = False,
+) -> Track:
     """Follow several people through a video.
 
     Parameters
@@ -66,15 +75,15 @@ def track_people(
     Returns
     -------
     track : Track
-        Arrays have a leading axis of P rows. A row holds tracklets one after another, at least 0.1 s
-        apart: P stays a few more than `max_people`, however often tracklets end; a gap may change the
-        person.
+        Arrays have a leading axis of P rows. A row holds tracklets one after another, at least 0.1
+        s apart: P stays a few more than `max_people`, however often tracklets end; a gap may
+        change the person.
 
     Notes
     -----
-    A body is lost where the network doubts it, where it leaves the foreground or jumps off its course.
-    Of two tracks on one body, the one further off its course is dropped. Where two bodies come close and
-    where they part, both tracklets end: which of them is whom is left to the other views.
+    A body is lost where the network doubts it, where it leaves the foreground or jumps off its
+    course. Of two tracks on one body, the one further off its course is dropped. Where two bodies
+    come close and where they part, both tracklets end: the other views decide who is who.
     """
     if max_people == 1:
         track = tracking.track_person(
@@ -83,7 +92,8 @@ def track_people(
         arrays = {name: value[None] for name, value in vars(track).items()}
         return Track(**{**arrays, "time_s": track.time_s})
     crowd = _Crowd(detector, landmarks, foreground, max_people, min_presence)
-    times, found = [], []
+    times: list[float] = []
+    found: list[dict[int, tuple[NDArray, ...]]] = []
     for count, (time_s, image) in enumerate(frames):
         crowd.now_s = time_s
         if redetect:
@@ -100,7 +110,9 @@ def track_people(
     return _stacked(np.array(times), found, landmarks.n_joints)
 
 
-def _stacked(time_s, found, n_joints):
+def _stacked(
+    time_s: NDArray, found: Sequence[dict[int, tuple[NDArray, ...]]], n_joints: int
+) -> Track:
     n_rows = max((row + 1 for rows in found for row in rows), default=1)
     empty = tracking.as_row(None, n_joints, None)
     arrays = [np.repeat(np.repeat(v[None, None], len(time_s), 1), n_rows, 0) for v in empty]
@@ -112,16 +124,24 @@ def _stacked(time_s, found, n_joints):
 
 
 class _Crowd:
-    """The bodies that are followed in one camera."""
+    """The followed bodies of one camera."""
 
-    def __init__(self, detector, landmarks, foreground, max_people, min_presence):
+    def __init__(
+        self,
+        detector: PersonDetector,
+        landmarks: LandmarkNetwork,
+        foreground: Foreground | Whole,
+        max_people: int,
+        min_presence: float,
+    ) -> None:
         self.detector, self.landmarks, self.foreground = detector, landmarks, foreground
         self.max_people, self.min_presence = max_people, min_presence
-        self.bodies, self.now_s = [], 0.0
-        self.ended_s = {}  # by row: when its last tracklet ended
-        self.meeting = set()
+        self.bodies: list[_Body] = []
+        self.now_s = 0.0
+        self.ended_s: dict[int, float] = {}  # by row: when its last tracklet ended
+        self.meeting: set[int] = set()
 
-    def follow(self, image):
+    def follow(self, image: NDArray) -> None:
         """Find the same bodies in the next picture."""
         boxes = self.foreground.boxes(image) if self.bodies else []
         kept = []
@@ -139,11 +159,11 @@ class _Crowd:
                 followed = self._renewed(followed)
             self.bodies.append(followed)
 
-    def _without_twins(self, pairs):
-        """Drop, of two bodies with one pose, the one further from its prediction; end both tracklets."""
+    def _without_twins(self, pairs: list[tuple[_Body, Pose]]) -> list[tuple[_Body, Pose]]:
+        """Drop, of two bodies with one pose, the one further off its course; end both tracklets."""
         off = [np.linalg.norm(middle(pose) - body.ahead) for body, pose in pairs]
         order = np.argsort(off, kind="stable")
-        kept = []
+        kept: list[tuple[_Body, Pose]] = []
         for at in order:
             body, pose = pairs[at]
             twin = next((k for k in kept if are_twins(k[1], pose)), None)
@@ -154,9 +174,9 @@ class _Crowd:
             kept[kept.index(twin)] = (self._renewed(twin[0]), twin[1])
         return kept
 
-    def search(self, image, known):
-        """Return the poses of people who are not known, largest foreground first."""
-        poses = []
+    def search(self, image: NDArray, known: list[Pose]) -> list[Pose]:
+        """Return the poses of people who are not in `known`, largest foreground first."""
+        poses: list[Pose] = []
         for box in self.foreground.boxes(image, [around(pose) for pose in known]):
             for region in tracking.regions_near(image, box, self.detector):
                 if any(_inside(region, pose) for pose in known + poses):
@@ -168,13 +188,13 @@ class _Crowd:
                     poses.append(pose)
         return poses[: self.max_people - len(known)]
 
-    def match(self, poses, keep=False):
-        """Give poses to the bodies they continue, and start new bodies with the rest."""
-        # Here, for one person is followed without it: loading it takes as long as 15 frames.
+    def match(self, poses: list[Pose], keep: bool = False) -> None:
+        """Assign poses to the bodies they continue, and start new bodies with the rest."""
+        # Imported here: one person needs none of it, and loading it takes as long as 15 frames.
         from scipy.optimize import linear_sum_assignment
 
-        old, new = ([], self.bodies) if keep else (self.bodies, [])
-        bodies = list(new)
+        old: list[_Body] = [] if keep else self.bodies
+        bodies = list(self.bodies) if keep else []
         cost = np.array(
             [[np.linalg.norm(middle(p) - b.ahead) / size_px(p) for p in poses] for b in old]
         )
@@ -192,9 +212,9 @@ class _Crowd:
             if to not in taken:
                 self.bodies.append(_Body(self._free_row(), pose, np.zeros(2)))
 
-    def part(self):
+    def part(self) -> None:
         """End the tracklets of bodies that begin or cease to be close."""
-        close = set()
+        close: set[int] = set()
         for at, one in enumerate(self.bodies):
             for other in self.bodies[at + 1 :]:
                 apart = np.linalg.norm(middle(one.pose) - middle(other.pose))
@@ -207,18 +227,18 @@ class _Crowd:
                 self.bodies[at] = self._renewed(body)
                 self.meeting |= {self.bodies[at].row} if body.row in close else set()
 
-    def _renewed(self, body):
+    def _renewed(self, body: _Body) -> _Body:
         """Return the body with a new tracklet."""
         row = self._free_row()
         self._end([body])
         self.meeting |= {row} if body.row in self.meeting else set()
         return replace(body, row=row)
 
-    def _end(self, bodies):
+    def _end(self, bodies: Iterable[_Body]) -> None:
         for body in bodies:
             self.ended_s[body.row] = self.now_s
 
-    def _free_row(self):
+    def _free_row(self) -> int:
         used = {body.row for body in self.bodies}
         row = 0
         while row in used or self.now_s - self.ended_s.get(row, -np.inf) < REST_S:
@@ -227,20 +247,20 @@ class _Crowd:
         return row
 
 
-def are_twins(one, other):
-    """Say whether two poses are of one body."""
+def are_twins(one: Pose, other: Pose) -> bool:
+    """Return whether two poses are of one body."""
     apart = np.linalg.norm(one.xy - other.xy, axis=1).mean()
     return bool(apart < TWINS * max(size_px(one), size_px(other)))
 
 
-def around(pose):
-    """Return the box (x, y, width, height) of what a pose explains, px."""
+def around(pose: Pose) -> tuple[float, float, float, float]:
+    """Return the box (x, y, width, height) that a pose explains, px."""
     margin = BODY_MARGIN * size_px(pose)
     low, high = pose.xy.min(axis=0) - margin, pose.xy.max(axis=0) + margin
     return (*low, *(high - low))
 
 
-def _inside(region, pose):
-    """Say whether a region shows the body of a pose."""
+def _inside(region: Region, pose: Pose) -> bool:
+    """Return whether a region shows the body of a pose."""
     apart = np.hypot(region.x - pose.region.x, region.y - pose.region.y)
     return apart < MEETING * size_px(pose) / 2

@@ -5,23 +5,23 @@ TFLite keeps images as (batch, height, width, channels), "channels last"; ONNX c
 in, and transposed once, when an operator first asks for the other one.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 from onnx import helper, numpy_helper
+
+from courtside.pose.conversion.tflite_graph import Graph, Operator
 
 IMAGE_RANK = 4
 TO_FIRST, TO_LAST = (0, 3, 1, 2), (0, 2, 3, 1)
 
 
 class Writer:
-    """The ONNX graph so far, and where each TFLite tensor is found in it.
+    """The ONNX graph so far, and the place of each TFLite tensor in it."""
 
-    Parameters
-    ----------
-    graph : tflite_graph.Graph
-        The network to convert.
-    """
-
-    def __init__(self, graph):
+    def __init__(self, graph: Graph) -> None:
         self.graph = graph
         self.constants = {
             index: tensor.data
@@ -29,11 +29,13 @@ class Writer:
             if tensor.data is not None
         }
         self.last = {index: graph.tensors[index].name for index in graph.inputs}
-        self.first = {}  # ONNX names, by tensor index; `last` in the file's layout
-        self.nodes, self.initializers, self.results = [], [], []
+        self.first: dict[int, str] = {}  # ONNX names, by tensor index; `last` in the file's layout
+        self.nodes: list[Any] = []
+        self.initializers: list[Any] = []
+        self.results: list[tuple[Operator, str, tuple[int, ...]]] = []
         self.operator = ""
 
-    def add(self, kind, inputs, **attributes):
+    def add(self, kind: str, inputs: Sequence[str], **attributes: Any) -> str:
         """Add a node and return the name of its result."""
         name = f"courtside/{len(self.nodes)}"
         self.nodes.append(
@@ -41,21 +43,21 @@ class Writer:
         )
         return name
 
-    def store(self, array):
+    def store(self, array: NDArray | np.generic) -> str:
         """Add an array to the network and return its name."""
         name = f"courtside/constant/{len(self.initializers)}"
         array = np.ascontiguousarray(array).reshape(np.shape(array))
         self.initializers.append(numpy_helper.from_array(array, name))
         return name
 
-    def shape(self, index, rank=None):
-        """Return the shape that the TFLite file states; it must have so many dimensions."""
+    def shape(self, index: int, rank: int | None = None) -> tuple[int, ...]:
+        """Return the shape that the TFLite file states, with `rank` dimensions if given."""
         shape = self.graph.tensors[index].shape
         if rank is not None and len(shape) != rank:
             raise ValueError(f"a tensor of shape {shape} where {rank} dimensions are needed")
         return shape
 
-    def constant(self, index, kind, rank):
+    def constant(self, index: int, kind: type[np.generic], rank: int) -> NDArray:
         """Return a constant's values; `kind` is np.float32 or np.integer."""
         values = self.constants.get(index)
         if values is None or not np.issubdtype(values.dtype, kind) or values.ndim != rank:
@@ -63,7 +65,7 @@ class Writer:
             raise ValueError(f"{found} where {rank}-d constant {kind.__name__} is needed")
         return values
 
-    def channels_first(self, index):
+    def channels_first(self, index: int) -> str:
         """Return the ONNX name of an image, or of a constant to be combined with images."""
         if index not in self.first:
             if index in self.constants:
@@ -76,7 +78,7 @@ class Writer:
                 self.first[index] = self.add("Transpose", [name], perm=TO_FIRST)
         return self.first[index]
 
-    def channels_last(self, index):
+    def channels_last(self, index: int) -> str:
         """Return the ONNX name of a tensor in the layout of the TFLite file."""
         if index not in self.last:
             if index in self.constants:
@@ -88,8 +90,8 @@ class Writer:
                 raise ValueError(f"tensor {index} used before it is made")
         return self.last[index]
 
-    def finish(self, operator, name, layout):
-        """Take an ONNX name, in a layout (`first` or `last`), for the result of an operator."""
+    def finish(self, operator: Operator, name: str, layout: dict[int, str]) -> None:
+        """Record an ONNX name, in a layout (`first` or `last`), as the result of an operator."""
         activation = operator.options.get("fused_activation_function", "NONE")
         if activation == "RELU":
             name = self.add("Relu", [name])

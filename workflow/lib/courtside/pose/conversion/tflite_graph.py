@@ -1,17 +1,21 @@
-"""A TFLite network as plain records: its tensors, constants and operators, read from the flatbuffer.
+"""A TFLite network as plain records: tensors, constants and operators, read from the flatbuffer.
 
 The file comes from outside. The flatbuffer classes check nothing, so every count, index and length
-is checked here, and whatever they trip over in a damaged file ends as one `InputError`.
+is checked here, and any error they raise on a damaged file becomes one `InputError`.
 """
 
 import dataclasses
+from collections.abc import Iterable, Sequence
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import tflite
 
 from courtside.pose.conversion.tflite_tensors import (
     DAMAGED,
     MAX_NAME_BYTES,
+    Tensor,
     entries,
     integers,
     read_tensor,
@@ -37,7 +41,7 @@ OPTIONS = {
 }
 
 
-def _names(enum):
+def _names(enum: type) -> dict[int, str]:
     return {number: name for name, number in vars(enum).items() if isinstance(number, int)}
 
 
@@ -51,51 +55,43 @@ ENUMS = {
 
 @dataclasses.dataclass(frozen=True)
 class Operator:
-    """An operator: its place in the file, its kind, the indices of its tensors, its options.
+    """An operator: its place in the file, kind, indices of its tensors, and options.
 
-    An input of -1 is one left out. Options are named as in the schema, enumerations by their names.
+    An omitted input is -1. Options are named as in the schema, enumerations by their names.
     """
 
     place: int
     kind: str
-    inputs: tuple
-    outputs: tuple
-    options: dict
+    inputs: tuple[int, ...]
+    outputs: tuple[int, ...]
+    options: dict[str, Any]
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"operator {self.place} {self.kind}"
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Graph:
-    """A network: its file, tensors, operators in running order, and indices of inputs and outputs."""
+    """A network: file, tensors, operators in running order, and indices of inputs and outputs."""
 
     path: Path
-    tensors: tuple
-    operators: tuple
-    inputs: tuple
-    outputs: tuple
+    tensors: tuple[Tensor, ...]
+    operators: tuple[Operator, ...]
+    inputs: tuple[int, ...]
+    outputs: tuple[int, ...]
 
 
-def read(path):
+def read(path: str | PathLike) -> Graph:
     """Read a TFLite file.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file. Its first and only subgraph is read. Sparse constants become dense; float16 ones
-        stay float16.
-
-    Returns
-    -------
-    graph : Graph
-        The network. All indices are within range; operators of any kind are listed.
+    Its first and only subgraph is read. Sparse constants become dense; float16 ones stay float16.
+    All indices are within range; operators of any kind are listed.
 
     Raises
     ------
     InputError
         If the file is missing, is no TFLite file, is damaged, or holds a tensor type or sparse
-        layout that is not read.
+        layout that is not supported.
 
     Notes
     -----
@@ -113,35 +109,28 @@ def read(path):
         ) from None
 
 
-def keep_outputs(graph, names):
-    """Leave out all outputs but some, with the operators that only those left out need.
+def keep_outputs(graph: Graph, names: Iterable[str]) -> Graph:
+    """Remove all outputs but some, with the operators that only the removed ones need.
 
     Parameters
     ----------
-    graph : Graph
-        The network.
     names : iterable of str
-        Names of the outputs to keep. They stay in the file's order.
-
-    Returns
-    -------
-    graph : Graph
-        The smaller network; tensors keep their indices.
+        Names of the outputs to keep. They stay in the file's order, and tensors keep their indices.
 
     Raises
     ------
     InputError
         If a name is no output of the network, or there is none.
     """
-    names = set(names)
+    wanted = set(names)
     there = {graph.tensors[index].name: index for index in graph.outputs}
-    if not names or not names <= set(there):
-        unknown = ", ".join(sorted(names - set(there))) or "none"
+    if not wanted or not wanted <= set(there):
+        unknown = ", ".join(sorted(wanted - set(there))) or "none"
         raise InputError(
             f"{graph.path}: expected outputs among {', '.join(there)}, found {unknown}; "
             "correct the list of outputs"
         )
-    outputs = tuple(index for name, index in there.items() if name in names)
+    outputs = tuple(index for name, index in there.items() if name in wanted)
     needed, kept = set(outputs), []
     for operator in reversed(graph.operators):
         if needed & set(operator.outputs):
@@ -150,7 +139,7 @@ def keep_outputs(graph, names):
     return dataclasses.replace(graph, operators=tuple(reversed(kept)), outputs=outputs)
 
 
-def _content(path):
+def _content(path: Path) -> bytes:
     try:
         with path.open("rb") as stream:
             head = stream.read(8)
@@ -166,12 +155,13 @@ def _content(path):
         ) from None
     if len(rest) == MAX_FILE_BYTES:
         raise InputError(
-            f"{path}: expected a network below {MAX_FILE_BYTES} bytes, found more; use a smaller one"
+            f"{path}: expected a network below {MAX_FILE_BYTES} bytes, found more; use a smaller "
+            "one"
         )
     return head + rest
 
 
-def _graph(path, content):
+def _graph(path: Path, content: bytes) -> Graph:
     model = tflite.Model.GetRootAs(content, 0)
     if model.Version() != SCHEMA_VERSION:
         raise ValueError(f"schema version {model.Version()}, not {SCHEMA_VERSION}")
@@ -194,14 +184,14 @@ def _graph(path, content):
     return Graph(path, tensors, operators, *ends)
 
 
-def _indices(table, name, least, count):
+def _indices(table: Any, name: str, least: int, count: int) -> tuple[int, ...]:
     indices = integers(table, name, MAX_INPUTS)
     if any(not least <= index < count for index in indices):
         raise ValueError(f"{name.lower()} {indices} outside 0 to {count - 1}")
     return indices
 
 
-def _kind(code):
+def _kind(code: Any) -> str:
     # Files older than 2020 know only the first field, which holds at most 127.
     number = max(code.BuiltinCode(), code.DeprecatedBuiltinCode())
     if number == tflite.BuiltinOperator.CUSTOM:
@@ -209,7 +199,7 @@ def _kind(code):
     return OPERATORS.get(number, f"of unknown code {number}")
 
 
-def _operator(place, entry, kinds, count):
+def _operator(place: int, entry: Any, kinds: Sequence[str], count: int) -> Operator:
     if not entry.OpcodeIndex() < len(kinds):
         raise ValueError(f"operator {place} of no listed kind")
     kind = kinds[entry.OpcodeIndex()]
@@ -220,7 +210,7 @@ def _operator(place, entry, kinds, count):
         raise ValueError(f"operator {place} {kind}: {error}") from None
 
 
-def _options(entry, kind):
+def _options(entry: Any, kind: str) -> dict[str, Any]:
     if kind not in OPTIONS:
         return {}
     name, fields = OPTIONS[kind]

@@ -1,29 +1,33 @@
 """Convert a TFLite network of floats to ONNX, and check the result against what the file states."""
 
+from collections.abc import Iterable
+from os import PathLike
+
 import numpy as np
 import onnx
 from onnx import helper
 
 from courtside.pose.conversion import tflite_graph, tflite_operators
 from courtside.pose.conversion.onnx_writer import Writer
+from courtside.pose.conversion.tflite_graph import Graph
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic, sha256
 
 OPSET = 17
-IR_VERSION = 8
+IR_VERSION = 8  # the one of opset 17
 ONNX_FAULTS = (onnx.checker.ValidationError, onnx.shape_inference.InferenceError)
 
 
-def convert(tflite_path, onnx_path, *, outputs=None):
+def convert(
+    tflite_path: str | PathLike, onnx_path: str | PathLike, *, outputs: Iterable[str] | None = None
+) -> None:
     """Convert a TFLite network of floats to ONNX (opset 17).
 
     Parameters
     ----------
-    tflite_path : str or Path
-        The network to read.
     onnx_path : str or Path
-        The network to write; it appears under its name only when whole. Equal inputs give equal
-        bytes. Inputs and outputs keep their names, order and TFLite layout; all are float32.
+        It appears under its name only when whole. Equal inputs give equal bytes. Inputs and outputs
+        keep their names, order and TFLite layout; all are float32.
     outputs : iterable of str, optional
         Names of the outputs to keep; what only the others need is left out. Default: all.
 
@@ -31,7 +35,7 @@ def convert(tflite_path, onnx_path, *, outputs=None):
     ------
     InputError
         If the file is no TFLite network or a damaged one, lacks one of the `outputs`, or needs an
-        operator, a fused activation, a sparse layout or a tensor type that is not converted.
+        operator, a fused activation, a sparse layout or a tensor type that is not supported.
 
     Notes
     -----
@@ -46,8 +50,8 @@ def convert(tflite_path, onnx_path, *, outputs=None):
             tflite_operators.convert_operator(writer, operator)
         except ValueError as error:
             raise InputError(
-                f"{graph.path}: expected operators that can be converted, found {operator}: {error}; "
-                "use another network"
+                f"{graph.path}: expected operators that can be converted, found {operator}: "
+                f"{error}; use another network"
             ) from None
     model = _model(writer, sha256(tflite_path))
     _check(model, writer)
@@ -55,7 +59,7 @@ def convert(tflite_path, onnx_path, *, outputs=None):
         temporary.write_bytes(model.SerializeToString(deterministic=True))
 
 
-def _model(writer, source_sha256):
+def _model(writer: Writer, source_sha256: str) -> onnx.ModelProto:
     graph = writer.graph
     results, writer.operator = [], "output"
     for index in graph.outputs:
@@ -81,7 +85,7 @@ def _model(writer, source_sha256):
     return model
 
 
-def _value_info(graph, index):
+def _value_info(graph: Graph, index: int) -> onnx.ValueInfoProto:
     tensor = graph.tensors[index]
     if tensor.dtype != np.float32:
         raise InputError(
@@ -91,10 +95,10 @@ def _value_info(graph, index):
     return helper.make_tensor_value_info(tensor.name, onnx.TensorProto.FLOAT, tensor.shape)
 
 
-def _check(model, writer):
-    """Hold what ONNX infers against what the TFLite file states."""
+def _check(model: onnx.ModelProto, writer: Writer) -> None:
+    """Compare the shapes that ONNX infers with those that the TFLite file states."""
     path = writer.graph.path
-    # Without the outputs' shapes, for a wrong one is to be found at the operator, not at the end.
+    # Without the outputs' shapes: a wrong one is then found at the operator, not at the end.
     bare = onnx.ModelProto()
     bare.CopyFrom(model)
     for output in bare.graph.output:

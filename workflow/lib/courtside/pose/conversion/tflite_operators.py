@@ -1,47 +1,37 @@
 """TFLite operators as ONNX operators, one small function each.
 
 A converter takes the `Writer` and the `Operator`, adds ONNX nodes, and names the result by
-`Writer.finish`; what it cannot express it refuses by a `ValueError`.
+`Writer.finish`; it raises `ValueError` for what it cannot express.
 """
 
 import math
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from courtside.pose.conversion.onnx_writer import IMAGE_RANK, TO_FIRST
-from courtside.pose.conversion.tflite_graph import MAX_INPUTS
+from courtside.pose.conversion.onnx_writer import IMAGE_RANK, TO_FIRST, Writer
+from courtside.pose.conversion.tflite_graph import MAX_INPUTS, Operator
 
 MAX_STEP = 1 << 16  # of strides, windows, blocks: beyond any image, within ONNX's integers
-CONVERTERS = {}  # operator kind: fewest inputs, most inputs, function
+Converter = Callable[[Writer, Operator], None]
+CONVERTERS: dict[str, tuple[int, int, Converter]] = {}  # by kind: fewest and most inputs, function
 
 
-def same_padding(length, window, stride, dilation):
+def same_padding(length: int, window: int, stride: int, dilation: int) -> tuple[int, int]:
     """Return how many zeros TensorFlow's SAME padding puts before and after one dimension.
 
-    Parameters
-    ----------
-    length, window, stride, dilation : int
-        Of the dimension, the kernel, its steps, and the steps between the kernel's taps; all >= 1.
-
-    Returns
-    -------
-    before, after : int
-        The result then has ceil(length / stride) entries; an odd zero goes after.
+    The result then has ceil(length / stride) entries; an odd zero goes after. `dilation` is the
+    step between the kernel's taps; all arguments are >= 1.
     """
     reach = (window - 1) * dilation + 1
     total = max((-(-length // stride) - 1) * stride + reach - length, 0)
     return total // 2, total - total // 2
 
 
-def convert_operator(writer, operator):
-    """Add one operator to the ONNX graph.
-
-    Parameters
-    ----------
-    writer : Writer
-        The graph so far; it holds all inputs of the operator.
-    operator : tflite_graph.Operator
-        What to convert.
+def convert_operator(writer: Writer, operator: Operator) -> None:
+    """Add one operator to the ONNX graph, which holds all its inputs.
 
     Raises
     ------
@@ -60,24 +50,26 @@ def convert_operator(writer, operator):
     function(writer, operator)
 
 
-def _converts(kind, least, most):
-    """Register the converter of an operator that has so many inputs."""
+def _converts(kind: str, least: int, most: int) -> Callable[[Converter], Converter]:
+    """Register the converter of an operator that has `least` to `most` inputs."""
 
-    def register(function):
+    def register(function: Converter) -> Converter:
         CONVERTERS[kind] = (least, most, function)
         return function
 
     return register
 
 
-def _steps(operator, *names):
+def _steps(operator: Operator, *names: str) -> list[int]:
     values = [operator.options[name] for name in names]
     if not all(1 <= value <= MAX_STEP for value in values):
         raise ValueError(f"{' '.join(names)} {values}")
     return values
 
 
-def _window(writer, operator, kernel, dilations):
+def _window(
+    writer: Writer, operator: Operator, kernel: Sequence[int], dilations: Sequence[int]
+) -> dict[str, Any]:
     """Return the attributes of an operator that slides a window over an image."""
     lengths = writer.shape(operator.inputs[0], IMAGE_RANK)[1:3]
     strides = _steps(operator, "stride_h", "stride_w")
@@ -88,7 +80,7 @@ def _window(writer, operator, kernel, dilations):
     return {"kernel_shape": kernel, "strides": strides, "pads": pads}
 
 
-def _convolve(writer, operator, weights, groups):
+def _convolve(writer: Writer, operator: Operator, weights: NDArray, groups: int) -> None:
     """Convolve an image with weights (channels out, channels in per group, height, width)."""
     if groups < 1 or weights.shape[0] % groups or 0 in weights.shape:
         raise ValueError(f"weights of shape {weights.shape} in {groups} groups")
@@ -107,7 +99,7 @@ def _convolve(writer, operator, weights, groups):
 
 
 @_converts("CONV_2D", 2, 3)
-def _conv_2d(writer, operator):
+def _conv_2d(writer: Writer, operator: Operator) -> None:
     weights = writer.constant(operator.inputs[1], np.float32, IMAGE_RANK).transpose(TO_FIRST)
     channels, per_group = writer.shape(operator.inputs[0], IMAGE_RANK)[3], weights.shape[1]
     if per_group < 1 or channels % per_group:
@@ -116,7 +108,7 @@ def _conv_2d(writer, operator):
 
 
 @_converts("DEPTHWISE_CONV_2D", 2, 3)
-def _depthwise_conv_2d(writer, operator):
+def _depthwise_conv_2d(writer: Writer, operator: Operator) -> None:
     weights = writer.constant(operator.inputs[1], np.float32, IMAGE_RANK).transpose(3, 0, 1, 2)
     if weights.shape[1] != 1:
         raise ValueError(f"depthwise weights for {weights.shape[1]} channels")
@@ -124,7 +116,7 @@ def _depthwise_conv_2d(writer, operator):
 
 
 @_converts("MAX_POOL_2D", 1, 1)
-def _max_pool_2d(writer, operator):
+def _max_pool_2d(writer: Writer, operator: Operator) -> None:
     kernel = _steps(operator, "filter_height", "filter_width")
     window = _window(writer, operator, kernel, (1, 1))
     name = writer.add("MaxPool", [writer.channels_first(operator.inputs[0])], **window)
@@ -132,7 +124,7 @@ def _max_pool_2d(writer, operator):
 
 
 @_converts("RESIZE_BILINEAR", 2, 2)
-def _resize_bilinear(writer, operator):
+def _resize_bilinear(writer: Writer, operator: Operator) -> None:
     image, size = operator.inputs
     batch, _, _, channels = writer.shape(image, IMAGE_RANK)
     size = writer.constant(size, np.integer, 1).tolist()
@@ -148,7 +140,7 @@ def _resize_bilinear(writer, operator):
 
 
 @_converts("DEPTH_TO_SPACE", 1, 1)
-def _depth_to_space(writer, operator):
+def _depth_to_space(writer: Writer, operator: Operator) -> None:
     (block,) = _steps(operator, "block_size")
     image = operator.inputs[0]
     if writer.shape(image, IMAGE_RANK)[3] % block**2:
@@ -159,7 +151,7 @@ def _depth_to_space(writer, operator):
 
 
 @_converts("ADD", 2, 2)
-def _add(writer, operator):
+def _add(writer: Writer, operator: Operator) -> None:
     # A constant may have fewer dimensions: the missing ones lead, as in numpy.
     made = [index for index in operator.inputs if index not in writer.constants]
     images = all(len(writer.shape(index)) == IMAGE_RANK for index in (*made, operator.outputs[0]))
@@ -169,7 +161,7 @@ def _add(writer, operator):
 
 
 @_converts("CONCATENATION", 1, MAX_INPUTS)
-def _concatenation(writer, operator):
+def _concatenation(writer: Writer, operator: Operator) -> None:
     rank, axis = len(writer.shape(operator.outputs[0])), operator.options["axis"]
     if not -rank <= axis < rank:
         raise ValueError(f"axis {axis} of {rank}")
@@ -184,7 +176,7 @@ def _concatenation(writer, operator):
 
 
 @_converts("PAD", 2, 2)
-def _pad(writer, operator):
+def _pad(writer: Writer, operator: Operator) -> None:
     image, widths = operator.inputs
     rank = len(writer.shape(image))
     widths = writer.constant(widths, np.integer, 2).astype(np.int64)
@@ -199,7 +191,7 @@ def _pad(writer, operator):
 
 
 @_converts("RESHAPE", 1, 2)
-def _reshape(writer, operator):
+def _reshape(writer: Writer, operator: Operator) -> None:
     # The target, in an option or a second input, may hold a -1; the result's own shape does not.
     shape = np.array(writer.shape(operator.outputs[0]), np.int64)
     if math.prod(writer.shape(operator.inputs[0])) != math.prod(shape.tolist()):
@@ -208,26 +200,26 @@ def _reshape(writer, operator):
     writer.finish(operator, name, writer.last)
 
 
-def _elementwise(writer, operator, kind):
+def _elementwise(writer: Writer, operator: Operator, kind: str) -> None:
     layout = writer.first if operator.inputs[0] in writer.first else writer.last
     place = writer.channels_first if layout is writer.first else writer.channels_last
     writer.finish(operator, writer.add(kind, [place(operator.inputs[0])]), layout)
 
 
 @_converts("LOGISTIC", 1, 1)
-def _logistic(writer, operator):
+def _logistic(writer: Writer, operator: Operator) -> None:
     _elementwise(writer, operator, "Sigmoid")
 
 
 @_converts("RELU", 1, 1)
-def _relu(writer, operator):
+def _relu(writer: Writer, operator: Operator) -> None:
     _elementwise(writer, operator, "Relu")
 
 
 @_converts("DEQUANTIZE", 1, 1)
 @_converts("DENSIFY", 1, 1)
-def _fold(writer, operator):
-    """Turn a constant into the float32 constant it stands for; it is dense since it was read."""
+def _fold(writer: Writer, operator: Operator) -> None:
+    """Turn a constant into the float32 constant it stands for; reading made it dense."""
     values = writer.constants.get(operator.inputs[0])
     target = writer.graph.tensors[operator.outputs[0]]
     if values is None or values.dtype.kind != "f" or values.shape != target.shape:

@@ -1,16 +1,21 @@
 """Tensors of a TFLite file: names, shapes, and the values of constants, sparse ones made dense.
 
 The flatbuffer classes check nothing, so counts and lengths are checked here before they are used.
-Functions raise `ValueError`, or one of `DAMAGED` on a damaged file; the reader of the file names it.
+Functions raise `ValueError`, or one of `DAMAGED` on a damaged file; the reader of the file names
+it.
 """
 
 import dataclasses
 import math
 import struct
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import tflite
+from numpy.typing import NDArray
 
+# Far above any pose network (900 tensors), far below what would fill the memory.
 MAX_RECORDS = 20_000
 MAX_RANK = 8
 MAX_NAME_BYTES = 1000
@@ -18,13 +23,13 @@ MAX_ELEMENTS = 1 << 24
 
 # What the flatbuffer classes and numpy raise on a damaged file.
 DAMAGED = (struct.error, ValueError, IndexError, TypeError, AttributeError, OverflowError)
-DTYPES = {
+DTYPES: dict[str, np.dtype] = {
     "FLOAT32": np.dtype("<f4"),
     "FLOAT16": np.dtype("<f2"),
     "INT32": np.dtype("<i4"),
     "INT64": np.dtype("<i8"),
 }
-TYPES = {
+TYPES: dict[int, str] = {
     number: name for name, number in vars(tflite.TensorType).items() if isinstance(number, int)
 }
 INDEX_VECTORS = {
@@ -36,15 +41,15 @@ INDEX_VECTORS = {
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Tensor:
-    """A tensor: its name, shape and type; its values too where it is a constant, else None."""
+    """A tensor: its name, shape and type; for a constant its values, else None."""
 
     name: str
-    shape: tuple
+    shape: tuple[int, ...]
     dtype: np.dtype
-    data: np.ndarray | None
+    data: NDArray | None
 
 
-def entries(table, name):
+def entries(table: Any, name: str) -> list[Any]:
     """Return all tables of a table's vector, such as `Tensors` of a subgraph."""
     count = getattr(table, f"{name}Length")()
     if count > MAX_RECORDS:
@@ -52,43 +57,23 @@ def entries(table, name):
     return [getattr(table, name)(place) for place in range(count)]
 
 
-def integers(table, name, most):
-    """Return a table's vector of integers as a tuple.
-
-    Parameters
-    ----------
-    table : object
-        A flatbuffer table.
-    name : str
-        The field.
-    most : int
-        A longer vector is damage.
-    """
+def integers(table: Any, name: str, most: int) -> tuple[int, ...]:
+    """Return the vector `name` of a flatbuffer table; more than `most` entries are damage."""
     count = getattr(table, f"{name}Length")()
     if count > most:
         raise ValueError(f"{count} {name.lower()} (at most {most})")
     return tuple(getattr(table, f"{name}AsNumpy")().tolist()) if count else ()
 
 
-def read_tensor(entry, buffers):
-    """Read one tensor.
+def read_tensor(entry: Any, buffers: Sequence[Any]) -> Tensor:
+    """Read one tensor of a file with these buffers.
 
-    Parameters
-    ----------
-    entry : tflite.Tensor
-        The tensor's table.
-    buffers : sequence of tflite.Buffer
-        Those of the whole file.
-
-    Returns
-    -------
-    tensor : Tensor
-        Values are a view into the file's bytes where stored dense; float16 stays float16.
+    Values stored dense are a view into the file's bytes; float16 stays float16.
 
     Raises
     ------
     ValueError
-        If the tensor's type or sparse layout is not read, or its parts do not belong together;
+        If the tensor's type or sparse layout is not supported, or its parts do not belong together;
         any of `DAMAGED` if they lie outside the file.
     """
     stored = entry.Name() or b""
@@ -105,7 +90,9 @@ def read_tensor(entry, buffers):
         raise ValueError(f"tensor {name!r}: {error}") from None
 
 
-def densify(values, shape, segments, indices):
+def densify(
+    values: NDArray, shape: tuple[int, ...], segments: NDArray, indices: NDArray
+) -> NDArray:
     """Make a tensor dense whose last dimension is stored as compressed sparse rows.
 
     Parameters
@@ -142,7 +129,9 @@ def densify(values, shape, segments, indices):
     return dense.reshape(shape)
 
 
-def _values(entry, shape, dtype, buffers):
+def _values(
+    entry: Any, shape: tuple[int, ...], dtype: np.dtype, buffers: Sequence[Any]
+) -> NDArray | None:
     if any(length < 0 for length in shape) or not entry.Buffer() < len(buffers):
         raise ValueError(f"shape {shape}, buffer {entry.Buffer()} of {len(buffers)}")
     buffer = buffers[entry.Buffer()]
@@ -156,7 +145,7 @@ def _values(entry, shape, dtype, buffers):
     return values.reshape(shape)
 
 
-def _sparse_rows(sparsity, shape):
+def _sparse_rows(sparsity: Any, shape: tuple[int, ...]) -> tuple[NDArray, NDArray]:
     order = integers(sparsity, "TraversalOrder", 2 * MAX_RANK)
     dimensions = entries(sparsity, "DimMetadata")
     formats = [dimension.Format() for dimension in dimensions]
@@ -176,7 +165,7 @@ def _sparse_rows(sparsity, shape):
     )
 
 
-def _index_vector(kind, stored):
+def _index_vector(kind: int, stored: Any) -> NDArray:
     if stored is None or kind not in INDEX_VECTORS:
         raise ValueError(f"sparse indices of unknown type {kind}")
     vector = INDEX_VECTORS[kind]()
