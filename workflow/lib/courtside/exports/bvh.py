@@ -1,28 +1,32 @@
-"""BVH: a body's joints and rotations, as animation programs and the readers of mocopi's files take it."""
+"""BVH: joints and rotations, for animation programs and the readers of mocopi's files."""
 
 import warnings
+from collections.abc import Iterator, Sequence
+from os import PathLike
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from courtside.records.devices.hierarchy import NO_PARENT
+from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
 
 INDENT = "  "
 NO_TIP = np.zeros(3)
-EVEN_S = 1e-4  # how far a frame may lie from an even grid: BVH knows only one frame time
+EVEN_S = 1e-4  # deviation of a frame from an even grid: BVH has one frame time. ASSUME: harmless
 
 
-def write(path, posed, *, order="ZXY", unit_m=0.01):
+def write(
+    path: str | PathLike, posed: PosedHierarchy, *, order: str = "ZXY", unit_m: float = 0.01
+) -> None:
     """Write a posed hierarchy.
 
     Parameters
     ----------
-    path : str or Path
     posed : PosedHierarchy
-        One root; time even. Every joint gets six channels, as mocopi writes it: its place in its parent,
-        then its rotation.
+        One root; time even. Every joint gets six channels, as in mocopi's files: its position in
+        its parent, then its rotation.
     order : str
         Of the rotation channels: a permutation of XYZ. "ZXY" is R = Rz Rx Ry.
     unit_m : float
@@ -31,22 +35,23 @@ def write(path, posed, *, order="ZXY", unit_m=0.01):
     Raises
     ------
     InputError
-        If a value is missing, two joints have one name, a name is blank or has blanks in it, or the frames
-        are not even in time.
+        If a value is missing, two joints have one name, a name is blank or has blanks in it, or the
+        frames are not even in time.
     ValueError
-        If there is not one root at the front, or the order is none.
+        If there is not one root at the front, or `order` is no permutation of XYZ.
 
     Notes
     -----
-    Six decimals of the unit and of a degree. Joints stand depth first, each chain to its end. BVH knows no
-    start: the first frame's time is lost. A joint at the end of a chain without a tip gets one of length
-    zero, because many readers want one. Where the middle angle is 90 degrees the other two are not unique;
-    the last is then written as zero.
+    Six decimals of the unit and of a degree. Joints stand depth first, each chain to its end. BVH
+    has no start time: the first frame's time is lost. A joint at the end of a chain without a tip
+    gets one of length zero, because many readers require one. If the middle angle is 90 degrees
+    the other two are not unique; the last is then zero.
     """
     shape = posed.hierarchy
     if list(shape.parents).count(NO_PARENT) != 1 or sorted(order) != ["X", "Y", "Z"]:
         raise ValueError(
-            f"expected one root and an order of X, Y and Z, found parents {shape.parents}, order {order!r}"
+            f"expected one root and an order of X, Y and Z, found parents {shape.parents}, order "
+            f"{order!r}"
         )
     frame_time_s = _check(path, posed)
     sequence = _depth_first(shape.parents)
@@ -61,13 +66,14 @@ def write(path, posed, *, order="ZXY", unit_m=0.01):
         np.savetxt(stream, rows, fmt="%.6f")
 
 
-def _check(path, posed):
-    """Check what BVH can hold; return the frame time, zero where there are not two frames."""
+def _check(path: str | PathLike, posed: PosedHierarchy) -> float:
+    """Check what BVH can hold; return the frame time, zero without two frames."""
     joints = posed.hierarchy.joints
     bad = [name for at, name in enumerate(joints) if name.split() != [name] or name in joints[:at]]
     if bad:
         raise InputError(
-            f"{path}: expected names of joints that differ, without blanks, found {bad[0]!r}; rename it"
+            f"{path}: expected names of joints that differ, without blanks, found {bad[0]!r}; "
+            "rename it"
         )
     whole = np.isfinite(posed.translation).all(axis=2)
     whole &= np.isfinite(posed.parent_from_joint).all(axis=(2, 3))
@@ -90,25 +96,26 @@ def _check(path, posed):
     return float(frame_time_s)
 
 
-def _depth_first(parents):
-    """Return the joints in the order in which BVH names them: each chain to its end."""
-    children = {}
+def _depth_first(parents: NDArray) -> list[int]:
+    """Return the joints in BVH's order: each chain to its end."""
+    children: dict[int, list[int]] = {}
     for joint, parent in enumerate(parents):
         children.setdefault(int(parent), []).append(joint)
-    waiting, sequence = list(children[NO_PARENT]), []
+    waiting = list(children[NO_PARENT])
+    sequence: list[int] = []
     while waiting:
         sequence.append(waiting.pop())
         waiting += reversed(children.get(sequence[-1], []))
     return sequence
 
 
-def _lines(shape, sequence, order, unit_m):
+def _lines(shape: Hierarchy, sequence: Sequence[int], order: str, unit_m: float) -> Iterator[str]:
     """Yield the lines of the hierarchy."""
     channels = " ".join(
         [f"{axis}position" for axis in "XYZ"] + [f"{axis}rotation" for axis in order]
     )
     inner = set(shape.parents.tolist())
-    open_joints = []
+    open_joints: list[int] = []
     for joint in sequence:
         while open_joints and open_joints[-1] != shape.parents[joint]:
             open_joints.pop()
@@ -129,12 +136,12 @@ def _lines(shape, sequence, order, unit_m):
         yield INDENT * len(open_joints) + "}"
 
 
-def _three(values):
+def _three(values: NDArray) -> str:
     return " ".join(f"{value:.6f}" for value in values)
 
 
-def _angles_deg(rotations, order):
-    """Return the angles of (T, J, 3, 3) rotations in the order of their channels, (T, J, 3) degrees."""
+def _angles_deg(rotations: NDArray, order: str) -> NDArray:
+    """Return the angles of (T, J, 3, 3) rotations in their channels' order, (T, J, 3) degrees."""
     if not len(rotations):
         return np.empty(rotations.shape[:3])
     with warnings.catch_warnings():

@@ -1,14 +1,17 @@
 """C3D: the biomechanics exchange format, written through ezc3d.
 
-Millimetres, because many readers take C3D points for millimetres without looking at POINT:UNITS. World axes,
-z up, which POINT:X_SCREEN and Y_SCREEN say.
+Millimetres, because many readers take C3D points for millimetres without looking at POINT:UNITS.
+World axes, z up, as POINT:X_SCREEN and Y_SCREEN say.
 """
 
 import struct
+from os import PathLike
 
 import ezc3d
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
 
@@ -16,37 +19,31 @@ MM_PER_M = 1000.0
 MISSING = -1.0
 MOST_RESIDUAL_MM = 127.0  # above, other readers see a missing point; from 256 on it wraps
 BLOCK_BYTES = 512
-FIRST_DATA_BLOCK = slice(16, 18)  # where the header says in which block, from 1, the points begin
+FIRST_DATA_BLOCK = slice(16, 18)  # of the header: the block, from 1, in which the points begin
 MOST_FRAMES = 65535  # the header counts frames in 16 bits
 
 
-def write(path, keypoints, person):
-    """Write one person.
-
-    Parameters
-    ----------
-    path : str or Path
-    keypoints : Keypoints3D
-    person : int
-        Index of the person.
+def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
+    """Write one person, by index.
 
     Raises
     ------
     InputError
-        If the take is longer than C3D's frame counter reaches, or one frame, which has no rate; if the disk
-        refuses the file.
+        If the take is longer than C3D's frame counter allows, or one frame, which has no rate; if
+        the disk refuses the file.
 
     Notes
     -----
-    A point's residual is its root-mean-square standard deviation from the keypoints, mm, 127 where it is
-    larger; -1 marks a missing point, 0 one without a known uncertainty (interpolated, for one).
+    A point's residual is its root-mean-square standard deviation from the keypoints, mm, 127 where
+    it is larger; -1 marks a missing point, 0 one without a known uncertainty (interpolated, for
+    one).
     """
     xyz = keypoints.xyz[person] * MM_PER_M
     n_frames, n_joints, _ = xyz.shape
     if not 2 <= n_frames <= MOST_FRAMES:
         raise InputError(
-            f"{path}: expected at least 2 and at most {MOST_FRAMES} frames in a C3D file, found {n_frames}; "
-            "change `trim_s` of the take"
+            f"{path}: expected at least 2 and at most {MOST_FRAMES} frames in a C3D file, found "
+            f"{n_frames}; change `trim_s` of the take"
         )
     file = ezc3d.c3d()
     file["header"]["points"]["first_frame"] = 0
@@ -59,29 +56,28 @@ def write(path, keypoints, person):
     points = np.ones((4, n_joints, n_frames))
     points[:3] = xyz.transpose(2, 1, 0)
     file["data"]["points"] = points
-    file["data"]["meta_points"]["residuals"] = _residuals(keypoints, person)[None].transpose(
-        0, 2, 1
-    )
+    residuals = _residuals(keypoints, person)[None].transpose(0, 2, 1)
+    file["data"]["meta_points"]["residuals"] = residuals
     with atomic(path) as temporary:
         file.write(str(temporary))
         _check_whole(path, temporary.read_bytes(), points.size * 4)
 
 
-def _check_whole(path, content, n_bytes):
-    """Look at what only a finished file has, for ezc3d does not notice a full disk.
+def _check_whole(path: str | PathLike, content: bytes, n_bytes: int) -> None:
+    """Check what only a finished file has, because ezc3d does not notice a full disk.
 
-    It fills in last where the points begin.
+    It writes last where the points begin.
     """
     header = content[FIRST_DATA_BLOCK].ljust(2, b"\0")
     before = BLOCK_BYTES * (struct.unpack("<H", header)[0] - 1)
     if before < 2 * BLOCK_BYTES or len(content) < before + n_bytes:
         raise InputError(
-            f"{path}: expected to write {n_bytes} bytes of points, found {len(content)} bytes of a file that "
-            "is not whole: free or allow the space"
+            f"{path}: expected to write {n_bytes} bytes of points, found {len(content)} bytes of a "
+            "file that is not whole: free or allow the space"
         )
 
 
-def _residuals(keypoints, person):
+def _residuals(keypoints: Keypoints3D, person: int) -> NDArray:
     """Return (T, J) in mm."""
     variance = np.trace(keypoints.covariance_2d[person], axis1=-2, axis2=-1) / 3
     residual = np.sqrt(np.nan_to_num(variance, nan=0.0)) * MM_PER_M

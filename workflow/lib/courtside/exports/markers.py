@@ -1,12 +1,14 @@
 """Names of joints in other programs: Pose2Sim's and OpenSim's `LKnee` for `left_knee`."""
 
+from collections.abc import Sequence
+
 SIDES = {"left": "L", "right": "R"}
 ALSO = {"mid_hip": "CHip"}  # in BODY_25
 OTHER = {"foot_index": "BigToe", "mid_hip": "Hip", "head_top": "Head"}
 
 
-def name(joint):
-    """Return what Pose2Sim calls a joint: `left_foot_index` gives `LBigToe`, `neck` gives `Neck`."""
+def name(joint: str) -> str:
+    """Return Pose2Sim's name of a joint: `LBigToe` for `left_foot_index`, `Neck` for `neck`."""
     side, _, part = joint.partition("_")
     if side not in SIDES or not part:
         side, part = "", joint
@@ -14,18 +16,8 @@ def name(joint):
     return SIDES.get(side, "") + words
 
 
-def names(joints):
-    """Return what Pose2Sim calls joints, list of str.
-
-    Parameters
-    ----------
-    joints : sequence of str
-
-    Raises
-    ------
-    ValueError
-        If two joints get one name.
-    """
+def names(joints: Sequence[str]) -> list[str]:
+    """Return Pose2Sim's names of joints; raise `ValueError` if two joints get one name."""
     found = [name(joint) for joint in joints]
     for at, marker in enumerate(found):
         if marker in found[:at]:
@@ -35,19 +27,10 @@ def names(joints):
     return found
 
 
-def joints_of(markers, joints):
-    """Find the joints of a skeleton among markers.
+def joints_of(markers: Sequence[str], joints: Sequence[str]) -> list[int | None]:
+    """Return for each joint the index of its marker; None if there is none.
 
-    Parameters
-    ----------
-    markers : sequence of str
-        As a file names them: Pose2Sim's names, whatever their case, or the joints' own.
-    joints : sequence of str
-
-    Returns
-    -------
-    place : list of int or None
-        For each joint the place of its marker; None where there is none.
+    Markers are named as in a file: Pose2Sim's names, whatever their case, or the joints' own.
     """
     lower = [marker.lower() for marker in markers]
     wanted = [(joint, name(joint), ALSO.get(joint, joint)) for joint in joints]

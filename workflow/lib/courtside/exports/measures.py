@@ -1,13 +1,18 @@
-"""CSV of kinematics: one row per frame and person, one row per measure, and how the filter was chosen."""
+"""CSV of kinematics: a row per frame and person, a row per measure, and the choice of cut-offs."""
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.kinematics import measures, path_length
+from courtside.kinematics.cutoffs import Choice
 from courtside.records.keypoints import missing_reason
 
-LEAST_EXTENT_M = 1.0
-# column: (unit, meaning, meaning of an empty cell); POINT is neck, centre or mass, ANGLE one of joint_angles
+LEAST_EXTENT_M = 1.0  # ASSUME: over shorter paths a relative error of lengths says little
+# column: (unit, meaning, meaning of an empty cell); POINT is neck, centre or mass, ANGLE one of
+# joint_angles
 FRAME_DICTIONARY = {
     "frame_idx": ("", "frame, from 0", "never empty"),
     "time_s": ("s", "time on the reference clock", "never empty"),
@@ -15,7 +20,8 @@ FRAME_DICTIONARY = {
     "POINT_x_m": ("m", "filtered position in the world frame; also y, z", "missing, see reason"),
     "POINT_sd_mm": (
         "mm",
-        "standard deviation of the position from the keypoints' noise, root of the sum over the axes",
+        "standard deviation of the position from the keypoints' noise, root of the sum over the "
+        "axes",
         "missing or unknown",
     ),
     "POINT_speed_m_s": ("m/s", "speed in space", "missing"),
@@ -44,22 +50,12 @@ SUMMARY_DICTIONARY = {
 }
 
 
-def frames(people):
-    """Return the measures of every frame.
-
-    Parameters
-    ----------
-    people : list of courtside.kinematics.measures.Person
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Columns of `FRAME_DICTIONARY`; T rows for each person.
-    """
+def frames(people: Sequence[measures.Person]) -> pd.DataFrame:
+    """Return the measures of every frame: columns of `FRAME_DICTIONARY`, T rows for each person."""
     return pd.concat([_frames_of(person) for person in people], ignore_index=True)
 
 
-def _frames_of(person):
+def _frames_of(person: measures.Person) -> pd.DataFrame:
     columns = {
         "frame_idx": np.arange(len(person.time_s)),
         "time_s": person.time_s.round(6),
@@ -91,18 +87,11 @@ def _columns(point):
     }
 
 
-def summary(people):
-    """Return the measures of the whole take.
+def summary(people: Sequence[measures.Person]) -> pd.DataFrame:
+    """Return the measures of the whole take, in the columns of `SUMMARY_DICTIONARY`.
 
-    Parameters
-    ----------
-    people : list of courtside.kinematics.measures.Person
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Columns of `SUMMARY_DICTIONARY`. Largest values are those of one frame, with its sigma: of many noisy
-        frames the largest lies above the true one, by one to three sigma.
+    Largest values are those of one frame, with its sigma: of many noisy frames the largest lies
+    above the true one, by one to three sigma.
     """
     rows = []
     for person in people:
@@ -119,8 +108,8 @@ def summary(people):
 def _camera_share(point):
     """Return the largest relative error of lengths from the calibration, one standard deviation.
 
-    The errors at both ends of the path are taken as independent; those of near places are alike, and errors
-    that all places share change no length.
+    The errors at both ends of the path are taken as independent; in truth those of near places are
+    alike, and errors that all places share change no length.
     """
     known = point.position[np.isfinite(point.position).all(axis=1)]
     camera = point.camera_sigma_m[np.isfinite(point.camera_sigma_m)]
@@ -157,8 +146,8 @@ def _extremes(point):
         yield name, value[at], sigma[at], share * value[at], unit, n_frames
 
 
-def _largest(values):
-    """Return the index of the largest known value, 0 where none is known, and how many are."""
+def _largest(values: NDArray) -> tuple[int, int]:
+    """Return the index of the largest known value, 0 if none is known, and how many are."""
     known = np.isfinite(values)
     return (int(np.nanargmax(values)) if known.any() else 0), int(known.sum())
 
@@ -178,18 +167,14 @@ def _angle_rows(name, angle):
         yield f"{name}_{what}", value, sigma, unknown, "degrees", n_frames, words
 
 
-def cutoffs(choices):
-    """Return how the cut-offs were chosen.
-
-    Parameters
-    ----------
-    choices : dict of str to courtside.kinematics.cutoffs.Choice
+def cutoffs(choices: Mapping[str, Choice]) -> pd.DataFrame:
+    """Return how the cut-offs of each group were chosen.
 
     Returns
     -------
     rows : pandas.DataFrame
-        group, cutoff_hz, noise_mm (found by the analysis, per axis), candidate_hz, residual_mm; one row with
-        the last three empty where a number was stated.
+        group, cutoff_hz, noise_mm (found by the analysis, per axis), candidate_hz, residual_mm;
+        one row with the last three empty if the cut-off was stated.
     """
     rows = []
     for group, choice in choices.items():

@@ -1,5 +1,7 @@
-"""An OpenSim marker set for the joints of a TRC file: which body of the model each marker is fixed to."""
+"""An OpenSim marker set for the joints of a TRC file: the body of the model for each marker."""
 
+from collections.abc import Sequence
+from os import PathLike
 from xml.etree import ElementTree
 
 from courtside.exports import markers
@@ -7,8 +9,8 @@ from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
 
 VERSION = "40000"
-# In the models of Rajagopal et al. 2016 and Beaucage-Gauvreau et al. 2019, of which Pose2Sim's is made, the
-# origin of a body lies at the joint that connects it to the body before it: these places are exact.
+# In the models of Rajagopal et al. 2016 and Beaucage-Gauvreau et al. 2019, which Pose2Sim's joins,
+# the origin of a body lies at the joint that connects it to its parent: these positions are exact.
 AT_ORIGIN = {
     "shoulder": "humerus_{}",
     "elbow": "ulna_{}",
@@ -17,8 +19,8 @@ AT_ORIGIN = {
     "knee": "tibia_{}",
     "ankle": "talus_{}",
 }
-# ASSUME: of the others only the body is certain; the place, in metres of an unscaled adult (x forward, y up,
-# z to the right), is rough, and the marker is free to move when the model is scaled.
+# ASSUME: of the others only the body is certain; the position, in metres of an unscaled adult (x
+# forward, y up, z to the right), is rough, and the marker may move when the model is scaled.
 ROUGH = {
     "heel": ("calcn_{}", (0.0, 0.02, 0.0)),
     "foot_index": ("toes_{}", (0.05, 0.0, 0.0)),
@@ -39,21 +41,15 @@ ROUGH = {
 }
 
 
-def write_markers(path, joints):
-    """Write the marker set of joints, named as in the TRC files of `pose2sim.write_project`.
+def write_markers(path: str | PathLike, joints: Sequence[str]) -> None:
+    """Write the marker set (`.xml`) of joints, named as in `pose2sim.write_project`'s TRC files.
 
-    For models that have the bodies `head`, `torso`, `pelvis` and those of the limbs, as Pose2Sim's has.
-
-    Parameters
-    ----------
-    path : str or Path
-        `.xml`
-    joints : sequence of str
+    For models with the bodies `head`, `torso`, `pelvis` and those of the limbs, as Pose2Sim's has.
 
     Raises
     ------
     InputError
-        If it is not known where a joint sits on a body.
+        If the position of a joint on a body is unknown.
     """
     root = ElementTree.Element("OpenSimDocument", Version=VERSION)
     group = ElementTree.SubElement(root, "MarkerSet", name="markerset")
@@ -70,8 +66,8 @@ def write_markers(path, joints):
         ElementTree.ElementTree(root).write(temporary, encoding="UTF-8", xml_declaration=True)
 
 
-def _place(path, joint):
-    """Return body, place and whether the place is exact."""
+def _place(path: str | PathLike, joint: str) -> tuple[str, tuple[float, float, float], bool]:
+    """Return body, position and whether the position is exact."""
     side, _, part = joint.partition("_")
     if side not in markers.SIDES:
         side, part = "", joint
@@ -80,7 +76,8 @@ def _place(path, joint):
         return AT_ORIGIN[part].format(letter), (0.0, 0.0, 0.0), True
     if part not in ROUGH:
         raise InputError(
-            f"{path}: expected joints whose place on an OpenSim body is known, found {joint!r}; leave it out"
+            f"{path}: expected joints whose place on an OpenSim body is known, found {joint!r}; "
+            "leave it out"
         )
     body, (x, y, z) = ROUGH[part]
     return body.format(letter), (x, y, -z if side == "left" and z else z), False

@@ -1,18 +1,24 @@
-"""A take's video with what the network saw and what the 3D skeleton says it should have seen."""
+"""A take's video with the network's keypoints and the reprojected 3D skeleton drawn in."""
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
 from courtside.pose import privacy, stick_drawing
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError
 
-BRIDGED_S = 1.0  # a face unseen for longer, or for longer at an end, is not guessed
+BRIDGED_S = 1.0  # ASSUME: a face unseen for longer may be anywhere, and is not guessed
 LINE = 1 / 540  # of the picture's height
 LETTER = 1 / 1400  # size of the letters, of the picture's shorter side
-UNDER = 1.6  # the 3D skeleton is so much thicker than what is drawn over it
+UNDER = 1.6  # thickness of the 3D skeleton relative to the keypoints drawn over it
 DETECTED, REPROJECTED, NOT_USED = "detected", "3D skeleton", "view not used"
 
 
@@ -28,40 +34,44 @@ class Track:
     detected, reprojected : (P, T, J, 2) float
         Px; NaN where missing.
     used : (P, T, J) bool
-        Whether the 3D point rests on what this camera detected.
+        Whether the 3D point rests on this camera's keypoint.
     faces : (F, T, K, 2) float
         Joints of all faces that may be in the picture, px, gaps bridged.
     bones : tuple of (int, int)
     """
 
     camera: str
-    own_s: np.ndarray
-    reference_s: np.ndarray
-    detected: np.ndarray
-    reprojected: np.ndarray
-    used: np.ndarray
-    faces: np.ndarray
-    bones: tuple
+    own_s: NDArray
+    reference_s: NDArray
+    detected: NDArray
+    reprojected: NDArray
+    used: NDArray
+    faces: NDArray
+    bones: tuple[tuple[int, int], ...]
 
 
-def track(camera, view, assigned, clock, points, skeleton):
+def track(
+    camera: Camera,
+    view: Keypoints2D,
+    assigned: Keypoints2D,
+    clock: Clock,
+    points: Keypoints3D,
+    skeleton: Skeleton,
+) -> Track:
     """Gather what is drawn on one camera's pictures.
 
     Parameters
     ----------
-    camera : Camera
     view : Keypoints2D
         All tracklets: faces of bystanders are hidden as well.
     assigned : Keypoints2D
         The same frames by person, in the order of `points.person_id`.
-    clock : courtside.records.devices.clocks.Clock
-    points : Keypoints3D
-    skeleton : Skeleton
 
     Returns
     -------
     track : Track
-        The 3D skeleton at each frame's own time, between neighbouring points; none before and after them.
+        The 3D skeleton at each frame's own time, between neighbouring points; none beyond their
+        ends.
 
     Raises
     ------
@@ -90,19 +100,13 @@ def track(camera, view, assigned, clock, points, skeleton):
     )
 
 
-def between(time_s, xyz, wanted_s):
-    """Return places at other times, on the straight line between neighbouring frames.
-
-    Parameters
-    ----------
-    time_s : (T,) float
-    xyz : (P, T, J, 3) float
-    wanted_s : (W,) float
+def between(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
+    """Interpolate positions (P, T, J, 3) at times (T,) linearly at other times (W,).
 
     Returns
     -------
     xyz : (P, W, J, 3) float
-        NaN where a neighbour is missing, and outside the times but for half a frame.
+        NaN where a neighbour is missing, and more than half a frame outside the times.
     """
     step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else 0.0
     inside = (wanted_s >= time_s[0] - step_s / 2) & (wanted_s <= time_s[-1] + step_s / 2)
@@ -114,20 +118,14 @@ def between(time_s, xyz, wanted_s):
     return np.where(inside[:, None, None], found, np.nan)
 
 
-def bridged(time_s, xy):
-    """Fill short gaps in paths, so that a face stays hidden while it is not seen.
-
-    Parameters
-    ----------
-    time_s : (T,) float
-    xy : (T, K, 2) float
-        Px; NaN where unseen.
+def bridged(time_s: NDArray, xy: NDArray) -> NDArray:
+    """Fill short gaps in paths (T, K, 2) px, so that a face stays hidden while it is not seen.
 
     Returns
     -------
     xy : (T, K, 2) float
-        Straight lines over gaps, and the nearest known place before the first and after the last; NaN
-        where no frame within 1 s knows the joint.
+        Straight lines over gaps, and the nearest known position beyond the ends; NaN where no frame
+        within 1 s has the joint.
     """
     result = np.array(xy, dtype=float)
     for joint in range(xy.shape[1]):
@@ -145,38 +143,43 @@ def bridged(time_s, xy):
     return result
 
 
-def pictures(frames, track, *, colours, hide_faces, keep_background=False):
-    """Draw on pictures as they come; no more than one is held.
+def pictures(
+    frames: Iterable[tuple[float, NDArray]],
+    track: Track,
+    *,
+    colours: Sequence[tuple[int, int, int]],
+    hide_faces: bool,
+    keep_background: bool = False,
+) -> Iterator[NDArray]:
+    """Draw on pictures as they come; only one is in memory.
 
     Parameters
     ----------
     frames : iterable of (float, (H, W, 3) uint8)
         Time on the camera's own clock and picture, BGR.
-    track : Track
     colours : (3,) of (int, int, int)
         BGR of detected joints, of the 3D skeleton, and of views that were not used.
     hide_faces : bool
     keep_background : bool
-        Whether what is around the persons stays sharp where faces are hidden: for videos in which nobody
-        else is to be seen.
+        Whether surroundings stay sharp where faces are hidden: for videos that show nobody else.
 
     Yields
     ------
     image : (H, W, 3) uint8
-        BGR, as many as `frames`; an odd height or width grows by a pixel, as H.264 wants.
+        BGR, as many as `frames`; an odd height or width grows by a pixel, as H.264 requires.
 
     Raises
     ------
     InputError
-        If a frame's time is not one that `track` knows: a face might show.
+        If `track` has no frame at a frame's time: a face might show.
     """
     step_s = np.median(np.diff(track.own_s)) if len(track.own_s) > 1 else 1.0
     for time_s, image in frames:
         at = int(np.abs(track.own_s - time_s).argmin())
         if abs(track.own_s[at] - time_s) > step_s / 4:
             raise InputError(
-                f"camera {track.camera}: expected 2D keypoints for the frame at {time_s:.4f} s, found the "
-                f"nearest at {track.own_s[at]:.4f} s; detect the pose in this video again"
+                f"camera {track.camera}: expected 2D keypoints for the frame at {time_s:.4f} s, "
+                f"found the nearest at {track.own_s[at]:.4f} s; detect the pose in this video again"
             )
         if hide_faces and keep_background:
             image = privacy.hide_faces(image, track.faces[:, at])
@@ -186,7 +189,9 @@ def pictures(frames, track, *, colours, hide_faces, keep_background=False):
         yield _drawn(image, track, at, colours)
 
 
-def _drawn(image, track, at, colours):
+def _drawn(
+    image: NDArray, track: Track, at: int, colours: Sequence[tuple[int, int, int]]
+) -> NDArray:
     height, width = image.shape[:2]
     odd = height % 2, width % 2
     image = cv2.copyMakeBorder(image, 0, odd[0], 0, odd[1], cv2.BORDER_REPLICATE)
@@ -196,19 +201,15 @@ def _drawn(image, track, at, colours):
     stick_drawing.draw(image, detected, track.bones, colours[0], thick, 2 * thick)
     apart = ~track.used[:, at] & np.isfinite(detected + reprojected).all(axis=-1)
     for start, stop in zip(detected[apart], reprojected[apart], strict=True):
-        cv2.line(
-            image,
-            stick_drawing.pixel(start),
-            stick_drawing.pixel(stop),
-            colours[2],
-            thick,
-            cv2.LINE_AA,
-        )
+        ends = stick_drawing.pixel(start), stick_drawing.pixel(stop)
+        cv2.line(image, *ends, colours[2], thick, cv2.LINE_AA)
     _caption(image, track, at, colours)
     return image
 
 
-def _caption(image, track, at, colours):
+def _caption(
+    image: NDArray, track: Track, at: int, colours: Sequence[tuple[int, int, int]]
+) -> None:
     """Write camera, time and colours into the upper left corner, on a dark ground."""
     words = [f"{track.camera}  {track.reference_s[at]:.3f} s  frame {at}"]
     names = DETECTED, REPROJECTED, NOT_USED

@@ -1,25 +1,31 @@
-"""A project folder that Pose2Sim opens: cameras, 2D and 3D keypoints, settings; and its TRC files back.
+"""A project folder for Pose2Sim: cameras, 2D and 3D keypoints, settings; and its TRC files back.
 
-Pose2Sim sorts the folders of 2D keypoints by the last number in their names and takes the cameras of the
-calibration in the file's order, so the names carry that order. Its frames are those of the uniform times of
-the 3D keypoints: the clocks of the cameras are already taken into account.
+Pose2Sim sorts the folders of 2D keypoints by the last number in their names and takes the cameras
+of the calibration in the file's order, so the names carry that order. Its frames are the uniform
+times of the 3D keypoints: the clocks of the cameras are already taken into account.
 """
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tomli_w
+from numpy.typing import NDArray
 
 from courtside.exports import markers, opensim, trc
 from courtside.geometry import camera as camera_files
+from courtside.geometry.camera import Camera
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic_folder
 
-# Skeletons that Pose2Sim knows under a name of its own, points in the same order.
+# Skeletons with a name of their own in Pose2Sim, points in the same order.
 MODELS = {
     "blazepose33": "BLAZEPOSE",
     "body25": "BODY_25",
@@ -29,20 +35,25 @@ MODELS = {
 }
 OWN = "COURTSIDE"
 SOURCE = "Courtside"
-LEAST_VIEWS = 2  # of a point in a file that does not say how many
+LEAST_VIEWS = 2  # of a point in a file that does not say: triangulation needs two
 
 
-def write_project(folder, cameras, views, points, *, skeleton):
+def write_project(
+    folder: str | PathLike,
+    cameras: Sequence[Camera],
+    views: Mapping[str, tuple[NDArray, NDArray]],
+    points: Keypoints3D,
+    *,
+    skeleton: str,
+) -> None:
     """Write a project of one take.
 
     Parameters
     ----------
     folder : str or Path
         Replaced as a whole; its name begins the names of Pose2Sim's own results.
-    cameras : list of Camera
     views : dict of str to (xy, score)
         By camera, at the times of `points`: (P, T, J, 2) px and (P, T, J); persons as in `points`.
-    points : Keypoints3D
     skeleton : str
         Name of the joints' skeleton.
 
@@ -67,7 +78,7 @@ def write_project(folder, cameras, views, points, *, skeleton):
             tomli_w.dump(_settings(points, skeleton), stream)
 
 
-def _write_2d(folder, name, xy, score):
+def _write_2d(folder: Path, name: str, xy: NDArray, score: NDArray) -> None:
     folder = folder / f"{name}_json"
     folder.mkdir(parents=True)
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
@@ -82,10 +93,10 @@ def _write_2d(folder, name, xy, score):
         (folder / f"{name}_{frame:06d}.json").write_text(text, encoding="utf-8")
 
 
-def _settings(points, skeleton):
-    """Return what Pose2Sim needs to triangulate and filter these keypoints; all else is its default."""
+def _settings(points: Keypoints3D, skeleton: str) -> dict[str, Any]:
+    """Return the settings by which Pose2Sim triangulates and filters these keypoints."""
     rate = points.rate_hz
-    pose = {"pose_model": MODELS.get(skeleton, OWN)}
+    pose: dict[str, Any] = {"pose_model": MODELS.get(skeleton, OWN)}
     if skeleton not in MODELS:
         children = [
             {"name": n, "id": at} for at, n in enumerate(markers.names(list(points.joints)))
@@ -114,17 +125,19 @@ def _settings(points, skeleton):
     }
 
 
-def read_takes(files, skeleton, *, model):
-    """Read 3D keypoints that another program found, one TRC file for each person.
+def read_takes(
+    files: Mapping[str, str | PathLike], skeleton: Skeleton, *, model: str
+) -> Keypoints3D:
+    """Read 3D keypoints of another program, one TRC file for each person.
 
     Parameters
     ----------
     files : dict of str to path
         By person.
-    skeleton : courtside.records.keypoints.skeleton.Skeleton
+    skeleton : Skeleton
         Its joints are looked for among the markers, under Pose2Sim's names or their own.
     model : str
-        What the keypoints are called.
+        Name for the keypoints.
 
     Returns
     -------
@@ -143,7 +156,8 @@ def read_takes(files, skeleton, *, model):
         if not any(place is not None for place in places):
             raise InputError(
                 f"{path}: expected markers of skeleton {skeleton.name} such as "
-                f"{markers.name(skeleton.joints[0])}, found {', '.join(names[:5])}; name their skeleton"
+                f"{markers.name(skeleton.joints[0])}, found {', '.join(names[:5])}; name their "
+                "skeleton"
             )
         times, first = (time_s, path) if times is None else (times, first)
         if len(time_s) != len(times) or not np.allclose(time_s, times, atol=1e-4):
@@ -152,7 +166,9 @@ def read_takes(files, skeleton, *, model):
     return _points(np.array(found).swapaxes(1, 2), list(files), times, skeleton, model)
 
 
-def _points(xyz, persons, time_s, skeleton, model):
+def _points(
+    xyz: NDArray, persons: Sequence[str], time_s: NDArray, skeleton: Skeleton, model: str
+) -> Keypoints3D:
     there = np.isfinite(xyz).all(axis=-1)
     return Keypoints3D(
         cameras=np.array([], dtype=str),

@@ -1,10 +1,14 @@
 """CSV: one row per frame and joint, for spreadsheets and statistics programs."""
 
+from os import PathLike
+
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.records import tables
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 # column: (unit, meaning, meaning of an empty cell)
 DICTIONARY = {
@@ -32,19 +36,10 @@ DICTIONARY = {
 }
 
 
-def table(keypoints, person):
-    """Return one person as a table.
+def table(keypoints: Keypoints3D, person: int) -> pd.DataFrame:
+    """Return one person, by index, as a table.
 
-    Parameters
-    ----------
-    keypoints : Keypoints3D
-    person : int
-        Index of the person.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Columns of `DICTIONARY`, T x J rows, joints within frames; 0.01 mm and 0.01 px kept.
+    Columns of `DICTIONARY`, T x J rows, joints within frames; rounded to 0.01 mm and 0.01 px.
     """
     n_frames, n_joints = keypoints.xyz.shape[1:3]
     xyz = keypoints.xyz[person].reshape(-1, 3)
@@ -64,7 +59,7 @@ def table(keypoints, person):
     return pd.DataFrame(columns)
 
 
-def _mean_error(keypoints, person):
+def _mean_error(keypoints: Keypoints3D, person: int) -> NDArray:
     accepted = keypoints.accepted[person].reshape(-1, len(keypoints.cameras))
     error = keypoints.reproj_error_px[person].reshape(accepted.shape)
     count = accepted.sum(axis=1)
@@ -72,13 +67,6 @@ def _mean_error(keypoints, person):
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def write(path, keypoints, person):
-    """Write one person as CSV.
-
-    Parameters
-    ----------
-    path : str or Path
-    keypoints, person
-        As for `table`.
-    """
+def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
+    """Write `table` as CSV."""
     tables.write(path, table(keypoints, person), float_format=None)

@@ -1,13 +1,16 @@
 """TRC: marker trajectories as OpenSim and Pose2Sim read them.
 
-Axes: TRC's X, Y, Z are the world's y, z, x, so that Y points up and the system stays right-handed. Metres;
-Frame# counts from 1; a missing marker is blank.
+Axes: TRC's X, Y, Z are the world's y, z, x, so that Y points up and the system stays right-handed.
+Metres; Frame# counts from 1; a missing marker is blank.
 """
 
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, reading
 from courtside.study.execution.files import atomic
 
@@ -17,21 +20,8 @@ METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 HEADER_LINES = 5
 
 
-def write(path, keypoints, person):
-    """Write one person.
-
-    Parameters
-    ----------
-    path : str or Path
-    keypoints : Keypoints3D
-    person : int
-        Index of the person.
-
-    Raises
-    ------
-    InputError
-        If the take is one frame, which has no rate.
-    """
+def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
+    """Write one person, by index; raise `InputError` for a take of one frame, which has no rate."""
     if len(keypoints.time_s) < 2:
         raise InputError(
             f"{path}: expected at least 2 frames in a TRC file, found {len(keypoints.time_s)}; "
@@ -60,12 +50,8 @@ def write(path, keypoints, person):
         temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def read(path):
+def read(path: str | PathLike) -> tuple[list[str], float, NDArray, NDArray]:
     """Read a TRC file, ours or another program's.
-
-    Parameters
-    ----------
-    path : str or Path
 
     Returns
     -------
@@ -78,8 +64,8 @@ def read(path):
     Raises
     ------
     InputError
-        If the file is not a TRC file in m, cm or mm, a line has another number of values, or the header
-        counts other markers or frames than there are.
+        If the file is not a TRC file in m, cm or mm, a line has another number of values, or the
+        header counts other markers or frames than there are.
     """
     with reading(path, "a TRC file", "export it again"):
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
@@ -104,12 +90,10 @@ def read(path):
     return joints, rate_hz, table[:, 1], xyz
 
 
-def _row(path, number, line, wanted):
+def _row(path: str | PathLike, number: int, line: str, wanted: int) -> list[float]:
     cells = line.rstrip("\r\n").split("\t")
     cells += [""] * (wanted - len(cells)) if len(cells) >= 2 else []
-    if (len(cells) > wanted and any(cell.strip() for cell in cells[wanted:])) or len(
-        cells
-    ) < wanted:
+    if any(cell.strip() for cell in cells[wanted:]) or len(cells) < wanted:
         raise InputError(f"{path}: line {number}: expected {wanted} values, found {len(cells)}")
     try:
         return [float(cell) if cell.strip() else np.nan for cell in cells[:wanted]]
