@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, reading, require_scalar, require_type
 from courtside.study.execution import log
 
 COLLARS = ("left_collar", "right_collar")  # one point under two names
@@ -172,9 +172,10 @@ def _json(path: Path, joints: list[str]) -> tuple[NDArray, NDArray, NDArray, NDA
     what = "frames with timestamp and skeletons, their joints with real"
     with reading(path, what, EXPORT):
         for frame in _frames(path):
-            for skeleton in frame["skeletons"]:
-                users.append(int(skeleton.get("user_id", skeleton.get("id", 0))))
-                time_us.append(int(frame["timestamp"]))
+            for skeleton in require_type(frame["skeletons"], list):
+                user = require_type(skeleton, dict).get("user_id", skeleton.get("id", 0))
+                users.append(int(require_scalar(user)))
+                time_us.append(int(require_scalar(frame["timestamp"])))
                 of_user = [_joint(_by_name(skeleton), joint) for joint in joints]
                 xyz.append([place for place, _ in of_user])
                 confidence.append([sure for _, sure in of_user])
@@ -191,7 +192,8 @@ def _frames(path: Path) -> list[Any]:
     except json.JSONDecodeError:
         found = [json.loads(line) for line in text.splitlines() if line.strip()]
     found = _lower(found)
-    return [found] if isinstance(found, dict) else found
+    frames = [found] if isinstance(found, dict) else require_type(found, list)
+    return [require_type(frame, dict) for frame in frames]
 
 
 def _lower(value: Any) -> Any:
@@ -205,26 +207,29 @@ def _by_name(skeleton: Mapping[str, Any]) -> Mapping[str, Any]:
     if "joints" not in skeleton:
         return skeleton
     named = {}
-    for joint in skeleton["joints"]:
-        kind = joint["type"]
+    for joint in require_type(skeleton["joints"], list):
+        kind = require_type(joint, dict)["type"]
         if isinstance(kind, int) and not 0 <= kind < len(NUMBERS):
             raise ValueError(f"joint of type {kind}")
-        name = NUMBERS[kind] if isinstance(kind, int) else kind.lower().removeprefix("joint_")
-        named[name] = joint
+        if isinstance(kind, int):
+            named[NUMBERS[kind]] = joint
+        else:
+            named[require_type(kind, str).lower().removeprefix("joint_")] = joint
     return named
 
 
 def _joint(skeleton: Mapping[str, Any], joint: str) -> tuple[list[float], float]:
     """Return a joint's position, as written, and confidence; NaN where it is missing."""
-    found = [skeleton[name] for name in _names(joint) if name in skeleton]
+    found = [require_type(skeleton[name], dict) for name in _names(joint) if name in skeleton]
     if not found:
         return [np.nan] * 3, np.nan
     places = [_place(item["real"]) for item in found]
-    return np.mean(places, axis=0).tolist(), min(float(item.get("confidence", 1)) for item in found)
+    sure = min(float(require_scalar(item.get("confidence", 1))) for item in found)
+    return np.mean(places, axis=0).tolist(), sure
 
 
 def _place(real: Any) -> list[float]:
-    values = [real[axis] for axis in "xyz"] if isinstance(real, dict) else real
+    values = [real[axis] for axis in "xyz"] if isinstance(real, dict) else require_type(real, list)
     if len(values) != 3:
         raise ValueError(f"real of {len(values)} numbers")
-    return [float(value) for value in values]
+    return [float(require_scalar(value)) for value in values]

@@ -13,7 +13,7 @@ from scipy.optimize import linear_sum_assignment
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.records.keypoints.skeleton import Skeleton
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import RAISED_BY_READERS, InputError, reading, require_type
 
 # BODY_25 and BODY_25B have 25 points each, in another order: the 9th is the mid-hip, or an elbow.
 MISTAKEN = ("body25", "body25b")
@@ -76,7 +76,7 @@ def read(
     for number, path in files.items():
         people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
     _check_order(folder, skeleton.name, people)
-    times = np.arange(n_frames) / rate_hz if time_s is None else np.asarray(time_s, dtype=float)
+    times = np.asarray(time_s, dtype=float) if rate_hz is None else np.arange(n_frames) / rate_hz
     kept = np.flatnonzero((times >= trim_s[0]) & (times < trim_s[1]) if trim_s else times >= 0)
     tracks = link([people[at] for at in kept])
     return _keypoints(tracks, skeleton, camera, model, size, times[kept])
@@ -108,9 +108,13 @@ def _numbered(folder: Path) -> dict[int, Path]:
 
 def _people(path: Path, n_joints: int, skeleton: str) -> NDArray:
     """Return the persons of a file, (K, J, 3); NaN where a point is unseen."""
-    with reading(path, "OpenPose's JSON, `people` with `pose_keypoints_2d`", "export it again"):
-        content = json.loads(path.read_text(encoding="utf-8-sig"))
-        rows = [person["pose_keypoints_2d"] for person in content["people"]]
+    wanted = "OpenPose's JSON, `people` with `pose_keypoints_2d`", "export it again"
+    with reading(path, *wanted):
+        content = require_type(json.loads(path.read_text(encoding="utf-8-sig")), dict)
+        found = [require_type(one, dict) for one in require_type(content["people"], list)]
+        rows = [person["pose_keypoints_2d"] for person in found]
+    # numpy raises TypeError for entries other than numbers.
+    with reading(path, *wanted, kinds=(*RAISED_BY_READERS, TypeError)):
         table = [np.asarray(row, dtype=float) for row in rows]
     for row in table:
         if row.shape != (3 * n_joints,):

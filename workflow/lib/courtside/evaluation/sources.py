@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from courtside.geometry import similarity
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
-from courtside.study.errors import reading
+from courtside.study.errors import RAISED_BY_READERS, reading, require_scalar, require_type
 
 ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
 PARTS = ("origin", "scale", "rotation", "time")
@@ -307,12 +307,15 @@ REMAKE = "make it anew with the rule align_bodies"
 def read(path):
     """Return the `body_from_device` (Sim3) in the JSON of a body frame; raise `InputError` if it is none."""
     with reading(path, "a body frame", REMAKE):
-        found = json.loads(Path(path).read_text(encoding="utf-8"))
+        found = require_type(json.loads(Path(path).read_text(encoding="utf-8")), dict)
+        scale = float(require_scalar(found["scale_per_m"]))
+    # numpy raises TypeError for entries other than numbers.
+    with reading(path, "a body frame", REMAKE, kinds=(*RAISED_BY_READERS, TypeError)):
         rotation, translation = (
             np.array(found[key], dtype=float).reshape(shape)
             for key, shape in (("rotation", (3, 3)), ("translation", (3,)))
         )
-        return Sim3(float(found["scale_per_m"]), rotation, translation)
+        return Sim3(scale, rotation, translation)
 
 
 def against(body_from_device, device_from_world, body_from_world):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, reading, require_type
 from courtside.study.execution.files import atomic
 
 # For each key its kind (of `KINDS`) and the names of its dimensions: one name means one length
@@ -41,7 +41,7 @@ def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, Arra
     if fault:
         raise ValueError(f"{path}: {fault}")
     with atomic(path) as temporary, temporary.open("wb") as stream:
-        # type: mypy takes the arrays for numpy's parameter allow_pickle, too.
+        # mypy takes the arrays for allow_pickle, too.
         np.savez_compressed(stream, format=np.array(form), **checked)  # type: ignore[arg-type]
 
 
@@ -53,7 +53,10 @@ def read(path: str | PathLike, form: str, spec: Spec) -> dict[str, NDArray]:
     InputError
         If the file is not an npz of this form, or its arrays are not as stated.
     """
-    with reading(path, f"an npz file ({form})"), np.load(path, allow_pickle=False) as stored:
+    with (
+        reading(path, f"an npz file ({form})"),
+        require_type(np.load(path, allow_pickle=False), np.lib.npyio.NpzFile) as stored,
+    ):
         found = {key: np.asarray(stored[key]) for key in stored.files}
     stated = str(found.pop("format", "no format"))
     if stated != form:

@@ -1,4 +1,4 @@
-"""The error that a user can mend, and how a reader makes it of whatever a damaged file raises."""
+"""`InputError`, for faults that a user can correct, and how readers of files raise it on damage."""
 
 import contextlib
 import csv
@@ -7,14 +7,23 @@ import struct
 import tokenize
 import zipfile
 import zlib
+from collections.abc import Iterator
+from os import PathLike
+from typing import TypeVar
 
 LONGEST = 1000  # characters of a line
 SHORT = 200  # of what a library says
-# What Python's readers of text, JSON, TOML, CSV and archives, numpy and pandas raise on damaged files; and
-# what looking for something in their content raises that is not there.
-DAMAGED = (ValueError, OSError, EOFError, LookupError, TypeError, AttributeError, ArithmeticError)
-DAMAGED += (RuntimeError, MemoryError, SyntaxError, tokenize.TokenError, csv.Error, struct.error)
-DAMAGED += (zipfile.BadZipFile, zlib.error, lzma.LZMAError)
+# What Python's readers of text, JSON, TOML, CSV and archives, numpy and pandas raise on damaged files
+# (tests/fuzz), and what a missing key or entry of the content raises. TypeError and AttributeError
+# are not among them: they are faults of our own code; `require_type` checks content of any type.
+RAISED_BY_READERS: tuple[type[Exception], ...] = (
+    *(ValueError, OSError, EOFError, LookupError, ArithmeticError, RuntimeError, MemoryError),
+    *(SyntaxError, tokenize.TokenError, csv.Error, struct.error),
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError),
+)
+# The same, for blocks that take parsed content apart without checking its types.
+DAMAGED = (*RAISED_BY_READERS, TypeError, AttributeError)
+Kind = TypeVar("Kind")
 SPARE_MEMORY = "end other programs, or run fewer jobs at a time with --cores 1"
 
 
@@ -26,35 +35,29 @@ class InputError(ValueError):
     Parameters
     ----------
     *lines : str
-        One; several where several things are wrong at once. What does not print is written as in Python's
-        texts, and the middle of an endless line is left out: parts of them come out of files.
+        Several if several things are wrong at once. Unprintable characters are escaped, and the
+        middle of an endless line is left out: parts of the lines come out of files.
     """
 
-    def __init__(self, *lines):
+    def __init__(self, *lines: object) -> None:
         self.lines = [_one_line(line) for line in lines]
         super().__init__("\n".join(self.lines))
 
 
-def _one_line(text):
-    text = _shortened(str(text))  # first, for a file may have been put in whole
-    if text.isprintable():
-        return text
-    return _shortened(
-        "".join(
-            letter if letter.isprintable() else letter.encode("unicode_escape").decode()
-            for letter in text
-        )
-    )
+def _one_line(text: object) -> str:
+    short = _shortened(str(text))  # first: it may hold a whole file
+    escaped = (c if c.isprintable() else c.encode("unicode_escape").decode() for c in short)
+    return _shortened("".join(escaped))
 
 
-def _shortened(text):
+def _shortened(text: str) -> str:
     if len(text) <= LONGEST:
         return text
     return f"{text[: LONGEST // 2]} ... {text[-LONGEST // 3 :]}"
 
 
-def said(error):
-    """Return what an error of a library says, or else its name, as one short line."""
+def said(error: BaseException) -> str:
+    """Return the message of a library's error, or else the error's name, as one short line."""
     try:
         text = " ".join(str(error).split())
     except ValueError:  # of a number too long to be written
@@ -63,8 +66,14 @@ def said(error):
 
 
 @contextlib.contextmanager
-def reading(path, what, advice="make it again", *, kinds=DAMAGED):
-    """Turn whatever a damaged file raises within the block into one `InputError`.
+def reading(
+    path: str | PathLike,
+    what: str,
+    advice: str = "make it again",
+    *,
+    kinds: tuple[type[Exception], ...] = RAISED_BY_READERS,
+) -> Iterator[None]:
+    """Turn the exceptions that a damaged file causes within the block into one `InputError`.
 
     Parameters
     ----------
@@ -75,7 +84,8 @@ def reading(path, what, advice="make it again", *, kinds=DAMAGED):
     advice : str
         What to do.
     kinds : tuple of type
-        Exceptions that mean damage here; `InputError` itself always passes.
+        Exceptions that mean damage here, such as those of the library that reads the file; all
+        others pass, and so does `InputError` itself.
 
     Raises
     ------
@@ -90,3 +100,17 @@ def reading(path, what, advice="make it again", *, kinds=DAMAGED):
             # The file asks for too much, or the machine has too little.
             advice = f"{advice}; or, if the file is whole, {SPARE_MEMORY}"
         raise InputError(f"{path}: expected {what}, found: {said(error)}; {advice}") from error
+
+
+def require_type(value: object, kind: type[Kind]) -> Kind:
+    """Return a part of a file's parsed content; raise `ValueError` if it is of another type."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{type(value).__name__} in place of {kind.__name__}")
+    return value
+
+
+def require_scalar(value: object) -> float | str:
+    """Return a number of a file's parsed content, or a text that may be one, as `require_type`."""
+    if not isinstance(value, int | float | str):
+        raise ValueError(f"{type(value).__name__} in place of a number")
+    return value

@@ -53,8 +53,10 @@ def read(
         if list(table.columns) != list(COLUMNS):
             return f"found the columns {', '.join(table.columns)}"
         table[list(NUMBERS)].astype(float)  # raises for others
-        odd = sorted({*table["camera"]} - {*cameras} | {*table["point"]} - {*points})
-        return f"found unknown cameras or points: {', '.join(map(str, odd))}" if odd else ""
+        odd = {*table["camera"]} - {*cameras} | {*table["point"]} - {
+            *points
+        }  # an empty cell is NaN
+        return f"found unknown cameras or points: {', '.join(sorted(map(str, odd)))}" if odd else ""
 
     table = tables.read(path, WHAT, fault, dtype={"camera": str, "point": str})
     table = table.astype(dict.fromkeys(NUMBERS, float))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, reading, require_scalar, require_type
 from courtside.study.execution.files import read_json, write_json
 
 FORM = "courtside sync 1"
@@ -142,15 +142,20 @@ def read(path: str | PathLike) -> tuple[str, dict[str, Clock]]:
         found = content.get("form") if isinstance(content, dict) else type(content).__name__
         raise InputError(f"{path}: expected form {FORM!r}, found {found!r}; make it again")
     with reading(path, "a reference and its clock among cameras"):
-        clocks = {camera: _clock(table) for camera, table in content["cameras"].items()}
-        if content["reference"] not in clocks:
+        tables = require_type(content["cameras"], dict)
+        clocks = {camera: _clock(require_type(table, dict)) for camera, table in tables.items()}
+        if content["reference"] not in list(clocks):
             raise ValueError(f"the reference {content['reference']!r}, whose clock is missing")
     return content["reference"], clocks
 
 
 def _clock(table: Mapping[str, Any]) -> Clock:
-    numbers = {key: math.nan if table[key] is None else float(table[key]) for key in NUMBERS}
-    candidates = tuple(float(at) for at in table["candidates_s"])
+    numbers = {key: math.nan if table[key] is None else _number(table[key]) for key in NUMBERS}
+    candidates = tuple(_number(at) for at in require_type(table["candidates_s"], list))
     return Clock(
         **numbers, status=table["status"], note=str(table["note"]), candidates_s=candidates
     )
+
+
+def _number(value: object) -> float:
+    return float(require_scalar(value))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, reading, require_scalar, require_type
 
 SUM_TOLERANCE = 1e-9  # far above the rounding of a sum of decimal fractions
 SEE = "see config/derived_joints.yaml"
@@ -100,14 +100,22 @@ def read(path: str | PathLike) -> DerivedJoints:
     )
     with reading(path, what, SEE):
         definitions = {
-            name: Definition(
-                str(value["means"]), {joint: float(w) for joint, w in value["weights"].items()}
-            )
-            for name, value in content["definitions"].items()
+            name: _definition(require_type(value, dict))
+            for name, value in require_type(content["definitions"], dict).items()
         }
-        joints = {name: dict(value) for name, value in content["joints"].items()}
+        joints = {
+            name: dict(require_type(value, dict))
+            for name, value in require_type(content["joints"], dict).items()
+        }
         _check(path, definitions, joints)
     return DerivedJoints(definitions, joints)
+
+
+def _definition(value: dict) -> Definition:
+    weights = require_type(value["weights"], dict)
+    return Definition(
+        str(value["means"]), {joint: float(require_scalar(w)) for joint, w in weights.items()}
+    )
 
 
 def _check(
@@ -124,7 +132,7 @@ def _check(
             )
     for name, by_skeleton in joints.items():
         for skeleton, used in by_skeleton.items():
-            if used not in definitions:
+            if used not in list(definitions):
                 raise InputError(
                     f"{path}: joints.{name}.{skeleton}: expected one of {sorted(definitions)}, "
                     f"found {used!r}; correct the name"

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, reading, require_type
 
 SIDES = {"left_": "right_", "right_": "left_"}
 
@@ -106,14 +106,25 @@ def read(path: str | PathLike) -> Skeleton:
     with reading(path, what, "see the files beside it"):
         skeleton = Skeleton(
             name=Path(path).stem,
-            joints=tuple(content["joints"]),
-            bones=tuple((start, end) for start, end in content["bones"]),
-            segments={name: (start, end) for name, (start, end) in content["segments"].items()},
-            groups={name: tuple(joints) for name, joints in content["groups"].items()},
-            names=dict(content.get("names", {}).items()),
+            joints=tuple(require_type(content["joints"], list)),
+            bones=tuple(map(_pair, require_type(content["bones"], list))),
+            segments={
+                name: _pair(joints)
+                for name, joints in require_type(content["segments"], dict).items()
+            },
+            groups={
+                name: tuple(require_type(joints, list))
+                for name, joints in require_type(content["groups"], dict).items()
+            },
+            names=dict(require_type(content.get("names", {}), dict)),
         )
         _check(path, skeleton)
     return skeleton
+
+
+def _pair(joints: object) -> tuple[str, str]:
+    start, end = require_type(joints, list)
+    return start, end
 
 
 def _check(path: str | PathLike, skeleton: Skeleton) -> None:

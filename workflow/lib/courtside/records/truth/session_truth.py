@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.camera import Camera
 from courtside.records import npz
-from courtside.study.errors import DAMAGED, reading
+from courtside.study.errors import RAISED_BY_READERS, reading
 
 FORM = "courtside truth 1"
 SPEC = {
@@ -130,6 +130,6 @@ def _walk_names(path: str | PathLike) -> list[str]:
     try:
         with zipfile.ZipFile(path) as stored:
             names = [name.rpartition("/")[0] for name in stored.namelist()]
-    except DAMAGED:
+    except RAISED_BY_READERS:
         return []
     return list(dict.fromkeys(name for name in names if name))
