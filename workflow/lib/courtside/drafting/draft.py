@@ -1,37 +1,38 @@
-"""Draft a session's YAML file from a folder of recordings, with advice where something is missing."""
+"""Draft a session's YAML file from a folder of recordings, with advice on what is missing."""
 
 import json
 import re
+from collections.abc import Iterable, Iterator, Mapping
+from os import PathLike
+from pathlib import Path
 
 import yaml
 
 from courtside.drafting import guess as file_names
+from courtside.drafting.guess import Guess, Recording, Take
 from courtside.study.configuration import configuration, yaml_files
 from courtside.study.errors import InputError
 
 MARK = "# guess:"
 PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
-SUBJECTS = "pseudonyms; what each agreed to (export, faces?); height_m: 1.74, mass_kg: 66, sex: m, hand: left"
+SUBJECTS = (
+    "pseudonyms; what each agreed to (export, faces?); "
+    "height_m: 1.74, mass_kg: 66, sex: m, hand: left"
+)
 BOARD = "inner_corners: [7, 4], square_m: 0.06"
 
 
-def text(guess, *, title, folder, court="badminton"):
-    """Write a session's file as text, every guess marked by `# guess:`.
+def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> str:
+    """Write a session's file as YAML text, every guess marked by `# guess:`.
 
     Parameters
     ----------
-    guess : courtside.drafting.guess.Guess
     title : str
         Of the session, one line.
     folder : str
-        That of the recordings, as paths in the file begin; clicked court points are expected in it.
+        Of the recordings, as paths in the file begin; clicked court points are expected in it.
     court : str
         A court of config/courts, or `none`.
-
-    Returns
-    -------
-    text : str
-        YAML that the schema of sessions accepts.
 
     Raises
     ------
@@ -40,48 +41,37 @@ def text(guess, *, title, folder, court="badminton"):
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
-            f"{folder}: expected videos or photos of a session, found {_what_is_there(guess)}; put the "
-            "videos of the fixed cameras and of the walk there"
+            f"{folder}: expected videos or photos of a session, found {_what_is_there(guess)}; put "
+            "the videos of the fixed cameras and of the walk there"
         )
     measured = guess.calibration is None and bool(guess.cameras)
     lines = [
-        f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists all keys.",
-        f"description: {_quoted(title)}  {MARK} one line for captions: the gym, the day, the layout",
+        f"# Drafted from {_quoted(folder)}: check the lines with `{MARK}`; config/README.md lists "
+        "all keys.",
+        f"description: {_quoted(title)}  {MARK} one line for captions: the gym, the day, the "
+        "layout",
         f"court: {court if measured else 'none'}  {MARK} none, or a file of config/courts",
     ]
     if guess.takes:
-        lines += [
-            "subjects:",
-            f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}",
-        ]
-    lines += [
-        *_cameras(guess),
-        *_walks(guess),
-        *_places(guess, folder, measured and court != "none"),
-    ]
-    lines += [*_takes(guess), *_override(guess, measured and court != "none"), *_unused(guess)]
+        lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
+    clicked = measured and court != "none"
+    lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
+    lines += [*_takes(guess), *_override(guess, clicked), *_unused(guess)]
     return "\n".join(lines) + "\n"
 
 
-def write(path, content):
-    """Write a drafted session, never over a file that is there.
-
-    Parameters
-    ----------
-    path : Path
-        config/sessions/<session>.yaml.
-    content : str
-        From `text`.
+def write(path: Path, content: str) -> None:
+    """Write a drafted session (from `text`) to config/sessions/<session>.yaml, never over a file.
 
     Raises
     ------
     InputError
-        If the file exists, or its name is none that a session may have.
+        If the file exists, or its name is not allowed for a session.
     """
     if not configuration.NAME.fullmatch(path.stem) or path.stem in configuration.RESERVED:
         raise InputError(
-            f"{path.stem}: expected a session's name of a-z, 0-9, _ and -, none of {configuration.RESERVED}, "
-            "found another; give one by --name"
+            f"{path.stem}: expected a session's name of a-z, 0-9, _ and -, none of "
+            f"{configuration.RESERVED}, found another; give one by --name"
         )
     try:
         with path.open("x", encoding="utf-8") as stream:
@@ -96,7 +86,7 @@ def write(path, content):
         raise ValueError(f"the draft does not hold its own schema: {faults[0]}")
 
 
-def _cameras(guess):
+def _cameras(guess: Guess) -> list[str]:
     if not guess.cameras:
         return ["cameras: {}"]
     lines = [f"cameras:  {MARK} one name for each physical camera"]
@@ -111,7 +101,7 @@ def _cameras(guess):
     return lines
 
 
-def _pictures(guess, camera):
+def _pictures(guess: Guess, camera: str) -> tuple[list[str], list[str]]:
     """Return the keys of a camera's own recordings, and remarks."""
     keys, remarks = [], []
     if camera in guess.static:
@@ -125,7 +115,9 @@ def _pictures(guess, camera):
     return keys, remarks
 
 
-def _calibrated(guess, camera, calibrated):
+def _calibrated(
+    guess: Guess, camera: str, calibrated: Mapping[str, tuple[int, int]]
+) -> Iterator[tuple[str, str]]:
     """Yield the keys that a camera needs to match the calibration, each with a remark."""
     if not calibrated:
         return
@@ -144,10 +136,9 @@ def _calibrated(guess, camera, calibrated):
         yield crop_px, f"which part of the calibrated {width}x{height} px the video shows"
 
 
-def _walks(guess):
-    lines = [f"walks:  {MARK} recordings by the camera that was carried past the others"] * bool(
-        guess.walks
-    )
+def _walks(guess: Guess) -> list[str]:
+    head = f"walks:  {MARK} recordings by the camera that was carried past the others"
+    lines = [head] * bool(guess.walks)
     for name, recording in guess.walks.items():
         key = "images" if recording.kind == "photos" else "video"
         lines.append(
@@ -156,7 +147,7 @@ def _walks(guess):
     return lines
 
 
-def _places(guess, folder, clicked):
+def _places(guess: Guess, folder: str, clicked: bool) -> list[str]:
     if guess.calibration:
         return [f"calibration: {{file: {_quoted(guess.calibration.path)}}}"]
     if not clicked:
@@ -165,12 +156,12 @@ def _places(guess, folder, clicked):
     return [f"court_points: {_quoted(court_points(guess, folder))}{remark}"]
 
 
-def court_points(guess, folder):
-    """Return the path of the clicked court points, there or not."""
+def court_points(guess: Guess, folder: str) -> str:
+    """Return the path of the clicked court points, which need not exist."""
     return guess.court_points.path if guess.court_points else f"{folder}/court_points.csv"
 
 
-def _takes(guess):
+def _takes(guess: Guess) -> list[str]:
     remark = "recordings that belong together; `synchronised: true` where the cameras share a clock"
     lines = [f"takes:  {MARK} {remark}"] * bool(guess.takes)
     for name, take in guess.takes.items():
@@ -183,8 +174,9 @@ def _takes(guess):
     return lines
 
 
-def _devices(guess, take):
-    lines, names = [], set()
+def _devices(guess: Guess, take: str) -> list[str]:
+    lines: list[str] = []
+    names: set[str] = set()
     for device, recording in ((d, r) for name, d, r in guess.devices if name == take):
         names.add(name := file_names.distinct(device, names))
         lines.append(
@@ -193,14 +185,14 @@ def _devices(guess, take):
     return ["    devices:", *lines] if lines else []
 
 
-def _override(guess, clicked):
-    """Return what lets takes be measured where court points alone say where the cameras are."""
+def _override(guess: Guess, clicked: bool) -> list[str]:
+    """Return the key by which takes are measured if only court points tell the cameras' poses."""
     if guess.walks or not clicked or not guess.takes:
         return []
     return [f"override: {{take_calibrations: [known18]}}  {MARK} no walk was found"]
 
 
-def _unused(guess):
+def _unused(guess: Guess) -> list[str]:
     lines = [f"#   {json.dumps(r.path)}: {_one_line(why)}" for r, why in guess.unused]
     lines += [
         f"#   {json.dumps(r.path)}: {d} of no take" for take, d, r in guess.devices if not take
@@ -208,7 +200,7 @@ def _unused(guess):
     return ["# not used:", *lines] if lines else []
 
 
-def _described(recording):
+def _described(recording: Recording) -> str:
     size = "" if recording.size is None else f"{recording.size[0]}x{recording.size[1]}"
     if recording.kind == "video":
         rate = "one frame" if recording.rate_hz is None else f"{recording.rate_hz:.4g} Hz"
@@ -218,7 +210,7 @@ def _described(recording):
     )
 
 
-def _what_is_there(guess):
+def _what_is_there(guess: Guess) -> str:
     if not guess.unused:
         return "none"
     recording, why = guess.unused[0]
@@ -226,35 +218,24 @@ def _what_is_there(guess):
     return f"{recording.path} ({_one_line(why)}){more}"
 
 
-def _one_line(why):
+def _one_line(why: object) -> str:
     return " ".join(str(why).split())
 
 
-def _quoted(value):
-    """Return a text as a YAML scalar that is read as text, within brackets too."""
+def _quoted(value: str) -> str:
+    """Return a text as a YAML scalar that is read as text, also within brackets."""
     if PLAIN.fullmatch(value) and yaml.safe_load(value) == value:
         return value
     return json.dumps(value, ensure_ascii=False)
 
 
-SHORT_S = 15  # in shorter takes the clocks of cameras are seldom found
+SHORT_S = 15  # ASSUME: in shorter takes the clocks of cameras are seldom found
 
 
-def write_study(path, session, takes):
-    """Write a study of one session alone, with videos of its takes; one that is there is left as it is.
+def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
+    """Write a study (config/<session>.yaml) of one session alone, with videos of its takes.
 
-    Parameters
-    ----------
-    path : Path
-        config/<session>.yaml.
-    session : str
-        A name.
-    takes : iterable of str
-
-    Returns
-    -------
-    line : str
-        What was done.
+    A file that is there is left as it is. Returns one line on what was done.
     """
     filmed = ", ".join(f"{session}/{take}" for take in takes)
     lines = [
@@ -272,22 +253,19 @@ def write_study(path, session, takes):
     return f"Wrote {path}."
 
 
-def to_check(guess, path, court_points, study):
-    """List what a user should look at after drafting, in order.
+def to_check(
+    guess: Guess, path: str | PathLike, court_points: str, study: str | PathLike
+) -> list[str]:
+    """List what a user should check after drafting, in order.
 
     Parameters
     ----------
-    guess : courtside.drafting.guess.Guess
     path : str or Path
         Of the draft.
     court_points : str
         Where clicked court points are expected.
     study : str or Path
         The study that names the session.
-
-    Returns
-    -------
-    lines : list of str
     """
     lines = [f"Look at {path}: every line with `{MARK}`, and what stands under `not used`."]
     lines += [f"Odd: {line}" for line in _odd(guess)]
@@ -304,13 +282,14 @@ def to_check(guess, path, court_points, study):
     return lines
 
 
-def _odd(guess):
-    """Yield what a user may want to know of sizes, rates and lengths."""
+def _odd(guess: Guess) -> Iterator[str]:
+    """Yield unusual sizes, rates and lengths."""
     for camera in guess.cameras:
         films = [take[camera] for take in guess.takes.values() if camera in take]
         sizes = sorted({r.size for r in [*films, *filter(None, [guess.static.get(camera)])]})
         if len(sizes) > 1:
-            yield f"camera {camera} has pictures of {' and '.join(f'{w}x{h}' for w, h in sizes)} pixels"
+            found = " and ".join(f"{width}x{height}" for width, height in sizes)
+            yield f"camera {camera} has pictures of {found} pixels"
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
     for recording in [
@@ -321,7 +300,7 @@ def _odd(guess):
             yield f"{recording.path}: {recording.note}"
 
 
-def _odd_take(name, take):
+def _odd_take(name: str, take: Take) -> Iterator[str]:
     rates = {round(r.rate_hz or 0) for r in take.values()}
     if len(rates) > 1:
         yield f"take {name} has videos of {' and '.join(map(str, sorted(rates)))} Hz"
@@ -330,6 +309,6 @@ def _odd_take(name, take):
         yield f"take {name} has videos whose lengths differ more than twofold"
     if len(lengths) > 1 and min(lengths) < SHORT_S:
         yield (
-            f"take {name} is {min(lengths):.1f} s long: in less than {SHORT_S} s the clocks of cameras are "
-            "seldom found; say `synchronised: true` if they share one"
+            f"take {name} is {min(lengths):.1f} s long: in less than {SHORT_S} s the clocks of "
+            "cameras are seldom found; say `synchronised: true` if they share one"
         )

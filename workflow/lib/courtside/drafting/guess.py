@@ -1,46 +1,20 @@
-"""Guess cameras, walks and takes of a session from the names of its files."""
+"""Guess the cameras, walks and takes of a session from the names of its files."""
 
 import re
 import unicodedata
+from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-STATIC = {
-    "empty",
-    "static",
-    "still",
-    "background",
-    "bg",
-    "vacant",
-    "nobody",
-    "leer",
-    "vide",
-    "blank",
-}
+# Words that mark a recording of the empty court, of the carried camera, of a chessboard, and words
+# that say nothing, as people name files in English, German and French.
+STATIC = {"empty", "static", "still", "background", "bg", "vacant", "nobody", "blank"}
+STATIC |= {"leer", "vide"}
 WALK = {"walk", "walking", "mobile", "moving", "handheld", "bridge", "bridging", "sweep", "gang"}
-BOARD = {
-    "board",
-    "boards",
-    "chess",
-    "chessboard",
-    "checker",
-    "checkerboard",
-    "calib",
-    "calibration",
-}
-BOARD |= {"intrinsic", "intrinsics", "int"}
-FOLDERS = {
-    "video",
-    "videos",
-    "data",
-    "film",
-    "films",
-    "footage",
-    "recording",
-    "recordings",
-    "takes",
-    "raw",
-}
+BOARD = {"board", "boards", "chess", "chessboard", "checker", "checkerboard"}
+BOARD |= {"calib", "calibration", "intrinsic", "intrinsics", "int"}
+FOLDERS = {"video", "videos", "data", "film", "films", "footage", "takes", "raw"}
+FOLDERS |= {"recording", "recordings"}
 CAMERA = re.compile(
     r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr)[0-9]+"
     r"|(left|right|centre|center|middle|back|front|side|rear|oblique|mirror|links|rechts|mitte)[0-9]*"
@@ -58,7 +32,8 @@ class Recording:
     parts : tuple of str
         Folders below the one that was searched, and the name without its suffix.
     kind : str
-        `video`, `photo`, `photos`, `bvh`, `bag`, `court_points`, `racket`, `calibration`, or `unusable`.
+        `video`, `photo`, `photos`, `bvh`, `bag`, `court_points`, `racket`, `calibration`, or
+        `unusable`.
     size : (int, int) or None
         Of its pictures, px.
     rate_hz, duration_s : float or None
@@ -66,25 +41,29 @@ class Recording:
     n_photos : int
         Of a folder of photos.
     note : str
-        Why it is unusable, or what is odd about it.
+        Why it is unusable, or what is unusual about it.
     cameras : dict of str to (int, int)
         Of a calibration: sizes of the pictures of its cameras.
     """
 
     path: str
-    parts: tuple
+    parts: tuple[str, ...]
     kind: str
-    size: tuple | None = None
+    size: tuple[int, int] | None = None
     rate_hz: float | None = None
     duration_s: float | None = None
     n_photos: int = 0
     note: str = ""
-    cameras: dict = field(default_factory=dict)
+    cameras: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     @property
-    def words(self):
+    def words(self) -> tuple[str, ...]:
         """Words of its name and folders."""
         return words_of(self.parts)
+
+
+Take = dict[str, Recording]  # by camera
+Words = dict[str, tuple[str, ...]]  # by path, or by camera
 
 
 @dataclass
@@ -109,31 +88,20 @@ class Guess:
         With the reason.
     """
 
-    cameras: list = field(default_factory=list)
-    static: dict = field(default_factory=dict)
-    stand_ins: list = field(default_factory=list)
-    boards: dict = field(default_factory=dict)
-    walks: dict = field(default_factory=dict)
-    takes: dict = field(default_factory=dict)
-    devices: list = field(default_factory=list)
+    cameras: list[str] = field(default_factory=list)
+    static: dict[str, Recording] = field(default_factory=dict)
+    stand_ins: list[str] = field(default_factory=list)
+    boards: dict[str, Recording] = field(default_factory=dict)
+    walks: dict[str, Recording] = field(default_factory=dict)
+    takes: dict[str, Take] = field(default_factory=dict)
+    devices: list[tuple[str, str, Recording]] = field(default_factory=list)
     court_points: Recording | None = None
     calibration: Recording | None = None
-    unused: list = field(default_factory=list)
+    unused: list[tuple[Recording, str]] = field(default_factory=list)
 
 
-def guess(recordings):
-    """Guess what each recording is.
-
-    Parameters
-    ----------
-    recordings : list of Recording
-        In name order.
-
-    Returns
-    -------
-    guess : Guess
-        Every recording is in it once.
-    """
+def guess(recordings: Sequence[Recording]) -> Guess:
+    """Guess what each recording, in name order, is; every one is in the guess once."""
     found = Guess()
     videos = [r for r in recordings if r.kind == "video"]
     own = _own_words(recordings, videos)
@@ -153,15 +121,17 @@ def guess(recordings):
     return found
 
 
-def _own_words(recordings, videos):
-    """Return for each path the words that not all videos share: those say nothing."""
+def _own_words(recordings: Iterable[Recording], videos: Sequence[Recording]) -> Words:
+    """Return for each path the words that not all videos share: shared words say nothing."""
     shared = set.intersection(*(set(r.words) for r in videos)) if len(videos) > 1 else set()
     shared |= FOLDERS
     return {r.path: tuple(word for word in r.words if word not in shared) for r in recordings}
 
 
-def _camera_words(recordings, videos, own):
-    """Return the words that name each camera, by the name it gets."""
+def _camera_words(
+    recordings: Iterable[Recording], videos: Sequence[Recording], own: Words
+) -> Words:
+    """Return the words that name each camera, by the camera's name."""
     empty = [r for r in recordings if r.kind in ("video", "photo") and _has(r, STATIC)]
     names = [tuple(w for w in own[r.path] if w not in STATIC) for r in empty]
     if not any(names):
@@ -170,8 +140,8 @@ def _camera_words(recordings, videos, own):
     return {"_".join(words): words for words in dict.fromkeys(filter(None, names))}
 
 
-def _differing(videos, own):
-    """Return the words by which names differ that are otherwise the same, the last that do."""
+def _differing(videos: Iterable[Recording], own: Words) -> list[tuple[str, ...]]:
+    """Return the last words by which otherwise equal names differ."""
     named = [own[r.path] for r in videos if not _has(r, WALK | STATIC)]
     places = set()
     for one, other in combinations(named, 2):
@@ -183,8 +153,8 @@ def _differing(videos, own):
     return [words[max(places) :][:1] for words in named if len(words) >= -max(places)]
 
 
-def _camera_of(words, cameras):
-    """Return the camera that words name, and the words left."""
+def _camera_of(words: tuple[str, ...], cameras: Words) -> tuple[str | None, tuple[str, ...]]:
+    """Return the camera that words name, and the other words."""
     for name, own in sorted(cameras.items(), key=lambda item: -len(item[1])):
         said = [next((w for w in words if alike(w, mine)), None) for mine in own]
         if all(said):
@@ -192,12 +162,17 @@ def _camera_of(words, cameras):
     return None, words
 
 
-def _has(recording, vocabulary):
+def _has(recording: Recording, vocabulary: Container[str]) -> bool:
     return any(re.sub("[0-9]+$", "", word) in vocabulary for word in recording.words)
 
 
-def _sort_pictures(found, recordings, own, cameras):
-    """Put static recordings, boards and walks into the guess; return (recording, camera, words) of takes."""
+def _sort_pictures(
+    found: Guess, recordings: Sequence[Recording], own: Words, cameras: Words
+) -> list[tuple[Recording, str | None, tuple[str, ...]]]:
+    """Put static recordings, boards and walks into the guess; return the others.
+
+    Of each other recording, which belongs to a take: itself, its camera, and the words left.
+    """
     rest, alone = [], sum(r.kind == "video" for r in recordings) == 1
     for recording in (r for r in recordings if r.kind in ("video", "photo", "photos")):
         camera, words = _camera_of(own[recording.path], cameras)
@@ -214,11 +189,11 @@ def _sort_pictures(found, recordings, own, cameras):
     return rest
 
 
-def _is_walk(recording, camera, cameras):
+def _is_walk(recording: Recording, camera: str | None, cameras: Words) -> bool:
     return camera is None and bool(cameras or _has(recording, WALK))
 
 
-def _keep(found, place, recording, camera, reason):
+def _keep(found: Guess, place: Take, recording: Recording, camera: str | None, reason: str) -> None:
     if camera is None:
         found.unused.append((recording, reason))
     elif camera in place:
@@ -227,9 +202,10 @@ def _keep(found, place, recording, camera, reason):
         place[camera] = recording
 
 
-def _group(found, rest):
-    """Group recordings into takes: by the words apart from the camera's, else by their order."""
-    takes, left = {}, {}
+def _group(found: Guess, rest: Iterable[tuple[Recording, str | None, tuple[str, ...]]]) -> None:
+    """Group recordings into takes: by the words other than the camera's, else by their order."""
+    takes: dict[str, Take] = {}
+    left: dict[str, list[Recording]] = {}
     for recording, camera, words in rest:
         if camera is None:
             found.unused.append((recording, "no other video has a name like it"))
@@ -249,15 +225,15 @@ def _group(found, rest):
     _pair_by_order(found, left)
 
 
-def _shared_name(take):
-    """Return what the names of a take's files have in common, folders apart."""
+def _shared_name(take: Take) -> str:
+    """Return what the names of a take's files share, without folders."""
     names = [words_of(recording.parts[-1:]) for recording in take.values()]
     shared = set.intersection(*map(set, names)) - FOLDERS
     return "_".join(word for word in names[0] if word in shared)
 
 
-def _pair_by_order(found, left):
-    """Take the k-th recording of every camera for one take, where all have equally many."""
+def _pair_by_order(found: Guess, left: Mapping[str, Sequence[Recording]]) -> None:
+    """Make the k-th recordings of all cameras one take, if all have equally many."""
     if len(left) > 1 and len({len(own) for own in left.values()}) == 1:
         for at, together in enumerate(zip(*left.values(), strict=True), start=1):
             name = distinct(f"take{at}", found.takes)
@@ -268,8 +244,8 @@ def _pair_by_order(found, left):
             found.unused.append((recording, f"the only recording of its take, by camera {camera}"))
 
 
-def _stand_in(found):
-    """Let the first take stand in for static recordings that are missing: a walk is tied to them."""
+def _stand_in(found: Guess) -> None:
+    """Use the first take for missing static recordings: a walk is tied to them."""
     for camera in found.cameras:
         films = [take[camera] for take in found.takes.values() if camera in take]
         if camera not in found.static and films:
@@ -277,7 +253,7 @@ def _stand_in(found):
             found.stand_ins.append(camera)
 
 
-def _sort_others(found, recordings, own):
+def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> None:
     for recording in recordings:
         if recording.kind in ("court_points", "calibration"):
             if getattr(found, recording.kind) is None:
@@ -298,23 +274,15 @@ WORD = re.compile(r"[A-Za-z]+[0-9]*|[0-9]+")
 LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "đ": "d", "ł": "l", "þ": "th"}
 
 
-def words_of(parts):
-    """Split the names of a file and its folders into words.
+def words_of(parts: Iterable[str]) -> tuple[str, ...]:
+    """Split the names of folders and of a file without its suffix into words.
 
-    Parameters
-    ----------
-    parts : sequence of str
-        Folders and the file without its suffix.
-
-    Returns
-    -------
-    found : tuple of str
-        Lower case, without accents; a number belongs to the word before it: `Cam 01-takeTwo` gives
-        `cam01`, `take`, `two`.
+    Lower case, without accents; a number belongs to the word before it: `Cam 01-takeTwo` gives
+    `cam01`, `take`, `two`.
     """
-    found = []
+    found: list[str] = []
     for part in parts:
-        own = []
+        own: list[str] = []
         for word in WORD.findall(_plain(part)):
             if word.isdigit() and own and not own[-1][-1].isdigit():
                 own[-1] += word
@@ -324,26 +292,16 @@ def words_of(parts):
     return tuple(word.lower() for word in found)
 
 
-def name(text, otherwise):
-    """Make a name that a configuration accepts.
+def name(text: str, otherwise: str) -> str:
+    """Make a name that a configuration accepts: `a-z0-9_`, begun with a letter or digit.
 
-    Parameters
-    ----------
-    text : str
-        Anything.
-    otherwise : str
-        The name of a text that holds no letter or digit of the Latin alphabet.
-
-    Returns
-    -------
-    name : str
-        Lower-case letters, digits and `_`, begun with a letter or digit.
+    `otherwise` is the name of a text without a letter or digit of the Latin alphabet.
     """
     return "_".join(re.findall("[a-z0-9]+", _plain(text).lower())) or otherwise
 
 
-def distinct(wanted, taken):
-    """Return a name, with the first number behind it that makes it differ from those taken."""
+def distinct(wanted: str, taken: Collection[str]) -> str:
+    """Return a name, with the first number after it that makes it differ from those taken."""
     found, number = wanted, 1
     while found in taken:
         number += 1
@@ -351,17 +309,17 @@ def distinct(wanted, taken):
     return found
 
 
-def alike(one, other):
-    """Tell whether two words are the same but for zeros before their numbers: `cam1` and `cam01`."""
+def alike(one: str, other: str) -> bool:
+    """Return whether words differ only by zeros before their numbers, as `cam1` and `cam01`."""
     return _unpadded(one) == _unpadded(other)
 
 
-def _unpadded(word):
+def _unpadded(word: str) -> str:
     return re.sub(r"(?<![0-9])0+(?=[0-9])", "", word)
 
 
-def _plain(text):
-    """Return a text without accents, its words in camel case apart."""
+def _plain(text: str) -> str:
+    """Return a text without accents, camel case split into words."""
     text = "".join(LETTERS.get(letter.lower(), letter) for letter in text)
     text = unicodedata.normalize("NFKD", text)
     text = "".join(letter for letter in text if not unicodedata.combining(letter))

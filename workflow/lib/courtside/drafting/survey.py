@@ -1,9 +1,12 @@
-"""Find out what the files of a folder are: videos, photos, recordings of devices, clicks, calibrations."""
+"""Find out what the files of a folder are: videos, photos, clicks, calibrations, of devices."""
 
 import csv
 import math
 import os
+from collections.abc import Callable
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from courtside.calibration import file_formats
 from courtside.drafting.guess import Recording
@@ -12,40 +15,23 @@ from courtside.study.errors import InputError
 from courtside.video import reader as video
 from courtside.video import walk_frames
 
-VIDEOS = {
-    ".mp4",
-    ".mov",
-    ".m4v",
-    ".avi",
-    ".mkv",
-    ".mts",
-    ".m2ts",
-    ".ts",
-    ".mpg",
-    ".mpeg",
-    ".webm",
-    ".wmv",
-    ".3gp",
-}
+VIDEOS = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".ts", ".mpg", ".mpeg"}
+VIDEOS |= {".webm", ".wmv", ".3gp"}
 BAGS = {".bag", ".db3"}
 CALIBRATIONS = {".toml", ".txt", ".xml"}  # a YAML file in a folder of recordings may be anything
 RACKET = {"take", "camera", "frame_idx", "end"}
 
 
-def survey(folder, *, root):
-    """Describe every recording of a folder and of the folders in it.
+def survey(folder: str | PathLike, *, root: str | PathLike) -> list[Recording]:
+    """Describe every recording of a folder and of the folders in it, in name order.
+
+    Files that are clearly no recordings are left out; unreadable ones come as `unusable` with the
+    reason.
 
     Parameters
     ----------
-    folder : str or Path
     root : str or Path
         Where paths of sessions start from; a folder elsewhere gives absolute paths.
-
-    Returns
-    -------
-    recordings : list of Recording
-        In name order; files that nobody would take for a recording are left out, those that cannot be read
-        come as `unusable` with the reason.
 
     Raises
     ------
@@ -55,14 +41,14 @@ def survey(folder, *, root):
     folder = Path(folder)
     if not folder.is_dir():
         raise InputError(
-            f"{folder}: expected a folder of recordings, found {'a file' if folder.exists() else 'none'}; "
-            "correct the path"
+            f"{folder}: expected a folder of recordings, found "
+            f"{'a file' if folder.exists() else 'none'}; correct the path"
         )
     found = []
     for at, inner, names in os.walk(folder):
         inner[:] = sorted(name for name in inner if not name.startswith("."))
         files = [Path(at) / name for name in sorted(names) if not name.startswith(".")]
-        files = [path for path in files if path.is_file()]  # a pipe would be waited for
+        files = [path for path in files if path.is_file()]  # reading a pipe would block
         photos = [
             path
             for path in files
@@ -78,7 +64,7 @@ def survey(folder, *, root):
     return [recording for recording in found if recording]
 
 
-def _kind(path):
+def _kind(path: Path) -> str:
     suffix = path.suffix.lower()
     for kind, suffixes in (
         ("video", VIDEOS),
@@ -91,10 +77,12 @@ def _kind(path):
     return suffix.removeprefix(".")
 
 
-def _described(path, folder, root, reader):
-    """Return the `Recording` that a file is, None for none."""
+def _described(
+    path: Path, folder: Path, root: str | PathLike, reader: Callable[[Path], dict[str, Any] | None]
+) -> Recording | None:
+    """Return the `Recording` of a file; None if it is none."""
     inside = path.relative_to(folder)
-    keys = {"path": written(path, root), "parts": (*inside.parts[:-1], inside.stem)}
+    keys: dict[str, Any] = {"path": written(path, root), "parts": (*inside.parts[:-1], inside.stem)}
     if any(not letter.isprintable() for letter in keys["path"]):
         return Recording(**keys, kind="unusable", note="a control character in its name; rename it")
     try:
@@ -104,37 +92,32 @@ def _described(path, folder, root, reader):
     return Recording(**keys, **more) if more else None
 
 
-def written(path, root):
-    """Return a path as a session names it: from `root` where it lies below, else absolute."""
-    whole, root = path.absolute(), Path(root).absolute()
-    return (whole.relative_to(root) if whole.is_relative_to(root) else whole).as_posix()
+def written(path: Path, root: str | PathLike) -> str:
+    """Return a path as a session names it: relative to `root` if below it, else absolute."""
+    whole, start = path.absolute(), Path(root).absolute()
+    return (whole.relative_to(start) if whole.is_relative_to(start) else whole).as_posix()
 
 
-def _video(path):
+def _video(path: Path) -> dict[str, Any]:
     info = video.probe(path)
     note = "frames come at irregular times" if info.variable_rate else ""
     rate_hz = info.rate_hz if math.isfinite(info.rate_hz) else None
-    return {
-        "kind": "video",
-        "size": info.size,
-        "rate_hz": rate_hz,
-        "duration_s": info.duration_s,
-        "note": note,
-    }
+    length = {"rate_hz": rate_hz, "duration_s": info.duration_s}
+    return {"kind": "video", "size": info.size, **length, "note": note}
 
 
-def _photo(path):
+def _photo(path: Path) -> dict[str, Any]:
     height, width = walk_frames.read_photo(walk_frames.photo_paths(path)[0]).shape[:2]
     return {"kind": "photo", "size": (width, height)}
 
 
-def _photos(path):
+def _photos(path: Path) -> dict[str, Any]:
     photos = walk_frames.photo_paths(path)
     height, width = walk_frames.read_photo(photos[0]).shape[:2]
     return {"kind": "photos", "size": (width, height), "n_photos": len(photos)}
 
 
-def _table(path):
+def _table(path: Path) -> dict[str, Any] | None:
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
             header = set(next(csv.reader(stream), []))
@@ -145,7 +128,7 @@ def _table(path):
     return {"kind": "racket"} if header >= RACKET else None
 
 
-def _calibration(path):
+def _calibration(path: Path) -> dict[str, Any] | None:
     try:
         cameras = file_formats.read(path)
     except InputError:  # any other text file
@@ -156,19 +139,11 @@ def _calibration(path):
     }
 
 
-def _bvh(path):
-    return {"kind": "bvh"}
-
-
-def _bag(path):
-    return {"kind": "bag"}
-
-
-_READERS = {
+_READERS: dict[str, Callable[[Path], dict[str, Any] | None]] = {
     "video": _video,
     "photo": _photo,
     "csv": _table,
     "calibration": _calibration,
-    "bvh": _bvh,
-    "bag": _bag,
+    "bvh": lambda path: {"kind": "bvh"},
+    "bag": lambda path: {"kind": "bag"},
 }

@@ -149,7 +149,7 @@ def read_takes(
     InputError
         If a file is no TRC file, has none of the joints, or other times than the first one.
     """
-    found, times, first = [], None, None
+    found: list[list[NDArray]] = []
     for path in files.values():
         names, _, time_s, xyz = trc.read(path)
         places = markers.joints_of(names, skeleton.joints)
@@ -159,7 +159,8 @@ def read_takes(
                 f"{markers.name(skeleton.joints[0])}, found {', '.join(names[:5])}; name their "
                 "skeleton"
             )
-        times, first = (time_s, path) if times is None else (times, first)
+        if not found:
+            times, first = time_s, path
         if len(time_s) != len(times) or not np.allclose(time_s, times, atol=1e-4):
             raise InputError(f"{path}: expected the times of {first}, found others; cut both alike")
         found.append([np.full((len(xyz), 3), np.nan) if k is None else xyz[:, k] for k in places])

@@ -90,7 +90,7 @@ def peaks(maps: NDArray) -> tuple[NDArray, NDArray]:
     fraction = np.empty((n_joints, 2))
     smooth = _smooth(_smooth(maps, axis=0), axis=1)
     for joint in range(n_joints):
-        row, column = np.unravel_index(np.argmax(smooth[..., joint]), (height, width))
+        row, column = divmod(int(np.argmax(smooth[..., joint])), width)
         x = column + _vertex(smooth[row, :, joint], column)
         y = row + _vertex(smooth[:, column, joint], row)
         fraction[joint] = (x + 0.5) / width, (y + 0.5) / height
@@ -100,7 +100,7 @@ def peaks(maps: NDArray) -> tuple[NDArray, NDArray]:
 def _smooth(maps: NDArray, axis: int) -> NDArray:
     padded = np.concatenate([maps.take([0], axis), maps, maps.take([-1], axis)], axis=axis)
     n = maps.shape[axis]
-    return sum(w * padded.take(range(at, at + n), axis) for at, w in enumerate(BLUR))
+    return np.asarray(sum(w * padded.take(range(at, at + n), axis) for at, w in enumerate(BLUR)))
 
 
 def _vertex(line: NDArray, at: int) -> float:

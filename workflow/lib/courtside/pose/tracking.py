@@ -76,10 +76,10 @@ def track_person(
             pose = landmarks.estimate(image, region)
         if pose is None or pose.presence < min_presence or strayed(pose.xy, boxes):
             pose = _search(image, boxes, detector, landmarks)
-        found = pose is not None and pose.presence >= min_presence
-        region = pose.region if found else None
+        found = pose if pose is not None and pose.presence >= min_presence else None
+        region = None if found is None else found.region
         times.append(time_s)
-        rows.append(as_row(pose if found else None, landmarks.n_joints, image.shape))
+        rows.append(as_row(found, landmarks.n_joints, image.shape))
     xy, score, reason, xyz = (np.stack(column) for column in zip(*rows, strict=True))
     return Track(np.array(times), xy, score, reason, xyz)
 
@@ -150,7 +150,7 @@ def as_row(
         unseen = np.full(n_joints, missing_reason.UNSEEN, np.uint8)
         return xy, np.full(n_joints, np.nan), unseen, xyz
     size = np.array([shape[1], shape[0]])
-    inside = ((pose.xy > -0.5) & (pose.xy < size - 0.5)).all(axis=1)
+    inside = np.all((pose.xy > -0.5) & (pose.xy < size - 0.5), axis=1)
     xy = np.where(inside[:, None], pose.xy, np.nan)
     reason = np.where(inside, missing_reason.OK, missing_reason.OUT_OF_IMAGE).astype(np.uint8)
     return xy, np.where(inside, pose.score, np.nan), reason, pose.xyz_in_body

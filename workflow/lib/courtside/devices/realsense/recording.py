@@ -107,7 +107,7 @@ def _camera(bag: Bag, stream: str, name: str) -> Camera:
         raise InputError(f"{where}: expected its lens (camera_info), found none; {RECORD}")
     size, matrix, model, coefficients = text.lens(where, info)
     try:
-        camera = Camera(name, size, matrix, np.zeros(5), STANDING_STILL)
+        camera = Camera(name, (size[0], size[1]), matrix, np.zeros(5), STANDING_STILL)
         dist = lens.five_coefficients(where, model, coefficients, matrix, size)
         return replace(camera, dist=dist)
     except InputError:

@@ -50,6 +50,7 @@ def lens(where: str, info: Any) -> tuple[list[int], NDArray, str, NDArray]:
         `sensor_msgs/CameraInfo` or text.
     """
     found = pairs(info)
+    coefficients: Any
     if found:
         values = [found.get(key) for key in ("fx", "ppx", "fy", "ppy", "width", "height")]
         fx, ppx, fy, ppy, *size = camera_fields.numbers(

@@ -57,7 +57,7 @@ class Writer:
             raise ValueError(f"a tensor of shape {shape} where {rank} dimensions are needed")
         return shape
 
-    def constant(self, index: int, kind: type[np.generic], rank: int) -> NDArray:
+    def constant(self, index: int, kind: type, rank: int) -> NDArray:
         """Return a constant's values; `kind` is np.float32 or np.integer."""
         values = self.constants.get(index)
         if values is None or not np.issubdtype(values.dtype, kind) or values.ndim != rank:

@@ -125,9 +125,9 @@ def _max_pool_2d(writer: Writer, operator: Operator) -> None:
 
 @_converts("RESIZE_BILINEAR", 2, 2)
 def _resize_bilinear(writer: Writer, operator: Operator) -> None:
-    image, size = operator.inputs
+    image, target = operator.inputs
     batch, _, _, channels = writer.shape(image, IMAGE_RANK)
-    size = writer.constant(size, np.integer, 1).tolist()
+    size = writer.constant(target, np.integer, 1).tolist()
     corners, centers = (operator.options[key] for key in ("align_corners", "half_pixel_centers"))
     if len(size) != 2 or min(size) < 1 or (corners and centers):
         raise ValueError(f"size {size}, align_corners {corners}, half_pixel_centers {centers}")
@@ -177,9 +177,9 @@ def _concatenation(writer: Writer, operator: Operator) -> None:
 
 @_converts("PAD", 2, 2)
 def _pad(writer: Writer, operator: Operator) -> None:
-    image, widths = operator.inputs
+    image, pads = operator.inputs
     rank = len(writer.shape(image))
-    widths = writer.constant(widths, np.integer, 2).astype(np.int64)
+    widths = writer.constant(pads, np.integer, 2).astype(np.int64)
     if widths.shape != (rank, 2) or widths.min(initial=0) < 0:
         raise ValueError(f"pad widths {widths.tolist()}")
     images = rank == IMAGE_RANK
