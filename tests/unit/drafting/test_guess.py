@@ -1,9 +1,12 @@
-"""Which camera, walk and take recordings belong to, by their names alone."""
+"""Which camera, walk and take recordings belong to, by the words of their names alone."""
 
 from pathlib import PurePosixPath
 
+import pytest
+
 from courtside.drafting import guess as session_guess
 from courtside.drafting.guess import Recording
+from courtside.study.configuration import configuration
 
 
 def recordings(*paths, **kinds):
@@ -162,3 +165,55 @@ def test_files_of_devices_without_a_name_go_to_the_only_take():
     ]
     found = guess("a_cam1.mp4", "a_cam2.mp4", "b_cam1.mp4", "b_cam2.mp4", "x.bvh")
     assert [take for take, *_ in found.devices] == [""]
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        (["smash1_left"], ("smash1", "left")),
+        (["Cam 01-takeTwo"], ("cam01", "take", "two")),
+        (["left", "GX010034"], ("left", "gx010034")),
+        (["2026-05-01 smash (2)"], ("2026", "05", "01", "smash2")),
+        (["Schläger_Übung"], ("schlager", "ubung")),
+        (["コート"], ()),
+        (["take", "1"], ("take", "1")),  # a folder's name and a file's are not one word
+    ],
+)
+def test_words(parts, expected):
+    assert session_guess.words_of(parts) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("North Gym", "north_gym"),
+        ("  --A.b--  ", "a_b"),
+        ("Größe", "grosse"),
+        ("コート", "session1"),
+        ("", "session1"),
+    ],
+)
+def test_names_are_such_as_a_configuration_accepts(text, expected):
+    found = session_guess.name(text, "session1")
+    assert found == expected
+    assert configuration.NAME.fullmatch(found)
+
+
+def test_distinct_counts_on():
+    assert session_guess.distinct("walk", {}) == "walk"
+    assert session_guess.distinct("walk", {"walk": 0, "walk_2": 0}) == "walk_3"
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("cam1", "cam01", True),
+        ("cam10", "cam1", False),
+        ("cam001", "cam01", True),
+        ("cam0", "cam", False),
+        ("a0", "a00", True),
+        ("left", "left", True),
+    ],
+)
+def test_zeros_before_a_number_do_not_count(one, other, same):
+    assert session_guess.alike(one, other) is same

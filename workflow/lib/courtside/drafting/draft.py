@@ -286,7 +286,8 @@ def _odd(guess: Guess) -> Iterator[str]:
     """Yield unusual sizes, rates and lengths."""
     for camera in guess.cameras:
         films = [take[camera] for take in guess.takes.values() if camera in take]
-        sizes = sorted({r.size for r in [*films, *filter(None, [guess.static.get(camera)])]})
+        films += filter(None, [guess.static.get(camera)])
+        sizes = sorted({film.size for film in films if film.size is not None})
         if len(sizes) > 1:
             found = " and ".join(f"{width}x{height}" for width, height in sizes)
             yield f"camera {camera} has pictures of {found} pixels"
@@ -304,7 +305,7 @@ def _odd_take(name: str, take: Take) -> Iterator[str]:
     rates = {round(r.rate_hz or 0) for r in take.values()}
     if len(rates) > 1:
         yield f"take {name} has videos of {' and '.join(map(str, sorted(rates)))} Hz"
-    lengths = [r.duration_s for r in take.values()]
+    lengths = [r.duration_s for r in take.values() if r.duration_s is not None]
     if max(lengths) > 2 * min(lengths):
         yield f"take {name} has videos whose lengths differ more than twofold"
     if len(lengths) > 1 and min(lengths) < SHORT_S:

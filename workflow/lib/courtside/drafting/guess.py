@@ -215,9 +215,9 @@ def _group(found: Guess, rest: Iterable[tuple[Recording, str | None, tuple[str, 
             found.unused.append((recording, f"its take has {take[camera].path} of that camera"))
         else:
             take[camera] = recording
-    for words, take in takes.items():
+    for shared, take in takes.items():
         if len(take) > 1:
-            name = words or _shared_name(take) or "take1"
+            name = shared or _shared_name(take) or "take1"
             found.takes[distinct(name, found.takes)] = take
             continue
         for camera, recording in take.items():
