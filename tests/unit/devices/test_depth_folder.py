@@ -63,7 +63,7 @@ def test_a_folder_is_read(folder):
     assert found.colour_index().n_missing == 0
 
 
-def test_times_of_tables(folder):
+def test_frame_times_come_from_the_tables(folder):
     (folder / "colour.csv").write_text("number,time_s\n7,1.0\n8,1.1\n9,1.2\n11,1.4\n12,1.5\n")
     (folder / "depth.csv").write_text("number,time_s\n7,1.01\n8,1.11\n10,1.31\n11,1.41\n")
     (folder / "depth" / "0004.png").unlink()

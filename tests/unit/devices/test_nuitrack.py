@@ -80,7 +80,7 @@ def check(motion):
     assert (motion.source, motion.kind) == ("n", "rgbd")
 
 
-def test_numbers_of_the_interface():
+def test_joint_numbers_are_those_of_the_interface():
     """Nuitrack's enumeration: head is 1, the left hand 9, the right shoulder 12, the right ankle 23."""
     wanted = {1: "head", 4: "waist", 9: "left_hand", 12: "right_shoulder", 17: "left_hip"}
     assert {k: nuitrack.NUMBERS[k] for k in wanted} == wanted
@@ -88,7 +88,7 @@ def test_numbers_of_the_interface():
     assert len(nuitrack.NUMBERS) == 25
 
 
-def test_csv(tmp_path):
+def test_a_csv_becomes_camera_axes_and_seconds(tmp_path):
     check(nuitrack.read(write_csv(tmp_path / "a.csv", csv_rows()), JOINTS, "n"))
 
 
@@ -121,7 +121,7 @@ def test_unsure_and_absent_joints_are_missing_with_their_reason(tmp_path):
     assert np.isnan(motion.xyz).any(axis=-1).sum() == 3
 
 
-def test_one_user_of_several(tmp_path):
+def test_the_user_seen_most_often_is_taken(tmp_path):
     rows = csv_rows()
     other = [
         [*row[:2], 7, *(v + 1 if isinstance(v, float) else v for v in row[3:])] for row in rows[1:4]

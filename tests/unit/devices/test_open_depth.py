@@ -16,7 +16,7 @@ def test_a_file_is_a_recording_of_the_camera_s_program(tmp_path):
     assert open_depth.baseline(unknown, 0.1) == 0.1
 
 
-def test_a_folder_is_the_plain_form(tmp_path):
+def test_a_folder_is_read_as_plain_files(tmp_path):
     with pytest.raises(InputError, match=r"cameras\.toml"):
         open_depth.read(tmp_path, "cam")
 

@@ -37,7 +37,7 @@ def read(folder, joints=COCO, **options):
     return openpose.read(folder, joints, camera="left", model="theirs", **options)
 
 
-def test_a_small_folder(tmp_path):
+def test_a_small_folder_is_read_frame_by_frame(tmp_path):
     moved = keypoints(101.0)
     moved[3:6] = [0, 0, 0]  # OpenPose's way to say unseen
     moved[6:9] = [-40, 50, 0.9]
@@ -60,7 +60,7 @@ def test_a_small_folder(tmp_path):
     assert np.isnan(found.xyz_in_body).all()
 
 
-def test_the_videos_times_and_a_trim(tmp_path):
+def test_frames_take_the_videos_times_and_trim(tmp_path):
     for at in range(5):
         write(tmp_path / "j", f"{at}.json", keypoints(100.0 + at))
     time_s = np.array([0, 0.03, 0.07, 0.1, 0.13, 0.17, 0.2])
@@ -104,7 +104,7 @@ def test_a_damaged_file_is_named(tmp_path, text, said):
     assert "\n" not in str(told.value)
 
 
-def test_folders_that_are_none(tmp_path):
+def test_other_folders_are_refused(tmp_path):
     with pytest.raises(InputError, match="found none; correct the path"):
         read(tmp_path / "nowhere")
     (tmp_path / "j").mkdir()
@@ -119,7 +119,7 @@ def test_folders_that_are_none(tmp_path):
         read(tmp_path / "k")
 
 
-def test_times_or_a_rate():
+def test_exactly_one_of_times_and_rate_is_taken():
     for options in ({}, {"rate_hz": 30, "time_s": np.arange(3)}):
         with pytest.raises(ValueError, match="time_s and rate_hz"):
             openpose.read(".", COCO, camera="left", model="theirs", size=(640, 480), **options)
@@ -230,6 +230,6 @@ def test_points_that_only_one_frame_has_do_not_count():
     assert len(openpose.link([stack(person(100.0, seen=4)), stack(other)])) == 2
 
 
-def test_nobody():
+def test_frames_without_people_give_no_track():
     assert openpose.link([stack(), stack()]).shape == (0, 2, 6, 3)
     assert len(openpose.link([])) == 0

@@ -28,7 +28,7 @@ TAKE = (recording("data/north/a_left.mp4"), recording("data/north/a_right.mp4"))
 WALK = recording("data/north/walk.mp4", rate_hz=60.0, duration_s=95.2)
 
 
-def test_a_whole_session():
+def test_a_whole_session_has_all_its_keys():
     static = recording("data/north/left_empty.mp4"), recording("data/north/right_empty.mp4")
     _, text, content = draft(*TAKE, *static, WALK)
     assert content == {
@@ -102,7 +102,7 @@ def test_a_camera_unknown_to_the_calibration_is_marked():
     assert "one of int_1_img" in text
 
 
-def test_photos_alone_and_courts():
+def test_photos_alone_make_a_session_of_any_court():
     photos = Recording("data/door/images", ("images",), "photos", (640, 480), n_photos=12)
     _, text, content = draft(photos, folder="data/door")
     assert content["walks"] == {"images": {"images": "data/door/images"}}

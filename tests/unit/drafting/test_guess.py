@@ -42,7 +42,7 @@ def paths(by_name):
     return {name: recording.path.removeprefix("gym/") for name, recording in by_name.items()}
 
 
-def test_the_names_of_the_manual():
+def test_names_as_in_the_manual_are_understood():
     found = guess(
         "centre_empty.mp4",
         "left_empty.mp4",
@@ -88,7 +88,7 @@ def test_a_single_take_keeps_its_name():
     assert list(guess("left.mp4", "right.mp4").takes) == ["take1"]
 
 
-def test_cameras_that_no_word_tells():
+def test_cameras_without_known_words_are_told_by_what_differs():
     found = guess("a.mp4", "b.mp4", "c.mp4")
     assert found.cameras == ["a", "b", "c"]
     found = guess("serve_x.mp4", "serve_y.mp4", "lob_x.mp4", "lob_y.mp4")
@@ -136,7 +136,7 @@ def test_photos_alone_are_a_walk():
     assert paths(found.walks) == {"photos": "photos"}
 
 
-def test_static_photos():
+def test_photos_of_the_empty_court_are_static():
     found = guess("left_empty.jpg", "a_left.mp4", "a_right.mp4", "right_empty.jpg")
     assert paths(found.static) == {"left": "left_empty.jpg", "right": "right_empty.jpg"}
     found = guess("tall_empty.jpg", "serve_tall.mp4", "serve_low.mp4", "low_empty.jpg")
@@ -179,7 +179,7 @@ def test_files_of_devices_without_a_name_go_to_the_only_take():
         (["take", "1"], ("take", "1")),  # a folder's name and a file's are not one word
     ],
 )
-def test_words(parts, expected):
+def test_names_are_split_into_words(parts, expected):
     assert session_guess.words_of(parts) == expected
 
 
@@ -199,7 +199,7 @@ def test_names_are_such_as_a_configuration_accepts(text, expected):
     assert configuration.NAME.fullmatch(found)
 
 
-def test_distinct_counts_on():
+def test_distinct_appends_the_first_free_number():
     assert session_guess.distinct("walk", {}) == "walk"
     assert session_guess.distinct("walk", {"walk": 0, "walk_2": 0}) == "walk_3"
 

@@ -74,14 +74,14 @@ def test_a_folder_elsewhere_gives_absolute_paths(gym, tmp_path):
     )
 
 
-def test_a_path_that_is_no_folder(gym):
+def test_a_path_other_than_a_folder_is_refused(gym):
     with pytest.raises(InputError, match="found none"):
         survey.survey(gym / "nowhere", root=gym)
     with pytest.raises(InputError, match="found a file"):
         survey.survey(gym / "data" / "My Gym" / "notes.txt", root=gym)
 
 
-def test_a_name_that_no_session_can_hold(tmp_path):
+def test_a_name_with_control_characters_is_unusable(tmp_path):
     (tmp_path / "a\nb.bvh").write_text("HIERARCHY\n")
     (found,) = survey.survey(tmp_path, root=tmp_path)
     assert (found.kind, "rename" in found.note) == ("unusable", True)

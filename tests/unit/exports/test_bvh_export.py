@@ -112,7 +112,7 @@ def test_joints_are_written_chain_by_chain(tmp_path):
 
 
 @pytest.mark.parametrize("n_frames", [0, 1])
-def test_no_frame_and_one_frame(tmp_path, n_frames):
+def test_files_of_no_frame_and_of_one_are_written(tmp_path, n_frames):
     bvh.write(tmp_path / "a.bvh", made(n_frames))
     found = reader.read(tmp_path / "a.bvh")
     np.testing.assert_allclose(found.translation, made(n_frames).translation, atol=1e-6)

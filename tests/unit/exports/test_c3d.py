@@ -134,7 +134,7 @@ def test_one_frame_has_no_rate(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_labels_differ(written):
+def test_every_joint_has_a_label_of_its_own(written):
     labels = ezc3d.c3d(str(written[1]))["parameters"]["POINT"]["LABELS"]["value"]
     assert len(set(labels)) == len(labels) == 33
 

@@ -39,7 +39,7 @@ def test_every_point_that_pose2sim_asks_for_is_there(name, theirs):
         ("left", "Left"),
     ],
 )
-def test_names(joint, expected):
+def test_joints_get_the_names_of_pose2sim(joint, expected):
     assert markers.name(joint) == expected
 
 

@@ -102,7 +102,7 @@ def test_a_project_is_replaced_as_a_whole(project):
     assert (folder / "kinematics" / "Markers_COURTSIDE.xml").is_file()
 
 
-def test_views_that_do_not_fit(project, tmp_path):
+def test_views_of_other_shapes_are_refused(project, tmp_path):
     _, found, views, points = project
     for wrong in ({}, views | {"z1": (views["z1"][0][:1], views["z1"][1][:1])}):
         with pytest.raises(ValueError, match="of camera z1"):
@@ -125,7 +125,7 @@ def test_files_that_do_not_fit_are_named(project, tmp_path):
 
 
 @needs_real
-def test_pose2sims_own_file():
+def test_a_file_of_pose2sim_itself_is_read():
     """Its markers are the joints by name; columns as stated in the real data's own table of axes."""
     path = REAL / "walk-4cams" / "trc" / "Balancing_for_IK.trc"
     body = skeleton.read(SKELETONS / "halpe26.yaml")

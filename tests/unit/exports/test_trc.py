@@ -31,7 +31,7 @@ def test_axes_are_the_worlds_y_z_x(written):
     np.testing.assert_allclose(found, record.xyz[0][..., [1, 2, 0]], atol=1e-6)
 
 
-def test_the_axis_map_keeps_hands():
+def test_the_axis_map_stays_right_handed():
     assert np.linalg.det(np.eye(3)[trc.WORLD_AXES]) == pytest.approx(1)
     assert np.array(trc.WORLD_AXES)[trc.TRC_AXES].tolist() == [0, 1, 2]
 

@@ -149,7 +149,7 @@ def test_a_member_that_is_no_array_is_named(tmp_path, path):
 
 
 @pytest.mark.parametrize("times", [[0.0, 0.0], [1.0, 0.5], [0.0, np.nan]])
-def test_times_increase(tmp_path, times):
+def test_times_that_do_not_increase_are_refused(tmp_path, times):
     spec = {"time_s": ("float", ("T",))}
     with pytest.raises(ValueError, match="time_s: expected times that increase"):
         npz.write(tmp_path / "a.npz", "test 1", spec, {"time_s": times})

@@ -63,7 +63,7 @@ def check(recording, made):
 
 
 @needs_real
-def test_the_real_recording():
+def test_the_real_recording_has_its_streams_and_lenses():
     path = REAL / "realsense" / "single_depth_color_640x480.bag"
     found = realsense.read(path, "d435")
     assert found.depth.K[0, 0] == pytest.approx(390.43, abs=0.005)
@@ -80,14 +80,14 @@ def test_the_real_recording():
     assert found.colour_index().number.tolist() == [162]
 
 
-def test_bag(tmp_path):
+def test_a_bag_is_read_as_it_was_written(tmp_path):
     found = realsense.read(write_bag(tmp_path / "a.bag"))
     check(found, frames())
     assert found.baseline_m == pytest.approx(BASELINE_M)
 
 
 @pytest.mark.parametrize("picture", [plain, packed])
-def test_db3(tmp_path, picture):
+def test_a_db3_is_read_as_it_was_written(tmp_path, picture):
     path = write_db3(tmp_path / "a.db3", messages_of_db3(frames(), picture))
     found = realsense.read(path)
     check(found, frames())
@@ -95,7 +95,7 @@ def test_db3(tmp_path, picture):
     assert found.colour_index().number.tolist() == [7, 8, 9, 10, 11, 12]
 
 
-def test_lost_frames_stay_lost(tmp_path, caplog):
+def test_lost_frames_are_gaps_in_the_numbers(tmp_path, caplog):
     made = [(t, None if k == 2 else bgr, steps) for k, (t, bgr, steps) in enumerate(frames())]
     found = realsense.read(write_bag(tmp_path / "a.bag", made), "cam")
     index = found.colour_index()

@@ -28,7 +28,7 @@ def test_messages_come_in_order_of_time(tmp_path):
         assert found.first("/d") is None
 
 
-def test_as_many_as_the_limit(tmp_path):
+def test_all_returns_at_most_the_limit(tmp_path):
     rows = [("/a", TEXT, k, {"data": str(k)}) for k in range(9)]
     with rosbag.opened(write_db3(tmp_path / "a.db3", rows)) as found:
         assert [message.data for message in found.all("/a", 3)] == ["0", "1", "2"]
@@ -107,7 +107,7 @@ def message(stored, encoding, pad=0, **changed):
         ("rgba8", np.dstack([BGR[..., ::-1], np.full((6, 8), 9, np.uint8)])),
     ],
 )
-def test_colour_in_any_order(encoding, stored, pad):
+def test_every_colour_encoding_becomes_bgr(encoding, stored, pad):
     assert np.array_equal(rosbag.colour(message(stored, encoding, pad)), BGR)
 
 
@@ -128,16 +128,16 @@ def test_yuv_without_colour_is_grey_of_its_luma(encoding, luma):
 
 @pytest.mark.parametrize("encoding", ["mono16", "16UC1", "z16"])
 @pytest.mark.parametrize("pad", [0, 6])
-def test_depth(encoding, pad):
+def test_every_depth_encoding_becomes_16_bit(encoding, pad):
     assert np.array_equal(rosbag.depth(message(DEPTH, encoding, pad)), DEPTH)
 
 
-def test_depth_of_the_other_byte_order():
+def test_big_endian_depth_is_swapped():
     swapped = DEPTH.astype(">u2")
     assert np.array_equal(rosbag.depth(message(swapped, "mono16", is_bigendian=1)), DEPTH)
 
 
-def test_packed_pictures():
+def test_compressed_pictures_are_decoded():
     png = cv2.imencode(".png", BGR)[1].ravel()
     found = SimpleNamespace(format="rgb8; png compressed bgr8", data=png)
     assert np.array_equal(rosbag.colour(found), BGR)

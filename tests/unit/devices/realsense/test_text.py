@@ -14,24 +14,24 @@ def text(data):
     return SimpleNamespace(data=data)
 
 
-def test_pairs_of_a_text():
+def test_a_text_message_becomes_its_pairs():
     assert realsense_text.pairs(text("a=1;b=x=y;c")) == {"a": "1", "b": "x=y"}
     assert realsense_text.pairs(text(3.0)) == {}
     assert realsense_text.pairs(None) == {}
 
 
 @pytest.mark.parametrize(("data", "wanted"), [("0.001", 0.001), (50.0, 50.0)])
-def test_numbers_as_text_or_not(data, wanted):
+def test_a_number_is_read_from_text_or_number(data, wanted):
     assert realsense_text.number(text(data)) == wanted
 
 
 @pytest.mark.parametrize("message", [None, text("none"), text(None), SimpleNamespace()])
-def test_no_number_is_nan(message):
+def test_a_message_without_a_number_is_nan(message):
     assert np.isnan(realsense_text.number(message))
     assert np.isnan(realsense_text.number_in(message, "depth_units"))
 
 
-def test_lens_of_either_form():
+def test_a_lens_is_read_from_message_and_text():
     message = SimpleNamespace(
         width=640,
         height=480,
@@ -53,7 +53,7 @@ def test_lens_of_either_form():
         assert np.array_equal(coefficients, np.arange(5))
 
 
-def test_place_of_either_form():
+def test_a_transform_is_read_from_message_and_text():
     x, y, z, w = TURN.as_quat()
     message = SimpleNamespace(
         rotation=SimpleNamespace(x=x, y=y, z=z, w=w),

@@ -116,7 +116,7 @@ WINDOWS = [
 @pytest.mark.parametrize("same", [True, False])
 @pytest.mark.parametrize(("kernel", "stride", "dilation"), WINDOWS)
 @pytest.mark.parametrize("kind", ["CONV_2D", "DEPTHWISE_CONV_2D", "MAX_POOL_2D"])
-def test_windows(tmp_path, kind, kernel, stride, dilation, same):
+def test_windows_give_the_interpreter_s_values(tmp_path, kind, kernel, stride, dilation, same):
     size, channels = (9, 12), 4
     network = Network()
     image = network.image(1, *size, channels)
@@ -144,7 +144,7 @@ def test_windows(tmp_path, kind, kernel, stride, dilation, same):
     converted(network, tmp_path)
 
 
-def test_convolution_in_groups(tmp_path):
+def test_grouped_convolution_gives_the_interpreter_s_values(tmp_path):
     network = Network()
     image = network.image(1, 6, 5, 8)
     inputs = [image, network.constant(floats(6, 3, 3, 4)), network.constant(floats(6))]
@@ -155,7 +155,7 @@ def test_convolution_in_groups(tmp_path):
 
 @pytest.mark.parametrize("size", [(8, 12), (7, 9), (1, 1), (2, 3), (4, 6)])
 @pytest.mark.parametrize(("corners", "centers"), [(True, False), (False, True), (False, False)])
-def test_resizing(tmp_path, size, corners, centers):
+def test_resizing_gives_the_interpreter_s_values(tmp_path, size, corners, centers):
     network = Network()
     inputs = [network.image(1, 4, 6, 3), network.constant(np.array(size, np.int32))]
     fields = {"alignCorners": corners, "halfPixelCenters": centers}
@@ -164,7 +164,7 @@ def test_resizing(tmp_path, size, corners, centers):
 
 
 @pytest.mark.parametrize("block", [1, 2, 3])
-def test_depth_to_space(tmp_path, block):
+def test_depth_to_space_gives_the_interpreter_s_values(tmp_path, block):
     network = Network()
     image = network.image(1, 3, 4, 36)
     shape = (1, 3 * block, 4 * block, 36 // block**2)
@@ -176,7 +176,7 @@ def test_depth_to_space(tmp_path, block):
     ("shape", "axis"),
     [((2, 3, 4, 5), axis) for axis in range(-4, 4)] + [((1, 3, 4), axis) for axis in range(-3, 3)],
 )
-def test_concatenation_with_a_constant(tmp_path, shape, axis):
+def test_concatenation_with_a_constant_gives_the_interpreter_s_values(tmp_path, shape, axis):
     longer = list(shape)
     longer[axis] += 2
     whole = list(shape)
@@ -200,7 +200,7 @@ def test_concatenation_with_a_constant(tmp_path, shape, axis):
         ((3,), (1, 3, 4, 3)),  # the sum has more dimensions than the image
     ],
 )
-def test_addition_of_a_constant(tmp_path, shape, other, activation):
+def test_addition_of_a_constant_gives_the_interpreter_s_values(tmp_path, shape, other, activation):
     network = Network()
     inputs = [network.constant(floats(*other)), network.image(*shape)]
     whole = np.broadcast_shapes(shape, other)
@@ -210,7 +210,7 @@ def test_addition_of_a_constant(tmp_path, shape, other, activation):
 
 @pytest.mark.parametrize("widths", [[[0, 0], [1, 2], [3, 4], [0, 5]], [[1, 0], [0, 2], [0, 1]]])
 @pytest.mark.parametrize("dtype", [np.int32, np.int64])
-def test_padding(tmp_path, widths, dtype):
+def test_padding_gives_the_interpreter_s_values(tmp_path, widths, dtype):
     shape = (1, 3, 4, 5)[-len(widths) :]
     network = Network()
     inputs = [network.image(*shape), network.constant(np.array(widths, dtype))]
@@ -267,7 +267,7 @@ def test_same_padding_is_the_least_that_gives_the_length(length):
         assert before + after == max(seen - length, 0)
 
 
-def test_outputs_left_out(tmp_path):
+def test_outputs_left_out_change_no_other(tmp_path):
     path = real_network("blazepose-lite-0.8.10.2.tflite")
     values = noise(path.name, 256)
     for name, outputs in (("all", None), ("some", ["Identity_4", "Identity"])):

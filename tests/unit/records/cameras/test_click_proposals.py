@@ -54,7 +54,7 @@ def test_other_cameras_and_points_are_named(tmp_path, cameras, points, words):
     assert str(path) in str(fault.value) and "\n" not in str(fault.value)
 
 
-def test_no_table_is_said(tmp_path):
+def test_a_file_of_another_kind_is_refused(tmp_path):
     path = tmp_path / "odd.csv"
     path.write_text("a,b\n1,2\n")
     with pytest.raises(

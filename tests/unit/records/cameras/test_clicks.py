@@ -65,7 +65,7 @@ def test_a_fault_is_one_line_that_names_it(tmp_path, text, named):
     assert [word for word in [str(path), *named] if word not in message] == []
 
 
-def test_a_missing_file_and_a_wrong_shape(tmp_path):
+def test_a_missing_file_and_a_wrong_shape_are_refused(tmp_path):
     with pytest.raises(InputError, match=r"none\.csv: expected a readable"):
         clicks.read(tmp_path / "none.csv", CAMERAS, POINTS)
     with pytest.raises(ValueError, match="left"):

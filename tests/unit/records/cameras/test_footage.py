@@ -83,7 +83,7 @@ def test_on_a_frame_a_missing_neighbour_does_not_matter():
     assert np.isnan(footage.between(record, record.time_s[3] - 0.005)[0, 4]).all()
 
 
-def test_beyond_the_take_is_nothing():
+def test_beyond_the_take_all_points_are_nan():
     record = walker.points(n_frames=12)
     assert np.isnan(footage.between(record, record.time_s[-1] + 0.1)).all()
     assert np.isfinite(footage.between(record, record.time_s[-1])).all()

@@ -69,7 +69,7 @@ def test_faults_are_one_line(tmp_path, text, said):
     assert message.startswith(f"{path}: expected a frame table") and "\n" not in message
 
 
-def test_a_missing_table_is_said(tmp_path):
+def test_a_missing_table_is_named(tmp_path):
     with pytest.raises(InputError, match=r"walk1\.csv: expected a frame table"):
         frame_table.read(tmp_path / "walk1.csv")
 

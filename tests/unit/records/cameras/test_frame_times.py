@@ -23,7 +23,7 @@ def view(n):
     )
 
 
-def test_round_trip(tmp_path):
+def test_what_is_written_is_read(tmp_path):
     path = tmp_path / "a.csv"
     frame_times.write(path, TIMES)
     found = frame_times.read(path)

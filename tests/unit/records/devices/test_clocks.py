@@ -16,7 +16,7 @@ CLOCKS = {
 }
 
 
-def test_a_clock_that_is_ahead_and_fast():
+def test_a_clock_ahead_and_fast_converts_both_ways():
     clock = clocks.Clock(offset_s=2.0, drift_ppm=100.0)
     # 1000 s later a clock that runs 100 ppm fast has gained 0.1 s on its lead of 2 s.
     np.testing.assert_allclose(clock.from_reference([0.0, 1000.0]), [2.0, 1002.1], atol=1e-9)
@@ -81,7 +81,7 @@ def test_a_doubtful_clock_is_named_with_its_offsets():
     assert clocks.fault_line("take rally", sure) == ""
 
 
-def test_what_8_ms_are_worth_at_a_smash():
+def test_8_ms_move_a_smashing_wrist_by_the_speed_times_the_time():
     assert clocks.wrist_error_mm(0.008, 12.0) == pytest.approx(96.0)
 
 

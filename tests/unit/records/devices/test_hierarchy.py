@@ -47,7 +47,7 @@ def test_branches_and_several_roots_are_products_of_matrices():
         np.testing.assert_allclose(world[frame], [m[:3, :3] for m in matrices], atol=1e-12)
 
 
-def test_no_frames_give_none():
+def test_forward_kinematics_of_no_frames_is_empty():
     xyz, _ = forward(posed([NO_PARENT, 0], np.ones((1, 2, 3)), np.tile(np.eye(3), (1, 2, 1, 1))))
     assert xyz.tolist() == [[[1, 1, 1], [2, 2, 2]]]
     shape = Hierarchy(("a",), np.array([NO_PARENT]), np.zeros((1, 3)))

@@ -16,7 +16,7 @@ def equal(one, other):
         np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name))
 
 
-def test_3d_round_trip(tmp_path):
+def test_3d_keypoints_are_read_as_written(tmp_path):
     record = walker.points(n_persons=2)
     keypoints.write_3d(tmp_path / "f.npz", record)
     found = keypoints.read_3d(tmp_path / "f.npz")
@@ -24,7 +24,7 @@ def test_3d_round_trip(tmp_path):
     assert isinstance(found.model, str)
 
 
-def test_2d_round_trip(tmp_path):
+def test_2d_keypoints_are_read_as_written(tmp_path):
     record = walker.views(walker.points(), scene.ring(1))[0]
     keypoints.write_2d(tmp_path / "f.npz", record)
     equal(keypoints.read_2d(tmp_path / "f.npz"), record)
