@@ -1,4 +1,4 @@
-"""Files for other programs.
+"""Files for other programs: TRC, C3D, BVH, CSV, Pose2Sim and OpenSim, videos.
 
 trc, c3d, bvh, tidy
     `write`: one person or body in that form (`tidy`: CSV); `trc.read`.

@@ -1,6 +1,7 @@
 """CSV of kinematics: a row per frame and person, a row per measure, and the choice of cut-offs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.kinematics import measures, path_length
 from courtside.kinematics.cutoffs import Choice
+from courtside.kinematics.joint_angles import Angle
 from courtside.records.keypoints import missing_reason
 
 LEAST_EXTENT_M = 1.0  # ASSUME: over shorter paths a relative error of lengths says little
@@ -48,6 +50,8 @@ SUMMARY_DICTIONARY = {
     "n": ("", "frames that it rests on", "never empty"),
     "definition": ("", "values compare without a mark only where this is the same", "never empty"),
 }
+# measure, value, sigma, sigma_camera, unit, n
+Row = tuple[str, float, float, float, str, int]
 
 
 def frames(people: Sequence[measures.Person]) -> pd.DataFrame:
@@ -69,7 +73,7 @@ def _frames_of(person: measures.Person) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def _columns(point):
+def _columns(point: measures.Point) -> dict[str, NDArray]:
     position, velocity, acceleration = point.covariance
     speed, speed_sd = measures.size(point.velocity, velocity)
     ground, ground_sd = measures.size(point.velocity, velocity, path_length.GROUND)
@@ -105,7 +109,7 @@ def summary(people: Sequence[measures.Person]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(SUMMARY_DICTIONARY))
 
 
-def _camera_share(point):
+def _camera_share(point: measures.Point) -> float:
     """Return the largest relative error of lengths from the calibration, one standard deviation.
 
     The errors at both ends of the path are taken as independent; in truth those of near places are
@@ -119,7 +123,7 @@ def _camera_share(point):
     return float(np.sqrt(2 * np.mean(camera**2)) / extent)
 
 
-def _distances(point):
+def _distances(point: measures.Point) -> Iterator[Row]:
     n_frames = int(np.isfinite(point.velocity).all(axis=1).sum())
     share, unknown = _camera_share(point), float("nan")
     for prefix, found in (("", point.distance), ("ground_", point.ground_distance)):
@@ -135,7 +139,7 @@ def _distances(point):
         yield f"{prefix}speed_mean", mean, sigma / seconds, share * mean, "m/s", n_frames
 
 
-def _extremes(point):
+def _extremes(point: measures.Point) -> Iterator[Row]:
     share = _camera_share(point)
     for name, vectors, covariance, unit in (
         ("speed_max", point.velocity, point.covariance[1], "m/s"),
@@ -152,14 +156,14 @@ def _largest(values: NDArray) -> tuple[int, int]:
     return (int(np.nanargmax(values)) if known.any() else 0), int(known.sum())
 
 
-def _noise(point):
+def _noise(point: measures.Point) -> Iterator[Row]:
     n_frames, unknown = int(np.isfinite(point.position).all(axis=1).sum()), float("nan")
     yield "noise_memory", point.noise.memory_s, unknown, unknown, "s", n_frames
     yield "noise_white_share", point.noise.white, unknown, unknown, "", n_frames
     yield "noise_scale", point.noise.scale, unknown, unknown, "", n_frames
 
 
-def _angle_rows(name, angle):
+def _angle_rows(name: str, angle: Angle) -> Iterator[tuple[Any, ...]]:
     unknown, words = float("nan"), "angle between lines from joint to joint"
     for what, sign in (("max", 1), ("min", -1)):
         at, n_frames = _largest(sign * angle.degrees)

@@ -109,6 +109,7 @@ def _settings(points: Keypoints3D, skeleton: str) -> dict[str, Any]:
             "frame_range": "all",
         },
         "pose": pose,
+        # The numbers are Pose2Sim's own defaults, as in the Config.toml of its demonstration.
         "triangulation": {
             "reproj_error_threshold_triangulation": 15,
             "likelihood_threshold_triangulation": 0.3,

@@ -1,4 +1,4 @@
-"""Records that rules exchange: files with stated units, checked when read.
+"""What rules hand to each other: files with their units, checked when read.
 
 npz
     `read`, `write`: arrays with stated keys, shapes and kinds; `plain`: fields of a record.

@@ -22,7 +22,7 @@ RAISED_BY_READERS: tuple[type[Exception], ...] = (
     *(zipfile.BadZipFile, zlib.error, lzma.LZMAError),
 )
 # The same, for blocks that take parsed content apart without checking its types.
-DAMAGED = (*RAISED_BY_READERS, TypeError, AttributeError)
+DAMAGED: tuple[type[Exception], ...] = (*RAISED_BY_READERS, TypeError, AttributeError)
 Kind = TypeVar("Kind")
 SPARE_MEMORY = "end other programs, or run fewer jobs at a time with --cores 1"
 

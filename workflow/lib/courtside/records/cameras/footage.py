@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
-from courtside.records.devices import clocks as sync
+from courtside.records.devices import clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints, people
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
@@ -81,18 +81,18 @@ def read(
         If a camera is not calibrated, has no clock, or none of the files is of a wanted one.
     """
     known = {camera.name: camera for camera in camera_models.read_toml(cameras_toml)}
-    who, (_, clocks) = people.read(people_npz), sync.read(sync_json)
+    who, (_, by_camera) = people.read(people_npz), clocks.read(sync_json)
     found: dict[str, Footage] = {}
     for path, video in zip(pose2d_npz, videos, strict=True):
         view = keypoints.read_2d(path)
         if wanted is not None and view.camera not in wanted:
             continue
-        for what, there in ((cameras_toml, known), (sync_json, clocks)):
+        for what, there in ((cameras_toml, known), (sync_json, by_camera)):
             if view.camera not in there:
                 raise InputError(
                     f"{what}: expected camera {view.camera}, found {sorted(there)}; make it again"
                 )
-        camera, clock = known[view.camera], clocks[view.camera]
+        camera, clock = known[view.camera], by_camera[view.camera]
         found[view.camera] = Footage(camera, who.assigned(view), clock, video)
     names = list(map(str, found if wanted is None else wanted))
     missing = [name for name in names if name not in found]
