@@ -8,6 +8,7 @@ import tomllib
 import zlib
 
 import pytest
+import yaml
 
 from courtside.study import errors
 from courtside.study.errors import InputError
@@ -51,12 +52,13 @@ def fail(name):
         "lzma": lambda: lzma.decompress(b"xxx"),
         "struct": lambda: struct.unpack("<I", b""),
         "key": lambda: {}["a"],
+        "library": lambda: yaml.safe_load("!!timestamp x"),  # an AttributeError of PyYAML's own
         "file": lambda: open("/nowhere/at all"),  # noqa: PTH123
     }[name]()
 
 
 @pytest.mark.parametrize(
-    "name", ["json", "toml", "number", "zlib", "lzma", "struct", "key", "file"]
+    "name", ["json", "toml", "number", "zlib", "lzma", "struct", "key", "file", "library"]
 )
 def test_damage_of_any_kind_becomes_one_line(name):
     with (
@@ -95,6 +97,10 @@ def test_a_fault_of_our_own_code_is_not_called_damage(fault):
     assert caught.value is fault
     with pytest.raises(InputError), errors.reading("a.x", "b", kinds=(type(fault),)):
         raise fault
+    with pytest.raises(TypeError), errors.reading("a.x", "b"):
+        len(3)  # raised by the interpreter, called by us
+    with pytest.raises(AttributeError), errors.reading("a.x", "b", kinds=(OSError,)):
+        fail("library")
 
 
 def test_content_of_another_type_is_damage():

@@ -4,6 +4,7 @@ import contextlib
 import csv
 import lzma
 import struct
+import sysconfig
 import tokenize
 import zipfile
 import zlib
@@ -13,16 +14,19 @@ from typing import TypeVar
 
 LONGEST = 1000  # characters of a line
 SHORT = 200  # of what a library says
-# What Python's readers of text, JSON, TOML, CSV and archives, numpy and pandas raise on damaged files
-# (tests/fuzz), and what a missing key or entry of the content raises. TypeError and AttributeError
-# are not among them: they are faults of our own code; `require_type` checks content of any type.
+# What readers of text, JSON, TOML, CSV and archives, numpy and pandas raise on damaged files
+# (tests/fuzz), and what a missing key or entry of the content raises.
 RAISED_BY_READERS: tuple[type[Exception], ...] = (
     *(ValueError, OSError, EOFError, LookupError, ArithmeticError, RuntimeError, MemoryError),
     *(SyntaxError, tokenize.TokenError, csv.Error, struct.error),
     *(zipfile.BadZipFile, zlib.error, lzma.LZMAError),
 )
-# The same, for blocks that take parsed content apart without checking its types.
-DAMAGED: tuple[type[Exception], ...] = (*RAISED_BY_READERS, TypeError, AttributeError)
+# Damage if code of a library raises them (PyYAML for `!!timestamp x`), else faults of our own code:
+# `require_type` checks the types of content that we take apart.
+AMBIGUOUS = (TypeError, AttributeError)
+LIBRARIES = tuple(sysconfig.get_path(key) for key in ("stdlib", "platstdlib", "purelib", "platlib"))
+# For blocks that take parsed content apart without checking its types.
+DAMAGED: tuple[type[Exception], ...] = (*RAISED_BY_READERS, *AMBIGUOUS)
 Kind = TypeVar("Kind")
 SPARE_MEMORY = "end other programs, or run fewer jobs at a time with --cores 1"
 
@@ -84,8 +88,8 @@ def reading(
     advice : str
         What to do.
     kinds : tuple of type
-        Exceptions that mean damage here, such as those of the library that reads the file; all
-        others pass, and so does `InputError` itself.
+        Exceptions that mean damage here, if not the default: what readers raise, and a TypeError or
+        AttributeError out of a library's code. All others pass, and so does `InputError` itself.
 
     Raises
     ------
@@ -95,11 +99,22 @@ def reading(
         yield
     except InputError:
         raise
-    except kinds as error:
+    except (*kinds, *AMBIGUOUS) as error:
+        libraries = kinds is RAISED_BY_READERS and _raised_by_library(error)
+        if not (isinstance(error, kinds) or libraries):
+            raise
         if isinstance(error, MemoryError):
             # The file asks for too much, or the machine has too little.
             advice = f"{advice}; or, if the file is whole, {SPARE_MEMORY}"
         raise InputError(f"{path}: expected {what}, found: {said(error)}; {advice}") from error
+
+
+def _raised_by_library(error: BaseException) -> bool:
+    """Return whether Python code of a library raised an exception, not ours."""
+    innermost = error.__traceback__
+    while innermost is not None and innermost.tb_next is not None:
+        innermost = innermost.tb_next
+    return innermost is not None and innermost.tb_frame.f_code.co_filename.startswith(LIBRARIES)
 
 
 def require_type(value: object, kind: type[Kind]) -> Kind:
