@@ -95,11 +95,12 @@ def reading(
     ------
     InputError
     """
+    caught: tuple[type[Exception], ...] = (*kinds, *AMBIGUOUS)
     try:
         yield
     except InputError:
         raise
-    except (*kinds, *AMBIGUOUS) as error:
+    except caught as error:
         libraries = kinds is RAISED_BY_READERS and _raised_by_library(error)
         if not (isinstance(error, kinds) or libraries):
             raise
