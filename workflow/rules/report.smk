@@ -8,7 +8,7 @@ Steps: build_report.
 rule build_report:
     input:
         files=lambda w: report_files(reported_study()),
-        assets=[ASSETS / name for name in REPORT_ASSETS],
+        assets=sorted(ASSETS.glob("[pr]*")),
     output:
         html=REPORT,
     log:

@@ -5,7 +5,6 @@ Inputs: the checked configuration, all rules. Outputs: none. Steps: pictures, ca
 
 from types import SimpleNamespace
 
-REPORT_ASSETS = ("page.css", "page.js", "report.css", "report.js")
 CAPTION_PARAMETERS = ("networks", "source", "step", "blur_faces")  # those that captions ask for
 
 

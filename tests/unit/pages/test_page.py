@@ -4,6 +4,7 @@ import base64
 import json
 from html.parser import HTMLParser
 
+import jinja2
 import numpy as np
 import pytest
 
@@ -109,8 +110,19 @@ def test_a_page_is_written_whole_as_utf_8(tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["page.html"]
 
 
-def test_text_is_safe_between_tags_and_in_attributes():
-    read = Elements(f'<p title="{page.text(ROGUE)}">{page.text(ROGUE)}</p>')
+def test_templates_escape_text_between_tags_and_in_attributes():
+    template = page.TEMPLATES.from_string('<p title="{{ text }}">{{ text }}</p>')
+    read = Elements(template.render(text=ROGUE))
     ((has, said),) = read.all("p")
     assert has["title"] == said == ROGUE
-    assert page.text(3) == "3"
+    assert Elements(template.render(text=3)).all("p") == [({"title": "3"}, "3")]
+
+
+def test_templates_refuse_values_that_are_not_given():
+    with pytest.raises(jinja2.UndefinedError, match="'session' is undefined"):
+        page.render("clicking.html")
+
+
+@pytest.mark.parametrize("path", sorted(page.ASSETS.glob("*.html")), ids=lambda path: path.name)
+def test_templates_are_templates(path):
+    page.TEMPLATES.get_template(path.name)

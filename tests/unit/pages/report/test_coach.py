@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from courtside.pages import page
 from courtside.pages.report import coach
 from courtside.pages.report.warnings import DOUBT, GOOD, LOOK, Warned
 from fixtures.study.report_made import ROGUE
@@ -28,7 +29,8 @@ def test_numbers_are_as_exact_as_their_error(value, half, unit, expected):
 
 
 def test_a_light_says_its_colour_in_a_shape_and_a_word():
-    shapes = {level: coach.light(level) for level in (GOOD, LOOK, DOUBT)}
+    light = page.macro("report_parts.html", "light")
+    shapes = {level: light(level) for level in (GOOD, LOOK, DOUBT)}
     words = {GOOD: "Good", LOOK: "Look", DOUBT: "Doubt"}
     assert all(words[level] in html for level, html in shapes.items())
     assert len({html.split('hidden="true">')[1][0] for html in shapes.values()}) == 3
@@ -65,9 +67,10 @@ def test_the_truth_of_a_simulated_take_is_told():
 
 
 def test_what_is_only_worth_knowing_is_folded_away():
-    html = coach.warnings([Warned(LOOK, "one"), Warned(GOOD, "two")])
+    warnings = page.macro("report_parts.html", "warnings")
+    html = warnings([Warned(LOOK, "one"), Warned(GOOD, "two")])
     assert html.index("one") < html.index("<details>") < html.index("two")
-    assert coach.warnings([]) == ""
+    assert warnings([]) == ""
 
 
 def test_words_of_users_stay_text():

@@ -4,7 +4,6 @@ import hashlib
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
-from string import Template
 
 import cv2
 import numpy as np
@@ -154,10 +153,9 @@ def build(session, court, frames, *, targets):
         "frames": [_frame(frame) for frame in frames],
         "targets": {name: targets.get(name, name) for name in ("court_points.csv", "racket.csv")},
     }
-    body = Template((page.ASSETS / "clicking.html").read_text(encoding="utf-8"))
     return page.build(
         f"Court points: {session}",
-        body.substitute(session=page.text(session)),
+        page.render("clicking.html", session=session),
         css=["clicking.css"],
         js=SCRIPTS,
         data={"clicking": shown},

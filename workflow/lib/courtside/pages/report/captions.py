@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import jinja2
 from docutils import core
+from markupsafe import Markup
 
 SETTINGS = {
     "raw_enabled": False,  # a caption is text: it brings no HTML of its own
@@ -46,4 +47,4 @@ def render(source, wildcards=None, params=None):
         parts = core.publish_parts(text, writer="html5", settings_overrides=SETTINGS)
     except (jinja2.TemplateError, core.utils.SystemMessage) as error:
         raise ValueError(f"caption: {' '.join(str(error).split())}: {source[:60]!r}") from None
-    return parts["body"].strip()
+    return Markup(parts["body"].strip())

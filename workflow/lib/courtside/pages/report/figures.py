@@ -1,12 +1,13 @@
 """Figures and tables of the report: pictures with their captions, CSV files that scroll by themselves."""
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
-from courtside.pages import pictures
-from courtside.pages.page import text
+from markupsafe import Markup
+
+from courtside.pages import page, pictures
 from courtside.pages.report import captions, facts
-from courtside.pages.report.coach import scrolling
 from courtside.study.errors import InputError
 
 TITLES = {
@@ -38,24 +39,21 @@ PLANS = "planned sessions"  # where the figures of plans belong
 PAPERS = {
     "badminton_fig": "Shishido & Kitahara 2020, figure",
     "badminton_tab": "Shishido & Kitahara 2020, table",
+    "thesis_fig": "Homma 2023, figure",
 }
-PAPERS |= {"thesis_fig": "Homma 2023, figure"}
+
+Groups = dict[tuple[str, str], list[dict]]  # figures by session and take
 
 
-def title(stem, planned=False):
-    """Return the heading of a figure from the name of its file, and how it was made.
+def title(stem: str, planned: bool = False) -> tuple[str, str]:
+    """Return the heading of a figure, and how it was made, from the name of its file.
 
     Parameters
     ----------
-    stem : str
+    stem
         Such as `overlay.sfm-n40.all-robust.blazepose-full`.
-    planned : bool
+    planned
         Whether it is of a session that is only planned.
-
-    Returns
-    -------
-    heading, way : str
-        Words; the rest of the name.
     """
     name, _, way = stem.partition(".")
     for start, words in PAPERS.items():
@@ -66,94 +64,84 @@ def title(stem, planned=False):
     return titles.get(name, name.replace("_", " ").replace("-", " ").capitalize()), way
 
 
-def figure(said, name):
-    """Return a figure as HTML, and its picture.
+def figure(said: dict, name: str) -> tuple[Markup, bytes]:
+    """Return a figure as HTML, and its picture as PNG.
 
     Parameters
     ----------
-    said : dict
+    said
         `png` and `caption` (paths), `wildcards`, `params`, `links` ([(address, words)]).
-    name : str
+    name
         Of the picture on the page.
-
-    Returns
-    -------
-    html : str
-    png : bytes
 
     Raises
     ------
     InputError
-        If the picture is missing or none.
+        If the picture cannot be read.
     """
     try:
-        png, (width, height) = pictures.shrunk(Path(said["png"]).read_bytes())
+        png, size = pictures.shrunk(Path(said["png"]).read_bytes())
     except OSError as error:
         raise InputError(f"{said['png']}: expected a PNG, found: {error}; draw it again") from None
     source = Path(said["caption"]).read_text(encoding="utf-8")
-    caption = captions.render(source, said["wildcards"], said["params"])
     heading, way = title(Path(said["png"]).stem, said["session"] == PLANS)
-    links = " &middot; ".join(
-        f'<a href="{text(a)}">{text(words)}</a>' for a, words in said["links"]
+    html = page.render(
+        "report_figure.html",
+        name=name,
+        size=size,
+        heading=heading,
+        way=way,
+        caption=captions.render(source, said["wildcards"], said["params"]),
+        places=said["links"],
     )
-    made = f'<code class="soft">{text(way)}</code> ' if way else ""
-    return (
-        f"<figure><h4>{text(heading)}</h4>"
-        f'<img src="image:{name}" alt="{text(heading)}: described below" width="{width}" height="{height}">'
-        f"<figcaption>{caption}<p>{made}{links}</p></figcaption></figure>"
-    ), png
+    return html, png
 
 
-def groups(figures, sessions):
-    """Return figures by where they belong: {(session, take): figures}, those of no session last.
+def groups(figures: Iterable[dict], sessions: Iterable[str]) -> Groups:
+    """Return figures by (session, take), in the order of the sessions; those of no session last.
 
     Parameters
     ----------
-    figures : list of dict
+    figures
         Each with `session` and `take`, empty where it belongs to none.
-    sessions : list of str
+    sessions
         In the order of the report.
     """
     order = {name: at for at, name in enumerate(sessions)}
-    found = {}
-    for said in sorted(
-        figures, key=lambda one: (order.get(one["session"], len(order)), bool(one["take"]))
-    ):
+
+    def place(said: dict) -> tuple[int, bool]:
+        return order.get(said["session"], len(order)), bool(said["take"])
+
+    found: Groups = {}
+    for said in sorted(figures, key=place):
         found.setdefault((said["session"], said["take"]), []).append(said)
     return found
 
 
-def identity(*parts):
-    """Return a name for a place on the page that an address may hold."""
+def identity(*parts: str) -> str:
+    """Return an id of the page that an address may hold."""
     return re.sub(r"[^a-z0-9_.-]+", "-", ".".join(filter(None, parts)).lower())
 
 
-def table(said):
-    """Return a CSV file as HTML: columns that are empty throughout left out, folded away.
+def table(said: dict) -> Markup:
+    """Return a CSV file as HTML, folded away, without the columns that are empty throughout.
 
     Parameters
     ----------
-    said : dict
+    said
         `file` (path), `title`, `words`, `link` (address).
     """
     columns, rows = facts.whole_table(said["file"])
     full = [at for at, _ in enumerate(columns) if any(row[at] for row in rows)]
-    head = "".join(f"<th scope='col'>{text(columns[at].replace('_', ' '))}</th>" for at in full)
-    body = "".join(f"<tr>{''.join(_cell(row[at]) for at in full)}</tr>" for row in rows)
-    made = f"<table class='dense'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-    count = f"{len(rows)} rows" if len(rows) != 1 else "1 row"
-    return (
-        f"<h3>{text(said['title'])}</h3><p>{text(said['words'])} "
-        f'<a href="{text(said["link"])}">The file</a>.</p>'
-        f"<details><summary>{count}, {len(full)} columns</summary>"
-        f"{scrolling(made, said['title']).replace('scroll', 'scroll tall', 1)}</details>"
-    )
+    head = [columns[at].replace("_", " ") for at in full]
+    cells = [[_cell(row[at]) for at in full] for row in rows]
+    return page.render("report_table.html", said=said, head=head, rows=cells)
 
 
-def _cell(value):
+def _cell(value: str) -> tuple[str, bool]:
+    """Return a value with four digits if it is a number, and whether it is one."""
     try:
         number = float(value)
     except ValueError:
-        return f"<td>{text(value)}</td>"
-    short = value if number == int(number) and "." not in value else f"{number:.4g}"
-    return f'<td class="number">{short}</td>'
+        return value, False
+    return (value if number.is_integer() and "." not in value else f"{number:.4g}"), True

@@ -74,10 +74,9 @@ def build(title, layers, cameras=(), court=None, notes=()):
         "colours": {"left": LEFT, "right": RIGHT, "middle": MIDDLE, "layers": LAYER_COLOURS},
         "notes": list(notes),
     }
-    body = (page.ASSETS / "viewer.html").read_text(encoding="utf-8")
     return page.build(
         title,
-        body.replace("TITLE", page.text(title)),
+        page.render("viewer.html", title=title),
         css=["viewer.css"],
         js=ASSETS,
         data={"scene": scene, "layers": contents},
