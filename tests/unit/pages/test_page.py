@@ -1,4 +1,4 @@
-"""Pages read by the standard library's own parser: one file, nothing outside, text that stays text."""
+"""Pages read by the standard library's parser: one file, nothing outside, text is escaped."""
 
 import base64
 import json
@@ -124,5 +124,5 @@ def test_templates_refuse_values_that_are_not_given():
 
 
 @pytest.mark.parametrize("path", sorted(page.ASSETS.glob("*.html")), ids=lambda path: path.name)
-def test_templates_are_templates(path):
+def test_all_templates_compile(path):
     page.TEMPLATES.get_template(path.name)

@@ -47,7 +47,7 @@ def test_a_photograph_keeps_its_colours():
     assert off <= pictures.MAX_DIFFERENCE
 
 
-def test_what_is_transparent_becomes_white():
+def test_transparent_parts_become_white():
     made = np.zeros((50, 50, 4), np.uint8)
     made[:25] = (0, 0, 255, 255)
     after = decoded(pictures.shrunk(encoded(made))[0])

@@ -1,4 +1,4 @@
-"""What the clicking page is given: pictures, court, earlier clicks; the browser tests click on it."""
+"""Content of the clicking page: pictures, court, earlier clicks (browser tests click on it)."""
 
 import json
 import re
@@ -46,7 +46,7 @@ def test_a_picture_is_taken_as_it_is_or_made_smaller(picture):
 
 
 @pytest.mark.parametrize("content", [b"", b"no picture", None])
-def test_a_file_that_is_no_picture_is_named(tmp_path, content):
+def test_a_file_that_is_not_a_picture_is_named(tmp_path, content):
     path = tmp_path / "odd.png"
     if content is not None:
         path.write_bytes(content)

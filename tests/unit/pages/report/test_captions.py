@@ -18,7 +18,7 @@ def test_wildcards_and_parameters_are_put_in():
     assert "x_m" in html and "``" not in html
 
 
-def test_what_depends_on_a_parameter_is_left_out():
+def test_text_that_depends_on_a_parameter_is_left_out_without_it():
     source = "A.{% if snakemake.params.blur_faces %} Faces are hidden.{% endif %}"
     assert "Faces" in captions.render(source, {}, {"blur_faces": True})
     assert "Faces" not in captions.render(source, {}, {"blur_faces": False})
@@ -28,7 +28,7 @@ def test_paragraphs_stay_apart():
     assert captions.render("One.\n\nTwo.").count("<p>") == 2
 
 
-def test_markup_of_another_kind_is_text():
+def test_html_in_a_caption_is_escaped():
     html = captions.render("a < b & <script>alert(1)</script>")
     assert "<script" not in html
     assert "a &lt; b &amp; &lt;script&gt;" in html
@@ -38,7 +38,7 @@ def test_markup_of_another_kind_is_text():
     "source",
     [".. raw:: html\n\n   <script>alert(1)</script>\n", ".. include:: /etc/hostname\n"],
 )
-def test_nothing_is_brought_in_from_elsewhere(source):
+def test_captions_include_no_raw_html_and_no_files(source):
     hostname = Path("/etc/hostname")
     html = captions.render(source)
     assert "<script" not in html
@@ -49,7 +49,7 @@ def test_nothing_is_brought_in_from_elsewhere(source):
 @pytest.mark.parametrize(
     "source", ["{{ snakemake.params.step.n }}", "{{ snakemake.wildcards.take }}", "{% if"]
 )
-def test_what_is_not_given_is_said(source):
+def test_an_unknown_value_in_a_caption_is_an_error(source):
     with pytest.raises(ValueError, match="caption: "):
         captions.render(source)
 

@@ -24,11 +24,11 @@ FACTS = {"persons": {}, "left_out": {}, "seconds": None, "devices": [], "true_pa
         (math.nan, math.nan, "m", "not known"),
     ],
 )
-def test_numbers_are_as_exact_as_their_error(value, half, unit, expected):
+def test_numbers_have_the_digits_of_their_error(value, half, unit, expected):
     assert coach.with_error(value, half, unit) == expected
 
 
-def test_a_light_says_its_colour_in_a_shape_and_a_word():
+def test_a_mark_has_a_shape_and_a_word_beside_its_colour():
     light = page.macro("report_parts.html", "light")
     shapes = {level: light(level) for level in (GOOD, LOOK, DOUBT)}
     words = {GOOD: "Good", LOOK: "Look", DOUBT: "Doubt"}
@@ -56,7 +56,7 @@ def test_a_take_says_distance_speeds_and_angles():
     assert html.index("Look") < html.index("29.33")
 
 
-def test_the_truth_of_a_simulated_take_is_told():
+def test_a_simulated_take_compares_the_distance_with_the_truth():
     row = {"person": "p1", "point": "neck", "distance_error_percent": -2.3}
     facts = FACTS | {
         "persons": {"p1": {"neck_distance": (1.0, 0.1, "m", True)}},
@@ -66,14 +66,14 @@ def test_the_truth_of_a_simulated_take_is_told():
     assert "2.3 % too short" in html
 
 
-def test_what_is_only_worth_knowing_is_folded_away():
+def test_warnings_for_information_only_are_folded_away():
     warnings = page.macro("report_parts.html", "warnings")
     html = warnings([Warned(LOOK, "one"), Warned(GOOD, "two")])
     assert html.index("one") < html.index("<details>") < html.index("two")
     assert warnings([]) == ""
 
 
-def test_words_of_users_stay_text():
+def test_text_of_users_is_escaped():
     measures = {"neck_distance": (1.0, 0.1, ROGUE, True)}
     facts = FACTS | {"persons": {ROGUE: measures}, "devices": [{"source": ROGUE}]}
     said = {"id": "t", "name": ROGUE, "links": [(ROGUE, ROGUE)]}

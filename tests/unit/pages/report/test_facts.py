@@ -12,7 +12,7 @@ from fixtures.people import walker
 from fixtures.study import report_made
 
 
-def test_measures_come_with_nine_in_ten(tmp_path):
+def test_measures_come_with_half_of_their_90_percent_interval(tmp_path):
     facts = report_facts.of_take(report_made.files_of_take(tmp_path))
     value, half, unit, known = facts["persons"]["p1"]["neck_distance"]
     assert (value, unit, known) == (29.3274, "m", True)
@@ -32,7 +32,7 @@ def test_a_take_without_files_is_empty():
     assert not any(facts.values())
 
 
-def test_joints_lost_are_counted_by_reason():
+def test_missing_joints_are_counted_by_reason():
     made = walker.points(n_frames=10, n_cameras=3)
     wrist = list(made.joints).index("left_wrist")
     made.xyz[:, :4, wrist] = np.nan
@@ -52,7 +52,7 @@ def test_joints_lost_are_counted_by_reason():
     assert sum(facts["views"].values()) == pytest.approx(1.0)
 
 
-def test_cameras_that_the_others_contradict_are_seen():
+def test_a_contradicted_camera_has_a_low_accepted_share():
     made = walker.points(n_frames=10, n_cameras=3)
     made.accepted[..., 1] = False
     made.accepted[:, ::2, :, 1] = True
@@ -63,7 +63,7 @@ def test_cameras_that_the_others_contradict_are_seen():
     assert facts["c0"]["accepted"] == 1.0
 
 
-def test_a_session_gives_its_qualities(tmp_path):
+def test_a_session_gives_quality_model_and_movement(tmp_path):
     files = report_made.study(tmp_path)["sessions"][0]["files"]
     facts = report_facts.of_session(files)
     assert facts["quality"]["sfm-n40"]["expected_volume_rms_cm"] == 0.7
@@ -72,14 +72,14 @@ def test_a_session_gives_its_qualities(tmp_path):
 
 
 @pytest.mark.parametrize("key", ["summary", "frames"])
-def test_a_file_that_is_none_is_named(tmp_path, key):
+def test_a_file_that_is_not_a_table_is_named(tmp_path, key):
     files = report_made.files_of_take(tmp_path)
     files[key] = str(tmp_path / "c0.csv")
     with pytest.raises(InputError, match=r"c0\.csv: expected a table"):
         report_facts.of_take(files)
 
 
-def test_a_quality_that_is_no_json_is_named(tmp_path):
+def test_a_quality_file_that_is_not_json_is_named(tmp_path):
     (tmp_path / "quality.json").write_text("{")
     with pytest.raises(InputError, match=r"quality\.json: expected JSON"):
         report_facts.of_session({"quality": {"file": tmp_path / "quality.json"}})
@@ -87,7 +87,7 @@ def test_a_quality_that_is_no_json_is_named(tmp_path):
     assert report_facts.of_session({"quality": {"file": tmp_path / "quality.json"}})["model"] == {}
 
 
-def test_a_table_stands_as_it_is(tmp_path):
+def test_a_table_is_read_as_text_without_changes(tmp_path):
     (tmp_path / "t.csv").write_text('a,b\n"x, y",\n1.50,NA\n')
     assert report_facts.whole_table(tmp_path / "t.csv") == (
         ["a", "b"],

@@ -1,4 +1,4 @@
-"""Figures and tables of the report: headings, captions, places, and tables that hold what the file holds."""
+"""Figures and tables of the report: headings, captions, ids, complete tables."""
 
 import pytest
 
@@ -57,6 +57,6 @@ def test_a_table_leaves_out_what_is_empty_and_escapes_the_rest(tmp_path):
     assert html.count("<tr>") == 32
 
 
-def test_places_on_the_page_have_plain_names():
+def test_ids_hold_only_characters_of_addresses():
     assert report_figures.identity("figures", "players-b", "shot") == "figures.players-b.shot"
     assert report_figures.identity("x", 'a"b c') == "x.a-b-c"

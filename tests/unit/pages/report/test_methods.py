@@ -17,14 +17,14 @@ def said(study):
     return methods.paragraphs(study["parameters"], study["sessions"])
 
 
-def test_the_configuration_is_told(study):
+def test_methods_state_the_configuration(study):
     html = said(study)
     for words in (
         "from 40 pictures of the walk",
         "a ratio of 0.8",
-        "0.7 px exact per axis",
+        "a standard deviation of 0.7 px per axis",
         "network blazepose-full",
-        "<code>all-robust</code>: views are weighed",
+        "<code>all-robust</code>: views are weighted",
         "within 15 px",
         "6 Hz (head), 10 Hz (arms)",
         "7 Hz (head)",
@@ -33,7 +33,7 @@ def test_the_configuration_is_told(study):
         assert words in html, words
 
 
-def test_another_configuration_is_told_otherwise(study):
+def test_methods_follow_another_configuration(study):
     study["parameters"]["filter_motion"]["cutoff_hz"] = {"head": 3}
     study["parameters"]["triangulate"]["max_error_px"] = 9
     study["sessions"][0] |= {"mapper": "incremental", "n_images": 12}
@@ -42,7 +42,7 @@ def test_another_configuration_is_told_otherwise(study):
     assert "incremental, Schönberger" in html and "Global structure-from-motion" not in html
 
 
-def test_sources_are_those_of_what_was_done(study):
+def test_only_the_methods_that_were_used_are_cited(study):
     html = said(study)
     assert "Lowe" in html and "Bazarevsky" in html and "Homma" not in html
     study["sessions"][0] |= {"way": "file", "mapper": None}
@@ -52,14 +52,14 @@ def test_sources_are_those_of_what_was_done(study):
     assert "Lowe" not in html and "Winter" not in html and "Bazarevsky" not in html
 
 
-def test_what_a_session_states_otherwise_is_said_once(study):
+def test_settings_of_several_sessions_are_stated_once(study):
     other = {**study["sessions"][0], "name": "gym"}
     study["sessions"].append(other)
     assert said(study).count("triangulate: {fade_px: 13}") == 1
     assert "in hall and gym" in said(study)
 
 
-def test_names_of_users_stay_text(study):
+def test_names_of_users_are_escaped(study):
     study["sessions"][0] |= {"name": report_made.ROGUE, "way": report_made.ROGUE}
     study["sessions"][0]["overrides"] = {report_made.ROGUE: {"x": report_made.ROGUE}}
     assert "<img" not in said(study)

@@ -24,21 +24,21 @@ def cells(html, first):
     return re.findall(r"<td[^>]*>(.*?)</td>", row)
 
 
-def test_cameras_and_residuals_are_told(tmp_path):
+def test_the_page_states_calibrations_and_residuals(tmp_path):
     html = page(tmp_path)
     assert "42 of 42 pictures registered, 2416 points" in re.sub(r"\s+", " ", html)
     assert cells(html, r"sfm-n40 \(takes\)") == ["2.00", "3.00", "0.70", "0.30", "0"]
     assert "Calibration: odd." in html
 
 
-def test_clocks_and_movement_are_told(tmp_path):
+def test_the_page_states_clocks_and_movement(tmp_path):
     html = page(tmp_path)
     assert cells(html, "c1")[:3] == ["found", "0.2000", "1.65"]
     assert cells(html, "c0") == ["0.10", "0.0010", "300"]
     assert "trembles by 0.01 px" in html
 
 
-def test_joints_lost_are_told_with_their_reasons(tmp_path):
+def test_the_page_states_missing_joints_with_their_reasons(tmp_path):
     joints = {
         "left_wrist": {"missing": 0.25, "reasons": {"unseen": 0.2, "rejected": 0.05}, "few": None}
     }
@@ -46,7 +46,7 @@ def test_joints_lost_are_told_with_their_reasons(tmp_path):
     assert cells(html, "left wrist") == ["25.0 %", "20.0 %", "5.0 %", "–"]
 
 
-def test_errors_of_simulated_takes_are_those_of_their_rule(tmp_path):
+def test_errors_of_simulated_takes_are_those_of_their_fusion(tmp_path):
     row = {"stage": "pose3d", "fusion": "all-robust", "person": "all", "joint": "limbs", "n": 9}
     row |= {"median_mm": 46.3, "p95_mm": 107.0, "coverage_90_percent": 34.1}
     others = [
@@ -58,7 +58,7 @@ def test_errors_of_simulated_takes_are_those_of_their_rule(tmp_path):
     assert ">52<" not in html and ">1<" not in html
 
 
-def test_what_is_not_known_is_a_dash():
+def test_unknown_numbers_are_a_dash():
     assert quality.number(None) == quality.number(math.nan) == "–"
     assert quality.percent(None) == "–"
     assert quality.percent(0.123) == "12.3 %"
@@ -72,6 +72,6 @@ def test_tables_scroll_by_themselves_and_escape():
     assert table(("a",), [], "nothing") == ""
 
 
-def test_the_limits_of_the_lights_are_all_told():
+def test_all_limits_of_the_marks_are_stated():
     html = quality.limits()
     assert html.count("<tr>") == len(warnings.LIMITS) + 1

@@ -1,4 +1,4 @@
-"""The report as a whole, read by a parser: nothing outside, links have their places, words stay text."""
+"""The whole report, read by a parser: nothing outside, links have targets, text is escaped."""
 
 from html.parser import HTMLParser
 
@@ -37,7 +37,7 @@ def test_every_link_within_leads_somewhere(study):
     assert len(set(read.places)) == len(read.places)
 
 
-def test_nothing_lies_outside(study):
+def test_the_page_requests_nothing_from_outside(study):
     page = report.build(study)
     read = Read(page)
     outside = [link for link in read.links if not link.startswith("#")]
@@ -65,7 +65,7 @@ def test_the_page_opens_with_what_was_measured(study):
     assert Read(page).tags.count("h1") == Read(page).tags.count("nav") == 1
 
 
-def test_words_of_users_stay_text(tmp_path):
+def test_text_of_users_is_escaped(tmp_path):
     made = report_made.study(tmp_path, name=report_made.ROGUE, description=report_made.ROGUE)
     page = report.build(made | {"title": report_made.ROGUE})
     assert "https://example.invalid" in page  # as text
@@ -79,14 +79,14 @@ def test_a_session_of_devices_says_nothing_of_cameras(study):
     assert "Cameras</span>" not in report.build(study)
 
 
-def test_a_study_without_takes_has_a_report_too(study):
+def test_a_study_without_takes_has_a_report(study):
     study["sessions"][0]["takes"] = []
     study["figures"], study["tables"] = [], []
     page = report.build(study)
     assert "How far to trust it" in page and "What was measured" not in page
 
 
-def test_what_is_not_made_for_want_of_consent_is_said(study):
+def test_the_report_states_what_lacks_consent(study):
     session = study["sessions"][0]
     assert "Left out" not in report.build(study)
     session["withheld"] = ["nothing is made of take rally: p2 has not agreed to analysis"]

@@ -31,7 +31,7 @@ def level(found):
         ({"shift_x_px": math.nan, "shift_y_px": math.nan, "zoom_percent": math.nan}, warned.LOOK),
     ],
 )
-def test_a_camera_that_moved_is_named(row, expected):
+def test_a_moved_camera_gives_a_warning_with_its_name(row, expected):
     found = warned.moved(STILL | row, max_shift_px=1.0, max_zoom_percent=0.2)
     assert level(found) == expected
     assert found is None or "left" in found.text
@@ -50,11 +50,11 @@ def test_a_camera_that_moved_is_named(row, expected):
         (Clock(status="unknown"), warned.DOUBT),
     ],
 )
-def test_an_unsure_clock_is_said(clock, expected):
+def test_an_uncertain_clock_gives_a_warning(clock, expected):
     assert level(warned.clock("back", clock)) == expected
 
 
-def test_the_price_of_a_clock_is_what_a_wrist_does_in_that_time():
+def test_a_clock_error_is_also_given_as_the_path_of_a_fast_wrist():
     found = warned.clock("back", Clock(status="found", uncertainty_s=0.01))
     assert "16 ms" in found.text and "20 cm" in found.text  # 12 m/s times 16.45 ms
 
@@ -75,7 +75,7 @@ def test_the_price_of_a_clock_is_what_a_wrist_does_in_that_time():
         ),
     ],
 )
-def test_a_knock_is_told_without_advice_that_was_followed(line, expected, left_out):
+def test_a_bump_is_reported_without_advice_that_was_followed(line, expected, left_out):
     found = warned.shaken(line)
     assert found.level == expected
     assert found.text.startswith("Camera left: ") and left_out not in found.text
@@ -93,7 +93,7 @@ def test_a_knock_is_told_without_advice_that_was_followed(line, expected, left_o
         ({"left_out": {}, "expected_volume_rms_cm": None}, [warned.LOOK]),
     ],
 )
-def test_a_bad_calibration_is_said(change, expected):
+def test_a_bad_calibration_gives_warnings(change, expected):
     assert [item.level for item in warned.calibration("sfm-n40", QUALITY | change)] == expected
 
 
@@ -105,13 +105,13 @@ def test_the_median_of_points_that_were_left_out():
 
 
 @pytest.mark.parametrize(("lost", "expected"), [(0, None), (6, warned.LOOK), (20, warned.DOUBT)])
-def test_pictures_without_a_place_are_counted(lost, expected):
+def test_pictures_that_were_not_registered_are_counted(lost, expected):
     found = warned.registered({"n_images": 42, "n_registered": 42 - lost})
     assert level(found) == expected
     assert not lost or f"{lost} of 42" in found.text
 
 
-def test_a_camera_that_the_others_contradict():
+def test_a_camera_that_others_contradict_gives_a_warning():
     assert warned.contradicts("c1", {"accepted": 0.95, "median_px": 4.0}) is None
     assert level(warned.contradicts("c1", {"accepted": 0.7, "median_px": 4.0})) == warned.LOOK
     found = warned.contradicts("c1", {"accepted": 0.3, "median_px": 4.0})
@@ -123,25 +123,25 @@ def joint(missing=0.0, few=0.0):
     return {"missing": missing, "reasons": {}, "few": few}
 
 
-def test_the_joint_that_is_lost_most_often_is_named():
+def test_the_joint_that_is_missing_most_often_is_named():
     assert warned.joints({"left_knee": joint(), "left_hip": joint()}) == []
     (found,) = warned.joints({"left_knee": joint(0.3), "left_hip": joint(0.1)})
     assert found.level == warned.DOUBT
     assert "20%" in found.text and "left knee (30%)" in found.text
     (alone,) = warned.joints({"left_knee": joint(few=0.9)})
-    assert alone.level == warned.LOOK and "two cameras only" in alone.text
+    assert alone.level == warned.LOOK and "only two cameras" in alone.text
     assert warned.joints({}) == []
 
 
-def test_frames_left_out_are_said_with_their_reason():
+def test_frames_left_out_give_a_warning_with_the_reason():
     assert warned.frames("p1", 1, 100, {"uncertain": 1}) is None
     found = warned.frames("p1", 30, 100, {"uncertain": 20, "one_view": 10})
     assert found.level == warned.DOUBT
-    assert "30 of 100" in found.text and "too badly" in found.text
+    assert "30 of 100" in found.text and "too uncertain" in found.text
     assert "one view" in warned.frames("p1", 10, 100, {"one_view": 10}).text
 
 
-def test_a_truth_outside_the_error_bar_is_said():
+def test_a_truth_outside_the_error_bar_gives_a_warning():
     row = {"person": "m3", "point": "neck", "distance_sigma_percent": 1.0}
     assert warned.true_path(row | {"distance_error_percent": -1.6}) is None
     found = warned.true_path(row | {"distance_error_percent": -2.3})
@@ -160,7 +160,7 @@ def test_a_truth_outside_the_error_bar_is_said():
         (math.nan, math.nan, warned.DOUBT),
     ],
 )
-def test_a_distance_that_is_hardly_known_is_said(value, half, expected):
+def test_an_uncertain_distance_gives_a_warning(value, half, expected):
     measures = {"neck_distance": (value, half, "m", True)}
     assert level(warned.distance("p1", measures)) == expected
 
@@ -173,11 +173,11 @@ def test_a_distance_that_is_hardly_known_is_said(value, half, expected):
         ({"status": "unknown", "uncertainty_s": math.nan}, warned.DOUBT),
     ],
 )
-def test_clocks_of_devices(row, expected):
+def test_an_uncertain_clock_of_a_device_gives_a_warning(row, expected):
     assert level(warned.device({"source": "mocopi"} | row)) == expected
 
 
-def test_the_most_serious_comes_first():
+def test_warnings_are_sorted_by_level():
     facts = {
         "persons": {},
         "movement": [STILL | {"shift_x_px": 0.6}],

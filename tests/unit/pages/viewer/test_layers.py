@@ -34,7 +34,7 @@ def device(n_frames=40, rate_hz=50):
     )
 
 
-def test_covariances_add_up_and_say_what_they_cover(record):
+def test_covariances_add_up_and_name_their_parts(record):
     alone = layers.of_points("raw", record, walker.SKELETON)
     np.testing.assert_array_equal(alone.covariance, record.covariance_2d)
     assert alone.covers == "keypoints only, cameras taken as exact"
@@ -68,7 +68,7 @@ def test_the_packed_layer_holds_the_records_numbers(record):
     assert unpacked(content["n_views"], shape)[0, 0, 0] == 3
 
 
-def test_what_is_missing_says_why(record):
+def test_missing_joints_keep_their_reason(record):
     record.xyz[0, 6, 2] = np.nan  # called ok all the same
     layer = layers.of_points("raw", record, walker.SKELETON)
     content = layers.packed(layer, np.zeros(3))
@@ -78,7 +78,7 @@ def test_what_is_missing_says_why(record):
     assert (reason > 0).sum() == 3  # and the other person's joint 4 in frame 3
 
 
-def test_files_are_told_apart(tmp_path, record):
+def test_files_of_points_and_devices_are_recognised(tmp_path, record):
     keypoints.write_3d(tmp_path / "points.npz", record)
     device_motion.write(tmp_path / "device.npz", device())
     read = layers.read(tmp_path / "points.npz", "raw", walker.SKELETON)
@@ -111,7 +111,7 @@ def test_a_device_is_put_where_the_person_is(record):
         ({"bones": (("nose", "tail"),)}, "tail"),
     ],
 )
-def test_layers_that_do_not_fit(record, change, word):
+def test_inconsistent_layers_are_refused(record, change, word):
     layer = layers.of_points("raw", record, walker.SKELETON)
     with pytest.raises(ValueError, match=word):
         replace(layer, **change)

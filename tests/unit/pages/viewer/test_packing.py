@@ -33,7 +33,7 @@ def test_the_range_of_int16_is_kept_through_any_change():
         packing.integers([40_000])
 
 
-def test_what_is_far_away_is_not_drawn():
+def test_joints_beyond_32_m_are_unknown():
     xyz = np.zeros((1, 3, 1, 3))
     xyz[0, 1, 0], xyz[0, 2, 0] = [0, 33, 0], [0, 31.9, 0]
     text, known = packing.positions(xyz, np.zeros(3))
@@ -54,7 +54,7 @@ def test_sizes_are_within_three_per_cent():
 
 
 @pytest.mark.parametrize("stretch", [[1, 1, 1], [1, 5, 1], [0.2, 1, 10]])
-def test_ellipsoids_come_back(stretch):
+def test_ellipsoids_are_recovered_from_their_levels(stretch):
     rng = np.random.default_rng(2)
     for _ in range(50):
         turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))

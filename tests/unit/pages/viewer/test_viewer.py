@@ -1,4 +1,4 @@
-"""The viewer's page, read by a parser: what it holds, that it names nothing outside, that names stay text."""
+"""The viewer's page, read by a parser: its content, nothing outside, names are escaped."""
 
 import json
 import re
@@ -48,7 +48,7 @@ def layer(name="raw", n_frames=20, **more):
     return viewer_layers.of_points(name, walker.points(n_frames=n_frames), walker.SKELETON, **more)
 
 
-def test_nothing_outside_and_names_are_text():
+def test_the_page_requests_nothing_and_escapes_names():
     cameras = scene.ring(3)
     source = viewer.build(ROGUE, [layer(ROGUE)], cameras, notes=[ROGUE])
     read = Stores(source)
@@ -74,7 +74,7 @@ def test_cameras_are_pyramids_that_project_onto_their_pictures_corners():
         np.testing.assert_allclose(np.linalg.norm(drawn["forward"]), 1)
 
 
-def test_the_court_is_its_files():
+def test_the_court_is_drawn_as_in_its_file():
     court = courts.read(CONFIG / "courts" / "badminton.yaml")
     drawn = viewer.drawn_court(court)
     areas = [

@@ -1,4 +1,4 @@
-"""One self-contained HTML file: styles, scripts, data and pictures are inside, nothing is requested."""
+"""One self-contained HTML file: styles, scripts, data and pictures inside, nothing requested."""
 
 import base64
 import json
@@ -47,24 +47,24 @@ def build(
     title
         Of the window; any text.
     body_html
-        Trusted HTML, such as `render` returns. `<img src="image:NAME" alt="...">` shows the picture
-        NAME of `images`.
+        Trusted HTML, as `render` returns it. `<img src="image:NAME" alt="...">` shows a picture of
+        `images`.
     css, js
-        Names of files in `pages/assets`, or paths of other files (a plotting library). `page.css`
-        and `page.js` come first. Scripts run after the body, in the given order.
+        Names of files in `pages/assets`, or other paths (a plotting library). `page.css` and
+        `page.js` come first. Scripts run after the body, in this order.
     data
         What scripts get by `courtside.data(name)`: plain values, lists, dictionaries, numpy arrays.
         Numbers that are not finite become null.
     images
-        Picture, or picture and MIME type ("image/png" if left out). Pictures that `body_html` does
-        not show are given to scripts by `courtside.image(name)`, as a data address.
+        Picture, or picture and MIME type ("image/png" if left out). Scripts get pictures that
+        `body_html` does not show by `courtside.image(name)`, as a data address.
     evaluates
         Whether a script makes code from text, as some plotting libraries do.
 
     Raises
     ------
     ValueError
-        If a name has other characters than letters, digits, _ . and -, or a picture shown is missing.
+        If a name has characters other than letters, digits, _ . and -, or a picture is missing.
     """
     data, images = dict(data or {}), dict(images or {})
     for name in [*data, *images]:

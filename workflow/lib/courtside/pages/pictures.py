@@ -1,31 +1,21 @@
-"""Pictures for pages: no wider than a page shows them, with a palette where that is smaller."""
+"""Pictures for pages: no wider than a page shows them, with a colour palette if that is smaller."""
 
 import io
 
 import numpy as np
 from PIL import Image
 
-MAX_WIDTH_PX = 1200
-N_COLOURS = 256
-MAX_DIFFERENCE = 1.5  # a palette that changes more shows in photographs
+MAX_WIDTH_PX = 1200  # ASSUME: as wide as the text column of a page
+N_COLOURS = 256  # the most that a PNG palette holds
+# ASSUME: root mean square, of 255; a palette that changes more is visible in photographs.
+MAX_DIFFERENCE = 1.5
 
 
-def shrunk(png, max_width_px=MAX_WIDTH_PX):
-    """Return a PNG no wider than a page needs, in as few bytes as a palette gives.
+def shrunk(png: bytes, max_width_px: int = MAX_WIDTH_PX) -> tuple[bytes, tuple[int, int]]:
+    """Return a PNG no wider than a page needs, in few bytes, and its width and height.
 
-    Parameters
-    ----------
-    png : bytes
-        A picture; transparent parts become white.
-    max_width_px : int
-        Wider ones are scaled down.
-
-    Returns
-    -------
-    png : bytes
-        As it was, where it is narrow enough and nothing makes it smaller.
-    size_px : (int, int)
-        Width and height.
+    Transparent parts become white. The PNG is unchanged if it is narrow enough and a palette does
+    not make it smaller.
     """
     picture = _opaque(Image.open(io.BytesIO(png)))
     scaled = picture.width > max_width_px
@@ -39,13 +29,13 @@ def shrunk(png, max_width_px=MAX_WIDTH_PX):
     return min(made, key=len), picture.size
 
 
-def _differ(picture, flat):
+def _differ(picture: Image.Image, flat: Image.Image) -> float:
     """Return the root mean square difference of two pictures, in levels of 255."""
     off = np.asarray(picture, float) - np.asarray(flat.convert("RGB"), float)
     return float(np.sqrt(np.mean(off**2)))
 
 
-def _opaque(picture):
+def _opaque(picture: Image.Image) -> Image.Image:
     if picture.mode in ("RGBA", "LA", "P"):
         picture = picture.convert("RGBA")
         white = Image.new("RGBA", picture.size, "white")
@@ -53,7 +43,7 @@ def _opaque(picture):
     return picture.convert("RGB")
 
 
-def _bytes(picture):
+def _bytes(picture: Image.Image) -> bytes:
     held = io.BytesIO()
     picture.save(held, "PNG", optimize=True)
     return held.getvalue()

@@ -99,7 +99,7 @@
     const xy = [proposal.x, proposal.y];
     if (view.scale() < LOOKED || !view.sees(xy)) { // look at a proposal before confirming it
       view.centre(xy, Math.max(view.scale(), NEAR));
-      return say(`Look at ${chosen} from near, then confirm again.`);
+      return say(`Look at ${chosen} close up, then confirm again.`);
     }
     place(xy);
     step(1, true);
@@ -113,7 +113,7 @@
   function remove() { set(chosen, null); }
 
   function undo() { travel(past, future, -1, "Nothing to undo."); }
-  function redo() { travel(future, past, 1, "Nothing to do again."); }
+  function redo() { travel(future, past, 1, "Nothing to redo."); }
   function travel(from, to, direction, nothing) {
     const changes = from.pop();
     if (!changes) return say(nothing);
@@ -159,7 +159,7 @@
       const name = names[(from + by * n + n * names.length) % names.length];
       if (!open_ || !markOf(frame(), name)) return choose(name);
     }
-    say("Every point of this picture is dealt with.");
+    say("Every point of this picture is marked.");
     return render();
   }
 
@@ -361,7 +361,7 @@
     byId("loupe-toggle").setAttribute("aria-pressed", String(shown));
     view.setLoupe(shown);
   };
-  const near = () => { if (!visit(true)) say(`It is not known where ${chosen} is: mark four points on the floor first.`); };
+  const near = () => { if (!visit(true)) say(`The place of ${chosen} is unknown: mark four points on the floor first.`); };
   const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   const keys = {
     n: () => step(1), b: () => step(-1), Enter: confirm, h: hide, Delete: remove, Backspace: remove, g: near, m: magnify,
@@ -387,7 +387,7 @@
   const actions = {
     "zoom-in": () => zoom(1.5), "zoom-out": () => zoom(1 / 1.5), whole: () => view.whole(), near, undo, redo, confirm, hide,
     delete: remove, next: () => step(1), previous: () => step(-1), "loupe-toggle": magnify, turn,
-    afresh: () => { courtside.storage.remove(KEEP); say("This browser keeps nothing of this session any more; the marks stay until the page is closed."); },
+    afresh: () => { courtside.storage.remove(KEEP); say("This browser has deleted the saved work of this session; the marks stay until the page is closed."); },
   };
   for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
 
@@ -412,7 +412,7 @@
       for (const one of frames) if (kept.marks[one.id]) marks[one.id] = kept.marks[one.id];
       const time = new Date(kept.time);
       say(`Your work of ${Number.isNaN(time.getTime()) ? "last time" : time.toLocaleString()} is here again.`);
-    } else if (frames.some((one) => Object.keys(one.proposals).length)) say("Hollow marks are proposals: look at each from near, then press Enter, or click the right place.");
+    } else if (frames.some((one) => Object.keys(one.proposals).length)) say("Hollow marks are proposals: look at each close up, then press Enter, or click the right place.");
     else say("Choose a point, zoom in, click where its edges meet.");
     if (frames.length < 2) byId("tabs").hidden = true;
     const first = items(frames[0]).find((item) => !markOf(frames[0], item.name)) || items(frames[0])[0];

@@ -1,6 +1,6 @@
 // @ts-check
 "use strict";
-// Opens whatever is folded away about a place that a link leads to, and everything before printing.
+// Unfolds the target of a link, and everything before printing.
 (() => {
   function unfold() {
     const place = document.getElementById(decodeURIComponent(location.hash.slice(1)));

@@ -1,1 +1,5 @@
-"""The page on which court points are clicked."""
+"""The page on which court points are clicked.
+
+page
+    build, frame, by_point: the page, its pictures, earlier clicks.
+"""

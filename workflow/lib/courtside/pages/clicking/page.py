@@ -1,24 +1,22 @@
-"""A page on which a session's court points, and ends of rackets, are clicked."""
+"""The page on which a session's court points and racket ends are clicked."""
 
 import hashlib
 import json
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.court import line_edges
+from courtside.calibration.court.court import Court
 from courtside.pages import page
 from courtside.video import images
 
-SCRIPTS = (
-    "clicking_table.js",
-    "clicking_fit.js",
-    "clicking_court.js",
-    "clicking_view.js",
-    "clicking.js",
-)
+SCRIPTS = [f"clicking{part}.js" for part in ("_table", "_fit", "_court", "_view", "")]
 ENDS = {
     "top": "tip of the racket's head: the outermost point of its frame",
     "butt": "end of the handle: the middle of the butt cap",
@@ -31,63 +29,61 @@ class Frame:
 
     Attributes
     ----------
-    camera : str
-    size : (int, int)
-        Width and height of the video, which is that of the picture, px.
-    image : bytes
+    size
+        Width and height of the video and of the picture, px.
+    image
         PNG or JPEG of that size.
-    mime : str
-    take : str or None
-        None for the static picture, in which court points are clicked; else ends of a racket.
-    frame_idx : int
-    clicks : dict of str to (x, y)
-        Earlier clicks by point or end, px.
-    proposals : dict of str to dict
+    take
+        None for the static picture, in which court points are clicked; else racket ends are.
+    clicks
+        Earlier clicks (x, y) by point or end, px.
+    proposals
         By point: `x`, `y` and `sigma_px`; shown hollow, to be confirmed.
     """
 
     camera: str
-    size: tuple
+    size: tuple[int, int]
     image: bytes
     mime: str = page.PNG
     take: str | None = None
     frame_idx: int = 0
-    clicks: dict = field(default_factory=dict)
-    proposals: dict = field(default_factory=dict)
+    clicks: dict[str, Sequence[float]] = field(default_factory=dict)
+    proposals: dict[str, dict] = field(default_factory=dict)
 
     @property
-    def identity(self):
+    def identity(self) -> str:
         """A name that no other picture of the page has."""
-        return (
-            f"static.{self.camera}"
-            if self.take is None
-            else f"{self.take}.{self.camera}.{self.frame_idx}"
-        )
+        if self.take is None:
+            return f"static.{self.camera}"
+        return f"{self.take}.{self.camera}.{self.frame_idx}"
 
 
-def frame(camera, path, *, jpeg_quality=None, clicks=None, proposals=None, **which):
+def frame(
+    camera: str,
+    path: str | os.PathLike,
+    *,
+    jpeg_quality: int | None = None,
+    clicks: dict | None = None,
+    proposals: dict | None = None,
+    **which,
+) -> Frame:
     """Read a picture to click in.
 
     Parameters
     ----------
-    camera : str
-    path : str or Path
-        PNG or JPEG, without faces that can be recognised.
-    jpeg_quality : int or None
+    path
+        PNG or JPEG, without recognisable faces.
+    jpeg_quality
         1 to 100 to make the page smaller; None to take the file as it is.
-    clicks, proposals : dict, optional
+    clicks, proposals
         As `Frame` has them.
     **which
         `take` and `frame_idx` of a picture of a take.
 
-    Returns
-    -------
-    frame : Frame
-
     Raises
     ------
     InputError
-        If the file is no picture.
+        If the file is not a picture.
     """
     path = Path(path)
     content = path.read_bytes() if path.is_file() else b""
@@ -100,42 +96,25 @@ def frame(camera, path, *, jpeg_quality=None, clicks=None, proposals=None, **whi
     return Frame(camera, image.shape[1::-1], content, mime, **which, **marks)
 
 
-def by_point(xy, points):
-    """Return clicks by point.
-
-    Parameters
-    ----------
-    xy : (P, 2) float or None
-        Px; NaN where not clicked.
-    points : sequence of str, length P
-
-    Returns
-    -------
-    clicks : dict of str to [x, y]
-    """
+def by_point(xy: NDArray | None, points: Sequence[str]) -> dict[str, list[float]]:
+    """Return clicks [x, y] by point, of an array (P, 2) of px that is NaN where not clicked."""
     if xy is None:
         return {}
     known = np.isfinite(xy).all(axis=1)
     return {point: xy[at].tolist() for at, point in enumerate(points) if known[at]}
 
 
-def build(session, court, frames, *, targets):
-    """Make the page.
+def build(session: str, court: Court, frames: list[Frame], *, targets: dict[str, str]) -> str:
+    """Return the page, to be written by `page.write`.
 
     Parameters
     ----------
-    session : str
+    session
         Shown as the title.
-    court : courtside.calibration.court.court.Court
-    frames : list of Frame
+    frames
         One picture of each fixed camera, then those of takes, in the order of their tabs.
-    targets : dict of str to str
-        Where the workflow reads "court_points.csv" and "racket.csv"; told beside the button that saves.
-
-    Returns
-    -------
-    page : str
-        For `page.write`.
+    targets
+        Where the workflow reads "court_points.csv" and "racket.csv"; shown beside the save button.
 
     Raises
     ------
@@ -163,19 +142,12 @@ def build(session, court, frames, *, targets):
     )
 
 
-def _frame(frame):
-    return {
-        "id": frame.identity,
-        "camera": frame.camera,
-        "take": frame.take,
-        "frame_idx": frame.frame_idx,
-        "size": frame.size,
-        "clicks": frame.clicks,
-        "proposals": frame.proposals,
-    }
+def _frame(frame: Frame) -> dict:
+    keys = ("camera", "take", "frame_idx", "size", "clicks", "proposals")
+    return {"id": frame.identity, **{key: getattr(frame, key) for key in keys}}
 
 
-def _court(court):
+def _court(court: Court) -> dict:
     edges = line_edges.named(court)
     points = [
         {
@@ -191,8 +163,8 @@ def _court(court):
     return {"points": points, **{key: getattr(court, key) for key in keys}}
 
 
-def _stamp(session, court, frames):
-    """Return what distinguishes this page's clicks from those of others that one browser keeps."""
+def _stamp(session: str, court: Court, frames: Sequence[Frame]) -> str:
+    """Return what tells this page's clicks from those of other pages in one browser."""
     about = [session, court.points, [[f.identity, list(f.size), f.clicks] for f in frames]]
     text = json.dumps(about, default=lambda value: value.tolist())
     return f"{session} {hashlib.sha256(text.encode()).hexdigest()[:16]}"

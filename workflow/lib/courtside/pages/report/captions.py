@@ -1,4 +1,4 @@
-"""Captions of figures: reStructuredText with Jinja, as Snakemake's own report takes them, made into HTML."""
+"""Captions of figures as HTML, from reStructuredText with Jinja as in Snakemake's own report."""
 
 from types import SimpleNamespace
 
@@ -7,7 +7,7 @@ from docutils import core
 from markupsafe import Markup
 
 SETTINGS = {
-    "raw_enabled": False,  # a caption is text: it brings no HTML of its own
+    "raw_enabled": False,  # a caption must not bring its own HTML
     "file_insertion_enabled": False,
     "doctitle_xform": False,
     "initial_header_level": 5,
@@ -19,27 +19,24 @@ SETTINGS = {
 ENVIRONMENT = jinja2.Environment(undefined=jinja2.StrictUndefined, autoescape=False)  # not HTML yet
 
 
-def render(source, wildcards=None, params=None):
-    """Return a caption as HTML.
+def render(
+    source: str, wildcards: dict[str, str] | None = None, params: dict | None = None
+) -> Markup:
+    """Return a caption as HTML paragraphs in which all text is escaped.
 
     Parameters
     ----------
-    source : str
-        reStructuredText in which `snakemake.wildcards` and `snakemake.params` stand for the two below.
-    wildcards : dict of str to str, optional
+    source
+        reStructuredText that may name `snakemake.wildcards` and `snakemake.params`.
+    wildcards
         Of the figure: session, take, network ...
-    params : dict, optional
+    params
         Of the rule that drew it; `params.step.n_frames` is looked up in dictionaries.
-
-    Returns
-    -------
-    html : str
-        Paragraphs; everything that is no markup of the text is escaped.
 
     Raises
     ------
     ValueError
-        If the caption asks for what is not given, or is no reStructuredText.
+        If the caption names something that is not given, or is not reStructuredText.
     """
     snakemake = SimpleNamespace(wildcards=dict(wildcards or {}), params=dict(params or {}))
     try:

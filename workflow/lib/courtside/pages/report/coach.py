@@ -1,4 +1,4 @@
-"""The first page of the report, for a coach: what was measured in each take, how surely, what to look at."""
+"""The first part of the report, for a coach: measures of each take, their errors, and warnings."""
 
 import math
 from collections.abc import Sequence
@@ -21,13 +21,7 @@ ANGLES = {
 def with_error(value: float, half: float, unit: str, *_: object) -> Markup:
     """Return a number with its error bar as HTML, with two digits of the error.
 
-    Parameters
-    ----------
-    value
-    half
-        Half of the 90 % interval; NaN if unknown.
-    unit
-        m, m/s, degrees ...
+    `half` is half of the 90 % interval, NaN if unknown.
     """
     if math.isnan(value):
         return Markup("not known")
@@ -42,7 +36,7 @@ def with_error(value: float, half: float, unit: str, *_: object) -> Markup:
 def take(
     said: dict, facts: dict, found: Sequence[warned.Warned], figures_id: str | None = None
 ) -> Markup:
-    """Return one take as HTML: its mark, what was measured of each person, its warnings.
+    """Return one take as HTML: its mark, the measures of each person, its warnings.
 
     Parameters
     ----------
@@ -50,7 +44,6 @@ def take(
         `id`, `name`, `links` ([(address, words)]) of the take.
     facts
         As `facts.of_take` returns it.
-    found
     figures_id
         Where its figures are on the page.
     """
@@ -66,7 +59,7 @@ def take(
 
 
 def _person(person: str, facts: dict) -> dict:
-    """Return what the take's template says of a person: [(words, value, words after it)], angles."""
+    """Return what the template says of a person: `said` is [(words, value, words after it)]."""
     measures, said = facts["persons"][person], []
     distance = measures.get("neck_distance")
     if distance and not math.isnan(distance[0]):
@@ -78,17 +71,13 @@ def _person(person: str, facts: dict) -> dict:
     if facts["left_out"].get(person):
         lost, total, _ = facts["left_out"][person]
         said.append((f"from {total - lost} of {total} frames", "", ""))
-    off = [
-        row["distance_error_percent"]
-        for row in facts["true_paths"]
-        if (row["person"], row["point"]) == (person, "neck")
-        and not math.isnan(row["distance_error_percent"])
-    ]
+    own = [row for row in facts["true_paths"] if (row["person"], row["point"]) == (person, "neck")]
+    off = [value for row in own if not math.isnan(value := row["distance_error_percent"])]
     return {"name": person, "said": said, "off": off[:1], "angles": _angles(measures)}
 
 
 def _angles(measures: dict) -> list[tuple]:
-    """Return (joint, smallest, largest) of the angles that were measured."""
+    """Return (joint, smallest, largest) of each measured angle."""
     rows = []
     for name, words in ANGLES.items():
         for side in ("", "left_", "right_"):

@@ -1,5 +1,7 @@
-"""What the report says of a take and a session, read from the files that the study made of them."""
+"""What the report says of a take and a session, read from the files of the study."""
 
+import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -8,34 +10,36 @@ import pandas as pd
 from courtside.records import tables
 from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints, missing_reason, skeleton
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.execution.files import read_json
 
-NINE_IN_TEN = 1.645  # standard deviations that hold 90 % of normal errors
+NINE_IN_TEN = 1.645  # half of the 90 % interval of normal errors, in standard deviations
 SUMMARY = ("person", "measure", "value", "sigma", "sigma_camera", "unit", "n")
 FRAMES = ("person", "time_s", "neck_reason")
 
 
-def of_take(files):
-    """Read what is known of a take.
+def of_take(files: dict) -> dict:
+    """Read the facts of a take.
 
     Parameters
     ----------
-    files : dict
-        Paths by `summary` and `frames` (kinematics), `pose3d`, `sync`, `movement` (a list), `shake` (text),
-        `checks` (clocks of devices), `errors` and `kinematics` (against a truth); each may be missing.
+    files
+        Paths by `summary` and `frames` (kinematics), `pose3d`, `sync`, `movement` (a list), `shake`
+        (text), `checks` (clocks of devices), `errors` and `kinematics` (against the truth); each
+        may be missing.
 
     Returns
     -------
-    facts : dict
-        `persons`: {person: {measure: (value, half of 90 %, unit, whether the calibration's share is known)}};
-        `left_out`: {person: (frames without a neck, frames, {reason: frames})}; `seconds`; `joints` and
-        `cameras` as `of_skeleton` returns them; `clocks`: {camera: Clock}; `movement`: rows; `shake`: lines;
-        `devices`: rows; `truth` and `true_paths`: rows. Empty where there is no file.
+    `persons`: {person: {measure: (value, half of the 90 % interval, unit, whether the error of the
+    calibration is known)}}; `left_out`: {person: (frames without a neck, frames, {reason:
+    frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
+    Clock}; `shake`: lines; `movement`, `devices`, `truth` and `true_paths`: rows. Empty without a
+    file.
 
     Raises
     ------
     InputError
-        If a file is missing or not what it should be.
+        If a file is missing or has another content.
     """
     facts = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
     if files.get("summary"):
@@ -54,19 +58,18 @@ def of_take(files):
     return facts
 
 
-def of_session(files):
-    """Read what is known of a session's cameras.
+def of_session(files: dict) -> dict:
+    """Read the facts of a session's cameras.
 
     Parameters
     ----------
-    files : dict
-        Paths by `quality`: {calibration: file}, `model` (summary of the structure from motion), `static`
-        (a list).
+    files
+        Paths by `quality`: {calibration: file}, `model` (summary of the structure from motion),
+        `static` (a list).
 
     Returns
     -------
-    facts : dict
-        `quality`: {calibration: content}; `model`: content, empty without; `static`: rows.
+    `quality`: {calibration: content}; `model`: content, empty without a file; `static`: rows.
     """
     return {
         "quality": {way: read_json(path) for way, path in files.get("quality", {}).items()},
@@ -75,19 +78,15 @@ def of_session(files):
     }
 
 
-def of_skeleton(found):
-    """Return what became of the 12 limb joints of a `Keypoints3D`.
-
-    Parameters
-    ----------
-    found : courtside.records.keypoints.keypoints.Keypoints3D
+def of_skeleton(found: Keypoints3D) -> dict:
+    """Return statistics of the 12 limb joints.
 
     Returns
     -------
-    facts : dict
-        `joints`: {joint: {`missing`: share, `reasons`: {word: share of all}, `few`: share of those placed
-        that rest on two views}}; `cameras`: {camera: {`accepted`: share of its keypoints that points rest
-        on, `median_px`: of those}}; `views`: {number of views: share}.
+    `joints`: {joint: {`missing`: share, `reasons`: {word: share of all}, `few`: share of the
+    reconstructed ones that rest on two views}}; `cameras`: {camera: {`accepted`: share of its
+    keypoints that were used, `median_px`: their median reprojection error}}; `views`: {number of
+    views: share}.
     """
     names = [str(name) for name in found.joints]
     at = [names.index(joint) for joint in skeleton.JOINTS if joint in names]
@@ -109,7 +108,7 @@ def of_skeleton(found):
     }
 
 
-def _of_camera(found, at, view):
+def _of_camera(found: Keypoints3D, at: list[int], view: int) -> dict:
     error = found.reproj_error_px[:, :, at, view]
     accepted, seen = found.accepted[:, :, at, view], np.isfinite(error)
     good = error[accepted & seen]
@@ -119,7 +118,7 @@ def _of_camera(found, at, view):
     }
 
 
-def _measures(table):
+def _measures(table: pd.DataFrame) -> dict:
     found = {}
     for row in table.itertuples():
         whole = np.hypot(row.sigma, 0 if np.isnan(row.sigma_camera) else row.sigma_camera)
@@ -129,42 +128,37 @@ def _measures(table):
     return found
 
 
-def _left_out(rows):
-    """Return (frames without a neck, frames, why); a neck that was filled in counts as there."""
+def _left_out(rows: pd.DataFrame) -> tuple[int, int, dict[str, int]]:
+    """Return (frames without a neck, frames, why); an interpolated neck counts as present."""
     lost = rows["neck_reason"][~rows["neck_reason"].isin(["ok", "interpolated"])]
     return len(lost), len(rows), {str(word): int(n) for word, n in lost.value_counts().items()}
 
 
-def _table(path, columns):
-    def fault(table):
+def _table(path: str | os.PathLike, columns: Sequence[str]) -> pd.DataFrame:
+    def fault(table: pd.DataFrame) -> str:
         missing = [name for name in columns if name not in table.columns]
         return f"found no column {', '.join(missing)}" if missing else ""
 
     return tables.read(path, "a table of the study", fault)
 
 
-def _rows(files, key, columns):
+def _rows(files: dict, key: str, columns: Sequence[str]) -> list[dict]:
     if not files.get(key):
         return []
     return _table(files[key], columns).to_dict("records")
 
 
-def _row(path):
+def _row(path: str | os.PathLike) -> dict:
     rows = _table(path, ("camera", "shift_x_px", "shift_y_px", "zoom_percent", "n_matches"))
     return rows.to_dict("records")[0]
 
 
-def _lines(path):
+def _lines(path: str | os.PathLike) -> list[str]:
     text = Path(path).read_text(encoding="utf-8")
     return [line.strip() for line in text.splitlines() if line.strip()]
 
 
-def whole_table(path):
-    """Return a CSV file as text: (names of columns, rows of strings), as it stands there.
-
-    Parameters
-    ----------
-    path : str or Path
-    """
+def whole_table(path: str | os.PathLike) -> tuple[list[str], list[list[str]]]:
+    """Return a CSV file as text: (names of columns, rows of strings), as it stands there."""
     table = pd.read_csv(path, dtype=str, keep_default_na=False)
     return list(table.columns), table.values.tolist()

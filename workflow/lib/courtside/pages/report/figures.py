@@ -1,4 +1,4 @@
-"""Figures and tables of the report: pictures with their captions, CSV files that scroll by themselves."""
+"""Figures of the report with their captions, and CSV files as tables."""
 
 import re
 from collections.abc import Iterable
@@ -11,28 +11,28 @@ from courtside.pages.report import captions, facts
 from courtside.study.errors import InputError
 
 TITLES = {
-    "overlay": "What the network saw, and what was made of it",
+    "overlay": "What the network saw, and the reconstruction",
     "skeletons": "Skeletons and cameras",
-    "reprojection": "Do the views agree?",
+    "reprojection": "Reprojection errors",
     "visibility": "Confidence, and cameras per joint",
     "kinematics": "Paths, speeds, angles",
-    "shake": "How the cameras shook",
+    "shake": "Camera shake",
     "three_cameras": "Two, three and four cameras against the truth",
     "error_map": "Expected error over the court",
-    "coverage": "Do the error bars hold what they say?",
+    "coverage": "Coverage of the error bars",
     "growth": "Time and memory",
-    "court_points": "Points of the court",
-    "clock_errors": "Clocks against the truth",
-    "agreement": "May one network replace the other?",
+    "court_points": "Court points",
+    "clock_errors": "Errors of clocks against the truth",
+    "agreement": "Agreement of two networks",
     "archive": "One subject over sessions",
-    "wrist_distance": "Claps and clocks",
+    "wrist_distance": "Distance of the wrists, and claps",
     "wrist_arcs": "Wrists from T-pose to clap",
-    "skeleton_plates": "What each source calls a body",
-    "source_errors": "Each source against the truth",
-    "smoothness": "Smooth is not accurate",
+    "skeleton_plates": "Skeletons of all sources",
+    "source_errors": "Errors of each source against the truth",
+    "smoothness": "Smoothness and accuracy",
 }
 PLANNED = {
-    "growth": "How many pictures of the walk are enough?",
+    "growth": "Expected error and number of pictures of the walk",
     "map": "Expected error over the court",
 }
 PLANS = "planned sessions"  # where the figures of plans belong

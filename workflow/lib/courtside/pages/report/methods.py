@@ -1,4 +1,4 @@
-"""The methods section of the report, from the configuration that was run, with the sources it cites."""
+"""The methods section of the report, from the configuration of the run, with its sources."""
 
 from collections.abc import Iterable, Sequence
 
@@ -24,30 +24,30 @@ SOURCES = {
     "Journal of Biomechanics 29, 1996.",
 }
 WAYS = {
-    "sfm": "adjusted together: structure from motion over the pictures of a walk, and the "
-    "clicked court points",
-    "sim3": "structure from motion over the pictures of a walk, laid onto the court points by "
-    "one similarity",
-    "paper": "structure from motion, scaled and aligned as Shishido & Kitahara (2020, eq 2 to 5) do",
-    "known": "from clicked court points alone",
-    "dlt": "from clicked court points alone, linearly (DLT)",
+    "sfm": "calibrated by one bundle adjustment of structure from motion over the pictures of a "
+    "walk and of the clicked court points",
+    "sim3": "calibrated by structure from motion over the pictures of a walk, aligned to the court "
+    "points by one similarity transform",
+    "paper": "calibrated by structure from motion, scaled and aligned as in Shishido & Kitahara "
+    "(2020, equations 2 to 5)",
+    "known": "calibrated from clicked court points alone",
+    "dlt": "calibrated from clicked court points alone, by the linear method (DLT)",
     "file": "taken from a calibration made elsewhere",
 }
 RULES = {
-    "robust": "views are weighed, and those that contradict the others fade out",
-    "dlt": "all views count as they are (DLT)",
-    "unsteady": "views are weighed, and the shake of cameras is left in",
+    "robust": "views are weighted, and those that contradict the others lose their weight",
+    "dlt": "all views have the same weight (DLT)",
+    "unsteady": "views are weighted, and camera shake is not corrected",
 }
 
 
 def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
-    """Return the methods as HTML: paragraphs, then the list of sources that they cite.
+    """Return the methods as HTML: paragraphs, then the sources that they cite.
 
     Parameters
     ----------
     parameters
-        The study's steps as configured: `match_images`, `adjust_network`, `triangulate`,
-        `filter_motion` ...
+        The study's steps as configured: `match_images`, `adjust_network`, `triangulate` ...
     sessions
         Of the report: `name`, `way` (calibration of its takes), `mapper`, `n_images`, `fusion`,
         `model`, `virtual`, `overrides` ({step: {key: value}}), `takes`.

@@ -1,4 +1,4 @@
-"""The quality page of a session: cameras, residuals, clocks, movement, and what became of the joints."""
+"""The quality page of a session: cameras, residuals, clocks, camera movement, missing joints."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -25,7 +25,6 @@ def session(
         `name`, `id`, `way` (the calibration of its takes), `cameras` of the session.
     facts
         As `facts.of_session` returns it.
-    found
     takes
         Each take as configured, its facts and its warnings.
     """
@@ -43,7 +42,7 @@ def session(
 
 
 def _take(take: dict, known: dict, found: Sequence[warned.Warned]) -> dict:
-    """Return what the template says of a take: rows of its tables, and more."""
+    """Return what the template says of a take: the rows of its tables, and more."""
     views = sorted(known.get("views", {}).items(), reverse=True)
     reasons = list(dict.fromkeys(why for row in known["joints"].values() for why in row["reasons"]))
     return {
@@ -112,13 +111,13 @@ def _clocks(known: dict) -> list[tuple]:
         for row in known["devices"]
     ]
     return [
-        (name, status, number(offset_s, 4), number(1645 * sigma_s or None), note)
+        (name, status, number(offset_s, 4), number(warned.MS_90 * sigma_s or None), note)
         for name, status, offset_s, sigma_s, note in rows
     ]
 
 
 def _truth(take: dict, known: dict) -> list[tuple]:
-    """Return errors against the truth, and how often the stated ellipsoids hold it."""
+    """Return errors against the truth, and the coverage of the stated ellipsoids."""
     return [
         (
             STAGES.get(row["stage"], row["stage"]),

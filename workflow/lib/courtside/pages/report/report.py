@@ -1,4 +1,4 @@
-"""The report of a study: a page that a coach can read, then every figure, each session's quality, methods."""
+"""The report of a study: what was measured, all figures, the quality of each session, methods."""
 
 from markupsafe import Markup
 
@@ -19,14 +19,14 @@ def build(study: dict) -> str:
         `title`; `parameters` (the steps as configured); `sessions`, each with `name`,
         `description`, `virtual`, `way`, `mapper`, `n_images`, `fusion`, `model`, `overrides`,
         `limits` (`max_shift_px`, `max_zoom_percent`), perhaps `withheld` (lines that say what is
-        not made for want of consent), `files` (of `facts.of_session`) and `takes`, each with
-        `name`, `fusion`, `links` and `files` (of `facts.of_take`); `figures` as `figures.figure`
-        takes them, with `session` and `take`; `tables` as `figures.table` takes them.
+        missing for lack of consent), `files` (of `facts.of_session`) and `takes`, each with `name`,
+        `fusion`, `links` and `files` (of `facts.of_take`); `figures` as `figures.figure` takes
+        them, with `session` and `take`; `tables` as `figures.table` takes them.
 
     Raises
     ------
     InputError
-        If a file is missing or not what it should be.
+        If a file is missing or has another content.
     """
     known = [_read(session) for session in study["sessions"]]
     grouped = figures.groups(study["figures"], [one["said"]["name"] for one in known])

@@ -1,33 +1,36 @@
-"""What the viewer lays over one another: named methods, each with its joints, bones and errors."""
+"""Layers of the viewer: the joints, bones and errors of one method, under a name."""
 
+import os
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.geometry import similarity
 from courtside.pages.viewer import packing
 from courtside.records.devices import device_motion
 from courtside.records.devices.clocks import Clock
+from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import keypoints, missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import DAMAGED, InputError
 
-PX = 0.01  # so that the logarithmic scale runs from 0.001 to 1000 px
-NEAR = 0.5  # of a frame: frames of two layers that far apart show the same moment
-LEAST_JOINTS = 3  # that tell how a body is turned
-NOT_FINITE = 255  # reason of a joint that is missing though its method calls it ok
+PX = 0.01  # unit of stored errors: the logarithmic scale then runs from 0.001 to 1000 px
+NEAR = 0.5  # of the frame interval: frames of two layers this close show the same moment
+LEAST_JOINTS = 3  # the fewest points that determine a rotation
+NOT_FINITE = 255  # reason of a joint that is missing although its method calls it ok
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """The skeletons that one method gives for a take, on the reference clock, in the world.
+    """The skeletons of one method for a take, on the reference clock, in the world.
 
     Attributes
     ----------
-    name : str
-        As the switch in the page says it.
-    joints : tuple of str, length J
-    bones : tuple of (str, str)
-    person_id : tuple of str, length P
+    name
+        Of its switch in the page.
+    joints : tuple of str, length J person_id : tuple of str, length P
     time_s : (T,) float
         Strictly increasing.
     xyz : (P, T, J, 3) float
@@ -35,38 +38,37 @@ class Layer:
     covariance : (P, T, J, 3, 3) float or None
         Square metres; NaN where unknown.
     error_px : (P, T, J) float or None
-        Reprojection error: root of the mean square over the views that the joint rests on.
+        Reprojection error: root mean square over the views that were used.
     reason : (P, T, J) int or None
         `courtside.records.keypoints.missing_reason`.
     n_views : (P, T, J) int or None
-    covers : str
-        What the covariance covers, in words, for the legend.
-    shown : bool
+    covers
+        What the covariance includes, in words, for the legend.
+    shown
         Whether it is drawn when the page opens.
     """
 
     name: str
-    joints: tuple
-    bones: tuple
-    person_id: tuple
-    time_s: np.ndarray
-    xyz: np.ndarray
-    covariance: np.ndarray | None = None
-    error_px: np.ndarray | None = None
-    reason: np.ndarray | None = None
-    n_views: np.ndarray | None = None
+    joints: tuple[str, ...]
+    bones: tuple[tuple[str, str], ...]
+    person_id: tuple[str, ...]
+    time_s: NDArray
+    xyz: NDArray
+    covariance: NDArray | None = None
+    error_px: NDArray | None = None
+    reason: NDArray | None = None
+    n_views: NDArray | None = None
     covers: str = ""
     shown: bool = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         shape = (len(self.person_id), len(self.time_s), len(self.joints))
         wanted = {"xyz": (*shape, 3), "covariance": (*shape, 3, 3)}
         for key in ("xyz", "covariance", "error_px", "reason", "n_views"):
             found = getattr(self, key)
             if found is not None and np.shape(found) != wanted.get(key, shape):
-                raise ValueError(
-                    f"layer {self.name}: expected {key} as {wanted.get(key, shape)}, found {np.shape(found)}"
-                )
+                where = f"layer {self.name}: expected {key} as {wanted.get(key, shape)}"
+                raise ValueError(f"{where}, found {np.shape(found)}")
         if not len(self.time_s) or (np.diff(self.time_s) <= 0).any():
             raise ValueError(f"layer {self.name}: expected times that increase")
         odd = {joint for bone in self.bones for joint in bone}.difference(self.joints)
@@ -74,21 +76,11 @@ class Layer:
             raise ValueError(f"layer {self.name}: bones name {sorted(odd)}, which are no joints")
 
 
-def of_points(name, points, skeleton, *, shown=True):
+def of_points(name: str, points: Keypoints3D, skeleton: Skeleton, *, shown: bool = True) -> Layer:
     """Return the layer of triangulated skeletons.
 
-    Parameters
-    ----------
-    name : str
-    points : Keypoints3D
-    skeleton : Skeleton
-    shown : bool
-
-    Returns
-    -------
-    layer : Layer
-        Its covariance is that of keypoints and cameras together, or of the keypoints alone where that of the
-        cameras is unknown throughout.
+    Its covariance is that of keypoints and cameras together, or of the keypoints alone if that of
+    the cameras is unknown throughout.
     """
     with_cameras = np.isfinite(points.covariance_camera).any()
     covariance = points.covariance_2d + (points.covariance_camera if with_cameras else 0)
@@ -112,30 +104,18 @@ def of_points(name, points, skeleton, *, shown=True):
     )
 
 
-# Upright axes (z up) from a device's own: y up, or as in cam (y down, z forward).
-Y_UP, CAM = (
-    np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]),
-    np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]]),
-)
+# Rotations to upright axes (z up) from a device's own: y up, or camera axes (y down, z forward).
+Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+CAM = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
 UPRIGHT = {"inertial": Y_UP, "nuitrack": Y_UP, "rgb": CAM, "rgbd": CAM}
 
 
-def of_device(name, motion, skeleton, person, *, shown=True):
-    """Return the layer of a device's skeleton, which must be on the reference clock; turned upright.
+def of_device(
+    name: str, motion: DeviceMotion, skeleton: Skeleton, person: str, *, shown: bool = True
+) -> Layer:
+    """Return the layer of a device's skeleton, turned upright, in the frames that were performed.
 
-    Parameters
-    ----------
-    name : str
-    motion : DeviceMotion
-    skeleton : Skeleton
-    person : str
-        Who wears or faces the device.
-    shown : bool
-
-    Returns
-    -------
-    layer : Layer
-        Without the frames that nobody performed.
+    The motion must be on the reference clock; `person` wears or faces the device.
     """
     kept = np.asarray(motion.performed, dtype=bool)
     return Layer(
@@ -150,25 +130,29 @@ def of_device(name, motion, skeleton, person, *, shown=True):
     )
 
 
-def read(path, name, skeleton, *, person="", clock=None, shown=True):
+def read(
+    path: str | os.PathLike,
+    name: str,
+    skeleton: Skeleton,
+    *,
+    person: str = "",
+    clock: Clock | None = None,
+    shown: bool = True,
+) -> Layer:
     """Read a layer from a file of triangulated points or of a device's motion.
 
     Parameters
     ----------
-    path : str or Path
-    name : str
-    skeleton : Skeleton
+    skeleton
         Whose bones are drawn.
-    person : str
+    person
         Of a device: who wears or faces it.
-    clock : courtside.records.devices.clocks.Clock, optional
-        Of a device; it shows the reference time where none is given.
-    shown : bool
+    clock
+        Of a device; None if its times are on the reference clock.
 
     Returns
     -------
-    layer : Layer
-        Of a device in the device's own frame; see `placed`.
+    A device's layer is in the device's own frame; see `placed`.
 
     Raises
     ------
@@ -181,8 +165,8 @@ def read(path, name, skeleton, *, person="", clock=None, shown=True):
     return replace(layer, time_s=(clock or Clock()).to_reference(layer.time_s))
 
 
-def _form(path):
-    """Return what an npz file says it is; empty where it says nothing, which its reader reports."""
+def _form(path: str | os.PathLike) -> str:
+    """Return the format that an npz file names; empty if none, which its reader reports."""
     try:
         with np.load(path, allow_pickle=False) as stored:
             return str(stored["format"])
@@ -190,26 +174,16 @@ def _form(path):
         return ""
 
 
-def placed(layer, onto):
-    """Put a device's skeleton where another layer has the same person, by one turn and shift for the take.
+def placed(layer: Layer, onto: Layer) -> Layer:
+    """Move a device's skeleton onto the same person in another layer, rotated and translated once.
 
-    Parameters
-    ----------
-    layer, onto : Layer
-
-    Returns
-    -------
-    layer : Layer
-        In the frame of `onto`; lengths stay as they are.
+    The lengths of the skeleton stay the same. The rotation is the least-squares one (Kabsch 1976)
+    between joints of the same name over the whole take.
 
     Raises
     ------
     InputError
-        If the two have no person, moment or three joints in common.
-
-    Notes
-    -----
-    Kabsch 1976: the rotation of the least squared distance between joints of one name.
+        If the two have no person, time or three joints in common.
     """
     persons = [name for name in layer.person_id if name in onto.person_id]
     joints = [name for name in layer.joints if name in onto.joints]
@@ -222,15 +196,15 @@ def placed(layer, onto):
     if len(joints) < LEAST_JOINTS or known.sum() < LEAST_JOINTS:
         raise InputError(
             f"layer {layer.name}: expected a person, times and {LEAST_JOINTS} joints or more that "
-            f"{onto.name} has as well, found {len(persons)} persons, {near.sum()} frames, {len(joints)} "
-            "joints; check the device's clock and skeleton, or leave the layer out"
+            f"{onto.name} has as well, found {len(persons)} persons, {near.sum()} frames, "
+            f"{len(joints)} joints; check the device's clock and skeleton, or leave the layer out"
         )
     turn = similarity.umeyama(own[known], theirs[known]).rotation
     shift = theirs[known].mean(axis=0) - turn @ own[known].mean(axis=0)
     return replace(layer, xyz=layer.xyz @ turn.T + shift)
 
 
-def _places(layer, persons, frames, joints):
+def _places(layer: Layer, persons: list[str], frames: NDArray, joints: list[str]) -> NDArray:
     """Return the places (n, 3) of chosen joints in chosen frames."""
     chosen = np.ix_(
         [layer.person_id.index(name) for name in persons],
@@ -240,26 +214,20 @@ def _places(layer, persons, frames, joints):
     return layer.xyz[chosen].reshape(-1, 3)
 
 
-def _bones(joints, skeleton):
+def _bones(joints: NDArray, skeleton: Skeleton) -> tuple[tuple[str, str], ...]:
     present = set(np.asarray(joints).tolist())
     return tuple(tuple(bone) for bone in skeleton.bones if set(bone) <= present)
 
 
-def packed(layer, middle, every=1):
-    """Return a layer as the page's scripts read it.
+def packed(layer: Layer, middle: NDArray, every: int = 1) -> dict:
+    """Return a layer as JSON-able content that `viewer_data.js` unpacks.
 
     Parameters
     ----------
-    layer : Layer
     middle : (3,) float
-        Metres; positions are stored about it.
-    every : int
-        Keep one frame of so many.
-
-    Returns
-    -------
-    content : dict
-        JSON-able; `viewer_data.js` unpacks it.
+        Metres; positions are stored relative to it.
+    every
+        Keep every n-th frame.
     """
     text, known = packing.positions(layer.xyz[:, ::every], middle)
     reason = np.zeros(known.shape, int) if layer.reason is None else layer.reason[:, ::every]
@@ -285,6 +253,6 @@ def packed(layer, middle, every=1):
     return content
 
 
-def _along(values):
+def _along(values: NDArray) -> str:
     """Pack with time as the last axis: (P, T, J, ...) as (P, J, ..., T)."""
     return packing.integers(np.moveaxis(np.asarray(values).astype(int), 1, -1))

@@ -1,19 +1,20 @@
-"""Arrays as short text for a page: whole numbers, written as changes over time, deflated, base64."""
+"""Arrays as short text for a page: integers as differences over time, deflated, in base64."""
 
 import base64
 import zlib
 
 import numpy as np
+from numpy.typing import NDArray
 
-STEP_M = 0.001  # of a stored position: it errs by half of this at most
-REACH_M = 32.0  # from the middle; what is further away is not drawn
+STEP_M = 0.001  # of a stored position, which errs by at most half of it
+REACH_M = 32.0  # from the middle: within int16 in steps of 1 mm; joints beyond are not drawn
 LEAST, MOST = 1e-5, 10.0  # of a size on the logarithmic scale, in its own unit
 LEVELS = 254  # of that scale, so that neighbours differ by 5.6 %; 0 is unknown
 ANGLES = 255  # steps of a half turn
 
 
-def integers(values):
-    """Pack whole numbers that change little along the last axis.
+def integers(values: NDArray) -> str:
+    """Pack integers that change little along the last axis.
 
     Parameters
     ----------
@@ -22,9 +23,8 @@ def integers(values):
 
     Returns
     -------
-    text : str
-        Base64 of a zlib stream of the changes along the last axis, modulo 2^16, each spread over two
-        planes: all low bytes, then all high ones. The first value of each row is a change from 0.
+    Base64 of a zlib stream of the differences along the last axis, modulo 2^16, as two planes: all
+    low bytes, then all high ones. The first value of each row is a difference from 0.
 
     Raises
     ------
@@ -39,8 +39,8 @@ def integers(values):
     return base64.b64encode(zlib.compress(planes.tobytes(), 6)).decode("ascii")
 
 
-def positions(xyz, middle):
-    """Pack positions in whole millimetres about a middle.
+def positions(xyz: NDArray, middle: NDArray) -> tuple[str, NDArray]:
+    """Pack positions in whole millimetres relative to a point.
 
     Parameters
     ----------
@@ -51,10 +51,10 @@ def positions(xyz, middle):
 
     Returns
     -------
-    text : str
+    text
         `integers` of (P, J, 3, T); a missing value repeats the one before it.
     known : (P, T, J) bool
-        Which joints are there: all three numbers, none further than 32 m from the middle.
+        Joints with three coordinates, none further than 32 m from the middle.
     """
     offset_m = np.asarray(xyz, dtype=float) - middle
     known = (np.abs(np.where(np.isfinite(offset_m), offset_m, np.inf)) <= REACH_M).all(axis=-1)
@@ -62,25 +62,26 @@ def positions(xyz, middle):
     return integers(_held(np.moveaxis(steps, 1, -1), np.moveaxis(known, 1, -1)[:, :, None])), known
 
 
-def _held(values, known):
-    """Repeat the last known value along the last axis where there is none; 0 before the first."""
+def _held(values: NDArray, known: NDArray) -> NDArray:
+    """Repeat the last known value along the last axis where one is missing; 0 before the first."""
     at = np.where(known, np.arange(values.shape[-1]), 0)
     at = np.broadcast_to(np.maximum.accumulate(at, axis=-1), values.shape)
     return np.take_along_axis(values, at, axis=-1)
 
 
-def sizes(values):
-    """Put positive numbers on the logarithmic scale.
+def sizes(values: NDArray) -> NDArray:
+    """Quantise positive numbers on a logarithmic scale.
 
     Parameters
     ----------
     values : (...) float
-        Between 1e-5 and 10; what is beyond is put at the end of the scale.
+        Clipped to 1e-5 ... 10.
 
     Returns
     -------
     levels : (...) int
-        1 to 255: `LEAST * (MOST / LEAST) ** ((level - 1) / 254)`, within 2.8 % of the value; 0 where NaN.
+        1 to 255: `LEAST * (MOST / LEAST) ** ((level - 1) / 254)`, within 2.8 % of the value; 0 for
+        NaN.
     """
     values = np.asarray(values, dtype=float)
     known = np.isfinite(values)
@@ -88,8 +89,8 @@ def sizes(values):
     return np.where(known, 1 + np.round(LEVELS * share), 0).astype(int)
 
 
-def ellipsoids(covariance):
-    """Put covariances into six small numbers that always give a covariance back.
+def ellipsoids(covariance: NDArray) -> NDArray:
+    """Quantise covariances into six small integers that always give a valid covariance back.
 
     Parameters
     ----------
@@ -99,14 +100,14 @@ def ellipsoids(covariance):
     Returns
     -------
     levels : (..., 6) int
-        `sizes` of the standard deviations along x, y, z (metres), then three angles in steps of pi / 255.
-        With a, b, c these angles, the rows (1, 0, 0), (cos a, sin a, 0) and (cos b, sin b cos c, sin b sin c)
-        are the Cholesky factor of the correlations. All 0 where unknown.
+        `sizes` of the standard deviations along x, y, z (metres), then three angles in steps of pi
+        / 255. With a, b, c these angles, the rows (1, 0, 0), (cos a, sin a, 0) and (cos b, sin b
+        cos c, sin b sin c) are the Cholesky factor of the correlations. All 0 where unknown.
 
     Notes
     -----
-    The angles of Rapisarda, Brigo & Mercurio 2007, Parameterizing correlations: whatever the rounding, no
-    ellipsoid gets an imaginary axis.
+    The angles of Rapisarda, Brigo & Mercurio 2007, Parameterizing correlations: the result is
+    positive semidefinite whatever the rounding.
     """
     covariance = np.asarray(covariance, dtype=float)
     known = np.isfinite(covariance).all(axis=(-2, -1))

@@ -1,55 +1,63 @@
-"""The 3D viewer of a take: court, cameras, skeletons of several methods over time, in one HTML file.
+"""The 3D viewer of a take: court, cameras and skeletons of several methods, in one HTML file.
 
-Drawn on a 2D canvas by scripts of our own (`assets/viewer_*.js`), not by a library: a take is some hundred
-lines and dots, no surface hides another, and a canvas opens at once and asks for no graphics processor.
-Plotly would weigh 4.7 MB a page; three.js 0.7 MB, and WebGL, which remote desktops and lab computers
-often lack.
+Our own scripts (`assets/viewer_*.js`) draw on a 2D canvas. A take is some hundred lines and dots
+without hidden surfaces, and a canvas opens at once and needs no graphics processor. Plotly would
+add 4.7 MB to each page; three.js 0.7 MB, and it needs WebGL, which remote desktops and lab
+computers often lack.
 
-In the browser `courtside.viewer` says and does what tests and curious people need: `ready` (a promise),
-`state()` (time, frame, speed, colours, shown layers, picked joint), `seek(time_s)`, `play()`, `pause()`,
-`position(layer, person, joint, frame)` in metres, `covariance(...)` in square metres, `drawn()` (places of
-the joints in the canvas, px) and `opened_ms` (from the start of loading to the first picture).
+In the browser `courtside.viewer` gives tests and scripts: `ready` (a promise), `state()` (time,
+frame, speed, colours, shown layers, picked joint), `seek(time_s)`, `play()`, `pause()`,
+`position(layer, person, joint, frame)` in metres, `covariance(...)` in square metres, `drawn()`
+(places of the joints in the canvas, px) and `opened_ms` (from the start of loading to the first
+picture).
 """
 
-import numpy as np
+from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.court.court import Court
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
+from courtside.pages.viewer.layers import Layer
 
-LARGEST_BYTES = 7_500_000  # of all layers; the rest of the page is some 60 kB
+# ASSUME: of all layers; opens at once and fits into e-mail. The rest of the page is about 60 kB.
+LARGEST_BYTES = 7_500_000
 LEFT, RIGHT, MIDDLE = "#0072B2", "#D55E00", "#666666"  # as in the figures
 LAYER_COLOURS = ["#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0072B2", "#D55E00"]
-FRUSTUM_SHARE, FRUSTUM_M = (
-    0.06,
-    (0.3, 1.2),
-)  # length of cameras' pyramids: of their distance, and limits
-PERCENTILES = (0.5, 99.5)  # of the joints' places, that the first view shows
-ROOM_M = 1.0  # of grid around them where there is no court
+# ASSUME: length of a camera's pyramid, as a share of its distance and with limits; looks right.
+FRUSTUM_SHARE, FRUSTUM_M = 0.06, (0.3, 1.2)
+PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown at first: without gross outliers
+ROOM_M = 1.0  # of grid around them if there is no court
 ASSETS = ("viewer_data.js", "viewer_camera.js", "viewer_draw.js", "viewer_panel.js", "viewer.js")
 
 
-def build(title, layers, cameras=(), court=None, notes=()):
-    """Return the page of a take.
+def build(
+    title: str,
+    layers: Sequence[Layer],
+    cameras: Sequence[Camera] = (),
+    court: Court | None = None,
+    notes: Sequence[str] = (),
+) -> str:
+    """Return the page of a take, to be written by `page.write`.
+
+    Layers larger than 7.5 MB in total are thinned to every second, fourth ... frame, and the page
+    says so.
 
     Parameters
     ----------
-    title : str
+    title
         Such as session and take; any text.
-    layers : sequence of Layer
-        Methods to lay over one another, in the order of their switches; the frames of the first are those
-        that the slider and the keys step through.
-    cameras : sequence of Camera
-    court : Court or None
-        Without one a grid of 1 m is drawn.
-    notes : sequence of str
+    layers
+        Methods to overlay, in the order of their switches. Slider and keys step through the frames
+        of the first.
+    court
+        None: a grid of 1 m is drawn.
+    notes
         Lines below the picture, such as what a layer is.
-
-    Returns
-    -------
-    page : str
-        HTML, to be written by `page.write`. Where the layers would be larger than 7.5 MB, only every second,
-        fourth ... frame is kept, and the page says so.
 
     Raises
     ------
@@ -83,7 +91,7 @@ def build(title, layers, cameras=(), court=None, notes=()):
     )
 
 
-def _within(layers, middle):
+def _within(layers: Sequence[Layer], middle: NDArray) -> tuple[list[dict], int]:
     every = 1
     while True:
         contents = [viewer_layers.packed(layer, middle, every) for layer in layers]
@@ -93,7 +101,7 @@ def _within(layers, middle):
         every *= 2
 
 
-def extent(layers):
+def extent(layers: Sequence[Layer]) -> tuple[NDArray, NDArray]:
     """Return the corners low and high (3,) of a box that holds nearly all joints, metres."""
     known = np.concatenate([layer.xyz.reshape(-1, 3) for layer in layers])
     known = known[np.isfinite(known).all(axis=1)]
@@ -103,7 +111,7 @@ def extent(layers):
     return low, high
 
 
-def _frusta(cameras, middle):
+def _frusta(cameras: Sequence[Camera], middle: NDArray) -> list[dict]:
     if not cameras:
         return []
     distances = [np.linalg.norm(camera.centre_in_world - middle) for camera in cameras]
@@ -111,26 +119,19 @@ def _frusta(cameras, middle):
     return [frustum(camera, length_m) for camera in cameras]
 
 
-def frustum(camera, length_m):
-    """Return what is drawn of a camera.
-
-    Parameters
-    ----------
-    camera : Camera
-    length_m : float
-        How far its pyramid reaches along its axis.
+def frustum(camera: Camera, length_m: float) -> dict:
+    """Return the drawing of a camera as a pyramid that reaches `length_m` along its axis.
 
     Returns
     -------
-    drawn : dict
-        `name`; `centre`, `forward` and four `corners` (clockwise from the top left of its picture) in the
-        world, metres; `focal` over the picture's shorter side.
+    `name`; `centre`, `forward` and four `corners` (clockwise from the top left of its picture) in
+    the world, metres; `focal` over the picture's shorter side.
     """
     width, height = camera.size
     xy = np.array(
         [[-0.5, -0.5], [width - 0.5, -0.5], [width - 0.5, height - 0.5], [-0.5, height - 0.5]]
     )
-    # A pinhole's corners where the lens model knows no direction for the picture's.
+    # Where the lens model cannot be inverted, the corners of a camera without distortion.
     pinhole = (xy - camera.K[:2, 2]) / np.diag(camera.K)[:2]
     normalised = camera_models.undistort(camera, xy)
     normalised = np.where(np.isfinite(normalised), normalised, pinhole)
@@ -145,13 +146,8 @@ def frustum(camera, length_m):
     }
 
 
-def drawn_court(court):
-    """Return what is drawn of a court: polygons of floor and lines, and lines of net and posts, metres.
-
-    Parameters
-    ----------
-    court : Court
-    """
+def drawn_court(court: Court) -> dict:
+    """Return polygons of floor and lines, and lines of net and posts, in metres."""
     rectangles = np.vstack([[0, 0, *court.size_m], court.lines_m.reshape(-1, 4)])
     floor, *lines = [
         [[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0]]
@@ -160,7 +156,7 @@ def drawn_court(court):
     return {"floor": floor, "lines": lines, "net": _net(court.net) if court.net else []}
 
 
-def _net(net):
+def _net(net: dict) -> list[dict]:
     y, (left, right) = net["y_m"], net["x_m"]
     post, mid = net["post_height_m"], net["mid_height_m"]
     middle = (left + right) / 2
@@ -178,14 +174,8 @@ def _net(net):
     return drawn
 
 
-def grid(low, high):
-    """Return the lines of a grid of 1 m on the floor around a box, list of two points each, metres.
-
-    Parameters
-    ----------
-    low, high : (3,) float
-        Corners of the box.
-    """
+def grid(low: NDArray, high: NDArray) -> list:
+    """Return the lines of a 1 m grid on the floor around a box, two points each, metres."""
     (x0, y0), (x1, y1) = np.floor(low[:2] - ROOM_M).tolist(), np.ceil(high[:2] + ROOM_M).tolist()
     along_y = [[[x, y0, 0], [x, y1, 0]] for x in np.arange(x0, x1 + 0.5).tolist()]
     return along_y + [[[x0, y, 0], [x1, y, 0]] for y in np.arange(y0, y1 + 0.5).tolist()]
