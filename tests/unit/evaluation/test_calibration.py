@@ -66,7 +66,7 @@ def test_exact_ties_and_clicks_have_no_error():
         assert ("coverage90" in row) == (key[0] == "sfm")
 
 
-def test_a_fault_and_missing_clicks_are_outcomes_of_their_rows():
+def test_failures_and_missing_clicks_become_outcomes():
     real = truth()
     clicks = clicks_of(real)
     clicks["side"][COURT.indices(["p02"])] = np.nan
@@ -119,12 +119,13 @@ def test_cameras_shifted_together_shift_every_point_as_much():
         assert errors[name] == pytest.approx(3, abs=1e-4)
     assert errors["camera_rotation_deg"] == pytest.approx(0, abs=1e-5)
     assert errors["predicted_volume_cm"] == pytest.approx(np.sqrt(3))
-    # 3 cm are 9 in squared sigmas: beyond the 95 % limit of chi-square with 3 degrees of freedom, 7.81
+    # 3 cm are 9 in squared sigmas: beyond 7.81, the 95 % limit of chi-square with 3 degrees
+    # of freedom.
     assert errors["coverage95"] == 0
 
 
-def test_a_linear_matrix_with_skew_is_scored_as_it_is():
-    """A matrix exact in one world, scored in one 2 cm beside it; it is no camera, so poses are not."""
+def test_a_skewed_projection_matrix_is_scored_unchanged():
+    """An exact matrix, scored in a world shifted by 2 cm; it is not a camera, so it has no pose."""
     real = truth()
     real = [replace(camera, dist=np.zeros(5)) for camera in real]
     beside = np.eye(4)

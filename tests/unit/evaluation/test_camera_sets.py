@@ -1,4 +1,4 @@
-"""Fewer views against more: known displacements, known gaps, intervals that hold what they should."""
+"""Fewer views against more: known displacements, known gaps, coverage of the intervals."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ def moved(points, joint, offset_m, missing=()):
     return replace(points, cameras=points.cameras[:2], xyz=xyz)
 
 
-def test_a_displacement_and_gaps_are_what_the_table_says():
+def test_the_table_states_a_known_displacement_and_gaps():
     base = record()
     two = moved(base, "left_knee", [0.03, 0.0, 0.04], missing=range(10))
     rows = camera_sets.compare({"two-robust": two, "all-robust": base}, "all-robust")
@@ -37,7 +37,7 @@ def test_a_displacement_and_gaps_are_what_the_table_says():
     assert rows.loc["limbs", "exchanged_percent"] == 0
 
 
-def test_what_the_reference_lacks_is_not_missed():
+def test_joints_that_the_reference_lacks_do_not_count_as_missing():
     base = moved(record(), "left_knee", 0.0, missing=range(20))
     rows = camera_sets.compare(
         {"two-dlt": moved(record(), "left_knee", 0.0, missing=range(25)), "all-robust": base},
@@ -84,7 +84,7 @@ def test_a_short_take_has_no_interval_and_an_empty_one_no_gain():
 
 
 def held(block_s, n_takes=60):
-    """Return the share of intervals that hold the true median, of errors that last for half a second."""
+    """Return the share of intervals that hold the true median; errors last for half a second."""
     rng, inside = np.random.default_rng(2), 0
     for _ in range(n_takes):
         pieces = np.repeat(rng.normal(0, 10, 40), 15)[None, :, None]
@@ -96,7 +96,8 @@ def held(block_s, n_takes=60):
 
 def test_intervals_are_as_wide_as_errors_that_last_make_them(monkeypatch):
     monkeypatch.setattr(camera_sets, "REPLICATES", 200)
-    # 20 pieces for a median: 90 % rather than 95 %. Frames drawn singly pretend to know 15 times as much.
+    # 20 blocks for a median: 90 % rather than 95 %. Resampling single frames would be far too
+    # optimistic.
     assert 0.8 <= held(1.0) <= 1
     assert held(1 / 30) < 0.6
 

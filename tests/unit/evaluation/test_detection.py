@@ -97,7 +97,7 @@ def test_a_known_displacement_is_a_known_share_of_the_torso(share, placed):
 
 
 def test_the_torso_is_as_long_as_it_would_be_seen_square_on():
-    # 0.5 m at 8 m in front of a camera of 1400 px without distortion, and the same torso pointing at it.
+    # 0.5 m at 8 m from a camera of 1400 px without distortion, and the same torso pointing at it.
     camera = scene.ring(1, radius_m=8.0, height_m=1.0)[0]
     joints, towards = list(detection.TRUNK), camera.cam_from_world[2, :3]
     upright = np.array([[0, 0, 1.25], [0, 0, 1.25], [0, 0, 0.75], [0, 0, 0.75]])
@@ -107,7 +107,7 @@ def test_the_torso_is_as_long_as_it_would_be_seen_square_on():
         np.testing.assert_allclose(found, scene.FOCAL_PX * 0.5 / 8.0, rtol=1e-9)
 
 
-def test_exchanged_sides_are_not_placed_but_known_as_such():
+def test_exchanged_sides_are_marked_and_not_placed():
     real = truth()
     view = seen(real)
     xy, pair = view.xy.copy(), [LIMBS.index("left_ankle"), LIMBS.index("right_ankle")]
@@ -130,7 +130,7 @@ def test_nobody_found_is_not_placed():
     assert rows[missing].error_px.isna().all()
 
 
-def test_tracklets_are_given_to_the_people_they_show():
+def test_tracklets_are_assigned_to_the_persons_they_show():
     real = truth(n_persons=2)
     rows = evaluate(seen(real, order=(1, 0)), real)
     assert rows.placed.all() and set(rows.person) == {"p1", "p2"}
@@ -152,7 +152,7 @@ def test_frames_without_a_truth_are_left_out():
     assert set(evaluate(view, real).frame_idx) == set(range(3, 13))
 
 
-def test_a_shaken_camera_is_compared_where_it_was():
+def test_a_shaken_camera_is_compared_at_its_own_pose():
     real = truth()
     pose = CAMERA.cam_from_world.copy()
     pose[:, 3] += [0.05, -0.02, 0.0]
@@ -163,7 +163,7 @@ def test_a_shaken_camera_is_compared_where_it_was():
     np.testing.assert_allclose(evaluate(view, real).error_px, 0, atol=1e-6)
 
 
-def test_joints_outside_the_picture_are_told():
+def test_joints_outside_the_picture_are_marked():
     real = truth()
     camera = replace(CAMERA, size=(CAMERA.size[0], 540))
     view = replace(seen(real), size=np.array(camera.size))

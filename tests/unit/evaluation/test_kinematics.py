@@ -1,4 +1,4 @@
-"""Errors of kinematics: of measures made from the truth itself, and of those wrong by known amounts."""
+"""Errors of kinematics: measures made from the truth itself, and with known errors."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -53,7 +53,7 @@ def errors(real, frames, summary):
     return rows.set_index("point").loc["neck"]
 
 
-def test_a_perfect_path_has_no_error_and_a_distance_2_percent_too_long_has_that():
+def test_a_perfect_path_has_no_error_and_a_2_percent_error_is_found():
     real = truth()
     found = errors(real, *measured(real))
     assert found["position_p95_mm"] < 1e-6 and found["speed_rmse_m_s"] < 1e-3
@@ -63,7 +63,7 @@ def test_a_perfect_path_has_no_error_and_a_distance_2_percent_too_long_has_that(
     assert (found["n"], found["speed_within_90_percent"]) == (241, 100)
 
 
-def test_known_errors_are_told_apart():
+def test_known_errors_of_position_and_speed_are_separated():
     real = truth()
     found = errors(real, *measured(real, shift_m=0.02, faster=0.3, sigma=0.1))
     assert found["position_median_mm"] == pytest.approx(20)

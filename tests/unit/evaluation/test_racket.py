@@ -77,7 +77,7 @@ def test_exact_clicks_of_calibrated_cameras_give_the_length():
         assert found[key].volume_rms_cm == pytest.approx(0, abs=2e-3)
 
 
-def test_known_points_alone_give_it_where_nothing_but_they_are_needed():
+def test_ways_from_known_points_need_no_structure_from_motion():
     matrix = np.array([[1120.0, 0, 639.5], [0, 1120, 359.5], [0, 0, 1]])
     places = {"side": (-11, -8, 5.0), "back": (3.05, -14.3, 2.1)}
     real = [
@@ -91,7 +91,7 @@ def test_known_points_alone_give_it_where_nothing_but_they_are_needed():
         assert found[key].volume_rms_cm == pytest.approx(0, abs=2e-2)
 
 
-def test_what_cannot_be_calibrated_has_an_outcome_and_no_numbers():
+def test_a_failed_calibration_has_an_outcome_and_no_numbers():
     real = truth()
     clicks = seen_by(real, COURT.xyz)
     clicks["side"][COURT.indices(["p02"])] = np.nan
@@ -108,7 +108,7 @@ def test_what_cannot_be_calibrated_has_an_outcome_and_no_numbers():
 
 
 def test_all_ways_measure_the_same_clicks():
-    """A scale of the world is one of the lengths: ways that differ by 1 % differ by 1 % in every frame."""
+    """Lengths scale with the world: ways that differ by 1 % differ by 1 % in every frame."""
     real = truth()
     larger = similarity.Sim3(1.01, np.eye(3), np.zeros(3))
     ways = [perfect(real), perfect([larger.camera(camera) for camera in real])]
@@ -130,7 +130,7 @@ def test_errors_grow_in_proportion_to_small_click_errors():
 
 
 def test_click_errors_make_a_racket_longer_on_average():
-    """E|d + e| = |d| + tr(P C) / (2 |d|) to second order, P across the racket, C the covariance of e."""
+    """E|d + e| = |d| + tr(P C) / (2 |d|) to second order; P: across the racket, C: cov(e)."""
     real, n_frames, sigma_px = truth(), 40000, 6.0
     ends = np.tile(racket(1), (n_frames, 1, 1))
     noise = np.random.default_rng(3).normal(0, sigma_px, (2, 2 * n_frames, 2))
@@ -172,7 +172,7 @@ def test_linear_placing_with_weights_is_least_squares_of_pixels():
     assert np.isnan(racket_trials.place_linearly(matrices, seen)[5]).all()
 
 
-def test_scores_are_those_of_a_hand_count():
+def test_scores_match_values_computed_by_hand():
     length_m = LENGTH_M + np.array([0.001, -0.003, 0.002, 0.004, np.nan, -0.001])
     found = racket_trials.score(length_m, LENGTH_M, np.arange(6) < 2)
     assert found == {

@@ -1,4 +1,4 @@
-"""Table 1: the identity, rounding against the variance of a rounded number, true errors put in by hand."""
+"""Table 1: the identity, rounding against its variance, known errors."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -40,7 +40,7 @@ def test_the_exact_round_trip_is_an_identity_whatever_the_cameras(count):
         assert round_trip.round_trips(used, scene.points(50), 3840)["exact"][1].max() < 1e-6
 
 
-def test_a_trip_that_is_no_identity_is_refused(monkeypatch):
+def test_a_round_trip_that_moves_points_is_refused(monkeypatch):
     cameras = scene.ring(3)
     there = round_trip.camera_models.project
     monkeypatch.setattr(round_trip.camera_models, "project", lambda c, x: there(c, x) + 1e-3)
@@ -49,8 +49,8 @@ def test_a_trip_that_is_no_identity_is_refused(monkeypatch):
 
 
 @pytest.mark.parametrize(("step_px", "share"), [(1.0, 1.0), (0.5, 0.5)])
-def test_rounding_moves_points_as_a_rounded_number_scatters(step_px, share):
-    """At right angles x and y come from one view each, z from the mean of two: variance 2.5 / 12 px2.
+def test_rounding_moves_points_by_the_variance_of_a_rounded_number(step_px, share):
+    """At right angles one view gives x, one y, and the mean of both z: variance 2.5 / 12 px2.
 
     The cube is large enough for the two views to round a point's height independently.
     """
@@ -97,7 +97,7 @@ def test_the_frames_are_in_the_middle_or_where_asked():
 
 
 def truth_of(points, shift_m):
-    """Return a truth 100 times a second of which the points are `shift_m` off, moving at constant speed."""
+    """Return a truth at 100 Hz, `shift_m` away from the points, moving at constant speed."""
     time_s = np.arange(points.time_s[0] - 0.1, points.time_s[-1] + 0.1, 0.01)
     speed = np.array([0.5, -0.2, 0.1])
     base = np.arange(len(points.joints))[:, None] * [0.01, 0.02, 0.03]
@@ -114,7 +114,7 @@ def truth_of(points, shift_m):
     )
 
 
-def test_rows_say_mean_deviation_count_and_over_what():
+def test_rows_state_mean_deviation_count_and_population():
     points, cameras = make()
     real, moving = truth_of(points, [0.03, 0.0, 0.04])
     points.xyz[0] = moving

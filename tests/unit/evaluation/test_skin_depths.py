@@ -1,4 +1,4 @@
-"""How deep joints lie behind the skin: known depths along known rays are found, by the camera's own clock."""
+"""Depths of joints behind the skin: known depths along known rays are found."""
 
 from itertools import product
 
@@ -17,7 +17,7 @@ SPREAD_M, ASIDE_M = 0.01, 0.03
 
 
 def clip(n, seed, lifted_with):
-    """Return lifted and true joints (n, 12, 3) before a camera at zero; the lift is off to the side, too."""
+    """Return lifted and true joints (n, 12, 3) from the origin; the lift also errs sideways."""
     rng = np.random.default_rng(seed)
     skin = rng.uniform([-1, -1, 2], [1, 1, 4], (n, len(JOINTS), 3))
     ray = skin / np.linalg.norm(skin, axis=-1, keepdims=True)
@@ -46,7 +46,7 @@ def test_depths_are_found_whatever_the_joints_were_lifted_with(lifted_with):
 
 
 def test_how_far_joints_are_placed_beyond_their_limbs_is_found():
-    """Limbs across the view, so that depth is not mistaken for it; the lift took part of it off already."""
+    """Limbs lie across the view, so that depth does not count; the lift corrected part of it."""
     rng = np.random.default_rng(6)
     true, found = (np.zeros((300, len(JOINTS), 3)) for _ in range(2))
     beyond_m = {"elbow": 0.02, "wrist": 0.012, "knee": -0.015, "ankle": 0.03}
@@ -80,14 +80,14 @@ def test_joints_are_taken_by_name():
     assert skin_depths.estimate([(found, true[:, order])], JOINTS, shuffled).equals(straight)
 
 
-def test_a_joint_that_is_never_seen_is_a_fault():
+def test_a_joint_that_is_never_seen_is_refused():
     found, true = clip(5, 5, SKIN_TO_JOINT_M)
     found[:, [2, 8]] = np.nan
     with pytest.raises(ValueError, match=r"expected wrist in a clip, found it in none of 1"):
         skin_depths.estimate([(found, true)], JOINTS, JOINTS)
 
 
-def test_truth_is_seen_from_the_camera_at_the_time_of_what_it_shows():
+def test_truth_is_interpolated_at_the_time_of_the_cameras_picture():
     """A point that moves along a parabola, which a cubic spline follows exactly."""
     time_s = np.linspace(-1, 3, 81)
 

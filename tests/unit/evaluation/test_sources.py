@@ -1,10 +1,14 @@
 """Errors and their parts against errors that were put in."""
 
+import json
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from courtside.evaluation import sources
+from courtside.geometry.similarity import Sim3
+from courtside.study.errors import InputError
 from fixtures.people.bodies_made import body
 
 JOINTS = ["left_hip", "right_hip", "left_wrist", "right_wrist", "right_ankle", "left_ankle"]
@@ -66,7 +70,7 @@ def test_an_exact_source_has_no_error():
         assert np.nanmax(np.abs(found[alignment])) < 0.5  # mm: cubic between frames
 
 
-def test_each_alignment_takes_off_what_it_should():
+def test_each_alignment_removes_its_own_error():
     shift = np.array([0.1, -0.05, 0.02])
     turned = source(turn=(0.1, 0.3, -0.1), scale=1.1, shift=shift)
     names, found = sources.errors(turned, REFERENCE)
@@ -111,7 +115,7 @@ def test_the_table_counts_and_adds_up():
         ({"noise": 0.05}, "remainder", None),
     ],
 )
-def test_one_fault_is_found_as_itself(options, part, value):
+def test_a_single_error_is_attributed_to_its_own_part(options, part, value):
     rows = parts(**options)
     assert rows.percent[part] > 90
     assert rows.percent["all"] == pytest.approx(100)
@@ -143,3 +147,43 @@ def test_only_joints_of_both_are_compared():
     names, found = sources.errors(few, REFERENCE)
     assert names == ["left_hip", "right_hip", "right_ankle", "left_wrist", "right_wrist"]
     assert found["body_frame"].shape[1] == 5
+
+
+RNG = np.random.default_rng(0)
+TRUE = Sim3(1.3, Rotation.random(rng=RNG).as_matrix(), RNG.normal(size=3))
+POSE = np.column_stack([Rotation.random(rng=RNG).as_matrix(), RNG.normal(size=3)])
+STRAIGHT = np.eye(3)
+
+
+def own(turn=STRAIGHT, longer=1.0, shift_m=(0, 0, 0)):
+    """Return the frame of a device at `POSE` that is off by a turn and a shift in body axes."""
+    world_from_device = Sim3(1.0, POSE[:, :3].T, -POSE[:, :3].T @ POSE[:, 3])
+    rotation = turn @ TRUE.rotation @ world_from_device.rotation
+    origin = TRUE.inverse().translation + TRUE.rotation.T @ np.array(shift_m)
+    origin = POSE[:, :3] @ origin + POSE[:, 3]
+    scale = TRUE.scale / longer
+    return Sim3(scale, rotation, -scale * rotation @ origin)
+
+
+def test_an_exact_frame_has_no_error():
+    found = sources.against(own(), POSE, TRUE)
+    assert found == pytest.approx({"angle_deg": 0, "unit_percent": 0, "origin_mm": 0}, abs=1e-5)
+
+
+def test_rotation_unit_and_shift_are_separated():
+    turn = Rotation.from_rotvec(np.radians([1.0, -2.0, 2.0])).as_matrix()
+    found = sources.against(own(turn, 1.02, (0.003, 0, 0.004)), POSE, TRUE)
+    assert found == pytest.approx({"angle_deg": 3.0, "unit_percent": 2.0, "origin_mm": 5.0})
+
+
+def test_a_written_frame_is_read_back(tmp_path):
+    path = tmp_path / "frame.json"
+    stated = {"scale_per_m": 1.25, "rotation": POSE[:, :3].tolist(), "translation": [1, 2, 3]}
+    path.write_text(json.dumps(stated))
+    found = sources.read(path)
+    np.testing.assert_array_equal(found.points([0.0, 0.0, 0.0]), [1, 2, 3])
+    np.testing.assert_array_equal(found.rotation, POSE[:, :3])
+    for broken in ("{}", json.dumps(stated | {"rotation": [1, 2]}), "x"):
+        path.write_text(broken)
+        with pytest.raises(InputError, match=r"frame\.json: expected a body frame"):
+            sources.read(path)

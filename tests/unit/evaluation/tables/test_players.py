@@ -1,4 +1,4 @@
-"""The table of virtual players: what is summarised, what is compared with what, what stays empty."""
+"""The table of simulated players: what is summarised, what is compared, what stays empty."""
 
 import numpy as np
 import pandas as pd
@@ -11,7 +11,7 @@ MODEL = {"calibration": "sfm-n40", "model": "net"}
 
 
 def errors(fusion="all-robust", stage="pose3d", median=20.0, p95=50.0, persons=("m3",), **changes):
-    """Return an evaluation of one take: coverage at 90 % is 70 to 92 % over the joints, 2 % a joint."""
+    """Return an evaluation of one take: coverage at 90 % rises from 70 to 92 % in steps of 2 %."""
     rows = []
     for person in [*persons, *(["all"] if len(persons) > 1 else [])]:
         about = {"session": "s", "take": "t", "stage": stage, "fusion": fusion, **MODEL}
@@ -46,13 +46,13 @@ def test_coverage_is_the_range_over_the_limb_joints_only():
     assert (row["joints_within"], row["joints_stated"]) == (7, 12)  # 80, 82, ..., 92
 
 
-def test_of_several_persons_all_are_together_and_the_most_mistaken_counts():
+def test_persons_are_pooled_and_the_most_mistaken_identity_counts():
     found = table([errors(persons=("m3", "f3"))])
     assert len(found) == 1
     assert found["identity_percent"].iloc[0] == 97
 
 
-def test_stages_stand_raw_first_under_their_fusion():
+def test_stages_are_ordered_raw_first_within_a_fusion():
     stages = ["pose3d_corrected", "pose3d", "pose3d_filtered"]
     found = table([errors(stage=stage) for stage in stages])
     assert found["stage"].tolist() == ["raw", "filtered", "corrected"]
@@ -96,7 +96,7 @@ def clock(camera, error_ms, within, status="found"):
     return {**row, "worst_error_ms": error_ms, "within_90_percent": within}
 
 
-def test_kinematics_and_clocks_stand_once_the_worst_of_each():
+def test_kinematics_and_clocks_are_given_once_by_their_worst_value():
     parts = [errors(stage=stage) for stage in ("pose3d", "pose3d_corrected")]
     measured = [kinematics("m3", -0.8, 0.05), kinematics("f3", 0.5, 0.07)]
     clocks = [clock("back", -3, True), clock("front", 2, "True"), clock("mirror", 9, "False")]
@@ -110,18 +110,18 @@ def test_kinematics_and_clocks_stand_once_the_worst_of_each():
     assert pd.isna(found.loc["corrected", ["n_clocks", "neck_speed_rmse_m_s"]]).all()
 
 
-def test_clocks_none_of_which_is_found_are_counted_as_such():
+def test_clocks_that_were_not_found_are_counted():
     found = table([errors()], clocks=[clock("back", 800, False, "unknown")]).iloc[0]
     assert (found["n_clocks"], found["n_clocks_found"], found["n_clocks_within"]) == (1, 0, 0)
     assert np.isnan(found["clock_error_ms"])
 
 
-def test_files_are_read_as_text_where_they_are_text(tmp_path):
+def test_names_that_look_like_numbers_are_read_as_text(tmp_path):
     errors().assign(take="007").to_csv(tmp_path / "a.csv", index=False)
     assert set(players.read([tmp_path / "a.csv"])["take"]) == {"007"}
     assert players.read([]).empty
 
 
-def test_a_table_needs_errors():
+def test_a_table_without_errors_is_refused():
     with pytest.raises(KeyError):
         players.table(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), pd.DataFrame())

@@ -63,7 +63,7 @@ def test_differences_are_run_by_run_and_counted_against_the_published_ones(numbe
     assert known["n"] == 3
 
 
-def test_clicks_made_anew_are_of_the_reference_only(numbers):
+def test_separate_clicks_are_used_for_the_reference_only(numbers):
     found = row(numbers, quantity="mean_abs_mm", reference="known8", tips="anew")
     assert found["mean"] == pytest.approx((9 + 9.9 + 11 + 9) / 4)
     assert found["share_as_published"] == 0
@@ -76,7 +76,7 @@ def test_the_run_drawn_is_the_median_one_of_the_default(numbers):
     assert shown.to_dict() == {1: 673.0, 2: 681.0}
 
 
-def test_sessions_stay_apart_and_the_published_values_are_the_papers(numbers):
+def test_sessions_are_separate_and_published_values_match_the_paper(numbers):
     assert set(numbers["session"].dropna()) == {"hall", "other"}
     of = numbers[numbers["way"] == "published"].set_index(["quantity", "reference"])["median"]
     assert of.to_dict() == {

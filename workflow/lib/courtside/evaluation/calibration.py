@@ -1,38 +1,32 @@
-"""One trial of the study: clicks of the court, a way to calibrate, and how wrong the cameras are."""
+"""One trial of the study: clicks of the court, several calibrations from them, and their errors."""
+
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
-from courtside.geometry.camera import project
+from courtside.calibration.court.court import Court
+from courtside.calibration.court.resection import Linear
+from courtside.calibration.records.tie_points import Record
+from courtside.geometry.camera import Camera, project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
 
 FIRST = ("method", "n_clicks", "in_sample", "outcome")
 ERRORS = (
-    "xo_cm",
-    "yo_cm",
-    "xy_cm",
-    "volume_rms_cm",
-    "volume_p95_cm",
-    "camera_position_cm",
-    "camera_rotation_deg",
-    "focal_percent",
-    "predicted_volume_cm",
-    "coverage50",
-    "coverage90",
+    "xo_cm", "yo_cm", "xy_cm", "volume_rms_cm", "volume_p95_cm", "camera_position_cm",
+    "camera_rotation_deg", "focal_percent", "predicted_volume_cm", "coverage50", "coverage90",
     "coverage95",
-)
+)  # fmt: skip
 COLUMNS = FIRST + ERRORS
 
 
-def choices(court, sets):
+def choices(court: Court, sets: Sequence[str]) -> Iterator[tuple[int, bool, NDArray]]:
     """Yield the choices of clicks to calibrate from: (number, in sample, (P,) bool).
 
-    Parameters
-    ----------
-    court : courtside.calibration.court.court.Court
-    sets : sequence of str
-        Of its sets. Each comes whole, and without the two scored points where enough others are left.
+    Each of the court's `sets` comes whole, and without the two scored points if three others
+    remain.
     """
     scored = np.zeros(len(court.points), dtype=bool)
     scored[court.indices("three")[1:]] = True
@@ -44,26 +38,29 @@ def choices(court, sets):
             yield int(use.sum()), False, use & ~scored
 
 
-def of_ties(record, truth, court, clicks, *, sets, **settings):
-    """Try the ways that start from structure from motion: `sfm`, `sim3` and `paper`.
+def of_ties(
+    record: Record,
+    truth: list[Camera],
+    court: Court,
+    clicks: dict[str, NDArray],
+    *,
+    sets: Sequence[str],
+    **settings,
+) -> list[dict]:
+    """Evaluate the ways that start from structure from motion: `sfm`, `sim3` and `paper`.
+
+    Rows with the keys `COLUMNS`; `paper` with its three points only, which cannot be left out.
 
     Parameters
     ----------
-    record : courtside.calibration.records.tie_points.Record
+    record
         Without an outcome.
-    truth : list of Camera
-    court : courtside.calibration.court.court.Court
     clicks : dict of str to (P, 2) float
         Of this trial, by camera.
-    sets : sequence of str
+    sets
         Sets of court points.
     **settings
         `click_sigma_px` and `click_loss` of `joint_adjustment.solve`.
-
-    Returns
-    -------
-    rows : list of dict
-        With the keys `COLUMNS`; `paper` with its three points only, which cannot be left out.
     """
     rows, sfm = [], record.sfm_cameras
     xyz_in_sfm = sfm_alignment.reconstruct(sfm, clicks)
@@ -89,23 +86,18 @@ def of_ties(record, truth, court, clicks, *, sets, **settings):
     return [*rows, {"method": "paper", "n_clicks": 3, "in_sample": True, **errors}]
 
 
-def of_known(truth, court, clicks, lenses, *, sets, click_sigma_px):
-    """Try the ways that need known points only: `dlt`, `known`, and `known-board` where lenses are known.
+def of_known(
+    truth: list[Camera],
+    court: Court,
+    clicks: dict[str, NDArray],
+    lenses: dict[str, Camera],
+    *,
+    sets: Sequence[str],
+    click_sigma_px: float,
+) -> list[dict]:
+    """Evaluate the ways that need known points: `dlt`, `known` and, with lenses, `known-board`.
 
-    Parameters
-    ----------
-    truth : list of Camera
-    court : courtside.calibration.court.court.Court
-    clicks : dict of str to (P, 2) float
-    lenses : dict of str to Camera
-        From boards; may be empty.
-    sets : sequence of str
-    click_sigma_px : float
-
-    Returns
-    -------
-    rows : list of dict
-        With the keys `COLUMNS`; `outcome` says why a way failed.
+    `lenses` are from boards and may be empty; `outcome` says why a way failed.
     """
     rows, sizes = [], {camera.name: camera.size for camera in truth}
     ways = [("dlt", True, False), ("known", False, False)]
@@ -128,17 +120,22 @@ def of_known(truth, court, clicks, lenses, *, sets, click_sigma_px):
     return rows
 
 
-def score(cameras, truth, court, clicks, point_covariance=None):
+def score(
+    cameras: list[Camera],
+    truth: list[Camera],
+    court: Court,
+    clicks: dict[str, NDArray],
+    point_covariance: Callable | None = None,
+) -> dict:
     """Return the errors of calibrated cameras, by the names of `ERRORS`.
 
     Parameters
     ----------
-    cameras, truth : list of Camera
+    cameras, truth
         In the same order.
-    court : courtside.calibration.court.court.Court
     clicks : dict of str to (P, 2) float
-    point_covariance : callable, optional
-        Covariance (N, 3, 3) m2 of points (N, 3), of cameras that know theirs.
+    point_covariance
+        Covariance (N, 3, 3) m2 of points (N, 3), of cameras with a known covariance.
     """
     grid = quality.volume(court)
     seen = {true.name: np.vstack([project(true, grid), clicks[true.name]]) for true in truth}
@@ -151,19 +148,13 @@ def score(cameras, truth, court, clicks, point_covariance=None):
     return {"outcome": ""} | found
 
 
-def score_linear(found, truth, court, clicks):
-    """Return the errors of projection matrices as DLT gives them, skew and all.
-
-    Parameters
-    ----------
-    found : dict of str to resection.Linear
-    truth : list of Camera
-    court : courtside.calibration.court.court.Court
-    clicks : dict of str to (P, 2) float
-    """
+def score_linear(
+    found: dict[str, Linear], truth: list[Camera], court: Court, clicks: dict[str, NDArray]
+) -> dict:
+    """Return the errors of the projection matrices that DLT gives, which may be skewed."""
     matrices = np.stack([found[camera.name].matrix for camera in truth])
 
-    def place(seen):
+    def place(seen: dict[str, NDArray]) -> NDArray:
         xy = np.stack([seen[camera.name] for camera in truth])
         weight = np.isfinite(xy).all(axis=-1).astype(float)
         return triangulate(np.nan_to_num(xy), weight, matrices)

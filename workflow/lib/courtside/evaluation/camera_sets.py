@@ -1,43 +1,39 @@
-"""What fewer cameras or a plainer rule lose: skeletons of one take against one another, frame by frame."""
+"""Accuracy lost with fewer cameras or a plainer rule: skeletons of one take compared by frame."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.evaluation import joints
 from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 SHARED = ("time_s", "joints", "person_id")
-SETS = ("limbs", "right half", "left half")  # in the table's order, as in `pose_errors`
+SETS = ("limbs", "right half", "left half")  # of `joints.SETS`, in the table's order
 COLUMNS = ["fusion", "n_cameras", "cameras", "reference", "person", "joint", "n"]
-COLUMNS += [
-    "missing_percent",
-    "reference_missing_percent",
-    "median_mm",
-    "p95_mm",
-    "exchanged_percent",
-]
+COLUMNS += ["missing_percent", "reference_missing_percent", "median_mm", "p95_mm"]
+COLUMNS += ["exchanged_percent"]
 GAINS = ["fusion", "than", "n_frames", "n", "median_mm", "median_from_mm", "median_to_mm"]
 GAINS += ["p95_mm", "p95_from_mm", "p95_to_mm"]
-REPLICATES = 1000
+REPLICATES = 1000  # of the bootstrap: usual for percentile intervals (Davison & Hinkley 1997)
 
 
-def compare(records, reference):
-    """Return how far skeletons from fewer cameras are from a reference, in the world, nothing aligned.
+def compare(records: dict[str, Keypoints3D], reference: str) -> pd.DataFrame:
+    """Return the distances of skeletons from fewer cameras to a reference, in the world, unaligned.
+
+    `COLUMNS`, for each person and joint and for sets of the limb joints. missing_percent: share of
+    the reference's joints that the record lacks; distances are over the joints of both.
+    exchanged_percent, in the row of all limbs: share of frames in which the limbs are nearer to the
+    reference's limbs of the other side, by the mean distance.
 
     Parameters
     ----------
-    records : dict of str to Keypoints3D
+    records
         By the name of their views and rule; of one take, at the same times.
-    reference : str
+    reference
         The one that the others are compared with.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `COLUMNS`, for each person and joint and for sets of the limb joints. missing_percent: of the places
-        that the reference has, those that the record lacks; distances are over those of both.
-        exchanged_percent, in the row of all limbs: frames in which they are nearer to the reference's
-        limbs of the other side, by the mean distance.
 
     Raises
     ------
@@ -46,8 +42,8 @@ def compare(records, reference):
 
     Notes
     -----
-    A distance is no error. The reference rests on the same keypoints and cameras among others, so that
-    what they share is not seen, and the reference has errors of its own.
+    A distance is not an error: the reference rests on the same keypoints and cameras among others,
+    so that shared errors cancel, and the reference has errors of its own.
     """
     _same(records)
     base = records[reference]
@@ -72,36 +68,38 @@ def compare(records, reference):
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def gains(distance_mm, pairs, rate_hz, *, block_s=1.0, seed=0):
-    """Return by how much one way to fuse views is nearer to the truth than another, with 95 % intervals.
+def gains(
+    distance_mm: dict[str, NDArray],
+    pairs: Sequence[tuple[str, str]],
+    rate_hz: float,
+    *,
+    block_s: float = 1.0,
+    seed: int = 0,
+) -> pd.DataFrame:
+    """Return how much nearer to the truth one fusion is than another, with 95 % intervals.
+
+    `GAINS`, all persons together: median_mm and p95_mm are ours minus the other, over the joints
+    that both have, so that leaving out difficult joints gains nothing. Negative: ours is nearer.
+    The intervals resample blocks of this take; they are empty for a take of less than four blocks.
+    They do not cover other players, motions and halls.
 
     Parameters
     ----------
     distance_mm : dict of str to (P, T, J) float
-        Distances from the truth of the joints to be taken together, NaN where missing; of one take, at the
+        Distances from the truth of the joints to be pooled, NaN where missing; of one take, at the
         same times.
-    pairs : sequence of (str, str)
+    pairs
         Ours, and what it is compared with.
-    rate_hz : float
+    rate_hz
         Frames per second.
-    block_s : float
-        Frames of so long a piece of the take are drawn together: errors of neighbouring frames are much
-        alike.
-    seed : int
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `GAINS`, all persons together: median_mm and p95_mm are ours minus the other, over the places that
-        both have, so that leaving out what is hard is no gain. Negative: ours is nearer. The intervals
-        are of drawing pieces of this take again; they are empty for a take of less than four pieces. They
-        say nothing of other players, motions and halls.
+    block_s
+        Length of the blocks that are resampled: errors of neighbouring frames are much alike.
 
     Notes
     -----
-    Moving-block bootstrap, percentiles (Davison & Hinkley 1997, sec. 8.2.3); blocks do not wrap around. With
-    20 blocks, and errors that last for half a block, an interval holds the median in 90 % of takes and the
-    95 % quantile in 85 %; with 60 blocks in 93 and 91 %.
+    Moving-block bootstrap, percentiles (Davison & Hinkley 1997, sec. 8.2.3), without wrap-around.
+    With 20 blocks, and errors that last for half a block, an interval holds the median in 90 % of
+    takes and the 95 % quantile in 85 %; with 60 blocks in 93 and 91 %.
     """
     rows = []
     for ours, than in pairs:
@@ -118,15 +116,15 @@ def gains(distance_mm, pairs, rate_hz, *, block_s=1.0, seed=0):
     return pd.DataFrame(rows, columns=GAINS)
 
 
-def _same(records):
+def _same(records: dict[str, Keypoints3D]) -> None:
     first, *others = records.values()
     for other in others:
         for key in SHARED:
             if not np.array_equal(getattr(first, key), getattr(other, key)):
-                raise ValueError(f"expected records of the same {key}, found others")
+                raise ValueError(f"expected records with the same {key}, found different ones")
 
 
-def _groups(names):
+def _groups(names: list[str]) -> dict[str, list[int]]:
     groups = {}
     for label in SETS:
         sides = joints.SETS[label]
@@ -136,7 +134,7 @@ def _groups(names):
     return {label: of for label, of in groups.items() if of}
 
 
-def _distances(distance_mm, known):
+def _distances(distance_mm: NDArray, known: NDArray) -> dict:
     placed = np.isfinite(distance_mm)
     row = {"n": int(placed.sum()), "reference_missing_percent": 100 * (1 - known.mean())}
     if known.any():
@@ -147,7 +145,7 @@ def _distances(distance_mm, known):
     return row
 
 
-def _exchanged(xyz, reference, names, limbs):
+def _exchanged(xyz: NDArray, reference: NDArray, names: list[str], limbs: list[int]) -> float:
     turn = {"left": "right", "right": "left"}
     sides = [names[at].split("_", 1) for at in limbs]
     mirror = [names.index(f"{turn[side]}_{limb}") for side, limb in sides]
@@ -159,11 +157,11 @@ def _exchanged(xyz, reference, names, limbs):
     return 100 * nearer[frames].mean() if frames.any() else np.nan
 
 
-def _difference(one, other):
+def _difference(one: NDArray, other: NDArray) -> NDArray:
     return np.percentile(one, (50, 95)) - np.percentile(other, (50, 95))
 
 
-def _intervals(one, other, block, seed):
+def _intervals(one: NDArray, other: NDArray, block: int, seed: int) -> dict[str, float]:
     n_frames = one.shape[1]
     if n_frames < 4 * block:
         return {}

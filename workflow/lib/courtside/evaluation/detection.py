@@ -1,18 +1,24 @@
-"""Does a network place the joints of a person in a camera's picture, frame by frame? Against the truth."""
+"""Errors of a network's 2D joints in a camera's pictures, frame by frame, against the truth."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from courtside.evaluation import joints as pose_errors
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
-TOLERANCE = 0.2  # of the torso's length: PCK@0.2
+TOLERANCE = 0.2  # of the torso's length: PCK@0.2, the usual threshold (Yang & Ramanan 2013)
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
-EDGE_S = 1e-3  # a frame so little outside the truth's span is taken to lie on its end
+EDGE_S = 1e-3  # a frame this little outside the truth's span, by rounding, counts as its end
 COLUMNS = [
     "person", "camera", "frame_idx", "time_s", "joint", "x_px", "y_px", "true_x_px", "true_y_px",
     "torso_px", "error_px", "error_torso", "found", "in_picture", "placed", "exchanged",
@@ -20,12 +26,21 @@ COLUMNS = [
 ]  # fmt: skip
 
 
-def torso_px(camera, joints, xyz):
-    """Return how long the torso would be in the picture if it were seen square-on.
+class FilmedTruth(pose_errors.Truth, Protocol):
+    """A truth with the poses of cameras that shook, by frame, and the events of persons.
+
+    Events `*_start` and `*_stop` bound a stroke.
+    """
+
+    shaken: dict[str, NDArray]
+    events: dict[str, dict[str, float]]
+
+
+def torso_px(camera: Camera, joints: Sequence[str], xyz: NDArray) -> NDArray:
+    """Return the length of the torso in the picture as if it were seen square-on.
 
     Parameters
     ----------
-    camera : Camera
     joints : sequence of str, length J
     xyz : (..., J, 3) float
         World, metres.
@@ -33,9 +48,9 @@ def torso_px(camera, joints, xyz):
     Returns
     -------
     length : (...) float
-        Px: the distance from the middle of the shoulders to the middle of the hips, at its place but turned
-        parallel to the picture's columns. A torso that leans towards the camera is not shorter for it, which
-        would ask more of one camera than of another.
+        Px: the distance from the middle of the shoulders to the middle of the hips, at its place
+        but turned parallel to the picture's columns. Otherwise a torso that leans towards the
+        camera would be shorter, and the tolerance of that camera stricter.
     """
     at = [list(joints).index(name) for name in TRUNK]
     shoulders, hips = (xyz[..., at[part : part + 2], :].mean(axis=-2) for part in (0, 2))
@@ -45,38 +60,39 @@ def torso_px(camera, joints, xyz):
     return np.linalg.norm(ends[1] - ends[0], axis=-1)
 
 
-def evaluate(camera, view, clock, truth, joints, tolerance=TOLERANCE):
+def evaluate(
+    camera: Camera,
+    view: Keypoints2D,
+    clock: Clock,
+    truth: FilmedTruth,
+    joints: Sequence[str],
+    tolerance: float = TOLERANCE,
+) -> pd.DataFrame:
     """Compare one camera's keypoints with the true joints in its pictures.
+
+    `COLUMNS`, one row for each person, frame with a truth, and joint; time_s on the reference
+    clock. found: the network reports a trunk within a torso's length of the true one; in_picture:
+    the true joint lies in the picture; placed: found, and the joint's error is below the tolerance;
+    exchanged: not placed, but the keypoint of the other side would be, so that only the sides are
+    mixed up; in_stroke: the person is playing a stroke.
 
     Parameters
     ----------
-    camera : Camera
+    camera
         The true one.
-    view : Keypoints2D
-        Of that camera; its tracklets are nobody yet.
-    clock : Clock
+    view
+        Of that camera; its tracklets are not assigned to persons yet.
+    clock
         The camera's true one.
-    truth
-        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3) m; `shaken` with the poses of the
-        camera at its frames where it did not stand still; and `events` of persons, of which `*_start` and
-        `*_stop` bound a stroke.
-    joints : sequence of str
+    joints
         Those that are compared; the trunk's must be among the truth's.
-    tolerance : float
-        Of the torso's length, see `torso_px`.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `COLUMNS`, one row for each person, frame with a truth, and joint; time_s on the reference clock.
-        found: the network reports somebody whose trunk lies within a torso of the true one; in_picture: the
-        true joint lies in the picture; placed: found, and the joint's error is below the tolerance;
-        exchanged: not placed, but the other side's keypoint would be, so that only the sides are mixed up;
-        in_stroke: the person is playing a stroke.
+    tolerance
+        As a share of the torso's length, see `torso_px`.
 
     Notes
     -----
-    The share of placed joints is known as PCK, percentage of correct keypoints (Yang & Ramanan 2013).
+    A tracklet belongs to the person whose trunk is nearest, by the assignment of the least sum;
+    `placed` is PCK, the percentage of correct keypoints (Yang & Ramanan 2013).
     """
     start_s, stop_s = truth.time_s[[0, -1]]
     time_s = clock.to_reference(view.time_s)
@@ -91,7 +107,9 @@ def evaluate(camera, view, clock, truth, joints, tolerance=TOLERANCE):
     return _table(truth, view, joints, frames, time_s, detected, true, torso, tolerance)
 
 
-def _seen(camera, truth, view, frames, real):
+def _seen(
+    camera: Camera, truth: FilmedTruth, view: Keypoints2D, frames: NDArray, real: NDArray
+) -> tuple[NDArray, NDArray]:
     """Return the true joints (P, F, J, 2) and torsos (P, F) in the pictures, px."""
     poses = truth.shaken.get(view.camera)
     if poses is None:
@@ -102,18 +120,19 @@ def _seen(camera, truth, view, frames, real):
     return np.stack(xy, axis=1), np.stack(torso, axis=1)
 
 
-def _places(known, wanted, where):
+def _places(known: Iterable, wanted: Sequence[str], where: str) -> list[int]:
     known = list(map(str, known))
     missing = [name for name in wanted if name not in known]
     if missing:
         raise InputError(
-            f"{where}: expected the joints {list(wanted)}, missing {missing}; choose a network that has them"
+            f"{where}: expected the joints {list(wanted)}, missing {missing}; choose a network "
+            "that has them"
         )
     return [known.index(name) for name in wanted]
 
 
-def _assign(rows, true, torso, trunk):
-    """Return the keypoints (P, F, K, 2) of the tracklets (R, F, K, 2) by true person; NaN if not found."""
+def _assign(rows: NDArray, true: NDArray, torso: NDArray, trunk: list[int]) -> NDArray:
+    """Return keypoints (P, F, K, 2) by true person of tracklets (R, F, K, 2), or NaN."""
     found = np.full(true.shape, np.nan)
     middle = rows[:, :, trunk].mean(axis=2)
     apart = np.linalg.norm(middle[None] - true[:, None, :, trunk].mean(axis=3), axis=-1)
@@ -157,8 +176,8 @@ def _table(truth, view, joints, frames, time_s, detected, true, torso, tolerance
     return pd.DataFrame(columns)[COLUMNS]
 
 
-def _strokes(events, time_s):
-    """Say which times lie in a stroke of a person with these events, (F,) bool."""
+def _strokes(events: dict[str, float], time_s: NDArray) -> NDArray:
+    """Return which times lie in a stroke of a person with these events, (F,) bool."""
     inside = np.zeros(len(time_s), dtype=bool)
     for name, start_s in events.items():
         stop_s = events.get(f"{name.removesuffix('_start')}_stop")
@@ -167,6 +186,6 @@ def _strokes(events, time_s):
     return inside
 
 
-def _other_side(joint):
+def _other_side(joint: str) -> str:
     side, _, rest = joint.partition("_")
     return {"left": "right_", "right": "left_"}[side] + rest

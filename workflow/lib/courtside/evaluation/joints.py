@@ -1,21 +1,28 @@
 """Errors of 3D joints against truth, and against views that were left out."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
+from typing import ClassVar, Protocol
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.stats import chi2
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
 from courtside.reconstruction import resampling
+from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints import skeleton as limbs
+from courtside.records.keypoints.derived_joints import DerivedJoints
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.study.errors import InputError
 
 LEVELS = (0.5, 0.9, 0.95)  # of the ellipsoids whose coverage is counted
-SETS = {  # joints taken together, by what their names begin with
+SETS = {  # joints taken together, by the start of their names
     "limbs": ("left_", "right_"),
     "left half": ("left_",),
     "right half": ("right_",),
@@ -25,8 +32,18 @@ COLUMNS += ["bias_x_mm", "bias_y_mm", "bias_z_mm", "bias_mm", "sd_mm", "sigma_mm
 COLUMNS += [f"coverage_{100 * level:.0f}_percent" for level in LEVELS]
 
 
-def at_times(time_s, xyz, wanted_s):
-    """Return true places at other times, by a cubic spline.
+class Truth(Protocol):
+    """True motion: joints (J,), person_id (P,), time_s (T,) reference clock, xyz (P, T, J, 3) m."""
+
+    __dataclass_fields__: ClassVar[dict]
+    joints: NDArray
+    person_id: NDArray
+    time_s: NDArray
+    xyz: NDArray
+
+
+def at_times(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
+    """Interpolate true positions at other times by a cubic spline.
 
     Parameters
     ----------
@@ -44,19 +61,13 @@ def at_times(time_s, xyz, wanted_s):
     return np.asarray(found)
 
 
-def true_places(points, truth):
-    """Return the truth at a record's times and in its order of persons.
-
-    Parameters
-    ----------
-    points : Keypoints3D
-    truth
-        Has joints (K,), person_id (Q,), time_s (U,), xyz (Q, U, K, 3) m on the same clock and in world.
+def true_places(points: Keypoints3D, truth: Truth) -> NDArray:
+    """Return the truth at a record's times, with the record's persons in their order.
 
     Returns
     -------
     true_xyz : (P, T, K, 3) float
-        NaN outside the truth's span, and for a person whom it has not.
+        NaN outside the truth's span, and for a person who is not in the truth.
     """
     known, wanted = list(map(str, truth.person_id)), list(map(str, points.person_id))
     there = [at for at, person in enumerate(wanted) if person in known]
@@ -66,14 +77,15 @@ def true_places(points, truth):
     return true
 
 
-def errors(points, joints, true_xyz):
-    """Return what separates a record from the truth, joint by joint.
+def errors(
+    points: Keypoints3D, joints: Sequence[str], true_xyz: NDArray
+) -> tuple[list[str], NDArray, NDArray]:
+    """Return the differences of a record from the truth, joint by joint.
 
     Parameters
     ----------
-    points : Keypoints3D
-    joints : sequence of str
-        Names of the joints of the truth; those of both are compared.
+    joints
+        Names of the joints of the truth; joints of both are compared.
     true_xyz : (P, T, K, 3) float
         At the record's times, persons in the record's order.
 
@@ -84,7 +96,7 @@ def errors(points, joints, true_xyz):
     error : (P, T, M, 3) float
         Measured minus true, metres; NaN where missing.
     covariance : (P, T, M, 3, 3) float
-        What the record says of it, square metres: of keypoints and of cameras where known.
+        Stated by the record, square metres: of keypoints, and of cameras where known.
     """
     names = [name for name in points.joints.tolist() if name in set(joints)]
     own = [points.joints.tolist().index(name) for name in names]
@@ -94,22 +106,21 @@ def errors(points, joints, true_xyz):
     return names, error, covariance + np.nan_to_num(points.covariance_camera[:, :, own])
 
 
-def table(person_id, names, error, covariance):
+def table(
+    person_id: Sequence[str], names: list[str], error: NDArray, covariance: NDArray
+) -> pd.DataFrame:
     """Summarise errors: one row for each person and joint, and for sets of the limb joints.
+
+    `COLUMNS`. missing_percent is over the frames with truth; bias is the mean error, bias_mm its
+    length, sd_mm the root mean square about it; sigma_mm the root of the mean trace of the stated
+    covariance; coverage the share of the errors within their stated ellipsoid, in percent, empty
+    without a stated covariance.
 
     Parameters
     ----------
     person_id : sequence of str, length P
     names, error, covariance
         As `errors` returns them.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `COLUMNS`. missing_percent is over the frames with truth; bias is the mean error, bias_mm its
-        length, sd_mm the root mean square about it; sigma_mm the root of the mean trace of the stated
-        covariance; coverage the share of the errors that lie in their stated ellipsoid, in percent, empty
-        where no covariance is stated.
     """
     groups = {name: [names.index(name)] for name in names}
     for label, sides in SETS.items():
@@ -132,7 +143,7 @@ def table(person_id, names, error, covariance):
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _summary(error, covariance):
+def _summary(error: NDArray, covariance: NDArray) -> dict:
     error, covariance = error.reshape(-1, 3), covariance.reshape(-1, 3, 3)
     known = np.isfinite(error).all(axis=1)
     row = {"n": int(known.sum()), "missing_percent": 100 * (1 - known.mean())}
@@ -162,8 +173,8 @@ def _summary(error, covariance):
     return row
 
 
-def identity_percent(points, joints, true_xyz):
-    """Return in how many frames each person is who the record says.
+def identity_percent(points: Keypoints3D, joints: Sequence[str], true_xyz: NDArray) -> NDArray:
+    """Return the share of frames in which each person has the right identity.
 
     Parameters
     ----------
@@ -173,8 +184,8 @@ def identity_percent(points, joints, true_xyz):
     Returns
     -------
     percent : (P,) float
-        Of the frames in which a person is placed: those in which no other true person is nearer, by the
-        mean distance over the joints; NaN for a person who is never placed.
+        Share of the frames with that person in which no other true person is nearer, by the mean
+        distance over the joints; NaN for a person without frames.
     """
     names = [name for name in points.joints.tolist() if name in set(joints)]
     own = [points.joints.tolist().index(name) for name in names]
@@ -190,21 +201,10 @@ def identity_percent(points, joints, true_xyz):
     )
 
 
-def derive_truth(truth, table, skeleton, names):
-    """Append derived joints to a truth, where the network's skeleton defines them alike.
+def derive_truth(truth: Truth, table: DerivedJoints, skeleton: str, names: Sequence[str]) -> Truth:
+    """Append derived joints to a truth, if the network's skeleton defines them in the same way.
 
-    Parameters
-    ----------
-    truth
-        A dataclass as for `true`.
-    table : courtside.records.keypoints.derived_joints.DerivedJoints
-    skeleton : str
-        Of the network: a joint that it defines otherwise is left out, and has no true error then.
-    names : sequence of str
-
-    Returns
-    -------
-    truth
+    Joints that `skeleton` defines differently are left out, and then have no true error.
     """
     alike = [name for name in names if table.comparable(skeleton, derived_joints.RIG, name)]
     if not alike:
@@ -215,15 +215,10 @@ def derive_truth(truth, table, skeleton, names):
     return replace(truth, joints=joints, xyz=np.concatenate([truth.xyz, more], axis=2))
 
 
-def true(points, truth):
+def true(points: Keypoints3D, truth: Truth) -> NDArray:
     """Return the distance to the truth, (P, T, J) mm; NaN where either is missing.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    truth
-        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3) m on the same clock and in world;
-        interpolated at the times of `points`, never beyond its ends.
+    The truth is interpolated at the times of `points`, never extrapolated.
 
     Raises
     ------
@@ -233,7 +228,8 @@ def true(points, truth):
     known, wanted = list(map(str, truth.person_id)), list(map(str, points.person_id))
     if not set(known) & set(wanted):
         raise InputError(
-            f"truth: expected one of the persons {wanted}, found {known}; name the takes' persons alike"
+            f"truth: expected one of the persons {wanted}, found {known}; give the persons of the "
+            "take the same names"
         )
     real = true_places(points, truth)
     names, apart, _ = errors(points, list(map(str, truth.joints)), real)
@@ -243,18 +239,14 @@ def true(points, truth):
     return error
 
 
-def left_out(points, camera, view, clock=None):
-    """Return how far the detections of a view lie from points that do not rest on it, (P, T, J) px.
+def left_out(
+    points: Keypoints3D, camera: Camera, view: Keypoints2D, clock: Clock | None = None
+) -> NDArray:
+    """Return the distances (P, T, J) px between a view's detections and projected points.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    camera : Camera
-    view : Keypoints2D
-        Of that camera. A tracklet belongs to the person whose projection is closest in the median over
-        the whole take, and of several the closest in the median comes first: no frame chooses its own.
-    clock : Clock, optional
-        The view's.
+    The points must not rest on this view. A tracklet belongs to the person whose projection is
+    closest in the median over the whole take. Where several tracklets belong to one person, the one
+    closest in the median comes first: frames do not choose a tracklet of their own.
     """
     xy, _ = resampling.resample(view, points.time_s, clock)
     names = list(map(str, view.joints))
@@ -271,6 +263,6 @@ def left_out(points, camera, view, clock=None):
     return error
 
 
-def _median(values):
+def _median(values: NDArray) -> float:
     known = values[np.isfinite(values)]
     return np.median(known) if len(known) else np.nan

@@ -1,45 +1,37 @@
-"""How far the kinematics of a take are from the truth of a virtual one."""
+"""Errors of a simulated take's kinematics against the truth."""
 
 import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from courtside.calibration import point_covariance
+from courtside.evaluation.joints import Truth
 from courtside.kinematics import measures
 from courtside.records.keypoints import derived_joints
+from courtside.records.keypoints.derived_joints import DerivedJoints
 
-FINE = 10  # true points per frame, for the length of the true path
-COLUMNS = [
-    "person",
-    "point",
-    "n",
-    "seconds",
-    "distance_m",
-    "true_distance_m",
-    "distance_error_percent",
-]
+FINE = 10  # ASSUME: true points per frame, for the length of the true path; chords err little
+COLUMNS = ["person", "point", "n", "seconds", "distance_m", "true_distance_m"]
+COLUMNS += ["distance_error_percent"]
 COLUMNS += ["distance_sigma_percent", "position_median_mm", "position_p95_mm", "speed_rmse_m_s"]
 COLUMNS += ["ground_speed_rmse_m_s", "speed_bias_m_s", "speed_within_90_percent"]
 
 
-def table(frames, truth, derived, sex_of):
+def table(
+    frames: pd.DataFrame, truth: Truth, derived: DerivedJoints, sex_of: dict[str, str | None]
+) -> pd.DataFrame:
     """Compare measured paths and speeds with the true ones, over the frames that were measured.
+
+    person, point (neck, centre, mass), n frames, seconds; position errors of the filtered path;
+    errors of speed in space and on the ground, and the share of frames in which the speed lies
+    within its stated 90 % interval; the distances are left to `distances`.
 
     Parameters
     ----------
-    frames : pandas.DataFrame
+    frames
         As `courtside.exports.measures.frames` writes them.
-    truth
-        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3) m.
-    derived : courtside.records.keypoints.derived_joints.DerivedJoints
-    sex_of : dict of str to {"m", "f", None}
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        person, point (neck, centre, mass), n frames, seconds; position errors of the filtered path; errors of
-        speed in space and on the ground, and the share of frames in which the speed lies within its stated
-        90 %; the distances are for `distances`.
+    sex_of
+        "m", "f" or None by person.
     """
     rows = []
     for person, part in frames.groupby("person", sort=False):
@@ -55,23 +47,27 @@ def table(frames, truth, derived, sex_of):
     return pd.DataFrame(rows).reindex(columns=COLUMNS)
 
 
-def distances(rows, frames, summary, truth, derived, sex_of):
+def distances(
+    rows: pd.DataFrame,
+    frames: pd.DataFrame,
+    summary: pd.DataFrame,
+    truth: Truth,
+    derived: DerivedJoints,
+    sex_of: dict[str, str | None],
+) -> pd.DataFrame:
     """Fill in the distances: measured over all frames of a person, true over the same span.
+
+    Distances are in space. They stay empty if the truth does not cover the measured frames, or if
+    frames between the first and the last are missing: the paths would differ in span.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
+    rows
         As `table` returns them.
-    frames, summary : pandas.DataFrame
+    frames, summary
         As `courtside.exports.measures` writes them.
     truth, derived, sex_of
         As for `table`.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Distances are in space. They stay empty where the truth does not cover the measured frames, or some
-        between the first and the last are missing: the paths would not be of the same span.
     """
     rows, measured = rows.copy(), summary.set_index(["person", "measure"])
     for at, row in rows.iterrows():
@@ -96,7 +92,7 @@ def distances(rows, frames, summary, truth, derived, sex_of):
     return rows
 
 
-def _errors(part, point, path):
+def _errors(part: pd.DataFrame, point: str, path: CubicSpline) -> dict:
     time_s = part["time_s"].to_numpy()
     place = part[[f"{point}_{axis}_m" for axis in "xyz"]].to_numpy()
     apart_mm = 1000 * np.linalg.norm(place - path(time_s), axis=1)

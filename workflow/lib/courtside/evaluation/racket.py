@@ -1,17 +1,21 @@
-"""One trial of measuring a racket: two cameras calibrated in several ways, and the length that each gives."""
+"""One trial of measuring a racket: its length from two cameras, calibrated in several ways."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
-from courtside.geometry.camera import project
+from courtside.calibration.court.court import Court
+from courtside.calibration.records.tie_points import Record
+from courtside.geometry.camera import Camera, project
 from courtside.geometry.triangulation import triangulate
 from courtside.study.errors import InputError
 
 THREE, EIGHT, ALL = "three", "eight", "all"  # sets of court points
-REWEIGHTED = 3  # times; each divides the remaining effect of unequal depths by about a thousand
+REWEIGHTED = 3  # times; each divides the remaining effect of unequal depths by about 1000
 ERRORS = ("mean_abs_mm", "bias_mm", "std_below_mm", "std_above_mm")
 COLUMNS = ("method", "n_clicks", "outcome", "volume_rms_cm", "n_frames", *ERRORS)
 
@@ -22,50 +26,55 @@ class Way:
 
     Attributes
     ----------
-    method : str
-        `dlt` and `known`: from court points alone, linear and by least squares; `paper`: structure from
-        motion in the published frame; `sfm`: structure from motion adjusted with court points;
-        `perfect`: as the cameras are.
-    n_clicks : int
+    method
+        `dlt` and `known`: from court points alone, linear and by least squares; `paper`: structure
+        from motion in the published frame; `sfm`: structure from motion adjusted with court points;
+        `perfect`: the true cameras.
+    n_clicks
         Court points that were to be clicked in each picture.
-    outcome : str
+    outcome
         Empty, or in one line why there is no calibration.
-    place : callable or None
-        Points (N, 3) m from pixels: dict of str to (N, 2), by camera; NaN where missing.
-    volume_rms_cm : float
-        How wrong points in the playing volume are placed from exact pixels; NaN without calibration.
+    place
+        Points (N, 3) m from pixels (N, 2) by camera, NaN where missing.
+    volume_rms_cm
+        Error of points in the playing volume from exact pixels; NaN without calibration.
     """
 
     method: str
     n_clicks: int
     outcome: str
-    place: object
+    place: Callable | None
     volume_rms_cm: float
 
 
-def calibrate(record, truth, court, clicks, *, click_sigma_px, click_bias_px, click_loss):
+def calibrate(
+    record: Record,
+    truth: list[Camera],
+    court: Court,
+    clicks: dict[str, NDArray],
+    *,
+    click_sigma_px: float,
+    click_bias_px: float,
+    click_loss: float,
+) -> list[Way]:
     """Calibrate cameras in every way, from the same clicks.
 
     Parameters
     ----------
-    record : courtside.calibration.records.tie_points.Record
+    record
         Its fixed cameras include those of `truth`.
-    truth : list of Camera
-        The cameras that see the racket, as they are.
-    court : courtside.calibration.court.court.Court
+    truth
+        The true cameras that see the racket.
+    court
         With the sets "three" and "eight".
     clicks : dict of str to (P, 2) float
         By camera, px; NaN where not clicked.
-    click_sigma_px, click_bias_px, click_loss : float
+    click_sigma_px, click_bias_px, click_loss
         As for `joint_adjustment.solve`.
-
-    Returns
-    -------
-    ways : list of Way
     """
     eight, points = court.indices(EIGHT), court.indices(ALL)
-    known = {"court": court, "clicks": clicks, "sigma_px": click_sigma_px, "truth": truth}
-    tied = {"click_sigma_px": click_sigma_px, "click_bias_px": click_bias_px}
+    known: dict = {"court": court, "clicks": clicks, "sigma_px": click_sigma_px, "truth": truth}
+    tied: dict = {"click_sigma_px": click_sigma_px, "click_bias_px": click_bias_px}
     tied |= {"click_loss": click_loss, "clicks": clicks, "court": court, "truth": truth}
     made = [
         ("dlt", eight, partial(_by_points, points=eight, linear=True, **known)),
@@ -80,16 +89,18 @@ def calibrate(record, truth, court, clicks, *, click_sigma_px, click_bias_px, cl
     return [_way(name, len(used), find, grid, seen) for name, used, find in made]
 
 
-def _way(method, n_clicks, find, grid, seen):
+def _way(
+    method: str, n_clicks: int, find: Callable, grid: NDArray, seen: dict[str, NDArray]
+) -> Way:
     try:
         place = find()
     except InputError as error:
         return Way(method, n_clicks, str(error), None, np.nan)
-    error = quality.over_volume(place(seen) - grid)
-    return Way(method, n_clicks, "", place, error["volume_rms_cm"])
+    errors = quality.over_volume(place(seen) - grid)
+    return Way(method, n_clicks, "", place, errors["volume_rms_cm"])
 
 
-def _by_points(court, clicks, sigma_px, truth, *, points, linear):
+def _by_points(court: Court, clicks, sigma_px, truth, *, points, linear):
     sizes = {camera.name: camera.size for camera in truth}
     way = known_points.Method(linear, False, points)
     found = known_points.calibrate(way, court, clicks, sizes, {}, click_sigma_px=sigma_px)
@@ -98,7 +109,7 @@ def _by_points(court, clicks, sigma_px, truth, *, points, linear):
     return partial(sfm_alignment.reconstruct, known_points.cameras(found))
 
 
-def _by_paper(record, court, clicks, truth):
+def _by_paper(record, court: Court, clicks, truth):
     if record.outcome:
         raise InputError(record.outcome)
     sfm = record.sfm_cameras
@@ -106,7 +117,7 @@ def _by_paper(record, court, clicks, truth):
     return _cameras([frame.camera(camera) for camera in sfm], truth)
 
 
-def _by_ties(record, clicks, court, truth, *, points, **settings):
+def _by_ties(record, clicks, court: Court, truth, *, points, **settings):
     if record.ties is None:
         raise InputError(record.outcome or record.fault)
     use = np.isin(np.arange(len(court.points)), points)
@@ -114,14 +125,14 @@ def _by_ties(record, clicks, court, truth, *, points, **settings):
     return _cameras(solved.cameras, truth)
 
 
-def _cameras(found, truth):
-    """Return how to place points by those of the cameras that see the racket."""
+def _cameras(found: list[Camera], truth: list[Camera]) -> Callable:
+    """Return the triangulation by those of the cameras that see the racket."""
     by_name = {camera.name: camera for camera in found}
     return partial(sfm_alignment.reconstruct, [by_name[camera.name] for camera in truth])
 
 
-def place_linearly(matrices, seen):
-    """Triangulate from projection matrices as DLT gives them, skew and all.
+def place_linearly(matrices: dict[str, NDArray], seen: dict[str, NDArray]) -> NDArray:
+    """Triangulate from the projection matrices that DLT gives, which may be skewed.
 
     Parameters
     ----------
@@ -133,13 +144,13 @@ def place_linearly(matrices, seen):
     Returns
     -------
     xyz : (N, 3) float
-        Metres; NaN where fewer than two cameras see the point.
+        Metres; NaN if fewer than two cameras see the point.
 
     Notes
     -----
-    A row of the linear system is off by the error in px times the depth. Solved again with weights of one
-    over the depth, so that errors in px are minimised as by least squares (Hartley & Sturm 1997, iterative
-    linear method).
+    The error of a row of the linear system is the error in px times the depth. The system is solved
+    again with weights of one over the depth, which minimises the error in px as least squares does
+    (Hartley & Sturm 1997, iterative linear method).
     """
     stacked = np.stack(list(matrices.values()))
     xy = np.stack([np.asarray(seen[name], dtype=float) for name in matrices])
@@ -152,40 +163,33 @@ def place_linearly(matrices, seen):
     return xyz
 
 
-def measure(way, seen):
-    """Return the length of a racket in every frame, (F,) m.
+def measure(way: Way, seen: dict[str, NDArray]) -> NDArray:
+    """Return the length of a racket in every frame, (F,) m; NaN where an end lacks a second view.
 
     Parameters
     ----------
-    way : Way
+    way
         With a calibration.
     seen : dict of str to (2 F, 2) float
         Clicks of top and butt, frame after frame, px; NaN where missing.
-
-    Returns
-    -------
-    length_m : (F,) float
-        NaN where an end was not clicked in two views.
     """
+    if way.place is None:
+        raise ValueError(f"{way.method}: expected a calibration, found {way.outcome}")
     ends = way.place(seen).reshape(-1, 2, 3)
     return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
 
 
-def score(length_m, true_m, below):
-    """Return how wrong measured lengths are, by the names of `ERRORS`.
+def score(length_m: NDArray, true_m: float, below: NDArray) -> dict[str, float]:
+    """Return the errors of measured lengths, by the names of `ERRORS`, and `n_frames`.
+
+    Mean absolute error, mean error, standard deviations below and above, mm.
 
     Parameters
     ----------
     length_m : (F,) float
         NaN where missing.
-    true_m : float
     below : (F,) bool
         Frames in which the racket is below the net's height.
-
-    Returns
-    -------
-    errors : dict of str to float
-        Mean absolute error, mean error, standard deviations below and above, mm; `n_frames`.
 
     Notes
     -----
@@ -202,29 +206,18 @@ def score(length_m, true_m, below):
     }
 
 
-def _mean(values):
+def _mean(values: NDArray) -> float:
     return float(np.mean(values)) if len(values) else np.nan
 
 
-def _std(values):
+def _std(values: NDArray) -> float:
     return float(np.std(values, ddof=1)) if len(values) > 1 else np.nan
 
 
-def rows(ways, seen, true_m, below):
-    """Return one row for each way: what it measured from the same clicks of a racket.
+def rows(ways: list[Way], seen: dict[str, NDArray], true_m: float, below: NDArray) -> list[dict]:
+    """Return one row for each way, measured from the same clicks of a racket.
 
-    Parameters
-    ----------
-    ways : list of Way
-    seen : dict of str to (2 F, 2) float
-        As for `measure`.
-    true_m : float
-    below : (F,) bool
-
-    Returns
-    -------
-    found : list of dict
-        With the keys `COLUMNS` and `length_columns`.
+    Parameters are those of `measure` and `score`; the keys are `COLUMNS` and `length_columns`.
     """
     found = []
     for way in ways:
@@ -237,6 +230,6 @@ def rows(ways, seen, true_m, below):
     return found
 
 
-def length_columns(n_frames):
+def length_columns(n_frames: int) -> list[str]:
     """Return the names of the columns with each frame's length in mm."""
     return [f"length_{frame:02}_mm" for frame in range(1, n_frames + 1)]

@@ -1,16 +1,21 @@
-"""What an error in millimetres is made of: round trips, rounded pixels, reprojection, true 3D error."""
+"""Parts of an error in mm: round trips, rounded pixels, reprojection, true 3D error."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.evaluation import joints as joint_errors
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
+from courtside.geometry.camera import Camera
+from courtside.records.devices.clocks import Clock
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.study.errors import InputError
 
-IDENTITY_MM = 1e-6  # an exact round trip returns the point; what is left is arithmetic
+IDENTITY_MM = 1e-6  # an exact round trip returns the point up to rounding errors
 ROWS = ("exact", "rounded", "rounded_published", "reprojection", "left_out", "truth")
 COLUMNS = [
     "person", "n_cameras", "cameras", "row", "joint", "unit", "mean", "sd", "n", "over",
@@ -20,12 +25,11 @@ ALL = "all"  # in place of a joint: means over the joints
 
 @dataclass(frozen=True)
 class Span:
-    """Some frames of a take in a row.
+    """Consecutive frames of a take.
 
     Attributes
     ----------
-    frames : slice
-    words : str
+    words
         For tables: how many frames from when.
     """
 
@@ -33,16 +37,19 @@ class Span:
     words: str
 
 
-def distance_after(cameras, xyz, step_px=None):
-    """Project points into all views, triangulate the projections plainly, and measure how far they moved.
+def distance_after(
+    cameras: list[Camera], xyz: NDArray, step_px: NDArray | Sequence[float] | None = None
+) -> NDArray:
+    """Return how far points move when they are projected into all views and triangulated again.
 
     Parameters
     ----------
     cameras : list of Camera, length C
     xyz : (..., 3) float
         Metres; NaN where missing.
-    step_px : (C,) float, optional
-        Rounds the projections to the centres of square cells of this size in each picture; exact without.
+    step_px : (C,) float
+        Rounds the projections to the centres of square cells of this size in each picture; exact if
+        None.
 
     Returns
     -------
@@ -51,8 +58,9 @@ def distance_after(cameras, xyz, step_px=None):
 
     Notes
     -----
-    The two ways of the trip use the same cameras: whatever is wrong with these cancels. The triangulation
-    is the linear one with equal weights (Hartley & Zisserman 2004, sec. 12.2), as in the paper's table 1.
+    Projection and triangulation use the same cameras, so that errors of these cancel. The
+    triangulation is the linear one with equal weights (Hartley & Zisserman 2004, sec. 12.2), as in
+    the paper's table 1.
     """
     flat = np.asarray(xyz, dtype=float).reshape(-1, 3)
     directions = []
@@ -61,43 +69,29 @@ def distance_after(cameras, xyz, step_px=None):
         if step_px is not None:
             xy = round_to_grid(xy, step_px[at])
         directions.append(camera_models.undistort(camera, xy))
-    directions = np.stack(directions)
+    stacked = np.stack(directions)
     matrices = np.stack([camera.cam_from_world for camera in cameras])
-    found = triangulation.triangulate(directions, np.ones(directions.shape[:2]), matrices)
+    found = triangulation.triangulate(stacked, np.ones(stacked.shape[:2]), matrices)
     return 1000 * np.linalg.norm(found - flat, axis=-1).reshape(np.shape(xyz)[:-1])
 
 
-def round_to_grid(xy, step_px):
-    """Round image points to the centres of cells.
+def round_to_grid(xy: NDArray, step_px: float) -> NDArray:
+    """Round image points (..., 2) px to the centres of cells of `step_px` in this picture.
 
-    Parameters
-    ----------
-    xy : (..., 2) float
-        px, first pixel centre at (0, 0).
-    step_px : float
-        Size of a cell, in px of this picture; 1 is the picture's own grid, 0.5 that of twice the width.
-
-    Returns
-    -------
-    xy : (..., 2) float
+    A step of 1 px is the picture's own grid, 0.5 px that of a picture twice as wide.
     """
     return (np.rint((xy + 0.5) / step_px - 0.5) + 0.5) * step_px - 0.5
 
 
-def span(points, n_frames, start_s=None):
+def span(points: Keypoints3D, n_frames: int | None, start_s: float | None = None) -> Span:
     """Choose the frames of a table.
 
     Parameters
     ----------
-    points : Keypoints3D
-    n_frames : int or None
-        Frames in a row; all where None or where the take has no more.
-    start_s : float, optional
-        Time of the first; the middle of the take is in the middle by default.
-
-    Returns
-    -------
-    span : Span
+    n_frames
+        Consecutive frames; all if None or if the take has fewer.
+    start_s
+        Time of the first; by default the frames are the middle of the take.
 
     Raises
     ------
@@ -111,48 +105,51 @@ def span(points, n_frames, start_s=None):
         first = int(np.argmin(np.abs(points.time_s - start_s)))
         if first + count > total:
             raise InputError(
-                f"table 1: expected {count} frames from {start_s:g} s on, found {total - first} up to "
-                f"{points.time_s[-1]:.2f} s; choose an earlier start"
+                f"table 1: expected {count} frames from {start_s:g} s on, found {total - first} up "
+                f"to {points.time_s[-1]:.2f} s; choose an earlier start"
             )
     words = f"{count} frames from {points.time_s[first]:.3f} s"
     return Span(slice(first, first + count), words)
 
 
-def table(points, cameras, joints, chosen, *, published_width=3840, truth=None, others=()):
+def table(
+    points: Keypoints3D,
+    cameras: list[Camera],
+    joints: Sequence[str],
+    chosen: Span,
+    *,
+    published_width: int = 3840,
+    truth: joint_errors.Truth | None = None,
+    others: Sequence[tuple[Camera, Keypoints2D, Clock | None]] = (),
+) -> pd.DataFrame:
     """Fill the rows of table 1 for one set of cameras.
+
+    `COLUMNS`. `row`: `exact` and `rounded`: distance after a round trip, exact or with projections
+    rounded to whole pixels of the picture, and of one of the published width (`rounded_published`);
+    `reprojection`: detection to reprojection in all views of the set, accepted or not; `left_out`:
+    the same in the other views; `truth`: distance to the true joint of the same name. `mean` and
+    `sd` are over the values that `over` names, and `n` is their number; for joint `all`, they are
+    means over the joints.
 
     Parameters
     ----------
-    points : Keypoints3D
-        Made of the views `points.cameras`.
-    cameras : list of Camera
-        These views at least.
-    joints : sequence of str
-        Rows are made of those that `points` has.
-    chosen : Span
-        The frames.
-    published_width : int
+    points
+        From the views `points.cameras`.
+    cameras
+        At least these views.
+    joints
+        Rows are for those that `points` has.
+    published_width
         Longer side, px, of the picture whose pixel grid the row `rounded_published` uses.
-    truth : optional
-        Has joints (J,), person_id (P,), time_s (T,), xyz (P, T, J, 3) m on the same clock and in world.
-    others : sequence of (Camera, Keypoints2D, Clock or None)
+    others
         Views that `points` does not rest on; without a clock, on that of `points`.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `COLUMNS`. `row`: `exact` and `rounded`: distance after a round trip, exact or with projections
-        rounded to whole pixels of the picture, and of one of the published width (`rounded_published`);
-        `reprojection`: detection to reprojection in all views of the set, accepted or not; `left_out`: the
-        same in the other views; `truth`: distance to the true joint of the same name. `mean` and `sd` are
-        over what `over` says, and `n` says how many; of joint `all`, they are means over the joints.
 
     Raises
     ------
     InputError
         If a view has no camera, or no person is in the truth.
     ValueError
-        If the exact round trip is none: then projection and triangulation contradict each other.
+        If the exact round trip moves a point: projection and triangulation are then inconsistent.
     """
     used = [_camera(cameras, name) for name in points.cameras]
     at = [list(points.joints).index(joint) for joint in joints if joint in points.joints]
@@ -175,15 +172,16 @@ def table(points, cameras, joints, chosen, *, published_width=3840, truth=None, 
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def round_trips(cameras, xyz, published_width):
+def round_trips(
+    cameras: list[Camera], xyz: NDArray, published_width: int
+) -> dict[str, tuple[str, NDArray]]:
     """Return the rows `exact`, `rounded` and `rounded_published`: (unit, distances (...)) by name.
 
     Parameters
     ----------
-    cameras : list of Camera
     xyz : (..., 3) float
         Metres.
-    published_width : int
+    published_width
         px.
 
     Raises
@@ -196,8 +194,8 @@ def round_trips(cameras, xyz, published_width):
     if largest > IDENTITY_MM:
         names = "+".join(camera.name for camera in cameras)
         raise ValueError(
-            f"cameras {names}: expected projection and triangulation to be inverse within {IDENTITY_MM} mm, "
-            f"found {largest:.3g} mm"
+            f"cameras {names}: expected projection and triangulation to be inverse within "
+            f"{IDENTITY_MM} mm, found {largest:.3g} mm"
         )
     published = [max(camera.size) / published_width for camera in cameras]
     return {
@@ -207,7 +205,7 @@ def round_trips(cameras, xyz, published_width):
     }
 
 
-def _camera(cameras, name):
+def _camera(cameras: list[Camera], name: str) -> Camera:
     for camera in cameras:
         if camera.name == name:
             return camera
@@ -218,7 +216,7 @@ def _camera(cameras, name):
     )
 
 
-def _part(points, frames, at):
+def _part(points: Keypoints3D, frames: slice, at: list[int]) -> Keypoints3D:
     return replace(
         points,
         joints=points.joints[at],
@@ -230,8 +228,8 @@ def _part(points, frames, at):
     )
 
 
-def _statistics(values, joints, words):
-    """Yield joint, mean, sd, n, over: of each joint, then of all joints; values (T, J) or (T, J, C)."""
+def _statistics(values: NDArray, joints: NDArray, words: str) -> Iterator[tuple]:
+    """Yield joint, mean, sd, n, over: of each joint, then of all; values (T, J) or (T, J, C)."""
     over = words if values.ndim == 2 else f"{words} x {values.shape[2]} cameras"
     found = []
     for at, joint in enumerate(joints):
@@ -239,12 +237,12 @@ def _statistics(values, joints, words):
         mean = known.mean() if len(known) else np.nan
         found.append((mean, known.std(ddof=1) if len(known) > 1 else np.nan))
         yield str(joint), *found[-1], len(known), over
-    found = np.array(found).reshape(-1, 2)
-    there = np.isfinite(found[:, 0])
-    means = [_mean(column) for column in found.T]
+    columns = np.array(found).reshape(-1, 2).T
+    there = np.isfinite(columns[0])
+    means = [_mean(column) for column in columns]
     yield ALL, *means, int(there.sum()), f"joints, each: {over}"
 
 
-def _mean(values):
+def _mean(values: NDArray) -> float:
     known = values[np.isfinite(values)]
     return known.mean() if len(known) else np.nan

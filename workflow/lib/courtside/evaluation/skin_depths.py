@@ -1,39 +1,32 @@
-"""How deep joints lie behind the skin that a depth camera sees, from bodies whose joints are known.
+"""Depth of joints behind the skin that a depth camera sees, from bodies with known joints.
 
-A lifted joint is the skin at the joint's place in the picture, moved along the viewing ray. How far it has to
-be moved is measured on development bodies and used for others; so is how far the network places it beyond the
-end of its limb.
+A lifted joint is the skin at the joint's place in the picture, moved along the viewing ray. The
+depth is measured on development bodies and used for others; so is the distance by which the network
+places a joint beyond the end of its limb.
 """
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.depth.lifting import SKIN_TO_JOINT_M, by_joint
 from courtside.evaluation.joints import at_times
 from courtside.geometry import rotations
 from courtside.records.devices import clocks
 from courtside.records.keypoints import skeleton
+from courtside.records.truth.take_truth import TakeTruth
 
 COLUMNS = ["joint", "skin_m", "sd_m", "n", "beyond_m", "beyond_sd_m"]
-NORMAL_SPREAD = 1.4826  # standard deviation over median distance from the median, of normal errors
+NORMAL_SPREAD = 1.4826  # standard deviation over median absolute deviation, of normal errors
 
 
-def in_camera(truth, device, person, time_s):
-    """Return where a person's joints really were when a depth camera saw them.
+def in_camera(truth: TakeTruth, device: str, person: str, time_s: NDArray) -> NDArray:
+    """Return a person's true joints at a depth camera's times (its own clock), (T, K, 3) m.
 
-    Parameters
-    ----------
-    truth : courtside.records.truth.take_truth.TakeTruth
-    device, person : str
-    time_s : (T,) float
-        On the device's own clock.
-
-    Returns
-    -------
-    xyz : (T, K, 3) float
-        Metres, in the axes of the colour camera; NaN outside the truth's span.
+    They are in the axes of the colour camera; NaN outside the truth's span.
     """
     real = truth.devices[device]
     clock = clocks.Clock(real.offset_s, real.drift_ppm)
@@ -43,26 +36,29 @@ def in_camera(truth, device, person, time_s):
     return world @ real.from_world[:, :3].T + real.from_world[:, 3]
 
 
-def estimate(pairs, joints, true_joints, skin_m=None, beyond_m=None):
-    """Measure how deep the joints of the limbs lie, and how far beyond their limbs they are placed.
+def estimate(
+    pairs: list[tuple[NDArray, NDArray]],
+    joints: Sequence[str],
+    true_joints: Sequence[str],
+    skin_m: dict[str, float] | None = None,
+    beyond_m: dict[str, float] | None = None,
+) -> pd.DataFrame:
+    """Measure how deep limb joints lie behind the skin, and how far beyond their limbs they are.
+
+    `COLUMNS`: for each joint, both sides together, the median depth behind the skin along the
+    viewing ray and its robust standard deviation, metres; their number n; and the distance beyond
+    the end of the limb (`skeleton.PARENT`), NaN for shoulder and hip.
 
     Parameters
     ----------
     pairs : list of ((T, J, 3) float, (T, K, 3) float)
         Lifted and true skeletons of clips, in the axes of the camera, metres; NaN where missing.
-    joints, true_joints : sequence of str
+    joints, true_joints
         Names of the J and of the K joints.
-    skin_m : dict of str to float, optional
-        With which they were lifted; `lifting.SKIN_TO_JOINT_M` by default.
-    beyond_m : dict of str to float, optional
-        With which they were lifted; 0 where absent.
-
-    Returns
-    -------
-    table : pandas.DataFrame
-        `COLUMNS`: for each joint, both sides together, the median of its depth behind the skin along the
-        viewing ray and its robust standard deviation, metres; n, how many it rests on; and of how far it is
-        placed beyond the end of its limb (`skeleton.PARENT`), NaN for shoulder and hip.
+    skin_m
+        Used for lifting; `lifting.SKIN_TO_JOINT_M` by default.
+    beyond_m
+        Used for lifting; 0 for joints that are not in it.
 
     Raises
     ------
@@ -88,8 +84,8 @@ def estimate(pairs, joints, true_joints, skin_m=None, beyond_m=None):
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _spread(parts):
-    """Return the median of what is known in some arrays, its robust standard deviation, how many it is."""
+def _spread(parts: list[NDArray]) -> tuple[float, float, int]:
+    """Return median, robust standard deviation and number of the known values in some arrays."""
     values = np.concatenate([[], *parts])
     values = values[np.isfinite(values)]
     if not len(values):

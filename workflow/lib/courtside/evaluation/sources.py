@@ -1,6 +1,8 @@
-"""Errors of a take's sources (devices, cameras) against truth, and the parts that they consist of."""
+"""Errors of a take's sources (devices, cameras) against the truth, and the parts of the errors."""
 
 import json
+import os
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 from math import factorial
@@ -8,25 +10,27 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import similarity
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.body_motion import BodyMotion
 from courtside.study.errors import RAISED_BY_READERS, reading, require_scalar, require_type
 
 ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
 PARTS = ("origin", "scale", "rotation", "time")
-LONGEST_S = 0.1  # no value is interpolated over a longer gap
-MOST_SHIFT_S = 0.3
-SEARCHED = 400  # frames or somewhat more
-FEWEST_JOINTS = 4  # of a frame, for it to be aligned by itself
+LONGEST_S = 0.1  # ASSUME: longer gaps are not interpolated; a fast wrist turns within them
+MOST_SHIFT_S = 0.3  # ASSUME: largest error of a clock that is searched
+SEARCHED = 400  # ASSUME: about so many frames are enough to find the shift in time
+FEWEST_JOINTS = 4  # of a frame aligned by itself: three points would fit with too little left over
 ROOT = ("left_hip", "right_hip")
 
 
-def at_times(time_s, xyz, wanted_s):
-    """Return joints at other times, between neighbouring frames.
+def at_times(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
+    """Interpolate joints at other times between neighbouring frames.
 
     Parameters
     ----------
@@ -41,7 +45,7 @@ def at_times(time_s, xyz, wanted_s):
 
     Notes
     -----
-    A cubic through the two frames before and the two after (Catmull & Rom 1974), taken as evenly spaced; a
+    A cubic through two frames before and two after (Catmull & Rom 1974), taken as evenly spaced; a
     straight line where the outer ones are missing.
     """
     wanted_s = np.asarray(wanted_s, float)
@@ -63,31 +67,29 @@ def at_times(time_s, xyz, wanted_s):
     return np.where(share == 0, before, np.where(share == 1, after, mixed))
 
 
-def shared(source, reference):
-    """Return the names of the limb joints that two sources have in common, in the source's order.
+def shared(source: BodyMotion, reference: BodyMotion) -> list[str]:
+    """Return the names of the limb joints of both sources, in the first one's order.
 
-    Others, like eyes, are left out: not every source has them, and means over joints must be of the same.
+    Others, such as eyes, are left out: not every source has them, and means over joints must be
+    comparable.
     """
     known = set(map(str, reference.joints)) & set(skeleton.JOINTS)
     return [str(name) for name in source.joints if str(name) in known]
 
 
-def matched(source, reference, *, form="fixed", shift_s=0.0):
-    """Return both motions at the source's times, in millimetres of the reference's unit.
+def matched(
+    source: BodyMotion, reference: BodyMotion, *, form: str = "fixed", shift_s: float = 0.0
+) -> tuple[NDArray, NDArray]:
+    """Return both motions (T, M, 3) at the source's times, in mm, NaN where missing.
+
+    The source is in its own units first, so that its scale is that of its T-pose.
 
     Parameters
     ----------
-    source, reference : courtside.records.keypoints.body_motion.BodyMotion
-    form : str
+    form
         `fixed` or `following`.
-    shift_s : float
+    shift_s
         Added to the source's times.
-
-    Returns
-    -------
-    measured, true : (T, M, 3) float
-        mm; NaN where missing. The source is in its own units first, so that its scale is already taken from
-        its T-pose.
     """
     names = shared(source, reference)
     own = getattr(source, form)[:, [list(source.joints).index(name) for name in names]]
@@ -97,21 +99,17 @@ def matched(source, reference, *, form="fixed", shift_s=0.0):
     return own * to_mm, true * to_mm
 
 
-def errors(source, reference):
-    """Return the errors of a source in every alignment.
-
-    Parameters
-    ----------
-    source, reference : courtside.records.keypoints.body_motion.BodyMotion
+def errors(source: BodyMotion, reference: BodyMotion) -> tuple[list[str], dict[str, NDArray]]:
+    """Return the names of the M common joints, and the errors of a source in every alignment.
 
     Returns
     -------
-    names : list of str, length M
-        Joints of both.
+    names
     errors : dict of str to (T, M, 3) float
-        mm. body_frame: in the frame of the T-pose, nothing else aligned. trunk_frame: in the frame that goes
-        with the trunk. root_relative: body_frame, less the error of the middle of the hips in each frame.
-        procrustes_take: after one similarity for the whole take; procrustes_frame: after one per frame.
+        mm. body_frame: in the frame of the T-pose, without further alignment. trunk_frame: in the
+        frame that moves with the trunk. root_relative: body_frame, minus the error of the middle of
+        the hips in each frame. procrustes_take: after one similarity for the whole take;
+        procrustes_frame: after one per frame.
     """
     names = shared(source, reference)
     measured, true = matched(source, reference)
@@ -126,8 +124,8 @@ def errors(source, reference):
     }
 
 
-def _procrustes(measured, true):
-    """Return errors (B, ..., 3) after a similarity for each of B sets of points; NaN of sets too poor."""
+def _procrustes(measured: NDArray, true: NDArray) -> NDArray:
+    """Return errors (B, ..., 3) after a similarity for each of B sets; NaN if undetermined."""
     rest = np.full(measured.shape, np.nan)
     for at, (one, other) in enumerate(zip(measured, true, strict=True)):
         known = np.isfinite(one).all(axis=-1) & np.isfinite(other).all(axis=-1)
@@ -138,22 +136,19 @@ def _procrustes(measured, true):
     return rest
 
 
-def table(names, errors_mm, true_known):
+def table(names: list[str], errors_mm: dict[str, NDArray], true_known: NDArray) -> pd.DataFrame:
     """Summarise errors: one row for each alignment and joint, and for all joints.
+
+    alignment, joint, n, missing_percent; bias_x_mm, bias_y_mm, bias_z_mm: mean error along the
+    body's axes; bias_mm: its length; sd_mm: root mean square about it; rmse_mm: root mean square
+    error (its square is the sum of those of bias_mm and sd_mm); median_mm and p95_mm of the
+    distances.
 
     Parameters
     ----------
-    names : list of str, length M
-    errors_mm : dict of str to (T, M, 3) float
+    names : list of str, length M errors_mm : dict of str to (T, M, 3) float
     true_known : (T, M) bool
-        Where the reference has a value: what misses is counted there.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        alignment, joint, n, missing_percent; bias_x_mm, bias_y_mm, bias_z_mm: mean error along the body's
-        axes; bias_mm: its length; sd_mm: root mean square about it; rmse_mm: its square is bias_mm's and
-        sd_mm's together; median_mm and p95_mm of the distances.
+        Where the reference has a value: missing values are counted there.
     """
     groups = {name: [at] for at, name in enumerate(names)} | {"all": list(range(len(names)))}
     rows = [
@@ -164,7 +159,7 @@ def table(names, errors_mm, true_known):
     return pd.DataFrame(rows)
 
 
-def _row(error, true_known):
+def _row(error: NDArray, true_known: NDArray) -> dict:
     known = np.isfinite(error).all(axis=-1) & true_known
     row = {"n": int(known.sum()), "missing_percent": np.nan}
     if true_known.any():
@@ -183,31 +178,27 @@ def _row(error, true_known):
     }
 
 
-def split(source, reference, *, form="fixed"):
+def split(source: BodyMotion, reference: BodyMotion, *, form: str = "fixed") -> pd.DataFrame:
     """Split the mean squared error of a source into parts that add up.
+
+    part: origin, scale, rotation, time, remainder, all; mean_square_mm2: they add up to that of
+    all; percent of all; and the value in the fit of everything at once, where there is one:
+    origin's shift in mm, scale's factor, rotation's angle in degrees, time's shift in seconds
+    (added to the source's times).
 
     Parameters
     ----------
-    source, reference : courtside.records.keypoints.body_motion.BodyMotion
-    form : str
+    form
         `fixed` or `following`.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        part: origin, scale, rotation, time, remainder, all; mean_square_mm2: they add up to that of all;
-        percent of all; and of the fit of everything at once its value, empty where there is none: origin's
-        shift in mm, scale's factor, rotation's angle in degrees, time's shift in seconds (added to the
-        source's times).
 
     Notes
     -----
-    For every subset of the four corrections (one shift in space, one scale, one rotation, one shift in time
-    for the whole take) the mean squared error that is left when all of the subset are fitted together is
-    found. A part's share is the mean, over all orders of taking corrections, of what it takes off when its
-    turn comes (Lindeman, Merenda & Gold 1980; Shapley 1953): no order is preferred, none is negative, and
-    with the remainder, what all four leave, they add up to the whole. Rotation and scale are about the
-    origin, or about the middle of all points where the origin may shift. All subsets are judged by the same
+    There are four corrections: one shift in space, one scale, one rotation, one shift in time for
+    the whole take. For every subset the mean squared error is found that remains when all of the
+    subset are fitted together. A part's share is its mean reduction over all orders of the
+    corrections (Lindeman, Merenda & Gold 1980; Shapley 1953): no order is preferred, no share is
+    negative, and with the remainder they add up to the whole. Rotation and scale are about the
+    origin, or about the middle of all points where the origin may shift. All subsets use the same
     frames: those that the reference covers at every shift tried.
     """
     fits = {}
@@ -239,8 +230,8 @@ def split(source, reference, *, form="fixed"):
     )
 
 
-def _share(part, left):
-    """Return the mean of what a part takes off over all orders."""
+def _share(part: str, left: dict[frozenset[str], float]) -> float:
+    """Return the mean reduction by a part over all orders of the corrections."""
     others = [other for other in PARTS if other != part]
     share = 0.0
     for size in range(len(others) + 1):
@@ -250,8 +241,8 @@ def _share(part, left):
     return share
 
 
-def _covered(source, reference, form):
-    """Return the values (T, M) that both know at every shift in time that may be tried."""
+def _covered(source: BodyMotion, reference: BodyMotion, form: str) -> NDArray:
+    """Return the values (T, M) that both know at every shift in time that is tried."""
     known = np.ones((len(source.time_s), len(shared(source, reference))), bool)
     for shift_s in np.arange(-MOST_SHIFT_S, MOST_SHIFT_S + 0.01, LONGEST_S / 2):
         measured, true = matched(source, reference, form=form, shift_s=shift_s)
@@ -259,8 +250,10 @@ def _covered(source, reference, form):
     return known
 
 
-def _best_shift(source, reference, form, inside, subset):
-    """Return the shift in time that leaves least when the other corrections of a subset are fitted too."""
+def _best_shift(
+    source: BodyMotion, reference: BodyMotion, form: str, inside: NDArray, subset: Sequence[str]
+) -> float:
+    """Return the shift in time with the least error when the other corrections are fitted too."""
     # Some of the frames are enough to find it.
     every = slice(None, None, max(1, len(source.time_s) // SEARCHED))
     thin = {key: getattr(source, key)[every] for key in ("time_s", "fixed", "following")}
@@ -278,8 +271,15 @@ def _best_shift(source, reference, form, inside, subset):
     return float(found.x) if found.fun < left(0.0) else 0.0
 
 
-def _fit(source, reference, form, inside, shift_s, subset):
-    """Return (mean squared error left, values) of a subset of corrections at one shift in time."""
+def _fit(
+    source: BodyMotion,
+    reference: BodyMotion,
+    form: str,
+    inside: NDArray,
+    shift_s: float,
+    subset: Sequence[str],
+) -> tuple[float, dict[str, float]]:
+    """Return (remaining mean squared error, values) of some corrections at one shift in time."""
     measured, true = matched(source, reference, form=form, shift_s=shift_s)
     good = inside & np.isfinite(true).all(axis=-1)
     a, b = measured[good], true[good]
@@ -301,11 +301,11 @@ def _fit(source, reference, form, inside, shift_s, subset):
     return rest, {"origin": shift, "scale": scale, "rotation": float(angle)}
 
 
-REMAKE = "make it anew with the rule align_bodies"
+REMAKE = "make it again with the rule align_bodies"
 
 
-def read(path):
-    """Return the `body_from_device` (Sim3) in the JSON of a body frame; raise `InputError` if it is none."""
+def read(path: str | os.PathLike) -> Sim3:
+    """Read `body_from_device` from the JSON of a body frame; `InputError` for other content."""
     with reading(path, "a body frame", REMAKE):
         found = require_type(json.loads(Path(path).read_text(encoding="utf-8")), dict)
         scale = float(require_scalar(found["scale_per_m"]))
@@ -318,23 +318,22 @@ def read(path):
         return Sim3(scale, rotation, translation)
 
 
-def against(body_from_device, device_from_world, body_from_world):
-    """Return how far a frame is from the true one.
+def against(
+    body_from_device: Sim3, device_from_world: NDArray, body_from_world: Sim3
+) -> dict[str, float]:
+    """Return the errors of a body frame.
+
+    angle_deg: of the rotation between the axes. unit_percent: by how much the unit is too long.
+    origin_mm: distance of the origins, without meaning for a source without a place in the world.
 
     Parameters
     ----------
-    body_from_device : Sim3
+    body_from_device
         By the source.
     device_from_world : (3, 4) float
         True pose of the source's own axes, metres.
-    body_from_world : Sim3
+    body_from_world
         True frame, by the same definition.
-
-    Returns
-    -------
-    errors : dict of str to float
-        angle_deg: of the rotation between the axes. unit_percent: how much longer the unit is. origin_mm:
-        distance of the origins; it says nothing of a source without a place in the world.
     """
     rotation = body_from_device.rotation @ device_from_world[:, :3] @ body_from_world.rotation.T
     world_from_device = Sim3(1.0, device_from_world[:, :3], device_from_world[:, 3]).inverse()

@@ -1,56 +1,34 @@
-"""The calibration table: errors over sessions, calibrations and numbers of images."""
+"""The calibration table: errors over sessions, calibrations and numbers of pictures."""
+
+import os
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from courtside.evaluation import calibration
 
 TEXT = ("session", "preset", "layout", "condition", "mapper", "method", "outcome")
 CHOICE = ["method", "n_clicks", "in_sample"]
 STRUCTURE = ["session", "condition", "mapper", "n_bridging", "offset"]
-# What a structure from motion without a result would have been used for, where no other tells.
-USUAL = pd.DataFrame(
-    [
-        ("sfm", 18, True),
-        ("sfm", 18, False),
-        ("sim3", 18, True),
-        ("sim3", 18, False),
-        ("paper", 3, True),
-    ],
-    columns=CHOICE,
-)
-REPLICATES = 2000
+# The uses of a structure from motion without a result, if no other structure of the table has one.
+USED = [(method, 18, in_sample) for method in ("sfm", "sim3") for in_sample in (True, False)]
+USUAL = pd.DataFrame([*USED, ("paper", 3, True)], columns=CHOICE)
+REPLICATES = 2000  # of the bootstrap: the limit is a 95 % quantile of them
 
 
-def read(paths):
-    """Read evaluation tables, of structures from motion and of known points, into one.
-
-    Parameters
-    ----------
-    paths : sequence of str or Path
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        As `tidy` returns them.
-    """
+def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+    """Read evaluation tables, of structures from motion and of known points, into one (`tidy`)."""
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
     return tidy(pd.concat(tables, ignore_index=True))
 
 
-def tidy(rows):
-    """Give every trial one row, also those of a structure from motion that has no result.
+def tidy(rows: pd.DataFrame) -> pd.DataFrame:
+    """Give every trial one row, also those of a structure from motion without a result.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        As the evaluations write them: a structure without a result has one row per draw, without a method.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        No text is missing; rows of a structure without a result are repeated for each choice of method,
-        clicks and scored points.
+    In the evaluations' tables such a structure has one row per draw, without a method. Here that
+    row is repeated for each choice of method, clicks and scored points. No text is missing.
     """
     rows = rows.copy()
     for column in TEXT:
@@ -70,7 +48,7 @@ def tidy(rows):
     return pd.concat(whole, ignore_index=True)[list(rows.columns)]
 
 
-def pick(rows, **values):
+def pick(rows: pd.DataFrame, **values) -> pd.DataFrame:
     """Return the rows in which the named columns have these values."""
     there = np.ones(len(rows), dtype=bool)
     for column, value in values.items():
@@ -78,7 +56,7 @@ def pick(rows, **values):
     return rows[there]
 
 
-def spread(values):
+def spread(values: NDArray | pd.Series) -> pd.Series:
     """Return the number of finite values and their 5, 50 and 95 % quantiles, as a Series."""
     known = np.asarray(values, dtype=float)
     known = known[np.isfinite(known)]
@@ -86,21 +64,11 @@ def spread(values):
     return pd.Series({"n": len(known), "p05": low, "median": middle, "p95": high})
 
 
-def summary(rows, by, value):
-    """Return the spread of one column of trials, group by group.
+def summary(rows: pd.DataFrame, by: list[str], value: str) -> pd.DataFrame:
+    """Return the spread of one column of trials by group: n, p05, median, p95 and n_failed.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `tidy`.
-    by : list of str
-        Columns that make a group; rows without one of them form a group too.
-    value : str
-
-    Returns
-    -------
-    groups : pandas.DataFrame
-        The columns `by`, then n, p05, median, p95 and n_failed: the trials without a value.
+    Rows of `tidy` are grouped by the columns `by`; missing values form a group. n_failed counts
+    trials without a value.
     """
     columns = [*by, "n", "p05", "median", "p95", "n_failed"]
     found = [
@@ -110,20 +78,11 @@ def summary(rows, by, value):
     return pd.DataFrame(found, columns=columns).astype({"n": int, "n_failed": int})
 
 
-def structures_of(rows):
-    """Return the structures from motion behind trials, one row each.
+def structures_of(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the structures from motion behind trials (of `tidy`), one row each.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `tidy`.
-
-    Returns
-    -------
-    found : pandas.DataFrame
-        session, condition, mapper, n_bridging, offset; `solved_share`, 1 where any of these trials has
-        a result and else 0; `registered_share` of its images; neighbour_deg_median and
-        neighbour_deg_max.
+    session, condition, mapper, n_bridging, offset; `solved_share`: 1 if any of these trials has a
+    result, else 0; `registered_share` of its images; neighbour_deg_median and neighbour_deg_max.
     """
     about = ["n_registered", "n_images", "neighbour_deg_median", "neighbour_deg_max"]
     of_walk = rows[rows["mapper"] != ""].reindex(columns=[*STRUCTURE, *about, "volume_rms_cm"])
@@ -133,46 +92,38 @@ def structures_of(rows):
     return found.assign(registered_share=found["n_registered"] / found["n_images"])
 
 
-def against(rows, reference, on, value="volume_rms_cm"):
-    """Return the paired differences of trials from their reference.
+def against(
+    rows: pd.DataFrame, reference: pd.DataFrame, on: list[str], value: str = "volume_rms_cm"
+) -> NDArray:
+    """Return the paired differences of trials from their reference; NaN where one is missing.
 
     Parameters
     ----------
-    rows, reference : pandas.DataFrame
+    rows, reference
         Of `tidy`.
-    on : list of str
-        Columns that make a pair; at most one row of `reference` has the same.
-    value : str
-
-    Returns
-    -------
-    difference : (len(rows),) float
-        NaN where one of the two is missing.
+    on
+        Columns that make a pair; at most one row of `reference` has the same values.
     """
     known = reference[[*on, value]].rename(columns={value: "reference"})
     both = rows[[*on, value]].merge(known, on=on, how="left", validate="many_to_one")
     return (both[value] - both["reference"]).to_numpy(dtype=float)
 
 
-def upper_limit(difference, scene, structure, *, seed=0):
+def upper_limit(difference: NDArray, scene: NDArray, structure: NDArray, *, seed: int = 0) -> float:
     """Return the 95 % upper confidence limit of a mean difference, by bootstrap of nested clusters.
 
     Parameters
     ----------
     difference : (n,) float
-        NaN are left out.
+        NaN are left out; the limit is NaN for fewer than two differences.
     scene, structure : (n,) array_like
-        Labels: trials of one scene share what the scene does to them, trials of one structure its images.
-    seed : int
+        Labels: trials of one scene share its effects, trials of one structure its images.
 
-    Returns
-    -------
-    limit : float
-        NaN with fewer than two differences.
-
-    Notes ----- Scenes, then the structures within each, then the draws within each are drawn again with
-    replacement; every scene counts alike, and every structure within its scene (Davison & Hinkley 1997,
-    sec. 3.8). With one scene the limit speaks of that scene only.
+    Notes
+    -----
+    Scenes, then the structures within each, then the draws within each are resampled with
+    replacement; all scenes have equal weight, and all structures within a scene (Davison & Hinkley
+    1997, sec. 3.8). With one scene the limit holds for that scene only.
     """
     known = np.isfinite(difference)
     if known.sum() < 2:
@@ -192,10 +143,10 @@ def upper_limit(difference, scene, structure, *, seed=0):
     return float(np.quantile(_resampled_mean(rng, means), 0.95))
 
 
-def _resampled_mean(rng, values):
+def _resampled_mean(rng: np.random.Generator, values: Sequence[NDArray] | NDArray) -> NDArray:
     """Return means (REPLICATES,) of n drawn with replacement from values (n, REPLICATES) or (n, 1).
 
-    A cluster that is drawn twice comes with two resamples of its own.
+    A cluster that is drawn twice has two resamples of its own.
     """
     values = np.asarray(values)
     member = rng.integers(len(values), size=(REPLICATES, len(values)))
@@ -206,36 +157,33 @@ def _resampled_mean(rng, values):
 SEEDS = ["seed", "walk_seed"]  # sessions of one condition that differ in these only are pooled
 METHOD = ["method", "mapper", "n_clicks", "in_sample"]
 LABELS = ["session", "preset", "layout", "condition"]
-# Columns of an evaluation table that are no setting of a varied session.
+# Columns of an evaluation table that are not settings of a session.
 OTHERS = {
-    *LABELS, *METHOD, *calibration.COLUMNS, "n_bridging", "offset", "draw", "n_registered", "n_images",
-    "n_fixed_registered", "n_points3d", "reprojection_px", "tie_residual_px", "neighbour_deg_median",
-    "neighbour_deg_max",
+    *LABELS, *METHOD, *calibration.COLUMNS, "n_bridging", "offset", "draw", "n_registered",
+    "n_images", "n_fixed_registered", "n_points3d", "reprojection_px", "tie_residual_px",
+    "neighbour_deg_median", "neighbour_deg_max",
 }  # fmt: skip
 
 
-def table(rows, *, n_reference=40):
+def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
     """Summarise trials.
+
+    One row per session, method, mapper, clicks, in-sample or not, and number of bridging images;
+    and one for all sessions of a condition together if they differ in their seeds only (session:
+    `all N`). `n` trials with a result, `n_failed` without; the share of the structures from motion
+    that led to a result (`solved_share`) and the mean share of registered images
+    (`registered_share`); medians and 95 % quantiles; `coverage90` mean; and paired differences of
+    the volume error, each as number of pairs, mean, 95 % upper confidence limit of the mean, and 95
+    % quantile of the pairs: `vs_reference_...` to `n_reference` images (same draw, offset 0),
+    `vs_known_...` to calibration from all known points (same session, draw and choice of scored
+    points).
 
     Parameters
     ----------
-    rows : pandas.DataFrame
-        Of `calibration.tidy`.
-    n_reference : int
+    rows
+        Of `tidy`.
+    n_reference
         Number of bridging images that the others are compared with.
-
-    Returns
-    -------
-    summary : pandas.DataFrame
-        One row per session, method, mapper, clicks, in-sample or not, and number of bridging images;
-        and one for all sessions of a condition together where they differ in their seeds only (session:
-        `all N`). `n` trials with a result, `n_failed` without; of the structures from motion the share
-        that led to a result (`solved_share`) and the mean share of registered images
-        (`registered_share`); medians and 95 % quantiles; `coverage90` mean; and paired differences of
-        the volume error, each as number of pairs, mean, 95 % upper confidence limit of the mean, and 95
-        % quantile of the pairs: `vs_reference_...` to `n_reference` images (same draw, offset 0),
-        `vs_known_...` to calibration from all known points (same session and draw, scored points left
-        out or not alike).
     """
     rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=_to_known(rows))
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]
@@ -254,7 +202,7 @@ def table(rows, *, n_reference=40):
     return pd.DataFrame(groups)[list(groups[0])]
 
 
-def _to_reference(rows, n_reference):
+def _to_reference(rows: pd.DataFrame, n_reference: int) -> NDArray:
     """Return the differences to the reference number of images; offset 0 only."""
     on = ["session", *METHOD, "draw"]
     first = rows["offset"] == 0
@@ -262,13 +210,13 @@ def _to_reference(rows, n_reference):
     return np.where(first, difference, np.nan)
 
 
-def _to_known(rows):
+def _to_known(rows: pd.DataFrame) -> NDArray:
     known = rows[rows["method"] == "known"]
     most = known.groupby("session")["n_clicks"].transform("max")
     return against(rows, known[known["n_clicks"] == most], ["session", "in_sample", "draw"])
 
 
-def _row(group):
+def _row(group: pd.DataFrame) -> dict:
     structures = structures_of(group)
     volume, xy = spread(group["volume_rms_cm"]), spread(group["xy_cm"])
     return {
@@ -288,9 +236,9 @@ def _row(group):
     }
 
 
-def _differences(group, name):
+def _differences(group: pd.DataFrame, name: str) -> dict:
     scene = group["session"]
-    if "seed" in group:  # walks through one scene share it; other sessions stand for themselves
+    if "seed" in group:  # walks through one scene share it; each other session is a scene
         scene = group["seed"].astype(object).where(group["seed"].notna(), scene)
     structure = group["session"] + " " + group["offset"].fillna(0).astype(str)
     found = spread(group[name])

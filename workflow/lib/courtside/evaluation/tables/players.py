@@ -1,4 +1,7 @@
-"""One table of how well virtual players are measured: skeletons, clocks, kinematics, by views and rule."""
+"""The table of simulated players: errors of skeletons, clocks and kinematics, by views and rule."""
+
+import os
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
@@ -11,41 +14,24 @@ TEXT = (*KEY, "stage", "person", "joint", "point", "camera", "status")
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 LEVELS = (50, 90, 95)
 POINTS = ("neck", "centre", "mass")
-WANTED = (80, 97)  # percent: of the 90 % ellipsoids, what the study asks for
-OTHERS = {"two": ("dlt",), "three": ("dlt", "halfbody"), "all": ("dlt",)}  # rules beside ours
+WANTED = (80, 97)  # ASSUME: percent, the coverage of 90 % ellipsoids that the study asks for
+OTHERS = {"two": ("dlt",), "three": ("dlt", "halfbody"), "all": ("dlt",)}  # compared with ours
 GAIN = ["median_mm", "p95_mm"]
 ENDS = [f"{name}_{end}_mm" for name in ("median", "p95") for end in ("from", "to")]
 
 
-def read(paths):
-    """Read evaluations of takes, all of one kind, into one table.
-
-    Parameters
-    ----------
-    paths : sequence of str or Path
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Empty, without columns, where there are no files.
-    """
+def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+    """Read evaluations of takes, all of one kind, into one table; empty if there are no files."""
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
     tables = [table for table in tables if len(table)]
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame()
 
 
-def together(errors):
-    """Return the rows of all persons of a take together, of takes with one person that person's.
+def together(errors: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows that pool all persons of a take, or of its only person.
 
-    Parameters
-    ----------
-    errors : pandas.DataFrame
-        Of `courtside.evaluation.joints.table` with labels; identity_percent may be missing.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        identity_percent is that of the person who is mistaken most often.
+    `errors` is a table of `courtside.evaluation.joints.table` with labels. identity_percent, if it
+    is there, is that of the person who is mistaken most often.
     """
     errors = errors.reset_index(drop=True)
     groups = errors.groupby([*KEY, "stage", "joint"], dropna=False)
@@ -56,27 +42,26 @@ def together(errors):
     return rows.reset_index(drop=True)
 
 
-def table(errors, kinematics, clocks, gains):
+def table(
+    errors: pd.DataFrame, kinematics: pd.DataFrame, clocks: pd.DataFrame, gains: pd.DataFrame
+) -> pd.DataFrame:
     """Summarise the evaluations of takes, one row per take, calibration, network, fusion and stage.
+
+    Over the 12 limb joints: n values, missing_percent, median_mm, p95_mm, sigma_mm and coverage in
+    percent, with the least and the most of any joint and the number of joints whose coverage at 90
+    % is within `WANTED`. On rows of the robust rule, its gain: `vs_dlt_...` over the linear
+    transformation with the same cameras, `vs_halfbody_...` over the half-body rule: ours minus the
+    other, negative if ours is nearer. Those without `paired` in their name are differences of the
+    two summaries; the paired ones are over the joints that both have, with the ends of their 95 %
+    interval. `beats_others`: whether ours has the smaller median and p95 than all of them in the
+    paired comparison, or in the plain one if there is no paired one. On raw rows, the kinematics
+    (from the raw joints) of the person with the largest errors, and the clocks of the take.
 
     Parameters
     ----------
-    errors, kinematics, clocks, gains : pandas.DataFrame
+    errors, kinematics, clocks, gains
         Of `read`: tables of `evaluate_take`, `evaluate_kinematics`, `evaluate_clocks` and
         `evaluate_fusions`; all but the first may be empty.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Over the 12 limb joints: n values, missing_percent, median_mm, p95_mm, sigma_mm and coverage in
-        percent, with the least and the most of any joint and the joints whose coverage at 90 % is within
-        `WANTED`. On rows of the robust rule, what it gains: `vs_dlt_...` over the linear transformation
-        with the same cameras, `vs_halfbody_...` over the half-body rule: ours minus the other, negative
-        where ours is nearer. Those without `paired` in their name are differences of the two summaries;
-        the paired ones are over the places that both have, with the ends of their 95 % interval.
-        `beats_others` says whether ours has the smaller median and p95 than all of them in the paired
-        comparison, or in the plain one where there is no other. On raw rows, kinematics, which rest on
-        the raw joints, of the person who is worst, and the clocks of the take.
     """
     rows = together(errors)
     in_one = rows[rows["joint"] == "limbs"].set_index([*KEY, "stage"])
@@ -99,7 +84,7 @@ def table(errors, kinematics, clocks, gains):
     return found.drop(columns="order").reset_index(drop=True)
 
 
-def _over_joints(rows):
+def _over_joints(rows: pd.DataFrame) -> pd.DataFrame:
     groups = rows.groupby([*KEY, "stage"])
     found = {"worst_joint_median_mm": groups["median_mm"].max()}
     for level in LEVELS:
@@ -112,14 +97,15 @@ def _over_joints(rows):
     return pd.DataFrame(found)
 
 
-def _gains(rows, gains):
+def _gains(rows: pd.DataFrame, gains: pd.DataFrame) -> pd.DataFrame:
     values = rows.set_index([*KEY, "stage"])
     paired = {} if gains.empty else gains.set_index([*KEY, "stage", "than"]).to_dict("index")
     found = []
     for key, row in values.iterrows():
         views, _, rule = key[-2].rpartition("-")
         others = OTHERS.get(views, ()) if rule == "robust" else ()
-        gained, nearer = {}, []
+        gained: dict = {}
+        nearer: list[bool] = []
         for other in others:
             than = other if other == "halfbody" else f"{views}-{other}"
             against = (*key[:-2], than, key[-1])
@@ -137,11 +123,11 @@ def _gains(rows, gains):
     return rows.join(gained.astype(dict.fromkeys(columns, float)))
 
 
-def _kinds():
+def _kinds() -> list[str]:
     return [*GAIN, *(f"paired_{name}" for name in [*GAIN, *ENDS])]
 
 
-def _kinematics(rows):
+def _kinematics(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the worst of each number over the persons of a take, points side by side."""
     if rows.empty:
         return rows
@@ -154,7 +140,7 @@ def _kinematics(rows):
     return pd.DataFrame(found).reset_index()
 
 
-def _clocks(rows):
+def _clocks(rows: pd.DataFrame) -> pd.DataFrame:
     if rows.empty:
         return rows
     used = rows[rows["status"] == "found"]
@@ -170,7 +156,7 @@ def _clocks(rows):
     return whole.fillna({"n_clocks_found": 0, "n_clocks_within": 0})
 
 
-def _furthest(values):
-    """Return the value that is furthest from zero, with its sign; NaN where none is known."""
+def _furthest(values: pd.Series) -> float:
+    """Return the value that is furthest from zero, with its sign; NaN if none is known."""
     known = values.dropna().to_numpy(dtype=float)
     return known[np.abs(known).argmax()] if len(known) else np.nan

@@ -1,4 +1,7 @@
-"""What runs of measuring a racket say: spreads, differences run by run, how often they look as published."""
+"""Runs of measuring a racket: spreads, differences by run, agreement with the published values."""
+
+import os
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pandas as pd
@@ -19,17 +22,10 @@ COLUMNS = (
 )
 
 
-def read(paths):
+def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
     """Read evaluations of a racket, of one or more sessions, into one table.
 
-    Parameters
-    ----------
-    paths : sequence of str or Path
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        No text is missing; `way` is method and number of clicks.
+    No text is missing; `way` is method and number of clicks.
     """
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
     rows = pd.concat(tables, ignore_index=True)
@@ -39,22 +35,14 @@ def read(paths):
     return rows
 
 
-def table(rows):
-    """Return the numbers drawn.
+def table(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers drawn, from rows of `read`.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `read`.
-
-    Returns
-    -------
-    numbers : pandas.DataFrame
-        With the columns `COLUMNS`, see `config/README.md`. Quantities: those of `ERRORS` and
-        `volume_rms_cm`, for each way; with a `reference` their differences run by run (`tips` "same": both
-        ways from the same clicks of the racket; "anew": from clicks of their own); "all three": how often
-        all errors are ordered as published; `length_mm`: the run drawn. The way `published` holds the
-        paper's values.
+    The columns `COLUMNS`, see `config/README.md`. Quantities: those of `ERRORS` and
+    `volume_rms_cm`, for each way; with a `reference` their differences by run (`tips` "same": both
+    ways from the same clicks of the racket; "anew": from separate clicks); "all three": how often
+    all errors are ordered as published; `length_mm`: the run drawn. The way `published` holds the
+    paper's values.
     """
     parts = [_published()]
     for (session, layout), of in rows.groupby(["session", "layout"], sort=False):
@@ -69,7 +57,7 @@ def table(rows):
     return whole.astype(dict.fromkeys(("frame", "n", "n_failed"), "Int64"))
 
 
-def _published():
+def _published() -> list[dict]:
     return [
         {"quantity": name, "way": "published", "reference": way, "median": value}
         for name, values in PUBLISHED_MM.items()
@@ -77,12 +65,12 @@ def _published():
     ]
 
 
-def _by_run(part, column):
+def _by_run(part: pd.DataFrame, column: str) -> pd.DataFrame:
     """Return a column of trials as a table of runs by ways."""
     return part.pivot(index="draw", columns="way", values=column)
 
 
-def _spreads(part):
+def _spreads(part: pd.DataFrame) -> Iterator[dict]:
     first = part[~part["again"]]
     for name in ERRORS:
         values = _by_run(first, name)
@@ -91,21 +79,21 @@ def _spreads(part):
             yield {"quantity": name, "way": way, **_spread(values[way]), "ratio": ratio}
 
 
-def _volumes(of):
+def _volumes(of: pd.DataFrame) -> Iterator[dict]:
     first = of[~of["again"] & (of["tip_sigma_px"] == of["tip_sigma_px"].max())]
     values = _by_run(first, "volume_rms_cm")
     for way in values:
         yield {"quantity": "volume_rms_cm", "way": way, **_spread(values[way])}
 
 
-def _spread(values):
+def _spread(values: pd.Series) -> dict:
     known = values.dropna()
     found = {name: known.quantile(level) for name, level in QUANTILES.items()}
     return {"n": len(known), **found, "mean": known.mean(), "n_failed": len(values) - len(known)}
 
 
-def _differences(part):
-    """Yield how the default differs from each reference, with the same clicks of the racket and others."""
+def _differences(part: pd.DataFrame) -> Iterator[dict]:
+    """Yield the differences of the default to each reference, with the same and other clicks."""
     for tips, again in (("same", False), ("anew", True)):
         for reference in REFERENCES:
             about = {"way": OURS, "reference": reference, "tips": tips}
@@ -118,8 +106,8 @@ def _differences(part):
             yield {"quantity": "all three", **about, **_shares(off)}
 
 
-def _shares(off):
-    """Return how often runs differ as the published one does: in sign, and at least as far; and reversed."""
+def _shares(off: dict[str, pd.Series]) -> dict:
+    """Return how often runs differ as published: in sign, and at least as far; and reversed."""
     values = pd.DataFrame(off).dropna()
     published = pd.Series({name: _published_difference(name) for name in off})
     along = values * np.sign(published)
@@ -133,12 +121,12 @@ def _shares(off):
     }
 
 
-def _published_difference(name):
+def _published_difference(name: str) -> float:
     return PUBLISHED_MM[name]["SfM"] - PUBLISHED_MM[name]["8-point"]
 
 
-def _lengths(of):
-    """Yield the lengths of one run, by all ways: that whose error by the default is the median one."""
+def _lengths(of: pd.DataFrame) -> Iterator[dict]:
+    """Yield the lengths of one run, by all ways: the run with the median error of the default."""
     sigma_px = of["tip_sigma_px"].max()
     part = of[~of["again"] & (of["tip_sigma_px"] == sigma_px)]
     ours = part[part["way"] == OURS].dropna(subset=["mean_abs_mm"])
