@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -65,7 +66,7 @@ def frame(
     jpeg_quality: int | None = None,
     clicks: dict | None = None,
     proposals: dict | None = None,
-    **which,
+    **which: Any,
 ) -> Frame:
     """Read a picture to click in.
 
@@ -92,8 +93,10 @@ def frame(
     if jpeg_quality is not None:
         content = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality])[1].tobytes()
         mime = "image/jpeg"
-    marks = {"clicks": clicks or {}, "proposals": proposals or {}}
-    return Frame(camera, image.shape[1::-1], content, mime, **which, **marks)
+    size = image.shape[1::-1]
+    return Frame(
+        camera, size, content, mime, **which, clicks=clicks or {}, proposals=proposals or {}
+    )
 
 
 def by_point(xy: NDArray | None, points: Sequence[str]) -> dict[str, list[float]]:

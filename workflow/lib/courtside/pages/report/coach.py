@@ -60,7 +60,8 @@ def take(
 
 def _person(person: str, facts: dict) -> dict:
     """Return what the template says of a person: `said` is [(words, value, words after it)]."""
-    measures, said = facts["persons"][person], []
+    measures = facts["persons"][person]
+    said: list[tuple] = []
     distance = measures.get("neck_distance")
     if distance and not math.isnan(distance[0]):
         over = f" in {facts['seconds']:.1f} s" if facts["seconds"] else ""

@@ -21,6 +21,12 @@ FRAMES = ("person", "time_s", "neck_reason")
 def of_take(files: dict) -> dict:
     """Read the facts of a take.
 
+    `persons`: {person: {measure: (value, half of the 90 % interval, unit, whether the error of the
+    calibration is known)}}; `left_out`: {person: (frames without a neck, frames, {reason:
+    frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
+    Clock}; `shake`: lines; `movement`, `devices`, `truth` and `true_paths`: rows. Empty without a
+    file.
+
     Parameters
     ----------
     files
@@ -28,20 +34,12 @@ def of_take(files: dict) -> dict:
         (text), `checks` (clocks of devices), `errors` and `kinematics` (against the truth); each
         may be missing.
 
-    Returns
-    -------
-    `persons`: {person: {measure: (value, half of the 90 % interval, unit, whether the error of the
-    calibration is known)}}; `left_out`: {person: (frames without a neck, frames, {reason:
-    frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
-    Clock}; `shake`: lines; `movement`, `devices`, `truth` and `true_paths`: rows. Empty without a
-    file.
-
     Raises
     ------
     InputError
         If a file is missing or has another content.
     """
-    facts = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
+    facts: dict = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
     if files.get("summary"):
         facts["persons"] = _measures(_table(files["summary"], SUMMARY))
         frames = _table(files["frames"], FRAMES)
@@ -61,15 +59,13 @@ def of_take(files: dict) -> dict:
 def of_session(files: dict) -> dict:
     """Read the facts of a session's cameras.
 
+    `quality`: {calibration: content}; `model`: content, empty without a file; `static`: rows.
+
     Parameters
     ----------
     files
         Paths by `quality`: {calibration: file}, `model` (summary of the structure from motion),
         `static` (a list).
-
-    Returns
-    -------
-    `quality`: {calibration: content}; `model`: content, empty without a file; `static`: rows.
     """
     return {
         "quality": {way: read_json(path) for way, path in files.get("quality", {}).items()},
@@ -81,8 +77,6 @@ def of_session(files: dict) -> dict:
 def of_skeleton(found: Keypoints3D) -> dict:
     """Return statistics of the 12 limb joints.
 
-    Returns
-    -------
     `joints`: {joint: {`missing`: share, `reasons`: {word: share of all}, `few`: share of the
     reconstructed ones that rest on two views}}; `cameras`: {camera: {`accepted`: share of its
     keypoints that were used, `median_px`: their median reprojection error}}; `views`: {number of
@@ -119,7 +113,7 @@ def _of_camera(found: Keypoints3D, at: list[int], view: int) -> dict:
 
 
 def _measures(table: pd.DataFrame) -> dict:
-    found = {}
+    found: dict = {}
     for row in table.itertuples():
         whole = np.hypot(row.sigma, 0 if np.isnan(row.sigma_camera) else row.sigma_camera)
         unit = row.unit if isinstance(row.unit, str) else ""

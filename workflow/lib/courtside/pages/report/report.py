@@ -74,7 +74,8 @@ def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) 
         written = []
         for take, facts, found in session["takes"]:
             key = (session["said"]["name"], take["name"])
-            written.append(coach.take(take, facts, found, key in grouped and _group_id(key)))
+            figures_id = _group_id(key) if key in grouped else None
+            written.append(coach.take(take, facts, found, figures_id))
         sessions.append(session | {"written": written})
     return page.render("report_measured.html", glance=_glance(known), sessions=sessions)
 
@@ -97,8 +98,9 @@ def _glance(known: list[dict]) -> list[dict]:
     ]
 
 
-def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, bytes]]:
-    groups, images = [], {}
+def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, page.Picture]]:
+    groups: list[dict] = []
+    images: dict[str, page.Picture] = {}
     for key, group in grouped.items():
         drawn = []
         for said in group:

@@ -85,7 +85,7 @@ def of_session(
         As for `of_take`.
     """
     found = [moved(row, max_shift_px, max_zoom_percent) for row in facts["static"]]
-    found += calibration(way, facts["quality"][way]) if way in facts["quality"] else []
+    found += calibration(way, facts["quality"][way]) if way and way in facts["quality"] else []
     found += [registered(facts["model"])] if facts["model"] else []
     return sorted(filter(None, found), key=lambda item: -item.level)
 
@@ -238,7 +238,7 @@ def frames(person: str, lost: int, total: int, why: dict[str, int]) -> Warned | 
     if not level:
         return None
     words = {"uncertain": "the position of the neck is too uncertain there"}
-    most = max(why, key=why.get, default="")
+    most = max(why, key=lambda word: why[word], default="")
     reason = words.get(most, f"mostly {most.replace('_', ' ')}" if most else "nobody was found")
     text = f"{lost} of {total} frames are left out of distance and speed"
     return Warned(level, f"{person}: {text}; {reason}.")

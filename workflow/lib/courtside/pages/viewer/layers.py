@@ -141,6 +141,8 @@ def read(
 ) -> Layer:
     """Read a layer from a file of triangulated points or of a device's motion.
 
+    A device's layer is in the device's own frame; see `placed`.
+
     Parameters
     ----------
     skeleton
@@ -149,10 +151,6 @@ def read(
         Of a device: who wears or faces it.
     clock
         Of a device; None if its times are on the reference clock.
-
-    Returns
-    -------
-    A device's layer is in the device's own frame; see `placed`.
 
     Raises
     ------
@@ -207,9 +205,9 @@ def placed(layer: Layer, onto: Layer) -> Layer:
 def _places(layer: Layer, persons: list[str], frames: NDArray, joints: list[str]) -> NDArray:
     """Return the places (n, 3) of chosen joints in chosen frames."""
     chosen = np.ix_(
-        [layer.person_id.index(name) for name in persons],
+        np.array([layer.person_id.index(name) for name in persons], dtype=int),
         frames,
-        [layer.joints.index(name) for name in joints],
+        np.array([layer.joints.index(name) for name in joints], dtype=int),
     )
     return layer.xyz[chosen].reshape(-1, 3)
 

@@ -16,15 +16,13 @@ ANGLES = 255  # steps of a half turn
 def integers(values: NDArray) -> str:
     """Pack integers that change little along the last axis.
 
+    Base64 of a zlib stream of the differences along the last axis, modulo 2^16, as two planes: all
+    low bytes, then all high ones. The first value of each row is a difference from 0.
+
     Parameters
     ----------
     values : (..., T) int
         Within the range of int16.
-
-    Returns
-    -------
-    Base64 of a zlib stream of the differences along the last axis, modulo 2^16, as two planes: all
-    low bytes, then all high ones. The first value of each row is a difference from 0.
 
     Raises
     ------
@@ -34,7 +32,8 @@ def integers(values: NDArray) -> str:
     values = np.asarray(values)
     if values.size and (values.min() < -(1 << 15) or values.max() >= 1 << 15):
         raise ValueError(f"expected int16, found {values.min()} to {values.max()}")
-    changes = np.diff(values.astype(np.int32), axis=-1, prepend=0) & 0xFFFF
+    steps: NDArray = np.diff(values.astype(np.int32), axis=-1, prepend=0)
+    changes = steps & 0xFFFF
     planes = np.concatenate([(changes & 0xFF).ravel(), (changes >> 8).ravel()]).astype(np.uint8)
     return base64.b64encode(zlib.compress(planes.tobytes(), 6)).decode("ascii")
 
@@ -57,7 +56,9 @@ def positions(xyz: NDArray, middle: NDArray) -> tuple[str, NDArray]:
         Joints with three coordinates, none further than 32 m from the middle.
     """
     offset_m = np.asarray(xyz, dtype=float) - middle
-    known = (np.abs(np.where(np.isfinite(offset_m), offset_m, np.inf)) <= REACH_M).all(axis=-1)
+    known: NDArray = (np.abs(np.where(np.isfinite(offset_m), offset_m, np.inf)) <= REACH_M).all(
+        axis=-1
+    )
     steps = np.round(np.where(known[..., None], offset_m, 0) / STEP_M).astype(np.int32)
     return integers(_held(np.moveaxis(steps, 1, -1), np.moveaxis(known, 1, -1)[:, :, None])), known
 

@@ -122,8 +122,6 @@ def _frusta(cameras: Sequence[Camera], middle: NDArray) -> list[dict]:
 def frustum(camera: Camera, length_m: float) -> dict:
     """Return the drawing of a camera as a pyramid that reaches `length_m` along its axis.
 
-    Returns
-    -------
     `name`; `centre`, `forward` and four `corners` (clockwise from the top left of its picture) in
     the world, metres; `focal` over the picture's shorter side.
     """
