@@ -16,7 +16,7 @@ PLACE = dict(
 def made(
     missed, n_frames=30, session="gym-a", cameras=("side", "back"), shift_s=0.0, stroke=(10, 16)
 ):
-    """Return rows in which (camera, frame, joint) of `missed` are off by a torso, others by nothing."""
+    """Return rows in which (camera, frame, joint) of `missed` are off by a torso, others exact."""
     rows = []
     for camera in cameras:
         for frame in range(n_frames):
@@ -112,7 +112,7 @@ def test_frames_in_which_the_person_leaves_the_picture_do_not_count():
     assert (whole.n_frames, whole.share) == (24, 1.0)
 
 
-def test_examples_are_of_the_worst_camera_and_what_they_are_called():
+def test_examples_are_of_the_worst_camera_one_good_and_one_bad():
     missed = MISSED | {("back", 20, joint) for joint in JOINTS[2:]}
     chosen = fig05.examples(both(missed), LAYOUTS)
     assert [one["works"] for one in chosen] == [True, False, True, False]
@@ -126,7 +126,7 @@ def test_nobody_found_gives_no_example():
     assert fig05.examples(both().assign(found=False), LAYOUTS) == []
 
 
-def test_missed_joints_are_ringed_and_tied_to_the_truth():
+def test_missed_joints_are_ringed_and_joined_to_the_truth():
     rows = both()
     chosen = fig05.examples(rows, LAYOUTS)
     images = [np.zeros((240, 320, 3), np.uint8)] * len(chosen)

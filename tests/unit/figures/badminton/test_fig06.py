@@ -62,7 +62,7 @@ def test_all_cameras_are_inside_the_panel(rows):
     assert high > COURT.size_m[1]
 
 
-def test_the_same_bytes_twice(rows, tmp_path):
+def test_drawing_twice_gives_the_same_bytes(rows, tmp_path):
     kinds, contents = ("pdf", "png", "csv"), []
     for name in ("one", "two"):
         paths = [tmp_path / f"{name}.{kind}" for kind in kinds]

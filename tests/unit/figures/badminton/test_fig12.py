@@ -1,4 +1,4 @@
-"""The racket's figure: medians where they belong, the floor and the published values beside them."""
+"""The racket's figure: medians, floor and published values are drawn at their values."""
 
 import pandas as pd
 import pytest

@@ -58,7 +58,7 @@ def test_panels_hold_their_rows():
     assert words == ["2 cameras: a, b", "3 cameras: a, b, c", "published, 2 cameras"]
 
 
-def test_a_real_session_says_that_it_has_no_truth():
+def test_a_real_session_is_marked_as_without_truth():
     drawing = tab01.draw(tab01.table(rows(truth=np.nan), PUBLISHED))
     assert [text.get_text() for text in drawing.axes[-1].texts] == ["no truth:\na real session"]
 

@@ -1,4 +1,4 @@
-"""The figure of two, three and four cameras: numbers of the library's own evaluation, drawn in place."""
+"""Two, three and four cameras: numbers of the library's own evaluation, drawn in place."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ CAMERAS = {way: [f"c{at}" for at in range(2)] for way in three_cameras.WAYS}
 
 
 def evaluation(fusion, stage, offset_m, n_persons=1, take="footwork"):
-    """Return what `evaluate_take` writes of a walk whose left side is off twice as far as the rest."""
+    """Return what `evaluate_take` writes for a walk; the left side has twice the errors."""
     points = walker.points(40, n_persons)
     true = np.nan_to_num(points.xyz, nan=1.0)
     left = np.char.startswith(points.joints.astype(str), "left_")
@@ -96,7 +96,7 @@ def test_marks_stand_at_the_medians_of_raw_and_corrected():
     assert marks(missing)[0].get_xdata()[at] == 0
 
 
-def test_the_title_says_what_two_cameras_did():
+def test_the_title_states_the_errors_of_two_cameras():
     drawing = three_cameras.draw(made(), CAMERAS)
     title = drawing.subfigs[0].get_suptitle()
     assert "right half 60 (60), left half 120 (120), neck 8 (24), centre of gravity 8 (24)" in title

@@ -44,7 +44,7 @@ def test_the_scored_points_are_left_out_where_they_can_be(numbers):
     assert at(numbers, paper, 1, False)["in_sample"]
 
 
-def test_failures_are_counted_and_said(numbers):
+def test_failures_are_counted_and_written(numbers):
     paper = list(conditions.METHODS)[1]
     lost = at(numbers, paper, 4, False)
     assert (lost["n"], lost["n_failed"]) == (0, 2)

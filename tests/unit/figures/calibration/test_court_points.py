@@ -16,7 +16,7 @@ def court(request):
     return courts.read(COURTS / f"{request.param}.yaml")
 
 
-def test_the_table_is_the_court(court):
+def test_the_table_holds_the_courts_points(court):
     rows = court_points.table(court)
     assert tuple(rows["point"]) == court.points
     np.testing.assert_array_equal(rows[["x_m", "y_m", "z_m"]], court.xyz)

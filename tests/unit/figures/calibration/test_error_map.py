@@ -1,4 +1,4 @@
-"""Expected errors are those that moving the cameras, and triangulating with OpenCV and SciPy, gives."""
+"""Expected errors match those of moved cameras, triangulated with OpenCV and SciPy."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -29,7 +29,7 @@ def cameras():
 
 
 def covariance():
-    """Two numbers are uncertain: the first camera's shift along its x, and the second one's focal length."""
+    """Two numbers are uncertain: the first camera's shift along x, the second's focal length."""
     names = list(PARAMETERS)
     variance = np.zeros(2 * len(names))
     variance[names.index("tx_m")] = SHIFT_M**2
@@ -62,7 +62,7 @@ def test_the_error_is_that_of_moved_cameras():
         assert rows.loc[at, "sigma_cm"] == pytest.approx(expected_cm, rel=0.01)
 
 
-def test_what_a_camera_does_not_see_is_blank():
+def test_points_outside_a_picture_are_blank():
     side, back = cameras()
     narrow = replace(
         side, K=np.diag([4.0, 4.0, 1.0]) @ K - np.array([[0, 0, 1920], [0, 0, 1080], [0, 0, 0]])

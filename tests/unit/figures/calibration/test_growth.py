@@ -28,7 +28,7 @@ def paths(tmp_path):
     return sorted(tmp_path.glob("*/*.tsv"))
 
 
-def test_the_table_is_the_files(paths):
+def test_the_table_holds_the_files_values(paths):
     rows = growth.table(paths)
     assert len(rows) == 11
     once = rows[rows["step"] == "match_images"].squeeze()
@@ -46,7 +46,7 @@ def test_exponents_are_those_of_the_power_laws(paths):
     assert np.isnan(laws.loc[("adjust_network", "global")].exponent)
 
 
-def test_the_exponent_is_said(paths):
+def test_the_legend_states_the_exponent(paths):
     drawing = growth.draw(growth.table(paths), "made up")
     labels = drawing.axes[0].get_legend_handles_labels()[1]
     assert "map_images, global: N$^{1.50}$ (n = 6)" in labels

@@ -43,7 +43,7 @@ def test_the_drawing_shows_the_table(rows):
     assert above.get_ylim()[1] > 2.4
 
 
-def test_without_answer_or_without_a_prediction(tmp_path):
+def test_a_plan_without_an_answer_or_a_prediction_is_drawn(tmp_path):
     found = [prediction(5, 0.9), prediction(10, np.nan, fault="camera side: expected matches")]
     rows = plan.table(found, None)
     drawing = plan.draw(rows, "title", min_points=20, widest_deg=6.0)

@@ -1,4 +1,4 @@
-"""The figure of agreement: measures from best to worst, limits in units of the smallest detectable change."""
+"""The figure of agreement: measures from best to worst, limits in detectable changes."""
 
 import numpy as np
 import pandas as pd
@@ -30,7 +30,7 @@ def test_measures_shown_run_from_the_best_to_the_worst():
     assert agreement.choose(shuffled, 9) == list("abcde")
 
 
-def test_files_give_back_what_was_written(tmp_path):
+def test_written_tables_are_read_back(tmp_path):
     pairs, table = made()
     pairs.to_csv(tmp_path / "p.csv", index=False)
     table.to_csv(tmp_path / "t.csv", index=False)
@@ -39,7 +39,7 @@ def test_files_give_back_what_was_written(tmp_path):
     pd.testing.assert_frame_equal(again[1], table, check_dtype=False)
 
 
-def test_points_and_limits_are_where_the_tables_say():
+def test_points_and_limits_are_drawn_at_the_tables_values():
     pairs, table = made()
     drawing = agreement.draw(pairs, table, NETWORKS, ["b"])
     panel, summary = drawing.axes

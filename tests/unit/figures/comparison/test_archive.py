@@ -45,7 +45,7 @@ def test_bands_reach_as_far_as_the_smallest_detectable_change():
     np.testing.assert_allclose([low, high], [1.8, 2.2])
 
 
-def test_the_legend_names_what_is_there():
+def test_the_legend_names_only_verdicts_that_occur():
     drawing = archive.draw(archive.table(VALUES, CHANGES), "p1")
     words = [text.get_text() for text in drawing.legends[0].get_texts()]
     assert words == [archive.LOOKS[name][3] for name in ("first", "real", "mixed")]

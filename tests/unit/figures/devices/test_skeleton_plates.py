@@ -75,7 +75,7 @@ def test_the_map_below_names_every_common_joint_once(found, rows):
     assert "14 l_hand, 18 r_hand" in words and "neck" in words
 
 
-def test_the_table_says_for_what_each_joint_stands(found, rows):
+def test_the_table_names_the_common_joint_of_each_joint(found, rows):
     table = skeleton_plates.table(found, rows)
     assert len(table) == 27 + 19 and set(table["source"]) == {"mocopi", "schematic"}
     hip = table[(table["skeleton"] == "mocopi27") & (table["joint"] == "left_hip")].iloc[0]

@@ -71,7 +71,7 @@ def test_parts_are_stacked_in_order_and_fill_the_bar(drawing):
     assert said == "100 mm rms; shift 12 mm, scale 1.050\nturn 3.0°, time −20 ms"
 
 
-def test_a_source_that_shares_no_frame_with_the_truth_says_so():
+def test_a_source_without_common_frames_has_no_bar():
     unknown = parts().assign(mean_square_mm2=np.nan, percent=np.nan, value=np.nan)
     drawing = source_errors.draw(errors(), unknown)
     drawing.draw_without_rendering()

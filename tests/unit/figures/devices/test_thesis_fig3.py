@@ -39,7 +39,7 @@ def test_the_path_is_drawn_with_a_circle_it_cannot_follow_and_an_arc_it_does():
         ).min() < 0  # from beside the body past the middle
 
 
-def test_squares_are_the_tpose_and_circles_the_clap():
+def test_squares_mark_the_tpose_and_circles_the_clap():
     (axis,) = thesis_fig3.draw(PATHS, DISTORTION, "mocopi").axes
     ends = {
         mark: [a.get_xydata()[0] for a in axis.lines if a.get_marker() == mark] for mark in "so"

@@ -65,7 +65,7 @@ def test_claps_of_all_sources_share_a_panel_and_a_candidate_has_its_own():
     assert rows.loc[rows["event"].str.startswith("tpose"), "panel"].isna().all()
 
 
-def test_contacts_bands_and_distances_are_where_the_tables_say():
+def test_contacts_bands_and_distances_are_drawn_at_the_tables_values():
     distances = wrists(TWO, (3.0, 9.0))
     drawing = wrist_distance.draw(distances, wrist_distance.table(distances, EVENTS))
     drawing.draw_without_rendering()
@@ -100,7 +100,7 @@ def test_without_clocks_each_source_is_shown_by_itself():
     }
 
 
-def test_a_take_without_any_event_says_why(tmp_path):
+def test_a_take_without_events_states_the_reason(tmp_path):
     why = "mocopi: expected a T-pose, found none; film one before the clap"
     events = pd.DataFrame([event("mocopi", "none", np.nan, why=why)])
     distances = wrists({"mocopi": 0.0})
@@ -113,7 +113,7 @@ def test_a_take_without_any_event_says_why(tmp_path):
     assert drawing.subfigs[1].texts[0].get_text() == why
 
 
-def test_reading_gives_back_words_and_empty_reasons(tmp_path):
+def test_reading_keeps_text_and_empty_reasons(tmp_path):
     for name, rows in (("w", wrists(TWO)), ("e", EVENTS)):
         rows.to_csv(tmp_path / f"{name}.csv", index=False)
     distances, events = wrist_distance.read(tmp_path / "w.csv", tmp_path / "e.csv")

@@ -8,7 +8,7 @@ from courtside.figures.style import bars, style
 ROWS = pd.DataFrame({"p05": [1.0, 2.0], "median": [3.0, 4.0], "p95": [5.0, 9.0]})
 
 
-def test_bars_and_marks_are_the_rows():
+def test_bars_and_marks_show_the_rows():
     axis = style.figure(60).subplots()
     bars.draw(axis, np.array([10, 20]), ROWS, colour=style.LEFT, filled=False)
     ends = np.array(axis.collections[0].get_segments())
@@ -25,7 +25,7 @@ def test_a_level_is_a_band_about_its_median():
     assert (low, axis.lines[0].get_ydata()[0], high) == (2.0, 4.0, 9.0)
 
 
-def test_ticks_stand_at_the_numbers_tried():
+def test_ticks_are_at_the_given_values_only():
     drawing = style.figure(60)
     axis = drawing.subplots()
     axis.plot([5, 300], [0.1, 100])

@@ -39,7 +39,7 @@ def test_derived_joints_are_sums_of_numbers(common, name, words):
     assert joint_map.cell(row(common, name)) == words
 
 
-def test_a_definition_that_differs_is_told():
+def test_a_definition_that_differs_is_marked():
     told = ROWS.groupby("common")["same"].all()
     assert told["pelvis_thorax"] and told["mid_hip"]
     assert not told["head_centre"] and not told["neck"]

@@ -84,7 +84,7 @@ def test_limits_hold_every_known_point():
     assert np.isfinite(oblique_view.limits(np.full((2, 3), np.nan))).all()
 
 
-def test_the_net_is_as_high_as_the_court_says():
+def test_the_net_has_the_courts_height():
     axis, sight = Figure().subplots(), oblique_view.Sight(azimuth_deg=-90, elevation_deg=0)
     oblique_view.net(axis, sight, COURT)
     assert axis.lines[0].get_ydata().max() == pytest.approx(COURT.net["post_height_m"])

@@ -17,7 +17,7 @@ def test_a_box_has_its_aspect_and_holds_every_point(aspect):
     assert part.width >= 60 * picture_crops.MARGIN - 1e-9
 
 
-def test_of_one_point_and_of_none():
+def test_boxes_of_one_point_and_of_none():
     assert picture_crops.box([[50.0, 60.0]], (640, 480)).width == picture_crops.LEAST_PX
     whole = picture_crops.box(np.full((3, 2), np.nan), (640, 480), 640 / 480)
     assert (whole.x, whole.y) == pytest.approx((320, 240))

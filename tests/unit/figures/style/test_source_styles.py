@@ -21,11 +21,11 @@ DEVICES = {"d415": "rgbd", "imu": "inertial", "kinect": "nuitrack"}
         ("unheard-of", "other"),
     ],
 )
-def test_names_and_the_session_tell_the_kind(source, kind):
+def test_the_kind_follows_from_name_and_session(source, kind):
     assert source_styles.kind_of(source, DEVICES) == kind
 
 
-def test_what_the_session_says_comes_before_a_usual_name():
+def test_the_session_has_priority_over_a_usual_name():
     assert source_styles.kind_of("mocopi", {"mocopi": "nuitrack"}) == "nuitrack"
 
 

@@ -28,7 +28,7 @@ def test_joints_are_means_of_their_parts():
     np.testing.assert_allclose(found[:, STICK.joints.index("left_knee")], xyz[:, at("left_knee")])
 
 
-def test_a_missing_joint_takes_only_what_rests_on_it():
+def test_a_missing_joint_removes_only_joints_made_of_it():
     xyz = walker.body(1)
     xyz[:, walker.SKELETON.index("left_shoulder")] = np.nan
     missing = np.isnan(STICK.of(xyz)[0, :, 0])

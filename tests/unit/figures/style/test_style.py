@@ -12,7 +12,7 @@ import pytest
 from courtside.figures.style import style
 
 LIBRARY = Path(__file__).parents[4] / "workflow" / "lib"
-# All that our figures are made of: lines, points, bars with hatches, signs and Greek letters, pictures,
+# All parts of our figures: lines, points, bars with hatches, signs and Greek letters, pictures,
 # filled areas, arrows, transparent collections, 3D axes, legends.
 PROGRAM = """
 import sys
@@ -52,7 +52,7 @@ def drawn(folder, **environment):
 
 
 def test_two_processes_make_the_same_bytes(tmp_path):
-    """Whatever the order of sets, the time zone, the language, the date and the width of the terminal."""
+    """Independent of the order of sets, time zone, language, date and width of the terminal."""
     one = drawn(tmp_path / "one", PYTHONHASHSEED="1", TZ="UTC", LC_ALL="C", COLUMNS="80")
     time.sleep(1.1)  # dates in files have whole seconds
     two = drawn(
@@ -61,7 +61,7 @@ def test_two_processes_make_the_same_bytes(tmp_path):
     assert one == two
 
 
-def test_files_tell_neither_date_nor_program(tmp_path):
+def test_files_hold_neither_date_nor_program(tmp_path):
     pdf, png, csv = drawn(tmp_path / "one", SOURCE_DATE_EPOCH="0")
     for word in (b"CreationDate", b"ModDate", b"Producer", b"/ID", b"1970"):
         assert word not in pdf
@@ -78,7 +78,7 @@ def test_sides_have_colours(joint, colour):
     assert style.side_colour(joint) == colour
 
 
-def test_no_place_on_the_page_depends_on_the_last_digits_of_the_solver():
+def test_the_layout_does_not_depend_on_the_last_digits_of_the_solver():
     drawing = style.figure(80)
     for part in drawing.subfigures(1, 2, width_ratios=(1, 2)):
         part.suptitle("Title")

@@ -34,7 +34,7 @@ def rows():
     return camera_shake.table(cameras, shakes, PLAYER)
 
 
-def test_the_table_holds_pixels_millimetres_and_knocks(rows):
+def test_the_table_holds_pixels_millimetres_and_bumps(rows):
     assert rows.camera.value_counts().to_dict() == {"left": 240, "mirror": 240, "dark": 240}
     known = rows[rows.shift_x_px.notna()]
     expected = 1000 * 9.0 / FOCAL * np.hypot(known.shift_x_px, known.shift_y_px)
@@ -59,7 +59,7 @@ def test_each_camera_has_a_panel_with_its_lines_and_both_axes(rows):
     assert panels[2].child_axes == []
 
 
-def test_titles_say_what_was_found(rows):
+def test_titles_state_shake_missing_frames_and_bumps(rows):
     left, mirror, dark = (panel.get_title(loc="left") for panel in camera_shake.draw(rows).axes)
     assert left == "left: 0.05 px rms; 10 of 240 frames unknown"
     assert mirror == "mirror: 0.05 px rms; knocked at 4.0 s (9 px, 0.34°)"

@@ -1,4 +1,4 @@
-"""Clock errors: intervals that hold the truth or do not, clocks that are not used, one row or sixty."""
+"""Clock errors: intervals with and without the truth, unused clocks, one row or sixty."""
 
 import numpy as np
 import pandas as pd
@@ -53,7 +53,7 @@ def test_the_title_counts_used_clocks_only():
     assert none == "none of 1 clocks is determined by its recording"
 
 
-def test_dots_and_intervals_stand_at_their_errors():
+def test_dots_and_intervals_are_drawn_at_their_errors():
     rows = clock_errors.table(made())
     axis = clock_errors.draw(rows).axes[0]
     dots = [line for line in axis.lines if line.get_marker() == "o"]
@@ -75,7 +75,7 @@ def test_millimetres_are_twelve_times_milliseconds():
 
 
 @pytest.mark.parametrize("count", [1, 60])
-def test_one_clock_or_sixty_are_drawn_one_line_each(count):
+def test_each_clock_has_a_line_for_one_or_sixty_clocks(count):
     rows = clock_errors.table(
         pd.DataFrame([row(f"c{at:02d}", at / 10, model=f"net-{at % 2}") for at in range(count)])
     )

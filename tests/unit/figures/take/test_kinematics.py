@@ -31,7 +31,7 @@ def twice(rows):
     return pd.concat([rows, rows.assign(person="p2")], ignore_index=True)
 
 
-def test_the_lines_are_the_tables(tables):
+def test_the_lines_show_the_tables_values(tables):
     frames, summary = tables
     drawing = speeds.draw(frames, summary, court.read(CONFIG / "courts" / "badminton.yaml"))
     drawing.draw_without_rendering()

@@ -27,7 +27,7 @@ def test_the_table_holds_the_distances():
     np.testing.assert_allclose([at.reprojected_x_px, at.reprojected_y_px], truth, atol=1e-6)
 
 
-def test_times_are_spread_and_spare_the_ends():
+def test_times_are_evenly_spread_without_the_ends():
     record, _ = inputs()
     times_s = overlay.chosen_times(record, 3)
     assert len(times_s) == 3
@@ -47,7 +47,7 @@ def drawn(monkeypatch, accepted=True, detected_offset=(200.0, 0.0)):
     return record, panel, corner
 
 
-def test_blue_lies_where_opencv_projects(monkeypatch):
+def test_reprojected_bones_lie_where_opencv_projects_them(monkeypatch):
     record, panel, corner = drawn(monkeypatch)
     for joint in ("left_knee", "nose", "right_wrist"):
         xyz = record.xyz[0, 6, [walker.SKELETON.index(joint)]]

@@ -6,7 +6,7 @@ from courtside.figures.take import reprojection
 from fixtures.people import walker
 
 
-def test_the_table_is_numpys():
+def test_the_table_matches_numpys_percentiles():
     record = walker.points(n_persons=2)
     record.reproj_error_px[:, :, 9, 2] = np.nan
     rows = reprojection.table(record).set_index(["joint", "camera"])

@@ -10,7 +10,7 @@ from fixtures.cameras import scene
 from fixtures.people import walker
 
 
-def test_the_table_is_the_record():
+def test_the_table_holds_the_records_paths():
     record = walker.points(n_persons=2)
     rows = skeletons.table(record)
     one = rows[(rows.person == "p2") & (rows.joint == "left_ankle")]

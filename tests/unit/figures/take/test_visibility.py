@@ -7,7 +7,7 @@ from fixtures.cameras import scene
 from fixtures.people import walker
 
 
-def test_the_table_is_the_record():
+def test_the_table_holds_the_records_scores_and_views():
     record = walker.points(n_persons=2)
     views = walker.views(record, scene.ring(3))
     views[1].score[1, 4, 6] = np.nan

@@ -36,7 +36,7 @@ class FilmedTruth(pose_errors.Truth, Protocol):
     events: dict[str, dict[str, float]]
 
 
-def torso_px(camera: Camera, joints: Sequence[str], xyz: NDArray) -> NDArray:
+def torso_px(camera: Camera, joints: Sequence[str] | NDArray, xyz: NDArray) -> NDArray:
     """Return the length of the torso in the picture as if it were seen square-on.
 
     Parameters

@@ -119,8 +119,8 @@ def _gains(rows: pd.DataFrame, gains: pd.DataFrame) -> pd.DataFrame:
         gained["beats_others"] = ("yes" if all(nearer) else "no") if nearer else ""
         found.append(gained)
     columns = [f"vs_{other}_{kind}" for other in ("dlt", "halfbody") for kind in _kinds()]
-    gained = pd.DataFrame(found, index=rows.index).reindex(columns=[*columns, "beats_others"])
-    return rows.join(gained.astype(dict.fromkeys(columns, float)))
+    whole = pd.DataFrame(found, index=rows.index).reindex(columns=[*columns, "beats_others"])
+    return rows.join(whole.astype(dict.fromkeys(columns, float)))
 
 
 def _kinds() -> list[str]:

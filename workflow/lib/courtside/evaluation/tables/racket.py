@@ -44,7 +44,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
     all errors are ordered as published; `length_mm`: the run drawn. The way `published` holds the
     paper's values.
     """
-    parts = [_published()]
+    parts = _published()
     for (session, layout), of in rows.groupby(["session", "layout"], sort=False):
         found = [*_volumes(of), *_lengths(of)]
         for sigma_px in np.unique(of["tip_sigma_px"]):
@@ -52,8 +52,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
             each = [*_spreads(part), *_differences(part)]
             found += [row | {"tip_sigma_px": sigma_px} for row in each]
         parts += [{"session": session, "layout": layout, **row} for row in found]
-    first, *others = parts
-    whole = pd.DataFrame([*first, *others]).reindex(columns=COLUMNS)
+    whole = pd.DataFrame(parts).reindex(columns=COLUMNS)
     return whole.astype(dict.fromkeys(("frame", "n", "n_failed"), "Int64"))
 
 

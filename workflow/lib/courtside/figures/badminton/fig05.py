@@ -3,19 +3,24 @@
 The counterpart of [Shishido2020, fig 5], one picture of layout a in which the network worked.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from courtside.figures.style import picture_crops, style
 from courtside.statistics import autocorrelation
 
 ALL, STROKE, TOGETHER = "all joints", "all joints, stroke", "together"
-POSE_S = 0.2  # a pose lasts about so long: frames of it are one trial
+POSE_S = 0.2  # ASSUME: duration of a pose, whose frames count as one trial
 KEY = ["person", "camera", "frame_idx"]
 COLUMNS = [
-    "layout", "session", "take", "model", "camera", "joint", "n_frames", "n_effective", "share", "low",
-    "high", "exchanged_share", "median_error_torso",
+    "layout", "session", "take", "model", "camera", "joint", "n_frames", "n_effective", "share",
+    "low", "high", "exchanged_share", "median_error_torso",
 ]  # fmt: skip
 ASPECT = 0.8  # width over height of an example
 SPREAD = 0.6  # of the distance between joints, for the cameras' marks
@@ -23,24 +28,20 @@ SHARES_MM, EXAMPLE_MM = 96, 56
 HEAD = 0.7  # the top of the head lies above the shoulders, in lengths of the torso
 
 
-def table(rows, layouts):
-    """Return in what share of the frames the joints are placed.
+def table(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> pd.DataFrame:
+    """Return the share of frames in which the joints are placed, for each camera and joint.
+
+    `COLUMNS`: the share of placed joints over the frames in whose picture all the person's joints
+    lie, its 95 % interval (Wilson, on the effective number of frames), and the share in which only
+    the sides are exchanged. Joint ALL: all joints in one frame; STROKE: the same in the frames of a
+    stroke. Camera TOGETHER: all joints in all cameras of the layout at the same time.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
+    rows
         Of `courtside.evaluation.detection.evaluate`, with session, take and model.
-    layouts : dict of str to (str, sequence of str)
+    layouts
         For each layout its session and the cameras that reconstruct together.
-
-    Returns
-    -------
-    shares : pandas.DataFrame
-        `COLUMNS`, for each camera of the session and joint: the share of placed joints over the frames in
-        whose picture all the person's joints lie, its 95 % interval (Wilson, on the effective number of
-        frames), the share in which only the sides are exchanged; joint ALL: all joints in one frame,
-        STROKE: the same in the frames of a stroke. Camera TOGETHER: all joints in all cameras of the layout
-        at the same time.
     """
     found = []
     for layout, (session, cameras) in layouts.items():
@@ -65,16 +66,10 @@ def table(rows, layouts):
     return pd.DataFrame(found, columns=COLUMNS)
 
 
-def together(rows, cameras, step_s):
-    """Say in which frames of the first camera all cameras place all joints, (n,) bool.
+def together(rows: pd.DataFrame, cameras: Sequence[str], step_s: float) -> NDArray:
+    """Return in which frames of the first camera all cameras place all joints, (n,) bool.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of one session.
-    cameras : sequence of str
-    step_s : float
-        Frames of two cameras less than half of it apart belong together; others are left out.
+    Frames of two cameras less than half of `step_s` apart are paired; others are left out.
     """
     whole = rows.groupby(["person", "camera", "frame_idx"]).agg(
         time_s=("time_s", "first"), placed=("placed", "all")
@@ -95,26 +90,18 @@ def together(rows, cameras, step_s):
     return np.concatenate(parts) if parts else np.zeros(0, dtype=bool)
 
 
-def _step_s(rows):
+def _step_s(rows: pd.DataFrame) -> float:
     times_s = np.unique(rows[rows.camera == rows.camera.iloc[0]].time_s)
     return float(np.median(np.diff(times_s))) if len(times_s) > 1 else POSE_S
 
 
-def examples(rows, layouts):
+def examples(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> list[dict]:
     """Choose for each layout a frame in which the network works and one in which it does not.
 
-    Parameters
-    ----------
-    rows, layouts
-        As for `table`.
-
-    Returns
-    -------
-    chosen : list of dict
-        layout, session, camera, person, frame_idx, works (bool), rows (of that frame). Of the layout's
-        camera that places all joints least often. Works: of the frames with the most joints placed, the one
-        whose worst joint is the median one of them. Does not: the fewest joints placed, of several the
-        largest mean error.
+    Both are of the layout's camera that places all joints least often. Works: of the frames with
+    the most joints placed, the one whose worst joint is the median one. Does not: the fewest joints
+    placed, of several the largest mean error. Keys: layout, session, camera, person, frame_idx,
+    works (bool), rows (of that frame).
     """
     found = []
     for layout, (session, cameras) in layouts.items():
@@ -145,24 +132,25 @@ def examples(rows, layouts):
     return found
 
 
-def draw(shares_of, layouts, chosen, images, bones):
+def draw(
+    shares_of: pd.DataFrame,
+    layouts: dict[str, tuple[str, Sequence[str]]],
+    chosen: list[dict],
+    images: list[NDArray],
+    bones: Sequence[tuple[str, str]],
+) -> Figure:
     """Draw the shares of both layouts above, examples below.
 
     Parameters
     ----------
-    shares_of : pandas.DataFrame
+    shares_of
         Of `table`.
-    layouts : dict of str to (str, sequence of str)
-    chosen : list of dict
+    chosen
         Of `examples`.
     images : list of (H, W, 3) uint8
-        Of each example, BGR, faces hidden where wished.
-    bones : sequence of (str, str)
+        Of each example, BGR, faces hidden if asked for.
+    bones
         Joints that a line joins.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
     """
     heights = SHARES_MM, EXAMPLE_MM + 18
     drawing = style.figure(sum(heights))
@@ -179,7 +167,7 @@ def draw(shares_of, layouts, chosen, images, bones):
     return drawing
 
 
-def _draw_shares(axis, part, cameras):
+def _draw_shares(axis: Axes, part: pd.DataFrame, cameras: Sequence[str]) -> None:
     joints = [joint for joint in dict.fromkeys(part.joint) if joint not in (ALL, STROKE)]
     joints = [ALL, *([STROKE] if part[part.joint == STROKE].n_frames.any() else []), *joints]
     others = [c for c in dict.fromkeys(part.camera) if c not in (*cameras, TOGETHER)]
@@ -205,7 +193,9 @@ def _draw_shares(axis, part, cameras):
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, fontsize=7)
 
 
-def _draw_example(axis, example, image, bones):
+def _draw_example(
+    axis: Axes, example: dict, image: NDArray, bones: Sequence[tuple[str, str]]
+) -> None:
     rows = example["rows"].set_index("joint")
     detected, true = rows[["x_px", "y_px"]].to_numpy(), rows[["true_x_px", "true_y_px"]].to_numpy()
     middle = [
@@ -227,7 +217,7 @@ def _draw_example(axis, example, image, bones):
     axis.set_xlabel(f"{int((~missed).sum())} of {len(rows)} placed")
 
 
-def _explain(part):
+def _explain(part: FigureBase) -> None:
     ring = {"marker": "o", "markerfacecolor": "none", "markersize": 7, "linestyle": "--"}
     handles = [
         Line2D([], [], color=picture_crops.DETECTED, linewidth=2.5),

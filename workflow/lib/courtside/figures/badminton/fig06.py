@@ -1,4 +1,4 @@
-"""Where structure from motion says the walked camera went, by number of bridging images.
+"""Positions of the walked camera by structure from motion, by number of bridging images.
 
 The counterpart of [Shishido2020, fig 6].
 """
@@ -7,7 +7,12 @@ import textwrap
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
+from courtside.calibration.records.tie_points import Record
 from courtside.figures.style import court_plan, style
 from courtside.records.cameras import image_names
 
@@ -20,14 +25,11 @@ TIE = "#999999"
 TEXT_WIDTH = 26  # characters of an outcome in its panel
 
 
-def table(records):
+def table(records: dict[int, Record]) -> pd.DataFrame:
     """Return what is drawn: n_bridging, kind (fixed, bridging, tie), order, name, x_m, y_m, z_m.
 
-    Parameters
-    ----------
-    records : dict of int to courtside.calibration.records.tie_points.Record
-        By number of bridging images. Without ties there is no frame, and no rows but one with the
-        outcome as name.
+    `records` are by number of bridging images. A record without ties has no frame: its single row
+    has the outcome as its name.
     """
     parts = []
     for count, record in records.items():
@@ -43,22 +45,17 @@ def table(records):
     return pd.concat(parts, ignore_index=True).reindex(columns=columns)
 
 
-def in_order(record):
-    """Return names (V,) and places (V, 3) of registered images: bridging ones by frame, then fixed ones."""
+def in_order(record: Record) -> tuple[NDArray, NDArray]:
+    """Return names (V,), positions (V, 3) of registered images: bridging by frame, then fixed."""
     names = np.asarray(record.images, dtype=str)
     order = np.lexsort([names, image_names.are_static(names)])
     return names[order], record.centres[order]
 
 
-def draw(rows, court, n_images=None):
+def draw(rows: pd.DataFrame, court: Court, n_images: dict[int, int] | None = None) -> Figure:
     """Draw the table of `table`, one panel for each number of bridging images, the largest first.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-    court : courtside.calibration.court.court.Court
-    n_images : dict of int to int, optional
-        How many images there were, fixed ones included, by number of bridging images.
+    `n_images` are the images, fixed ones included, by number of bridging images.
     """
     counts = sorted(rows["n_bridging"].unique(), reverse=True)
     columns = min(COLUMNS, len(counts))
@@ -80,12 +77,12 @@ def draw(rows, court, n_images=None):
     return drawing
 
 
-def _rows(count, kind, names, xyz):
+def _rows(count: int, kind: str | NDArray, names: str | NDArray, xyz: NDArray) -> pd.DataFrame:
     columns = {"n_bridging": count, "kind": kind, "order": np.arange(len(xyz)), "name": names}
     return pd.DataFrame({**columns, "x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2]})
 
 
-def _limits(rows, court):
+def _limits(rows: pd.DataFrame, court: Court) -> tuple[NDArray, NDArray]:
     cameras = rows.loc[rows["kind"].isin(["fixed", "bridging"]), ["x_m", "y_m"]].to_numpy()
     middle = np.asarray(court.size_m) / 2
     cameras = cameras[np.linalg.norm(cameras - middle, axis=1) < FAR_M]
@@ -97,19 +94,14 @@ def _limits(rows, court):
     return every.min(axis=0) - ROOM_M, every.max(axis=0) + ROOM_M
 
 
-def _draw_panel(axis, rows, court, n_images):
+def _draw_panel(axis: Axes, rows: pd.DataFrame, court: Court, n_images: int | None) -> None:
     court_plan.draw(axis, court, colour="black", least_pt=0.4)
     count = rows["n_bridging"].iloc[0]
     outcome = rows.loc[rows["kind"] == "outcome", "name"]
     if len(outcome):
         text = textwrap.fill(outcome.iloc[0], TEXT_WIDTH, max_lines=11)
-        look = {
-            "ha": "center",
-            "va": "center",
-            "fontsize": 6,
-            "transform": axis.transAxes,
-            "zorder": 6,
-        }
+        look = {"ha": "center", "va": "center", "fontsize": 6, "zorder": 6}
+        look["transform"] = axis.transAxes
         axis.text(0.5, 0.5, text, bbox={"facecolor": "white", "edgecolor": "#999999"}, **look)
         axis.set_title(f"N = {count}: no result")
         return
@@ -127,7 +119,7 @@ def _draw_panel(axis, rows, court, n_images):
     axis.set_title(f"N = {count}: {found}{f' of {n_images}' if n_images else ''} images")
 
 
-def _legend(axis):
+def _legend(axis: Axes) -> tuple[list, list[str]]:
     looks = [
         (".-", style.LEFT, "bridging images, in order of filming"),
         ("s", style.RIGHT, "fixed cameras"),

@@ -1,4 +1,4 @@
-"""Error by number of bridging images, with what the X_o/Y_o error hides beside it.
+"""Error by number of bridging images, and what the X_o/Y_o error does not show.
 
 The counterpart of [Shishido2020, fig 8].
 """
@@ -7,17 +7,17 @@ from collections import namedtuple
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, style
 
 Series = namedtuple("Series", "label method mapper n_clicks in_sample colour marker")
 # [Shishido2020, sec 3.2]: mean of the X_o and Y_o errors, cm, and degrees between neighbours, by N.
-PUBLISHED_CM, PUBLISHED_BELOW_CM, PUBLISHED_STRONG_CM = (
-    {300: 4.3, 20: 229.5},
-    {150: 10, 75: 10},
-    2.2,
-)
+PUBLISHED_CM, PUBLISHED_BELOW_CM = {300: 4.3, 20: 229.5}, {150: 10, 75: 10}
+PUBLISHED_STRONG_CM = 2.2
 PUBLISHED_DEG = {40: 6.0, 20: 12.0}
 MAPPERS = {"global": style.CYCLE[0], "incremental": style.CYCLE[1]}
 BY_CLICKS = [(style.CYCLE[0], "o"), (style.CYCLE[5], "^"), (style.CYCLE[2], "v")]
@@ -36,30 +36,20 @@ DODGE = 0.045  # of the logarithm of N, between series
 WALK_DEG = {"a": 90.0}  # what a walk from one fixed camera to the other turns, by layout
 
 
-def table(rows):
-    """Return the numbers drawn.
+def table(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers drawn, from rows of `calibration.tidy` of one session.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `calibration.tidy`, of one session.
-
-    Returns
-    -------
-    numbers : pandas.DataFrame
-        quantity (`xy_cm`, `volume_rms_cm`, `solved_share`, `registered_share`, `neighbour_deg_median`,
-        `neighbour_deg_max`), method, mapper, n_clicks, in_sample, n_bridging, n, p05, median, p95,
-        n_failed. Of the last four quantities n counts structures from motion. The method `published`
-        holds the paper's values.
+    quantity (`xy_cm`, `volume_rms_cm`, `solved_share`, `registered_share`, `neighbour_deg_median`,
+    `neighbour_deg_max`), method, mapper, n_clicks, in_sample, n_bridging, n, p05, median, p95,
+    n_failed. For the last four quantities n counts structures from motion. The method `published`
+    holds the paper's values.
     """
     keys = ["method", "mapper", "n_clicks", "in_sample", "n_bridging"]
     parts = [calibration.summary(rows, keys, name).assign(quantity=name) for name in ERRORS]
     found = calibration.structures_of(rows)
     for name in ("solved_share", "registered_share", "neighbour_deg_median", "neighbour_deg_max"):
         part = calibration.summary(found, ["mapper", "n_bridging"], name)
-        if name.endswith(
-            "share"
-        ):  # a share of few structures has a mean, and no quantiles worth the name
+        if name.endswith("share"):  # few structures: a mean, but no meaningful quantiles
             means = found.groupby(["mapper", "n_bridging"])[name].mean()
             part = part.assign(median=means.to_numpy(), p05=np.nan, p95=np.nan)
         parts.append(part.assign(quantity=name))
@@ -67,8 +57,8 @@ def table(rows):
     return pd.concat([*parts, _published()], ignore_index=True)[columns]
 
 
-def _published():
-    values = [("xy_cm", count, value) for count, value in PUBLISHED_CM.items()]
+def _published() -> pd.DataFrame:
+    values: list[tuple] = [("xy_cm", count, value) for count, value in PUBLISHED_CM.items()]
     values += [("xy_cm_below", count, value) for count, value in PUBLISHED_BELOW_CM.items()]
     values += [("xy_cm_strong", np.nan, PUBLISHED_STRONG_CM)]
     values += [("neighbour_deg_median", count, value) for count, value in PUBLISHED_DEG.items()]
@@ -76,11 +66,10 @@ def _published():
     return rows.assign(method="published", mapper="", in_sample=True)
 
 
-def series(numbers):
+def series(numbers: pd.DataFrame) -> list[Series]:
     """Return the `Series` to draw against the number of bridging images, the paper's own first."""
-    paper = Series(
-        "paper's eq 2-5, incremental", "paper", "incremental", 3, True, style.CYCLE[1], "s"
-    )
+    name = "paper's eq 2-5, incremental"
+    paper = Series(name, "paper", "incremental", 3, True, style.CYCLE[1], "s")
     found = [paper] if len(calibration.pick(numbers, method="paper", mapper="incremental")) else []
     ours = calibration.pick(numbers, method="sfm", mapper="global")
     clicks = sorted(ours["n_clicks"].dropna().astype(int).unique(), reverse=True)
@@ -92,19 +81,10 @@ def series(numbers):
     return found
 
 
-def levels(numbers, quantity):
-    """Return the strong calibrations to draw.
+def levels(numbers: pd.DataFrame, quantity: str) -> list[tuple[str, pd.DataFrame, Level]]:
+    """Return the strong calibrations to draw: label, rows with a result, look.
 
-    Parameters
-    ----------
-    numbers : pandas.DataFrame
-        Of `table`.
-    quantity : str
-
-    Returns
-    -------
-    found : list of (str, pandas.DataFrame, Level)
-        Label, rows with a result (scored points left out first), look.
+    Rows with the scored points left out come first.
     """
     of = numbers[(numbers["quantity"] == quantity) & numbers["method"].isin(["known", "dlt"])]
     clicks = sorted(of["n_clicks"].dropna().astype(int).unique(), reverse=True)
@@ -119,20 +99,8 @@ def levels(numbers, quantity):
     return found
 
 
-def draw(numbers, title, layout=""):
-    """Draw the table of `table`.
-
-    Parameters
-    ----------
-    numbers : pandas.DataFrame
-    title : str
-    layout : str
-        For one of `WALK_DEG` the angles of an evenly divided walk are drawn too.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(numbers: pd.DataFrame, title: str, layout: str = "") -> Figure:
+    """Draw the table of `table`, for `WALK_DEG` also the angles of an evenly divided walk."""
     drawing = style.figure(165)
     places = [["xy_cm", "volume_rms_cm"], ["solved", "angle"]]
     axes = drawing.subplot_mosaic(places, height_ratios=[1.55, 1])
@@ -160,8 +128,8 @@ def draw(numbers, title, layout=""):
     return drawing
 
 
-def _sizes(numbers):
-    """Return how many trials stand behind a mark, in words."""
+def _sizes(numbers: pd.DataFrame) -> str:
+    """Return the number of trials behind a mark, in words."""
     of = calibration.pick(numbers, method="sfm", quantity="xy_cm")
     total = (of["n"] + of["n_failed"]).astype(int)
     if of.empty:
@@ -169,13 +137,13 @@ def _sizes(numbers):
     return f"{' to '.join(map(str, sorted({total.min(), total.max()})))} trials per mark"
 
 
-def _draw_errors(axis, numbers, quantity):
+def _draw_errors(axis: Axes, numbers: pd.DataFrame, quantity: str) -> None:
     of = numbers[numbers["quantity"] == quantity]
     beside = STRONG * numbers["n_bridging"].max()
     for at, (_, rows, level) in enumerate(levels(numbers, quantity)):
         bars.draw_level(axis, rows.iloc[0], colour=level.colour, line=level.line)
         for back, (_, row) in enumerate(rows.iterrows()):
-            x = [beside * np.exp(1.3 * DODGE * (2 * at + back - 2.5))]
+            x = np.array([beside * np.exp(1.3 * DODGE * (2 * at + back - 2.5))])
             look = {"colour": level.colour, "marker": level.marker, "filled": not row["in_sample"]}
             bars.draw(axis, x, row.to_frame().T, line="none", **look)
     shown = series(numbers)
@@ -193,7 +161,7 @@ def _draw_errors(axis, numbers, quantity):
         bars.draw(axis, x[~lost], rows[~lost], line="-" if joined else "none", **look)
 
 
-def _mark_published(axis, numbers):
+def _mark_published(axis: Axes, numbers: pd.DataFrame) -> None:
     of = calibration.pick(numbers, method="published")
     kinds = ("xy_cm", "xy_cm_below", "xy_cm_strong")
     exact, below, strong = (calibration.pick(of, quantity=kind) for kind in kinds)
@@ -204,13 +172,13 @@ def _mark_published(axis, numbers):
     axis.plot(beside, strong["median"], "*", **look)
 
 
-def _draw_solved(axis, numbers):
+def _draw_solved(axis: Axes, numbers: pd.DataFrame) -> None:
     for quantity, line, marker in (("solved_share", "-", "o"), ("registered_share", ":", "x")):
         _draw_mappers(axis, numbers, quantity, marker + line, factor=100)
     axis.set(ylim=(-5, 105), ylabel="solved, registered (%)")
 
 
-def _draw_angles(axis, numbers, layout):
+def _draw_angles(axis: Axes, numbers: pd.DataFrame, layout: str) -> None:
     for quantity, form in (("neighbour_deg_median", "o-"), ("neighbour_deg_max", "^:")):
         _draw_mappers(axis, numbers, quantity, form)
     of = calibration.pick(numbers, method="published", quantity="neighbour_deg_median")
@@ -221,7 +189,9 @@ def _draw_angles(axis, numbers, layout):
     axis.set_ylabel("angle between neighbours (°)")
 
 
-def _draw_mappers(axis, numbers, quantity, form, factor=1):
+def _draw_mappers(
+    axis: Axes, numbers: pd.DataFrame, quantity: str, form: str, factor: float = 1
+) -> None:
     for at, (mapper, colour) in enumerate(MAPPERS.items()):
         rows = calibration.pick(numbers, quantity=quantity, mapper=mapper).dropna(subset=["median"])
         rows = rows.sort_values("n_bridging")
@@ -229,7 +199,7 @@ def _draw_mappers(axis, numbers, quantity, form, factor=1):
         axis.plot(x, factor * rows["median"], form, color=colour, markersize=4, linewidth=1)
 
 
-def _legend(numbers):
+def _legend(numbers: pd.DataFrame) -> list[Line2D]:
     """Return the marks to explain: series, strong calibrations, published values, lower panels."""
     named = {each.label: each for each in series(numbers)}
     handles = [bars.mark(e.colour, marker=e.marker, label=label) for label, e in named.items()]

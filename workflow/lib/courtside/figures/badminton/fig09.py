@@ -1,26 +1,29 @@
-"""The whole chain on the pictures of one take: detected, triangulated, projected back, measured.
+"""The whole chain on the pictures of one take: detection, triangulation, reprojection, measures.
 
-The counterpart of [Shishido2020, fig 9], which shows the way back: projections triangulated once more.
+The counterpart of [Shishido2020, fig 9], which shows the way back: projections triangulated again.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
 from courtside.evaluation import round_trip
 from courtside.figures.style import oblique_view, picture_crops, style
+from courtside.figures.style.stick_figure import Stick
 from courtside.figures.take import kinematics
+from courtside.geometry.camera import Camera
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 ROW_MM = (30, 43, 58, 43)  # highest rows: pictures, detections, 3D and measures, reprojections
-LEGEND = {
-    "loc": "lower left",
-    "bbox_to_anchor": (0, 0.98),
-    "ncols": 3,
-    "fontsize": 7,
-    "borderaxespad": 0,
-    "handlelength": 1.2,
-    "columnspacing": 1.2,
-}
+LEGEND: dict = {"loc": "lower left", "bbox_to_anchor": (0, 0.98), "ncols": 3, "fontsize": 7}
+LEGEND |= {"borderaxespad": 0, "handlelength": 1.2, "columnspacing": 1.2}
 WIDE = 16 / 9
 HEAD_MM = 7  # above each row
 DEPTH = 0.06  # of a camera's pyramid, of the distance between the cameras
@@ -31,24 +34,12 @@ COLUMNS = [
 ]  # fmt: skip
 
 
-def table(points, footage, frame, stick):
-    """Return every step's numbers for one frame.
+def table(points: Keypoints3D, footage: list[Footage], frame: int, stick: Stick) -> pd.DataFrame:
+    """Return the numbers of every step for one frame of `points`.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    footage : list of courtside.records.cameras.footage.Footage
-        Of the cameras of `points`.
-    frame : int
-        Of `points`.
-    stick : courtside.figures.style.stick_figure.Stick
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `COLUMNS`: for each camera, person and joint of the figure the detected place in the camera's nearest
-        frame, the 3D joint, and its projection; round_trip_mm: how far the joint moves when its projections
-        into all cameras are triangulated again.
+    `COLUMNS`: for each camera, person and joint of the figure the detected position in the camera's
+    nearest frame, the 3D joint, and its projection; round_trip_mm: how far the joint moves when its
+    projections into all cameras are triangulated again.
     """
     time_s, xyz = points.time_s[frame], stick.of(points.xyz[:, frame])
     moved = round_trip.distance_after([one.camera for one in footage], xyz)
@@ -71,25 +62,25 @@ def table(points, footage, frame, stick):
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 
 
-def draw(rows, images, points, cameras, stick, measured, court=None):
+def draw(
+    rows: pd.DataFrame,
+    images: dict[str, NDArray],
+    points: Keypoints3D,
+    cameras: list[Camera],
+    stick: Stick,
+    measured: pd.DataFrame,
+    court: Court | None = None,
+) -> Figure:
     """Draw the steps from top to bottom.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
+    rows
         Of `table`.
     images : dict of str to (H, W, 3) uint8
-        By camera, BGR, faces hidden where wished.
-    points : Keypoints3D
-    cameras : list of Camera
-    stick : courtside.figures.style.stick_figure.Stick
-    measured : pandas.DataFrame
+        By camera, BGR, faces hidden if asked for.
+    measured
         Of `courtside.exports.measures.frames`.
-    court : courtside.calibration.court.court.Court, optional
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
     """
     cell = style.WIDTH_MM / len(images)
     heights = [height + HEAD_MM for height in (min(cell / WIDE, ROW_MM[0]), *ROW_MM[1:])]
@@ -123,13 +114,15 @@ def draw(rows, images, points, cameras, stick, measured, court=None):
     return drawing
 
 
-def _xy(rows, camera, which):
+def _xy(rows: pd.DataFrame, camera: str, which: str) -> NDArray:
     part = rows[rows.camera == camera]
     xy = part[[f"{which}_x_px", f"{which}_y_px"]].to_numpy()
     return xy.reshape(part.person.nunique(), -1, 2)
 
 
-def _draw_pictures(part, images, boxes):
+def _draw_pictures(
+    part: FigureBase, images: dict[str, NDArray], boxes: dict[str, picture_crops.Box]
+) -> None:
     axes = part.subplots(1, len(images), squeeze=False)[0]
     for axis, (name, image) in zip(axes, images.items(), strict=True):
         height, width = image.shape[:2]
@@ -141,9 +134,16 @@ def _draw_pictures(part, images, boxes):
         axis.set_xlabel(name, labelpad=1)
 
 
-def _draw_joints(part, rows, images, boxes, stick, layers):
+def _draw_joints(
+    part: FigureBase,
+    rows: pd.DataFrame,
+    images: dict[str, NDArray],
+    boxes: dict[str, picture_crops.Box],
+    stick: Stick,
+    layers: Sequence[str],
+) -> None:
     line = 1.4 if len(images) < 4 else 1.0
-    looks = {
+    looks: dict[str, dict] = {
         "detected": {"colour": picture_crops.DETECTED, "width": line},
         "reprojected": {"colour": picture_crops.REPROJECTED, "width": line, "outline": 0},
     }
@@ -156,7 +156,14 @@ def _draw_joints(part, rows, images, boxes, stick, layers):
             picture_crops.sticks(axis, _xy(rows, name, layer), stick.bones, **looks[layer])
 
 
-def _draw_space(part, rows, points, cameras, stick, court):
+def _draw_space(
+    part: FigureBase,
+    rows: pd.DataFrame,
+    points: Keypoints3D,
+    cameras: list[Camera],
+    stick: Stick,
+    court: Court | None,
+) -> None:
     hall, close = part.subplots(1, 2, width_ratios=(1.5, 1))
     first = rows[rows.camera == rows.camera.iloc[0]]
     xyz = first[["x_m", "y_m", "z_m"]].to_numpy().reshape(first.person.nunique(), -1, 3)
@@ -165,7 +172,7 @@ def _draw_space(part, rows, points, cameras, stick, court):
     _draw_close(close, xyz, path[:, points.time_s <= rows.time_s.iloc[0]], stick, court)
 
 
-def _draw_measures(part, time_s, measured):
+def _draw_measures(part: FigureBase, time_s: float, measured: pd.DataFrame) -> None:
     speed, angle = part.subplots(2, 1, sharex=True)
     own = measured[measured.person == measured.person.iloc[0]]
     _draw_speed(speed, own)
@@ -174,7 +181,9 @@ def _draw_measures(part, time_s, measured):
         each.axvline(time_s, color="black", linewidth=0.7)
 
 
-def _draw_hall(axis, xyz, cameras, stick, court):
+def _draw_hall(
+    axis: Axes, xyz: NDArray, cameras: list[Camera], stick: Stick, court: Court | None
+) -> None:
     corners = oblique_view.limits(xyz)
     if court is not None:
         corners = np.zeros(2), np.asarray(court.size_m)
@@ -191,7 +200,7 @@ def _draw_hall(axis, xyz, cameras, stick, court):
     axis.set_axis_off()
 
 
-def _draw_close(axis, xyz, path, stick, court):
+def _draw_close(axis: Axes, xyz: NDArray, path: NDArray, stick: Stick, court: Court | None) -> None:
     sight, corners = oblique_view.Sight(), oblique_view.limits(xyz)
     oblique_view.floor(axis, sight, *corners, court)
     oblique_view.figures(axis, sight, xyz, stick)
@@ -205,7 +214,7 @@ def _draw_close(axis, xyz, path, stick, court):
     axis.legend(handles[:1], labels[:1], loc="upper center", bbox_to_anchor=(0.5, 0), fontsize=6)
 
 
-def _draw_speed(axis, own):
+def _draw_speed(axis: Axes, own: pd.DataFrame) -> None:
     for name, colour in kinematics.SPEEDS.items():
         look = {"color": colour, "linewidth": 0.9, "label": kinematics.NAMES[name]}
         axis.plot(own.time_s, own[f"{name}_ground_speed_m_s"], **look)
@@ -214,13 +223,9 @@ def _draw_speed(axis, own):
     axis.legend(**LEGEND)
 
 
-def _draw_angles(axis, own):
+def _draw_angles(axis: Axes, own: pd.DataFrame) -> None:
     for name, colour in kinematics.ANGLES.items():
-        look = {
-            "color": colour,
-            "linewidth": 0.9,
-            "label": name.replace("_flexion", "").replace("_", " "),
-        }
-        axis.plot(own.time_s, own[f"{name}_deg"], **look)
+        label = name.replace("_flexion", "").replace("_", " ")
+        axis.plot(own.time_s, own[f"{name}_deg"], color=colour, linewidth=0.9, label=label)
     axis.set(xlabel="time (s)", ylabel="angle\n(degrees)")
     axis.legend(**LEGEND)

@@ -1,13 +1,21 @@
-"""Skeletons with trajectories in 3D beside the detections that they come from, at several instants.
+"""Skeletons with trajectories in 3D beside their detections, at several instants.
 
 The counterpart of [Shishido2020, fig 10].
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
 from courtside.figures.style import oblique_view, picture_crops, style
+from courtside.figures.style.stick_figure import Stick
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 TRAILS = ("neck", "left_wrist", "right_wrist", "left_ankle", "right_ankle")
 TRAIL_COLOURS = {"neck": style.CYCLE[2]}
@@ -16,45 +24,24 @@ ASPECT = 0.8  # width over height of a picture's panel
 ROW_MM = (44, 54)  # height, least and most
 
 
-def instants(frames, count):
+def instants(frames: slice, count: int) -> NDArray:
     """Return `count` frames of a slice, evenly from its first to its last, (n,) int."""
     return np.unique(np.linspace(frames.start, frames.stop - 1, count).round().astype(int))
 
 
-def trails(xyz, stick, frames):
-    """Return the paths of some joints over some frames.
+def trails(xyz: NDArray, stick: Stick, frames: slice) -> dict[str, NDArray]:
+    """Return the paths (P, n, 3) of the joints `TRAILS` over some frames.
 
-    Parameters
-    ----------
-    xyz : (P, T, K, 3) float
-        Of the stick figure's joints, metres.
-    stick : courtside.figures.style.stick_figure.Stick
-    frames : slice
-
-    Returns
-    -------
-    paths : dict of str to (P, n, 3) float
-        By joint of `TRAILS`.
+    `xyz` (P, T, K, 3) m are the stick figure's joints.
     """
     return {joint: xyz[:, frames, stick.joints.index(joint)] for joint in TRAILS}
 
 
-def table(points, stick, frames, shown):
+def table(points: Keypoints3D, stick: Stick, frames: slice, shown: Sequence[int]) -> pd.DataFrame:
     """Return the trails as numbers.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    stick : courtside.figures.style.stick_figure.Stick
-    frames : slice
-    shown : sequence of int
-        Frames that are drawn as skeletons.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        time_s, person, joint, x_m, y_m, z_m of all joints of the figure in all frames; drawn: whether the
-        skeleton of that time is; trail: whether the joint has one.
+    time_s, person, joint, x_m, y_m, z_m of all joints of the figure in all frames; drawn: whether
+    the skeleton of that time is drawn (`shown`); trail: whether the joint has one.
     """
     xyz = stick.of(points.xyz)[:, frames]
     at = np.arange(frames.start, frames.stop)
@@ -70,24 +57,24 @@ def table(points, stick, frames, shown):
     return rows.assign(trail=rows.joint.isin(TRAILS))
 
 
-def draw(points, stick, frames, shown, pictures, court=None):
-    """Draw one row for each instant: each camera's picture with what was detected, then the skeleton in 3D.
+def draw(
+    points: Keypoints3D,
+    stick: Stick,
+    frames: slice,
+    shown: Sequence[int],
+    pictures: list[dict[str, tuple[NDArray, NDArray]]],
+    court: Court | None = None,
+) -> Figure:
+    """Draw a row for each instant: each camera's picture with its detections, then the 3D skeleton.
 
     Parameters
     ----------
-    points : Keypoints3D
-    stick : courtside.figures.style.stick_figure.Stick
-    frames : slice
+    frames
         The trails begin at its first frame.
     shown : sequence of int, length N
         Frames of `points`.
     pictures : list of dict of str to ((H, W, 3) uint8, (P, K, 2) float)
-        For each instant and camera the picture (BGR) and the detected joints of the stick figure, px.
-    court : courtside.calibration.court.court.Court, optional
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
+        For each instant and camera the picture (BGR) and the detected joints of the figure, px.
     """
     names = list(pictures[0])
     width = style.WIDTH_MM * (1 - SPACE_SHARE) / len(names)
@@ -116,19 +103,18 @@ def draw(points, stick, frames, shown, pictures, court=None):
     return drawing
 
 
-def _common_box(pictures, name, aspect):
+def _common_box(pictures: list[dict], name: str, aspect: float) -> picture_crops.Box:
     """Return the part of a camera's pictures that shows the persons at all instants."""
     detected = [by_camera[name][1] for by_camera in pictures]
     return picture_crops.box(detected, pictures[0][name][0].shape[1::-1], aspect)
 
 
-def _draw_space(axis, xyz, stick, when, court):
+def _draw_space(
+    axis: Axes, xyz: NDArray, stick: Stick, when: tuple[slice, int], court: Court | None
+) -> None:
     frames, now = when
-    sight, corners, past = (
-        oblique_view.Sight(),
-        oblique_view.limits(xyz[:, frames]),
-        slice(frames.start, now + 1),
-    )
+    sight, past = oblique_view.Sight(), slice(frames.start, now + 1)
+    corners = oblique_view.limits(xyz[:, frames])
     oblique_view.floor(axis, sight, *corners, court)
     oblique_view.figures(axis, sight, xyz[:, now], stick)
     for joint, paths in trails(xyz, stick, past).items():
@@ -137,14 +123,14 @@ def _draw_space(axis, xyz, stick, when, court):
             oblique_view.line(axis, sight, path, ".-", color=colour, markersize=2, linewidth=0.7)
     low, high = corners
     oblique_view.finish(axis, sight, low)
-    extent = [xyz[:, frames].reshape(-1, 3), [low, (high[0], high[1], 0), (high[0], low[1], 0)]]
-    places = sight.seen(np.concatenate(extent))
+    ends = np.array([low, (high[0], high[1], 0), (high[0], low[1], 0)])
+    places = sight.seen(np.concatenate([xyz[:, frames].reshape(-1, 3), ends]))
     axis.update_datalim(places[np.isfinite(places).all(axis=1)])
     axis.margins(0.02)
     axis.autoscale_view()
 
 
-def _explain(drawing):
+def _explain(drawing: Figure) -> None:
     looks = [
         (picture_crops.DETECTED, "", 2.5, "detected"),
         (style.LEFT, "", 1.4, "left side"),

@@ -1,15 +1,24 @@
-"""Joints as the network saw them and as the 3D skeleton says: where the two disagree.
+"""Joints as detected and as reprojected from the 3D skeleton: where the two disagree.
 
 The counterpart of [Shishido2020, fig 11], with the limbs that disagree marked by rule.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from courtside.evaluation import detection
 from courtside.figures.style import picture_crops, style
+from courtside.figures.style.stick_figure import Stick
+from courtside.geometry.camera import Camera
+from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 WIDEST_MM = 62  # of a panel
 ASPECT = 0.75  # width over height of a panel
@@ -18,25 +27,27 @@ LISTED = 3  # joints named below a panel
 PIXELS = ("detected_x_px", "detected_y_px", "reprojected_x_px", "reprojected_y_px")
 
 
-def disagreements(points, cameras, joints, limit_torso):
-    """Say where a camera's keypoint does not fit the 3D joint.
+def disagreements(
+    points: Keypoints3D, cameras: list[Camera], joints: Sequence[str], limit_torso: float
+) -> tuple[NDArray, NDArray, NDArray]:
+    """Return where a camera's keypoint does not fit the 3D joint.
 
     Parameters
     ----------
-    points : Keypoints3D
-    cameras : list of Camera
+    cameras
         Of `points`, in its order.
     joints : sequence of str, length K
-        Those of `points` that are asked for.
-    limit_torso : float
-        Share of the length of the person's torso in that camera's picture (its median over the take).
+        Of `points`.
+    limit_torso
+        Share of the length of the person's torso in that camera's picture (its median over the
+        take).
 
     Returns
     -------
     disagrees : (P, T, K, C) bool
         The reprojection error is above the limit.
     known : (P, T, K, C) bool
-        Both the keypoint and the 3D joint are there.
+        Both the keypoint and the 3D joint are known.
     limit_px : (P, C) float
     """
     at = [list(points.joints).index(joint) for joint in joints]
@@ -47,36 +58,39 @@ def disagreements(points, cameras, joints, limit_torso):
         return error > limit_px[:, None, None], np.isfinite(error), limit_px
 
 
-def choose(disagrees, frames):
-    """Return the frame, of a slice of them, in which most joints disagree; the first of several."""
+def choose(disagrees: NDArray, frames: slice) -> int:
+    """Return the frame of a slice in which most joints disagree; the first of several."""
     return frames.start + int(disagrees[:, frames].sum(axis=(0, 2, 3)).argmax())
 
 
-def table(points, footage, joints, mirror, frame, limit):
+def table(
+    points: Keypoints3D,
+    footage: list[Footage],
+    joints: Sequence[str],
+    mirror: Sequence[int],
+    frame: int,
+    limit: tuple[NDArray, NDArray, NDArray],
+) -> pd.DataFrame:
     """Return the joints of one frame in every camera, and how often they disagree in the take.
 
     Parameters
     ----------
-    points : Keypoints3D
-    footage : list of courtside.records.cameras.footage.Footage
+    footage
         Of the cameras of `points`, in its order.
-    joints : sequence of str
-        Which joints.
-    mirror : sequence of int
-        For each joint of `points` the index of the same one of the other body side.
-    frame : int
+    mirror
+        For each joint of `points` the index of the same one on the other body side.
+    frame
         Of `points`.
-    limit : (disagrees, known, limit_px)
+    limit
         Of `disagreements`, for these joints.
 
     Returns
     -------
-    rows : pandas.DataFrame
-        For each person, camera and joint the pixel where the camera's nearest frame has it (with sides as the
-        fusion took them: `sides_exchanged` says where it took the other side's) and where the 3D joint
-        projects; error_px as the fusion measured it at the frame's time; whether it rests on the view
-        (accepted); then of the whole take the frames with both (take_frames) and the share in which they
-        disagree (take_disagree_percent).
+    For each person, camera and joint the detected pixel in the camera's nearest frame (with sides
+    as the fusion used them: `sides_exchanged` marks joints of the other side) and the projection of
+    the 3D joint; error_px as the fusion measured it at the frame's time; whether the view was used
+    (accepted); then of the whole take the frames with both (take_frames) and the share in which
+    they disagree (take_disagree_percent).
     """
     disagrees, known, limit_px = limit
     at = [list(points.joints).index(joint) for joint in joints]
@@ -109,36 +123,39 @@ def table(points, footage, joints, mirror, frame, limit):
     return pd.concat(parts, ignore_index=True)
 
 
-def _exchanged(seen, reprojected, mirror, error):
-    """Say for which joints the fusion's error is that of the other side's keypoint, (J,) bool."""
+def _exchanged(
+    seen: NDArray, reprojected: NDArray, mirror: Sequence[int], error: NDArray
+) -> NDArray:
+    """Return for which joints the fusion's error is that of the other side's keypoint, (J,)."""
     own = np.linalg.norm(seen - reprojected, axis=1)
     other = np.linalg.norm(seen[mirror] - reprojected, axis=1)
     with np.errstate(invalid="ignore"):
         return np.abs(other - error) < np.abs(own - error)
 
 
-def _percent(disagrees, known, person, camera):
+def _percent(disagrees: NDArray, known: NDArray, person: int, camera: int) -> NDArray:
     times, of = (each[person, :, :, camera].sum(axis=0) for each in (disagrees, known))
     return np.where(of > 0, 100 * times / np.maximum(of, 1), np.nan)
 
 
-def draw(rows, images, detected, reprojected, stick, limit_torso):
+def draw(
+    rows: pd.DataFrame,
+    images: dict[str, NDArray],
+    detected: dict[str, NDArray],
+    reprojected: dict[str, NDArray],
+    stick: Stick,
+    limit_torso: float,
+) -> Figure:
     """Draw every camera's picture of the persons, and below how often joints disagree in the take.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
+    rows
         Of `table`.
     images : dict of str to (H, W, 3) uint8
-        By camera, BGR, faces hidden where wished.
+        By camera, BGR, faces hidden if asked for.
     detected, reprojected : dict of str to (P, K, 2) float
         By camera the joints of the stick figure, px.
-    stick : courtside.figures.style.stick_figure.Stick
-    limit_torso : float
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
     """
     names, n_rows = list(images), rows.groupby(["person", "camera"], sort=False).ngroups
     width = min(style.WIDTH_MM / len(names), WIDEST_MM)
@@ -164,7 +181,7 @@ def draw(rows, images, detected, reprojected, stick, limit_torso):
     return drawing
 
 
-def _mark(axis, marked, size):
+def _mark(axis: Axes, marked: pd.DataFrame, size: float) -> None:
     for row in marked.itertuples():
         ends = np.array([[getattr(row, key) for key in PIXELS[at : at + 2]] for at in (0, 2)])
         axis.plot(*ends.T, "--", color=picture_crops.MARKED, linewidth=1.0, zorder=4)
@@ -176,13 +193,9 @@ def _mark(axis, marked, size):
     axis.set_xlabel("\n".join([*lines[:LISTED], *more]) or "none above the limit", **look)
 
 
-def _legend(limit_torso, line):
-    look = {
-        "color": picture_crops.MARKED,
-        "linestyle": "--",
-        "marker": "o",
-        "markerfacecolor": "none",
-    }
+def _legend(limit_torso: float, line: float) -> tuple[list[Line2D], list[str]]:
+    look = {"color": picture_crops.MARKED, "linestyle": "--", "marker": "o"}
+    look["markerfacecolor"] = "none"
     handles = [
         Line2D([], [], color=picture_crops.DETECTED, linewidth=3),
         Line2D([], [], color=picture_crops.REPROJECTED, linewidth=1.5, marker="o", markersize=3),
@@ -192,7 +205,7 @@ def _legend(limit_torso, line):
     return handles, ["detected", "3D skeleton, reprojected", limit]
 
 
-def _draw_shares(part, rows):
+def _draw_shares(part: FigureBase, rows: pd.DataFrame) -> None:
     axis, several = part.subplots(), rows.person.nunique() > 1
     joints = list(dict.fromkeys(rows.joint))
     rows = rows.assign(where=rows.camera + (", " + rows.person if several else ""))

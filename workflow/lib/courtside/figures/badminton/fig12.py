@@ -1,4 +1,4 @@
-"""Length of a racket by cameras calibrated in several ways, run after run, with perfect cameras beside it.
+"""Length of a racket by cameras calibrated in several ways, compared with perfect cameras.
 
 The counterpart of [Shishido2020, fig 12].
 """
@@ -6,8 +6,12 @@ The counterpart of [Shishido2020, fig 12].
 from collections import namedtuple
 
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
 from courtside.evaluation.tables import racket
 from courtside.figures.style import bars, style
@@ -32,26 +36,14 @@ AGAINST = [  # reference, clicks of the racket: as differences are drawn
     ("known8", "anew", style.CYCLE[1], False),
     ("dlt8", "same", style.CYCLE[4], True),
 ]
-RACKET_MM, BELOW, SHOWN_MM = (
-    674,
-    10,
-    70,
-)  # its length; frames below the net's height; to either side
+RACKET_MM, BELOW = 674, 10  # its length; frames below the net's height, as published
+SHOWN_MM = 70  # to either side of the length
 TICKS_MM = [5, 10, 20, 50, 100]
 WIDTH = 0.11  # of a box, where groups are 1 apart
 
 
-def draw(numbers):
-    """Draw the table of `racket.table`, one column of panels for each session.
-
-    Parameters
-    ----------
-    numbers : pandas.DataFrame
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(numbers: pd.DataFrame) -> Figure:
+    """Draw the table of `racket.table`, one column of panels for each session."""
     sessions = list(dict.fromkeys(numbers["session"].dropna()))
     sigmas_px = sorted(numbers["tip_sigma_px"].dropna().unique(), reverse=True)
     drawing = style.figure(115 + 45 * len(sigmas_px))
@@ -83,7 +75,7 @@ def draw(numbers):
     return drawing
 
 
-def _draw_errors(axis, numbers):
+def _draw_errors(axis: Axes, numbers: pd.DataFrame) -> None:
     rows = numbers[numbers["reference"].isna()]
     for at, name in enumerate(WORDS):
         of = rows[rows["quantity"] == name].set_index("way")
@@ -98,11 +90,11 @@ def _draw_errors(axis, numbers):
     _group_ticks(axis)
 
 
-def _places(n_boxes):
+def _places(n_boxes: int) -> NDArray:
     return 1.25 * WIDTH * (np.arange(n_boxes) - (n_boxes - 1) / 2)
 
 
-def _group_ticks(axis):
+def _group_ticks(axis: Axes) -> None:
     axis.set_xticks(range(len(WORDS)), list(WORDS.values()))
     axis.set_xlim(-0.5, len(WORDS) - 0.5)
     axis.tick_params(axis="x", length=0)
@@ -110,8 +102,8 @@ def _group_ticks(axis):
     axis.set_axisbelow(True)
 
 
-def _box(axis, place, row, colour, filled=True):
-    """Draw the middle half as a box with its median, and the range from 5 to 95 %."""
+def _box(axis: Axes, place: float, row: pd.Series, colour: str, filled: bool = True) -> None:
+    """Draw the quartiles as a box with its median, and the range from 5 to 95 %."""
     axis.vlines(place, row["p05"], row["p95"], color=colour, linewidth=1.0, zorder=2)
     look = {"facecolor": colour if filled else "white", "edgecolor": colour, "linewidth": 0.8}
     axis.bar(place, row["p75"] - row["p25"], WIDTH, row["p25"], zorder=3, **look)
@@ -120,7 +112,7 @@ def _box(axis, place, row, colour, filled=True):
     axis.plot(ends, [row["median"]] * 2, color=ink, linewidth=1.2, zorder=4)
 
 
-def _mark_published(axis, published):
+def _mark_published(axis: Axes, published: pd.DataFrame) -> None:
     for at, name in enumerate(WORDS):
         places = at + _places(len(WAYS))
         for family, (first, last) in PUBLISHED.items():
@@ -130,7 +122,7 @@ def _mark_published(axis, published):
             axis.plot(np.mean(reach), value, "*", color="black", markersize=7, zorder=6)
 
 
-def _draw_differences(axis, numbers, published):
+def _draw_differences(axis: Axes, numbers: pd.DataFrame, published: pd.DataFrame) -> None:
     places = _places(len(AGAINST)) * 1.6
     for at, name in enumerate(WORDS):
         of = numbers[numbers["quantity"] == name].set_index(["reference", "tips"])
@@ -148,7 +140,7 @@ def _draw_differences(axis, numbers, published):
     _group_ticks(axis)
 
 
-def _draw_run(axis, numbers):
+def _draw_run(axis: Axes, numbers: pd.DataFrame) -> None:
     for way in reversed(WAYS):
         of = numbers[numbers["way"] == way.name].sort_values("frame")
         on_top = way.name == racket.OURS
@@ -163,7 +155,7 @@ def _draw_run(axis, numbers):
     axis.set_xlabel("frame")
 
 
-def _draw_volume(axis, numbers):
+def _draw_volume(axis: Axes, numbers: pd.DataFrame) -> None:
     of = numbers.set_index("way")
     shown = [way for way in WAYS if way.name in of.index and way.name != racket.FLOOR]
     for place, way in enumerate(shown):
@@ -177,7 +169,7 @@ def _draw_volume(axis, numbers):
     axis.set_axisbelow(True)
 
 
-def _legend():
+def _legend() -> list:
     """Return the marks to explain: ways, differences, floor, published values."""
     handles = [Patch(facecolor=way.colour, label=way.words) for way in WAYS]
     hollow = {"facecolor": "white", "edgecolor": style.CYCLE[1]}

@@ -1,7 +1,9 @@
-"""Table 1 of the paper as it was measured, and what its protocol cannot see: four rows per joint."""
+"""The paper's table 1 as it was measured, and what its protocol misses: four rows per joint."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from courtside.figures.style import style
@@ -13,7 +15,7 @@ PANELS = (  # row of the table, title, filled marks
     (("truth",), "D  distance to the truth (mm)"),
 )
 HOLLOW = ("rounded_published", "left_out")
-COLOURS = (style.CYCLE[0], style.CYCLE[1], style.CYCLE[2], style.CYCLE[3], style.CYCLE[4])
+COLOURS = style.CYCLE[:5]
 SPREAD = 0.62  # of the distance between joints that the marks of one joint share
 WIDE = 20.0  # a panel whose means differ by more is logarithmic
 LEGEND = (
@@ -22,23 +24,20 @@ LEGEND = (
 )
 
 
-def table(rows, published, person=None):
+def table(rows: pd.DataFrame, published: pd.DataFrame, person: str | None = None) -> pd.DataFrame:
     """Put the published values beside the rows of one person.
+
+    The columns stay the same; published rows have `published` as row, no person and 2 cameras.
+    Joints are in the published order, others follow, and `all` is last.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
+    rows
         Of `courtside.evaluation.round_trip.table`, for one or more sets of cameras.
-    published : pandas.DataFrame
+    published
         joint, mean_mm, sd_mm, n_frames, source.
-    person : str, optional
+    person
         The first one by default.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        The same columns; the published rows have `published` as row, no person and 2 cameras. Joints are in
-        the published order, others behind them, and `all` is last.
     """
     own = rows[rows["person"] == (person or rows["person"].iloc[0])]
     theirs = pd.DataFrame(
@@ -68,18 +67,8 @@ def table(rows, published, person=None):
     return whole.iloc[np.argsort(place, kind="stable")].reset_index(drop=True)
 
 
-def draw(rows, title=""):
-    """Draw the table of `table`: means with standard deviations, one panel for each row B, C and D.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-    title : str
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(rows: pd.DataFrame, title: str = "") -> Figure:
+    """Draw the table of `table`: means with standard deviations, a panel for each row B, C, D."""
     joints = list(dict.fromkeys(rows["joint"]))
     sets = rows.loc[rows["row"] == "exact", ["n_cameras", "cameras"]].drop_duplicates()
     sets = list(sets.sort_values("n_cameras", kind="stable").itertuples(index=False, name=None))
@@ -95,15 +84,8 @@ def draw(rows, title=""):
         axis.grid(axis="x", color="#dddddd", linewidth=0.5)
     theirs = rows[rows["row"] == "published"].set_index("joint").reindex(joints)
     place = np.arange(len(joints)) - SPREAD / 2 - 0.08
-    axes[0].errorbar(
-        theirs["mean"],
-        place,
-        xerr=theirs["sd"],
-        fmt="*",
-        color="black",
-        markersize=5,
-        linewidth=0.8,
-    )
+    look = {"fmt": "*", "color": "black", "markersize": 5, "linewidth": 0.8}
+    axes[0].errorbar(theirs["mean"], place, xerr=theirs["sd"], **look)
     for axis, (names, _) in zip(axes, PANELS, strict=True):
         _scale(axis, rows.loc[rows["row"].isin(names), "mean"])
     _without_truth(axes[-1], rows)
@@ -115,21 +97,17 @@ def draw(rows, title=""):
     return drawing
 
 
-def _marks(axis, part, joints, shift, colour, filled):
+def _marks(
+    axis: Axes, part: pd.DataFrame, joints: list[str], shift: float, colour: str, filled: bool
+) -> None:
     part = part.set_index("joint").reindex(joints)
-    axis.errorbar(
-        part["mean"],
-        np.arange(len(joints)) + shift + (0.0 if filled else 0.07),
-        xerr=part["sd"],
-        fmt="o",
-        color=colour,
-        markerfacecolor=colour if filled else "white",
-        markersize=3,
-        linewidth=0.8 if filled else 0.4,
-    )
+    look = {"fmt": "o", "color": colour, "markersize": 3, "linewidth": 0.8 if filled else 0.4}
+    look["markerfacecolor"] = colour if filled else "white"
+    place = np.arange(len(joints)) + shift + (0.0 if filled else 0.07)
+    axis.errorbar(part["mean"], place, xerr=part["sd"], **look)
 
 
-def _scale(axis, means):
+def _scale(axis: Axes, means: pd.Series) -> None:
     if means.max() > WIDE * means[means > 0].min():
         axis.set_xlim(left=0.5 * means[means > 0].min())
         axis.set_xscale("log")
@@ -138,14 +116,14 @@ def _scale(axis, means):
         axis.set_xlim(left=0)
 
 
-def _without_truth(axis, rows):
+def _without_truth(axis: Axes, rows: pd.DataFrame) -> None:
     known = rows.loc[rows["row"] == "truth", "mean"].notna().any()
     if not known:
         axis.text(0.5, 0.5, "no truth:\na real session", transform=axis.transAxes, ha="center")
         axis.set_xticks([])
 
 
-def _explain(drawing, axis, sets):
+def _explain(drawing: Figure, axis: Axes, sets: list[tuple[int, str]]) -> None:
     marks = [
         axis.errorbar([], [], xerr=[], fmt="o", color=COLOURS[at % len(COLOURS)], markersize=3)
         for at in range(len(sets))
@@ -153,18 +131,11 @@ def _explain(drawing, axis, sets):
     names = [f"{count} cameras: {cameras.replace('+', ', ')}" for count, cameras in sets]
     marks.append(axis.errorbar([], [], xerr=[], fmt="*", color="black", markersize=5))
     names.append("published, 2 cameras")
-    drawing.legend(
-        marks,
-        names,
-        loc="outside lower center",
-        ncols=2,
-        title=LEGEND,
-        title_fontsize=7,
-        fontsize=7,
-    )
+    look = {"title": LEGEND, "title_fontsize": 7, "fontsize": 7}
+    drawing.legend(marks, names, loc="outside lower center", ncols=2, **look)
 
 
-def _identity(rows):
+def _identity(rows: pd.DataFrame) -> str:
     exact = rows[(rows["row"] == "exact") & (rows["joint"] != ALL)]
     mean = exact["mean"].max()
     return f"A  exact round trip: 0 mm (largest mean of a joint {mean:.0e} mm): it is an identity"

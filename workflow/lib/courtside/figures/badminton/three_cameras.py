@@ -1,8 +1,13 @@
 """Errors of joints with two, three and four cameras, by the paper's half-body rule and by ours."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+from numpy.typing import NDArray
 
 from courtside.evaluation.tables import players
 from courtside.figures.style import bars, style
@@ -31,26 +36,18 @@ POINT_COLUMNS = {"point": "joint", "position_median_mm": "median_mm", "position_
 NUMBERS = ["n", "missing_percent", "median_mm", "p95_mm"]
 
 
-def table(errors, kinematics):
+def table(errors: pd.DataFrame, kinematics: pd.DataFrame) -> pd.DataFrame:
     """Put the errors of joints and of body points together, one row each.
 
-    Parameters
-    ----------
-    errors, kinematics : pandas.DataFrame
-        Of `players.read`; kinematics may be empty.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        session, take, calibration, model, fusion, stage, joint, person, n, missing_percent, median_mm,
-        p95_mm, claimed (stable with two cameras, says the paper). Of several persons it has all together;
-        for neck and centre, which are measured from the raw joints by a filter of their own (stage
-        `kinematics`), the one with the larger median.
+    session, take, calibration, model, fusion, stage, joint, person, n, missing_percent, median_mm,
+    p95_mm, claimed (called stable with two cameras by the paper). Several persons are pooled; for
+    neck and centre, which are measured from the raw joints by a filter of their own (stage
+    `kinematics`), the person with the larger median counts. `errors` and `kinematics` are of
+    `players.read`; kinematics may be empty.
     """
     errors = players.together(errors)
-    points = kinematics.reindex(columns=[*BLOCK, "fusion", "person", "n", *POINT_COLUMNS]).rename(
-        columns=POINT_COLUMNS
-    )
+    points = kinematics.reindex(columns=[*BLOCK, "fusion", "person", "n", *POINT_COLUMNS])
+    points = points.rename(columns=POINT_COLUMNS)
     points = points.sort_values("median_mm", ascending=False, kind="stable")
     points = points.drop_duplicates([*BLOCK, "fusion", "joint"]).assign(stage="kinematics")
     rows = pd.concat([errors, points] if len(points) else [errors], ignore_index=True)
@@ -62,19 +59,15 @@ def table(errors, kinematics):
     return rows.reindex(columns=columns).assign(claimed=rows["joint"].isin(CLAIMED))
 
 
-def draw(rows, cameras):
-    """Draw medians with lines to the 95 % quantiles, raw beside corrected, and what is missing.
+def draw(rows: pd.DataFrame, cameras: dict[str, Sequence[str]]) -> Figure:
+    """Draw medians with lines to the 95 % quantiles, raw beside corrected, and missing joints.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
+    rows
         Of `table`; each take, calibration and network gets panels of its own.
-    cameras : dict of str to sequence of str
+    cameras
         Of each fusion that `WAYS` names, for the legend.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
     """
     blocks = list(rows.groupby(BLOCK, sort=False))
     ways = [way for way in WAYS if (rows["fusion"] == way).any()]
@@ -98,11 +91,11 @@ def draw(rows, cameras):
     return drawing
 
 
-def _places(way, ways):
+def _places(way: str, ways: list[str]) -> NDArray:
     return np.arange(len(ROWS)) + SPREAD * ((ways.index(way) + 0.5) / len(ways) - 0.5)
 
 
-def _errors(axis, rows, ways):
+def _errors(axis: Axes, rows: pd.DataFrame, ways: list[str]) -> None:
     if rows.empty:
         axis.text(0.5, 0.5, "no estimate of\njoint offsets", transform=axis.transAxes, ha="center")
     for way in ways:
@@ -115,7 +108,7 @@ def _errors(axis, rows, ways):
         axis.plot(part["median_mm"], place, marker, **look)
 
 
-def _missing(axis, rows, ways):
+def _missing(axis: Axes, rows: pd.DataFrame, ways: list[str]) -> None:
     for way in ways:
         part = rows[rows["fusion"] == way].set_index("joint").reindex(ROWS)
         _, colour, marker, filled = WAYS[way]
@@ -126,7 +119,7 @@ def _missing(axis, rows, ways):
     axis.set_xlim(-0.5, max(5.0, 1.1 * most) if np.isfinite(most) else 5.0)
 
 
-def _logarithmic(axis, limits):
+def _logarithmic(axis: Axes, limits: tuple[float, float]) -> None:
     axis.set_xscale("log")
     axis.set_xlim(*limits)
     axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -135,7 +128,7 @@ def _logarithmic(axis, limits):
     axis.xaxis.set_minor_locator(NullLocator())
 
 
-def _names(axes):
+def _names(axes: Sequence[Axes]) -> None:
     words = {**SETS, **{joint: joint.replace("_", " ") for joint in JOINTS}, **POINTS}
     axes[0].set_yticks(np.arange(len(ROWS)), [words[joint] for joint in ROWS])
     axes[0].set_ylim(len(ROWS) - 0.4, -0.6)
@@ -149,7 +142,7 @@ def _names(axes):
             axis.axhline(at - 0.5, color="#999999", linewidth=0.6)
 
 
-def _title(key, rows):
+def _title(key: tuple[str, str, str, str], rows: pd.DataFrame) -> str:
     session, take, calibration, model = key
     n = rows.loc[rows["joint"].isin(JOINTS), "n"].max()
     title = f"{session}, take {take}, {calibration}, {model}; a joint's mark: up to {n:.0f} values"
@@ -165,18 +158,14 @@ def _title(key, rows):
     return f"{title}\n{said}{', '.join(found)}" if found else title
 
 
-def _explain(drawing, ways, cameras):
+def _explain(drawing: Figure, ways: list[str], cameras: dict[str, Sequence[str]]) -> None:
     marks = []
     for way in ways:
         words, colour, marker, filled = WAYS[way]
         names = ", ".join(cameras[way])
         label = f"{len(cameras[way])} cameras ({names}), {words}"
         marks.append(bars.mark(colour, marker=marker, filled=filled, label=label))
-    drawing.legend(
-        handles=marks,
-        loc="outside lower center",
-        ncols=2,
-        fontsize=7,
-        title="mark: median; line: to the 95 % quantile; shaded: stable with two cameras, says the paper",
-        title_fontsize=7,
-    )
+    title = "mark: median; line: to the 95 % quantile; "
+    title += "shaded: stable with two cameras, says the paper"
+    look = {"ncols": 2, "fontsize": 7, "title": title, "title_fontsize": 7}
+    drawing.legend(handles=marks, loc="outside lower center", **look)

@@ -1,9 +1,11 @@
-"""How the conditions of filming change what a calibration is worth."""
+"""Effect of the recording conditions on the error of a calibration."""
 
 import re
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, style
@@ -24,25 +26,22 @@ MARKERS = "osv^D"
 DODGE = 0.12  # of the distance between neighbouring settings
 
 
-def table(rows, x, group=None, n_bridging=None):
+def table(
+    rows: pd.DataFrame, x: str, group: str | None = None, n_bridging: int | None = None
+) -> pd.DataFrame:
     """Return the spread of the volume error by setting.
+
+    way (a key of `METHODS`), in_sample, the settings, n, p05, median, p95 (cm), n_failed. Trials
+    with the scored points left out, if the way can do without them.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
+    rows
         Of `calibration.tidy`.
-    x : str
-        Column of the setting that is varied.
-    group : str or None
-        Column of a second setting.
-    n_bridging : int or None
+    x, group
+        Columns of the settings that are varied.
+    n_bridging
         Only trials with so many bridging images.
-
-    Returns
-    -------
-    numbers : pandas.DataFrame
-        way (a key of `METHODS`), in_sample, the settings, n, p05, median, p95 (cm), n_failed. Trials
-        with the scored points left out where the way can do without them.
     """
     if n_bridging is not None:
         rows = rows[rows["n_bridging"] == n_bridging]
@@ -58,16 +57,8 @@ def table(rows, x, group=None, n_bridging=None):
     return pd.concat(parts, ignore_index=True)[columns]
 
 
-def draw(numbers, x, group=None, title=""):
-    """Draw the table of `table`, one panel for each way to calibrate.
-
-    Parameters
-    ----------
-    numbers : pandas.DataFrame
-    x, group : str, str or None
-        As for `table`.
-    title : str
-    """
+def draw(numbers: pd.DataFrame, x: str, group: str | None = None, title: str = "") -> Figure:
+    """Draw the table of `table` (same `x` and `group`), one panel for each way to calibrate."""
     drawing = style.figure(82)
     axes = drawing.subplots(1, len(METHODS), sharey=True, sharex=True)
     settings = sorted(numbers[x].unique(), key=_place)
@@ -88,12 +79,13 @@ def draw(numbers, x, group=None, title=""):
         handles, labels = axes[0].get_legend_handles_labels()
         drawing.legend(handles, labels, loc="outside lower center", ncols=len(MARKERS))
     total = numbers["n"] + numbers["n_failed"]
-    text = f"median and 5-95 % of {total.min()}{f' to {total.max()}' if total.nunique() > 1 else ''} trials"
+    upto = f" to {total.max()}" if total.nunique() > 1 else ""
+    text = f"median and 5-95 % of {total.min()}{upto} trials"
     drawing.suptitle(f"{title}: {text}" if title else text, fontsize=8)
     return drawing
 
 
-def _draw_way(axis, part, settings, x, group):
+def _draw_way(axis: Axes, part: pd.DataFrame, settings: list, x: str, group: str | None) -> None:
     values = [None] if group is None else sorted(part[group].unique())
     for at, value in enumerate(values):
         rows = part if group is None else part[part[group] == value]
@@ -102,14 +94,14 @@ def _draw_way(axis, part, settings, x, group):
         place += DODGE * (at - (len(values) - 1) / 2)
         label = None if group is None else f"{WORDS.get(group, group)} {_said(value)}"
         known = rows["median"].notna().to_numpy()
-        look = {"colour": style.CYCLE[at], "marker": MARKERS[at], "label": label}
+        look: dict = {"colour": style.CYCLE[at], "marker": MARKERS[at], "label": label}
         bars.draw(axis, place[known], rows[known], filled=not rows["in_sample"].any(), **look)
         for each, (_, row) in zip(place, rows.iterrows(), strict=True):
             _count(axis, each, row, at, style.CYCLE[at])
 
 
-def _count(axis, place, row, line, colour):
-    """Write near the panel's top how many trials gave nothing."""
+def _count(axis: Axes, place: float, row: pd.Series, line: int, colour: str) -> None:
+    """Write near the panel's top how many trials failed."""
     if not row["n_failed"]:
         return
     text = f"{int(row['n_failed'])} of {int(row['n'] + row['n_failed'])} failed"
@@ -117,15 +109,15 @@ def _count(axis, place, row, line, colour):
     axis.text(round(place), 0.995 - 0.05 * line, text, color=colour, **where)
 
 
-def _place(value):
-    """Return what a setting is sorted by: a number, or the one that a text begins with."""
+def _place(value: str | float) -> float:
+    """Return the sort key of a setting: a number, or the first number of a text."""
     if not isinstance(value, str):
         return float(value)
     number = re.search(r"\d+(\.\d+)?", value)
     return float(number.group()) if number else 0.0
 
 
-def _said(value):
+def _said(value: str | float | bool) -> str:
     if isinstance(value, bool | np.bool_):
         return "on" if value else "off"
     return f"{value:g}" if isinstance(value, int | float | np.number) else str(value)

@@ -1,11 +1,15 @@
-"""The named points of a court, numbered on its plan, with the line edges that each of them names."""
+"""The named points of a court, numbered on its plan, with the line edges that define them."""
 
 import textwrap
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
 
+from courtside.calibration.court.court import Court
 from courtside.figures.style import court_plan, style
 
 ROOM = 0.067  # around the plan, of its longer side
@@ -16,7 +20,7 @@ AWAY_PT = 7.5  # from a point to its number
 FEW = "three"  # the set that gives the frame: origin, end of x, end of y
 
 
-def table(court):
+def table(court: Court) -> pd.DataFrame:
     """Return the points: point, x_m, y_m, z_m, sigma_m, sets, edges."""
     sets = [" ".join(n for n, members in court.sets.items() if p in members) for p in court.points]
     xyz = {f"{axis}_m": court.xyz[:, at] for at, axis in enumerate("xyz")}
@@ -24,7 +28,7 @@ def table(court):
     return pd.DataFrame({**rows, "edges": court.edges})
 
 
-def draw(court):
+def draw(court: Court) -> Figure:
     """Draw the plan, details of it, the net from the side, and the list of edges."""
     drawing = style.figure(175)
     columns = drawing.add_gridspec(1, 2, width_ratios=[1, 1.25])
@@ -34,19 +38,19 @@ def draw(court):
     for at, point in enumerate(_details(court)[:DETAILS]):
         _draw_detail(drawing.add_subplot(right[1, at]), court, point)
     if court.net is not None:
-        _draw_net(drawing.add_subplot(right[2, :]), court)
+        _draw_net(drawing.add_subplot(right[2, :]), court, court.net)
     return drawing
 
 
-def groups(court):
+def groups(court: Court) -> list[tuple[list[str], str]]:
     """Return the points that name the same edges: list of (names, edges), in the court's order."""
-    named = {}
+    named: dict[str, list[str]] = {}
     for point, edges in zip(court.points, court.edges, strict=True):
         named.setdefault(edges, []).append(point)
     return [(points, edges) for edges, points in named.items()]
 
 
-def _draw_plan(axis, court):
+def _draw_plan(axis: Axes, court: Court) -> None:
     court_plan.draw(axis, court)
     for place in np.unique(court.xyz[:, :2], axis=0):
         here = [n for n in range(len(court.points)) if (court.xyz[n, :2] == place).all()]
@@ -69,7 +73,7 @@ def _draw_plan(axis, court):
     axis.set_title(f"{court.description}\nlines {1000 * court.line_width_m:.0f} mm, to scale")
 
 
-def _number(axis, court, place, text):
+def _number(axis: Axes, court: Court, place: NDArray, text: str) -> None:
     """Write a point's name beside it: outside the court, away from its neighbours."""
     size = np.asarray(court.size_m)
     aside = np.sign(place - size / 2)
@@ -81,7 +85,7 @@ def _number(axis, court, place, text):
     axis.annotate(text, place, away, ha="left" if right else "right", bbox=box, **where)
 
 
-def _write_list(axis, court):
+def _write_list(axis: Axes, court: Court) -> None:
     lines = []
     for points, edges in groups(court):
         lines += [" ".join(points)]
@@ -94,60 +98,57 @@ def _write_list(axis, court):
         axis.text(0, 1 - (at + 0.3) / max(len(lines), 21), line, **look)
 
 
-def _details(court):
-    """Return the places in `points` whose edges are told apart only close up: one for each wording."""
+def _details(court: Court) -> list[int]:
+    """Return the indices of points to enlarge, one for each wording of the edges."""
     flat = [court.points.index(points[0]) for points, _ in groups(court)]
     near = [n for n in flat if court.xyz[n, 2] == 0 and _lines_at(court, n) >= 2]
     return near or flat
 
 
-def _lines_at(court, point):
+def _lines_at(court: Court, point: int) -> int:
     low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:]) - 1e-6
     high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:]) + 1e-6
     place = court.xyz[point, :2]
     return int(((place >= low) & (place <= high)).all(axis=1).sum())
 
 
-def _draw_detail(axis, court, point):
+def _draw_detail(axis: Axes, court: Court, point: int) -> None:
     court_plan.draw(axis, court)
     x, y = court.xyz[point, :2]
     for shift in (-1, 1):
         axis.plot([x + shift * DETAIL_M, x], [y, y], color=style.LEFT, linewidth=0.6)
         axis.plot([x, x], [y + shift * DETAIL_M, y], color=style.LEFT, linewidth=0.6)
     axis.plot(x, y, "o", color=style.LEFT, markersize=4, zorder=4)
-    axis.set(
-        xlim=(x - DETAIL_M, x + DETAIL_M), ylim=(y - DETAIL_M, y + DETAIL_M), xticks=[], yticks=[]
-    )
+    axis.set(xlim=(x - DETAIL_M, x + DETAIL_M), ylim=(y - DETAIL_M, y + DETAIL_M))
+    axis.set(xticks=[], yticks=[])
     axis.add_patch(Rectangle((x + 0.045, y - 0.14), 0.1, 0.008, facecolor="black"))
     axis.text(x + 0.095, y - 0.125, "0.1 m", ha="center", va="bottom", fontsize=5.5)
     axis.spines[:].set_visible(True)
     axis.set_title(court.points[point])
 
 
-def _draw_net(axis, court):
-    left, right = court.net["x_m"]
-    post, middle = court.net["post_height_m"], court.net["mid_height_m"]
+def _draw_net(axis: Axes, court: Court, net: dict) -> None:
+    left, right = net["x_m"]
+    post, middle = net["post_height_m"], net["mid_height_m"]
     x = np.linspace(left, right, 41)
     sag = post - (post - middle) * (1 - ((2 * x - left - right) / (right - left)) ** 2)
     axis.plot(x, sag, color=court_plan.PAINT, linewidth=1)
     axis.axhline(0, color=court_plan.PAINT, linewidth=1)
     axis.vlines([left, right], 0, post, color=court_plan.PAINT, linewidth=2)
-    for n in np.flatnonzero(court.xyz[:, 1] == court.net["y_m"]):
+    for n in np.flatnonzero(court.xyz[:, 1] == net["y_m"]):
         at, height = court.xyz[n, 0], court.xyz[n, 2]
-        axis.plot(
-            at, height, "o", color=style.RIGHT if height > 0 else style.LEFT, markersize=4, zorder=4
-        )
+        colour = style.RIGHT if height > 0 else style.LEFT
+        axis.plot(at, height, "o", color=colour, markersize=4, zorder=4)
         side = -1 if at < (left + right) / 2 else 1
         where = {
             "textcoords": "offset points",
-            "ha": "right" if side < 0 else "left",
             "va": "center",
+            "ha": "right" if side < 0 else "left",
         }
         away = (AWAY_PT * side, 0 if height > 0 else -AWAY_PT)
         axis.annotate(court.points[n], (at, height), away, fontsize=7.5, **where)
     axis.text((left + right) / 2, middle - 0.12, f"{middle:g} m", ha="center", va="top", fontsize=7)
     room = 0.15 * (right - left)
     axis.set(xlim=(left - room, right + room), ylim=(-0.7 * room, post + 0.3), aspect="equal")
-    axis.set(
-        xlabel="x (m)", ylabel="z (m)", title=f"Net, y = {court.net['y_m']:g} m, posts {post:g} m"
-    )
+    title = f"Net, y = {net['y_m']:g} m, posts {post:g} m"
+    axis.set(xlabel="x (m)", ylabel="z (m)", title=title)

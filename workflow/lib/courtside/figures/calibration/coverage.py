@@ -1,7 +1,9 @@
-"""Whether the uncertainty that a calibration states is honest."""
+"""Coverage of the uncertainty that a calibration states."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, style
@@ -12,24 +14,16 @@ LEVELS = {
     "coverage90": (90, style.CYCLE[0], "o"),
     "coverage95": (95, style.CYCLE[1], "s"),
 }
-WANTED = (80, 97)  # %, of the 90 % ellipsoids
+WANTED = (80, 97)  # ASSUME: %, the coverage of 90 % ellipsoids that the study asks for
 ACROSS = 4  # sessions in a row
 
 
-def table(rows):
-    """Return stated against true.
+def table(rows: pd.DataFrame) -> pd.DataFrame:
+    """Compare stated with true errors, of rows of `calibration.tidy` of any number of sessions.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `calibration.tidy`, of any number of sessions.
-
-    Returns
-    -------
-    numbers : pandas.DataFrame
-        One row per session and number of bridging images, method `sfm` with all clicks: n_clicks, n,
-        n_failed; the mean over trials of `coverage50`, `coverage90`, `coverage95`, %; and of
-        `volume_rms_cm` and `predicted_volume_cm` the columns `..._p05`, `..._median`, `..._p95`.
+    One row per session and number of bridging images, method `sfm` with all clicks: n_clicks, n,
+    n_failed; the mean over trials of `coverage50`, `coverage90`, `coverage95`, %; and of
+    `volume_rms_cm` and `predicted_volume_cm` the columns `..._p05`, `..._median`, `..._p95`.
     """
     of = calibration.pick(rows, in_sample=True, **METHOD)
     of = of[of["n_clicks"] == of.groupby("session")["n_clicks"].transform("max")]
@@ -46,8 +40,8 @@ def table(rows):
     return pd.DataFrame(found)
 
 
-def draw(numbers):
-    """Draw the table of `table`: coverage, below it expected and true errors; a column per session."""
+def draw(numbers: pd.DataFrame) -> Figure:
+    """Draw the table of `table`: coverage above expected and true errors, a column per session."""
     sessions = list(dict.fromkeys(numbers["session"]))
     across = min(ACROSS, len(sessions))
     deep = -(-len(sessions) // across)
@@ -72,25 +66,18 @@ def draw(numbers):
     return drawing
 
 
-def _draw_shares(axis, part):
+def _draw_shares(axis: Axes, part: pd.DataFrame) -> None:
     axis.set_visible(True)
     axis.axhspan(*WANTED, color=LEVELS["coverage90"][1], alpha=0.1, linewidth=0)
     for name, (level, colour, marker) in LEVELS.items():
         axis.axhline(level, color=colour, linestyle="--", linewidth=0.8)
-        axis.plot(
-            part["n_bridging"],
-            part[name],
-            marker=marker,
-            color=colour,
-            markersize=4,
-            linewidth=1,
-            label=f"{level} % ellipsoids",
-        )
+        look = {"marker": marker, "color": colour, "markersize": 4, "linewidth": 1}
+        axis.plot(part["n_bridging"], part[name], label=f"{level} % ellipsoids", **look)
     _by_count(axis, part)
     axis.set(ylim=(0, 103))
 
 
-def _draw_sizes(axis, part):
+def _draw_sizes(axis: Axes, part: pd.DataFrame) -> None:
     axis.set_visible(True)
     looks = (
         ("volume_rms_cm", "true", style.CYCLE[6], "o"),
@@ -107,7 +94,7 @@ def _draw_sizes(axis, part):
     axis.set(xlabel="bridging images N", ylim=(0, None))
 
 
-def _by_count(axis, part):
+def _by_count(axis: Axes, part: pd.DataFrame) -> None:
     counts = part["n_bridging"].tolist()
     bars.ticks_at(axis, counts)
     axis.set_xlim(counts[0] / 1.3, counts[-1] * 1.3)

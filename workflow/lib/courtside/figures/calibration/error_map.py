@@ -1,37 +1,37 @@
-"""Where on the court a calibration is to be trusted: the 3D error that its covariance lets expect."""
+"""Expected 3D error of a calibration over the court, from its covariance."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import quality
+from courtside.calibration.court.court import Court
+from courtside.calibration.records.covariance import CameraCovariance
 from courtside.figures.style import court_plan, style
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
 
 COLUMNS, ROWS = 25, 55  # of the grid, along the short and the long side
 LEVELS = 14  # of colour, about
 ROOM_M = 3.2  # around the court, for the cameras
 
 
-def table(cameras, covariance, court, heights_m):
-    """Return the expected error over the court.
+def table(
+    cameras: list[Camera], covariance: CameraCovariance, court: Court, heights_m: Sequence[float]
+) -> pd.DataFrame:
+    """Return the expected error over the court; `covariance` is of the same cameras, in order.
 
-    Parameters
-    ----------
-    cameras : list of Camera
-    covariance : courtside.calibration.records.covariance.CameraCovariance
-        Of the same cameras, in the same order.
-    court : courtside.calibration.court.court.Court
-    heights_m : sequence of float
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        x_m, y_m, z_m and sigma_cm: the root of the trace of a point's covariance, cm; NaN where a
-        camera does not see the point, or its covariance is unknown.
+    x_m, y_m, z_m and sigma_cm: the root of the trace of a point's covariance, cm; NaN if a camera
+    does not see the point, or its covariance is unknown.
 
     Raises
     ------
@@ -50,22 +50,14 @@ def table(cameras, covariance, court, heights_m):
     return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
 
 
-def _sees(camera, xyz):
+def _sees(camera: Camera, xyz: NDArray) -> NDArray:
     xy = camera_models.project(camera, xyz)
     with np.errstate(invalid="ignore"):
         return ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=-1)
 
 
-def draw(rows, cameras, court, title):
-    """Draw the table of `table`: one panel per height, one scale of colours.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-    cameras : list of Camera
-    court : courtside.calibration.court.court.Court
-    title : str
-    """
+def draw(rows: pd.DataFrame, cameras: list[Camera], court: Court, title: str) -> Figure:
+    """Draw the table of `table`: one panel per height, one scale of colours."""
     heights = rows["z_m"].unique()
     wide, tall = np.asarray(court.size_m) + 2 * ROOM_M
     drawing = style.figure(min(160, 18 + (style.WIDTH_MM - 30) / len(heights) * tall / wide))
@@ -90,7 +82,7 @@ def draw(rows, cameras, court, title):
     return drawing
 
 
-def _draw_height(axis, part, levels):
+def _draw_height(axis: Axes, part: pd.DataFrame, levels: NDArray) -> ContourSet:
     x, y = (part[name].unique() for name in ("x_m", "y_m"))
     values = part["sigma_cm"].to_numpy().reshape(len(y), len(x))
     filled = axis.contourf(x, y, values, levels=levels, cmap="YlGnBu", zorder=0)
@@ -103,8 +95,8 @@ def _draw_height(axis, part, levels):
     return filled
 
 
-def _point_to(axis, camera, court):
-    """Mark at the court's edge from where a camera, which stands far outside, looks."""
+def _point_to(axis: Axes, camera: Camera, court: Court) -> None:
+    """Mark at the court's edge the direction of a camera, which stands far outside."""
     centre = np.asarray(court.size_m) / 2
     away = camera.centre_in_world[:2] - centre
     outward = away / np.linalg.norm(away)

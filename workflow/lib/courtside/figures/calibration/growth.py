@@ -1,10 +1,13 @@
-"""How the time of each step grows with the number of bridging images."""
+"""Run time of each step by number of bridging images."""
 
+import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, style
 
@@ -13,18 +16,10 @@ ONCE = "once per session"
 MARKERS = "osv^Dx"
 
 
-def table(paths):
-    """Read benchmark files.
+def table(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+    """Read benchmark files `{step}/{mapper}-n{N}-o{offset}.tsv`; other names are steps done once.
 
-    Parameters
-    ----------
-    paths : sequence of str or Path
-        `{step}/{mapper}-n{N}-o{offset}.tsv`; a file of another name is a step done once.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        step, mapper, n_bridging, offset, seconds, max_rss_mb; the mean where a file has several runs.
+    step, mapper, n_bridging, offset, seconds, max_rss_mb; the mean if a file has several runs.
     """
     rows = []
     for path in map(Path, paths):
@@ -38,36 +33,23 @@ def table(paths):
     return pd.DataFrame(rows).sort_values(keys, ignore_index=True)
 
 
-def exponents(rows):
-    """Return for each step and mapper the exponent and factor of a power law through the seconds.
+def exponents(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return for each step and mapper of `table` the power law through the seconds.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `table`.
-
-    Returns
-    -------
-    laws : pandas.DataFrame
-        step, mapper, exponent, factor_s (seconds at N = 1), n; NaN for fewer than two numbers of images.
+    step, mapper, exponent, factor_s (seconds at N = 1), n; NaN for fewer than two numbers of
+    images.
     """
     laws = []
     for (step, mapper), group in rows[rows["mapper"] != ONCE].groupby(["step", "mapper"]):
-        law = (np.nan, np.nan)
+        law = np.full(2, np.nan)
         if group["n_bridging"].nunique() > 1:
             law = np.polyfit(np.log(group["n_bridging"]), np.log(group["seconds"]), 1)
         laws.append((step, mapper, law[0], np.exp(law[1]), len(group)))
     return pd.DataFrame(laws, columns=["step", "mapper", "exponent", "factor_s", "n"])
 
 
-def draw(rows, title=""):
-    """Draw the table of `table` with its power laws.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-    title : str
-    """
+def draw(rows: pd.DataFrame, title: str = "") -> Figure:
+    """Draw the table of `table` with its power laws."""
     drawing = style.figure(95)
     axis = drawing.subplots()
     laws = exponents(rows)

@@ -1,59 +1,51 @@
-"""How the error to expect of a planned session falls with the number of bridging images."""
+"""Expected error of a planned session by number of bridging images."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from courtside.calibration.planning.prediction import Prediction
 from courtside.figures.style import style
 
 COLUMNS = (
-    "n_images",
-    "neighbour_deg",
-    "n_ties",
-    "least_ties",
-    "error_median_cm",
-    "error_p05_cm",
-    "error_p95_cm",
-    "enough",
-    "fault",
-)
+    "n_images", "neighbour_deg", "n_ties", "least_ties", "error_median_cm", "error_p05_cm",
+    "error_p95_cm", "enough", "fault",
+)  # fmt: skip
 
 
-def table(predictions, chosen):
-    """Return one row per number of bridging images.
+def table(predictions: list[Prediction], chosen: Prediction | None) -> pd.DataFrame:
+    """Return one row per number of bridging images; `chosen` has the fewest images that suffice.
 
-    Parameters
-    ----------
-    predictions : list of courtside.calibration.planning.prediction.Prediction
-    chosen : courtside.calibration.planning.prediction.Prediction or None
-        The one with the fewest images that will do.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        `n_images`, `neighbour_deg` (widest angle between neighbouring views), `n_ties`, `least_ties` (of a
-        fixed camera), quantiles of the root mean square error over the volume, `enough` (1 for the one
-        chosen and all with more images), `fault`.
+    `n_images`, `neighbour_deg` (widest angle between neighbouring views), `n_ties`, `least_ties`
+    (of a fixed camera), quantiles of the root mean square error over the volume, `enough` (1 for
+    the one chosen and all with more images), `fault`.
     """
     rows = [
-        (p.n_images, p.neighbour_deg, p.n_ties, p.least_ties, p.error_cm[1], p.error_cm[0], p.error_cm[2],
+        (p.n_images, p.neighbour_deg, p.n_ties, p.least_ties,
+         p.error_cm[1], p.error_cm[0], p.error_cm[2],
          int(chosen is not None and p.n_images >= chosen.n_images), p.fault)
         for p in sorted(predictions, key=lambda p: p.n_images)
     ]  # fmt: skip
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def draw(rows, title, *, min_points, widest_deg, target_cm=None):
-    """Draw the table of `table`: error above, widest angle between neighbours and fewest ties below.
+def draw(
+    rows: pd.DataFrame,
+    title: str,
+    *,
+    min_points: int,
+    widest_deg: float,
+    target_cm: float | None = None,
+) -> Figure:
+    """Draw the table of `table`: error above, widest angle between neighbours, fewest ties below.
 
     Parameters
     ----------
-    rows : pandas.DataFrame
-    title : str
-    min_points : int
+    min_points
         Fewest ties of a fixed camera.
-    widest_deg : float
-        Widest angle between neighbouring views that holds a model together.
-    target_cm : float, optional
+    widest_deg
+        Widest angle between neighbouring views that keeps a model connected.
     """
     drawing = style.figure(110)
     above, angle, ties = drawing.subplots(3, 1, sharex=True, height_ratios=[2.2, 1, 1])
@@ -61,13 +53,8 @@ def draw(rows, title, *, min_points, widest_deg, target_cm=None):
     n = walked["n_images"]
     band = n, walked["error_p05_cm"], walked["error_p95_cm"]
     above.fill_between(*band, color=style.CYCLE[5], alpha=0.4)
-    above.plot(
-        n,
-        walked["error_median_cm"],
-        "o-",
-        color=style.CYCLE[0],
-        label="median; band: 90 % of sessions",
-    )
+    look = {"color": style.CYCLE[0], "label": "median; band: 90 % of sessions"}
+    above.plot(n, walked["error_median_cm"], "o-", **look)
     if alone["error_median_cm"].notna().any():
         label, value = "court points alone", alone["error_median_cm"].iloc[0]
         above.axhline(value, color="#777777", linestyle="--", linewidth=0.9, label=label)
@@ -85,23 +72,17 @@ def draw(rows, title, *, min_points, widest_deg, target_cm=None):
     return drawing
 
 
-def _draw_limit(axis, n, values, limit, label):
+def _draw_limit(axis: Axes, n: pd.Series, values: pd.Series, limit: float, label: str) -> None:
     axis.plot(n, values, "s-", color=style.CYCLE[0], markersize=3.5)
     axis.axhline(limit, color=style.CYCLE[1], linewidth=0.9)
     top = np.nanmax([limit, *values]) if len(values) else limit
     axis.set(ylabel=label, ylim=(0, 1.15 * top))
 
 
-def _mark_enough(axis, walked):
+def _mark_enough(axis: Axes, walked: pd.DataFrame) -> None:
     enough = walked[walked["enough"] == 1]
     if len(enough):
         first = enough.iloc[0]
         label = f"enough: {first['n_images']:.0f} images"
-        axis.plot(
-            first["n_images"],
-            first["error_median_cm"],
-            "*",
-            color=style.CYCLE[1],
-            markersize=11,
-            label=label,
-        )
+        look = {"color": style.CYCLE[1], "markersize": 11, "label": label}
+        axis.plot(first["n_images"], first["error_median_cm"], "*", **look)

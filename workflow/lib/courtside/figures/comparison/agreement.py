@@ -1,7 +1,11 @@
-"""Differences of two networks against their means, and limits of agreement against what repeats explain."""
+"""Bland-Altman plots of two networks; limits of agreement and smallest detectable changes."""
+
+import os
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from courtside.figures.style import style
 
@@ -18,62 +22,43 @@ SHOWN = 4
 FURTHEST = 8.0  # smallest detectable changes: limits beyond are cut off
 
 
-def read(pairs_csv, table_csv):
-    """Read the tables of a comparison, with empty texts as such.
-
-    Parameters
-    ----------
-    pairs_csv, table_csv : str or Path
-        Of `courtside.statistics.agreement`.
-
-    Returns
-    -------
-    pairs, table : pandas.DataFrame
-    """
+def read(
+    pairs_csv: str | os.PathLike, table_csv: str | os.PathLike
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Read the two tables of `courtside.statistics.agreement`, with missing text as empty text."""
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in (pairs_csv, table_csv)]
     for table in tables:
         for name in set(TEXT) & set(table):
             table[name] = table[name].astype(object).fillna("")
-    return tables
+    return tables[0], tables[1]
 
 
-def choose(table, count=SHOWN):
-    """Choose measures to show: spread evenly from the best agreement to the worst.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        Of `courtside.statistics.agreement.compare`.
-    count : int
-
-    Returns
-    -------
-    measures : list of str
-    """
+def choose(table: pd.DataFrame, count: int = SHOWN) -> list[str]:
+    """Choose measures of a table of `agreement.compare`, evenly from best to worst agreement."""
     known = table[table["verdict"].isin(COLOURS)]
     order = known.assign(ratio=_ratio(known)).sort_values("ratio", kind="stable")["measure"]
     at = np.unique(np.linspace(0, len(order) - 1, min(count, len(order))).round().astype(int))
     return order.iloc[at].tolist()
 
 
-def _ratio(table):
+def _ratio(table: pd.DataFrame) -> pd.Series:
     return np.maximum(-table["lower"], table["upper"]) / table["detectable"]
 
 
-def draw(pairs, table, networks, measures=None):
+def draw(
+    pairs: pd.DataFrame,
+    table: pd.DataFrame,
+    networks: tuple[str, str],
+    measures: list[str] | None = None,
+) -> Figure:
     """Draw differences against means of some measures, and the limits of all.
 
     Parameters
     ----------
-    pairs, table : pandas.DataFrame
+    pairs, table
         Of `courtside.statistics.agreement`.
-    networks : (str, str)
-    measures : list of str, optional
-        Those of the upper panels; `choose` otherwise.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
+    measures
+        Those of the upper panels; `choose` by default.
     """
     known = table[table["verdict"].isin(COLOURS)]
     measures = measures or choose(table)
@@ -89,7 +74,7 @@ def draw(pairs, table, networks, measures=None):
     return drawing
 
 
-def _differences(axis, part, row):
+def _differences(axis: Axes, part: pd.DataFrame, row: pd.Series) -> None:
     part = part.dropna(subset=["first", "second"])
     detectable = row["detectable"]
     axis.axhspan(-detectable, detectable, color=BAND, linewidth=0, zorder=0)
@@ -106,13 +91,13 @@ def _differences(axis, part, row):
     axis.tick_params(labelsize=7)
 
 
-def _words(measure):
+def _words(measure: str) -> str:
     words = measure.replace("_", " ")
     half = words.rfind(" ", 0, 18)
     return words if len(words) <= 18 or half < 0 else f"{words[:half]}\n{words[half + 1 :]}"
 
 
-def _all_limits(axis, known):
+def _all_limits(axis: Axes, known: pd.DataFrame) -> None:
     place = np.arange(len(known))
     axis.axvspan(-1, 1, color=BAND, linewidth=0, zorder=0)
     axis.axvline(0, color="#999999", linewidth=0.6)

@@ -1,7 +1,9 @@
-"""The measures of one subject over sessions, with the change that repeats alone would explain."""
+"""The measures of one subject over sessions, with the smallest detectable change."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, style
 
@@ -18,18 +20,10 @@ LOOKS = {  # verdict: colour, marker, filled, words
 BESIDE = ["change", "detectable", "freedom", "verdict", "mixed"]
 
 
-def table(values, changes):
-    """Put changes beside values.
+def table(values: pd.DataFrame, changes: pd.DataFrame) -> pd.DataFrame:
+    """Put changes beside values, both of `courtside.statistics.longitudinal`.
 
-    Parameters
-    ----------
-    values, changes : pandas.DataFrame
-        Of `courtside.statistics.longitudinal`.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        The columns of both; the first value of a measure has the verdict `first` and no change.
+    The first value of a measure has the verdict `first` and no change.
     """
     beside = pd.DataFrame(index=values.index, columns=BESIDE, dtype=object)
     for measure, part in values.groupby("measure", sort=False):
@@ -42,19 +36,8 @@ def table(values, changes):
     return pd.concat([values, beside], axis=1)
 
 
-def draw(rows, subject):
-    """Draw every measure in a panel of its own, sessions from left to right.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `table`.
-    subject : str
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(rows: pd.DataFrame, subject: str) -> Figure:
+    """Draw every measure of `table` in its own panel, sessions from left to right."""
     measures = list(dict.fromkeys(rows["measure"]))
     n_rows = -(-len(measures) // N_COLUMNS)
     drawing = style.figure(24 + 44 * n_rows)
@@ -74,12 +57,12 @@ def draw(rows, subject):
     return drawing
 
 
-def _names(sessions):
+def _names(sessions: pd.DataFrame) -> list[str]:
     pairs = sessions[["session", "date"]].itertuples(index=False)
     return [f"{session}\n{date}".strip() for session, date in pairs]
 
 
-def _panel(axis, part):
+def _panel(axis: Axes, part: pd.DataFrame) -> None:
     first, later = part.iloc[0], part.iloc[1:]
     banded = later[np.isfinite(later["detectable"]) & (later["verdict"] != "mixed")]
     for _, row in banded.iterrows():
@@ -89,19 +72,12 @@ def _panel(axis, part):
     axis.axhline(first["value"], color="#999999", linewidth=0.6, zorder=0.5)
     for verdict, (colour, marker, filled, _) in LOOKS.items():
         own = part[part["verdict"] == verdict]
-        axis.errorbar(
-            own["order"],
-            own["value"],
-            yerr=own["sd_takes"],
-            fmt=marker,
-            color=colour,
-            markerfacecolor=colour if filled else "white",
-            markersize=4.5,
-            linewidth=0.8,
-        )
+        look = {"fmt": marker, "color": colour, "markersize": 4.5, "linewidth": 0.8}
+        look["markerfacecolor"] = colour if filled else "white"
+        axis.errorbar(own["order"], own["value"], yerr=own["sd_takes"], **look)
 
 
-def _explain(drawing, rows):
+def _explain(drawing: Figure, rows: pd.DataFrame) -> None:
     shown = [name for name in LOOKS if (rows["verdict"] == name).any()]
     marks = []
     for name in shown:

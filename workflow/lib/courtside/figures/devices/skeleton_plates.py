@@ -1,11 +1,17 @@
-"""All sources' skeletons in the T-pose, from the front and from the side, and one map of their joints."""
+"""All sources' skeletons in the T-pose, from front and side, and one map of their joints."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from courtside.figures.style import joint_map, schematic_pose, source_styles, style
+from courtside.records.keypoints.body_motion import BodyMotion
+from courtside.records.keypoints.skeleton import Skeleton
 
 N_COLUMNS = 2
 PLATE_MM, LINE_MM = 76, 4.2
@@ -29,37 +35,30 @@ class Plate:
 
     Attributes
     ----------
-    source : str
-        Empty for a skeleton of which there is no recording.
-    skeleton : courtside.records.keypoints.skeleton.Skeleton
+    source
+        Empty for a skeleton without a recording.
     xyz : (J, 3) float
         Body axes and units; NaN where missing.
-    kind : str
+    kind
         As for `courtside.figures.style.source_styles`.
     """
 
     source: str
-    skeleton: object
-    xyz: np.ndarray
+    skeleton: Skeleton
+    xyz: NDArray
     kind: str
 
 
-def plates(bodies, skeletons, skeleton_of, kinds=None):
+def plates(
+    bodies: list[BodyMotion],
+    skeletons: list[Skeleton],
+    skeleton_of: dict[str, str],
+    kinds: dict[str, str] | None = None,
+) -> list[Plate]:
     """Return the plates: one for each recording, and one for each skeleton without any.
 
-    Parameters
-    ----------
-    bodies : list of courtside.records.keypoints.body_motion.BodyMotion
-    skeletons : list of courtside.records.keypoints.skeleton.Skeleton
-    skeleton_of : dict of str to str
-        Skeleton of each source.
-    kinds : dict of str to str, optional
-        As for `courtside.figures.style.source_styles.kind_of`.
-
-    Returns
-    -------
-    plates : list of Plate
-        Of a recording the medians over its T-pose; of the others a schematic one.
+    Plates of recordings are medians over the T-pose, others schematic. `skeleton_of` is by source,
+    `kinds` as for `source_styles.kind_of`.
     """
     known = {skeleton.name: skeleton for skeleton in skeletons}
     found = []
@@ -82,22 +81,13 @@ def plates(bodies, skeletons, skeleton_of, kinds=None):
     return found
 
 
-def table(found, rows):
-    """Return the numbers drawn, one row per joint of each plate.
+def table(found: list[Plate], rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers drawn, one row per joint of each plate; `rows` are of `joint_map`.
 
-    Parameters
-    ----------
-    found : list of Plate
-    rows : pandas.DataFrame
-        Of `courtside.figures.style.joint_map`.
-
-    Returns
-    -------
-    table : pandas.DataFrame
-        source: `schematic` where there is no recording; skeleton, number, joint, device_name; x, y, z in body
-        units; stands_for: the common joints in which it has a part, with its weight.
+    source: `schematic` without a recording; skeleton, number, joint, device_name; x, y, z in body
+    units; stands_for: the common joints of which it is a part, with its weight.
     """
-    parts = {}
+    parts: dict[tuple[str, int], list[str]] = {}
     for _, row in rows.iterrows():
         for number, weight in zip(row["numbers"], row["weights"], strict=True):
             said = f"{row['common']} {weight:g}"
@@ -119,19 +109,8 @@ def table(found, rows):
     return pd.DataFrame(lines)
 
 
-def draw(found, rows):
-    """Draw plates above, the map of joints below.
-
-    Parameters
-    ----------
-    found : list of Plate
-    rows : pandas.DataFrame
-        Of `courtside.figures.style.joint_map`, of the plates' skeletons.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(found: list[Plate], rows: pd.DataFrame) -> Figure:
+    """Draw plates above, the map of their joints (rows of `joint_map`) below."""
     n_rows = -(-len(found) // N_COLUMNS)
     heights = [PLATE_MM * n_rows, 12 + LINE_MM * rows["common"].nunique()]
     drawing = style.figure(sum(heights))
@@ -148,7 +127,7 @@ def draw(found, rows):
     return drawing
 
 
-def _draw_plate(axis, plate, numbered):
+def _draw_plate(axis: Axes, plate: Plate, numbered: Sequence[int]) -> None:
     colour = source_styles.COLOURS.get(plate.kind, source_styles.OTHER)
     for pair, aside, words in AXES:
         at = plate.xyz[:, pair] + (aside, 0)
@@ -161,7 +140,7 @@ def _draw_plate(axis, plate, numbered):
     for number in numbered:
         x, y, _ = plate.xyz[number]
         if y > ARM_UNITS:
-            look = {"xytext": (0, 4), "ha": "center", "va": "bottom"}
+            look: dict = {"xytext": (0, 4), "ha": "center", "va": "bottom"}
         else:
             outwards, ha = (5, "left") if x > 0 else (-5, "right")
             look = {"xytext": (outwards, 0), "ha": ha, "va": "center"}
@@ -172,7 +151,7 @@ def _draw_plate(axis, plate, numbered):
     axis.set_title(f"{plate.source or 'no recording, schematic'}: {said}", pad=2)
 
 
-def _draw_map(axis, rows):
+def _draw_map(axis: Axes, rows: pd.DataFrame) -> None:
     names, common = (list(dict.fromkeys(rows[key])) for key in ("skeleton", "common"))
     wide = 1 / (len(names) + 0.9)
     left = {name: (at + 0.9) * wide for at, name in enumerate(names)}
@@ -192,7 +171,5 @@ def _draw_map(axis, rows):
         for _, row in own.iterrows():
             cell = joint_map.cell(row)
             axis.text(left[row["skeleton"]], y + 0.5, cell, va="center", fontsize=6.5)
-    said = (
-        "* computed from several joints    † what stands for it is another point in each skeleton"
-    )
+    said = "* computed from several joints    † defined as another point in each skeleton"
     axis.text(0, len(common) + 0.4, said, va="center", fontsize=6.5)

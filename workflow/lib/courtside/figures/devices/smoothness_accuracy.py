@@ -1,7 +1,12 @@
 """Smoothness of the wrists against accuracy, source by source: the thesis's finding as numbers."""
 
+import os
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, source_styles, style
 
@@ -16,25 +21,24 @@ PANELS = {
 }
 
 
-def table(distortion, errors=None, truth=None):
+def table(
+    distortion: pd.DataFrame, errors: pd.DataFrame | None = None, truth: pd.DataFrame | None = None
+) -> pd.DataFrame:
     """Put smoothness beside accuracy, one row for each take and source.
+
+    session, take, source; sparc: mean of both wrists, with sparc_low and sparc_high, the two;
+    distortion_mm: mean of both wrists, in millimetres of the source's own unit; median_error_mm:
+    unaligned, of all joints; sparc_true: of the true wrists, mean of both. The last two are empty
+    if no truth is known.
 
     Parameters
     ----------
-    distortion : pandas.DataFrame
+    distortion
         Of `courtside.kinematics.wrist_arcs`, with session, take, source, unit_m and sparc.
-    errors : pandas.DataFrame, optional
-        Of `courtside.evaluation.sources`, with session, take and source, of the takes that have a truth.
-    truth : pandas.DataFrame, optional
-        In the form of `distortion`, of the true wrists; source is the one they are to be compared with.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        session, take, source; sparc: mean of both wrists, with sparc_low and sparc_high, the two;
-        distortion_mm: mean of both wrists, in millimetres of the source's own unit; median_error_mm:
-        unaligned, of all joints; sparc_true: of the true wrists, mean of both; these empty where no truth is
-        known.
+    errors
+        Of `courtside.evaluation.sources`, with session, take and source, of the takes with a truth.
+    truth
+        In the form of `distortion`, of the true wrists; source is the one they are compared with.
     """
     mm = MM * distortion["mean_distance"] * distortion["unit_m"]
     rows = distortion.assign(distortion_mm=mm).groupby([*TAKE, "source"], sort=False)
@@ -57,46 +61,31 @@ def table(distortion, errors=None, truth=None):
     return rows.merge(true, on=key, how="left")
 
 
-def read(distortion_csv, labels, errors_csv=(), truth_csv=()):
-    """Read the tables of several takes.
+def read(
+    distortion_csv: Sequence[str | os.PathLike],
+    labels: Sequence[dict[str, str]],
+    errors_csv: Sequence[str | os.PathLike] = (),
+    truth_csv: Sequence[str | os.PathLike] = (),
+) -> pd.DataFrame:
+    """Read the tables of several takes into one of `table`.
 
-    Parameters
-    ----------
-    distortion_csv : sequence of str or Path
-    labels : sequence of dict of str to str
-        session and take of each of them.
-    errors_csv, truth_csv : sequence of str or Path
-        With session and take as columns.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Of `table`.
+    `labels` are session and take of each take; the other files have both as columns.
     """
     pairs = zip(distortion_csv, labels, strict=True)
     distortion = pd.concat([pd.read_csv(path).assign(**label) for path, label in pairs])
     return table(distortion, _read(errors_csv), _read(truth_csv))
 
 
-def _read(paths):
+def _read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame | None:
     text = dict.fromkeys(TAKE, str)
     found = [pd.read_csv(path, dtype=text) for path in paths]
     return pd.concat(found, ignore_index=True) if found else None
 
 
-def draw(rows, *, kinds=None):
-    """Draw smoothness over the error, where a truth is known, and over the distortion, where a clap is.
+def draw(rows: pd.DataFrame, *, kinds: dict[str, str] | None = None) -> Figure:
+    """Draw smoothness over the error (with a truth) and over the distortion (with a clap).
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `table`.
-    kinds : dict of str to str, optional
-        As for `courtside.figures.style.source_styles.kind_of`.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
+    `rows` are of `table`, `kinds` as for `courtside.figures.style.source_styles.kind_of`.
     """
     shown = [name for name in PANELS if rows[name].notna().any()] or list(PANELS)[1:]
     looks = source_styles.looks(rows["source"], kinds)
@@ -121,13 +110,7 @@ def draw(rows, *, kinds=None):
     return drawing
 
 
-def _draw_best(axis):
-    axis.annotate(
-        "smooth and accurate",
-        (0.01, 0.99),
-        xytext=(0.09, 0.9),
-        xycoords="axes fraction",
-        fontsize=7,
-        color="#777777",
-        arrowprops={"arrowstyle": "->", "color": "#aaaaaa", "linewidth": 0.8},
-    )
+def _draw_best(axis: Axes) -> None:
+    arrow = {"arrowstyle": "->", "color": "#aaaaaa", "linewidth": 0.8}
+    look = {"xycoords": "axes fraction", "fontsize": 7, "color": "#777777", "arrowprops": arrow}
+    axis.annotate("smooth and accurate", (0.01, 0.99), xytext=(0.09, 0.9), **look)

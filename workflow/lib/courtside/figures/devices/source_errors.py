@@ -1,7 +1,11 @@
-"""How far each source is from the truth, joint by joint, and what its error is made of."""
+"""Errors of each source against the truth by joint, and the parts of the errors."""
+
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
 
 from courtside.figures.style import bars, source_styles, style
 
@@ -28,33 +32,20 @@ MS = 1000
 ORDER = ("wrist", "elbow", "shoulder", "hip", "knee", "ankle")
 
 
-def table(errors, parts):
-    """Return the numbers drawn: errors per joint, then parts, in one table.
+def table(errors: pd.DataFrame, parts: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers drawn in one table: errors per joint, then parts.
 
-    Parameters
-    ----------
-    errors, parts : pandas.DataFrame
-        Of `courtside.evaluation.sources`, with `source`; parts also with `frame`.
+    Both are of `courtside.evaluation.sources`, with `source`; parts also with `frame`.
     """
     errors = errors[errors["alignment"].isin(SHOWN)].assign(table="errors")
     rows = pd.concat([errors, parts.assign(table="parts")], ignore_index=True)
     return rows.set_index("table").reset_index()
 
 
-def draw(errors, parts, *, kinds=None):
-    """Draw errors above, their parts below.
-
-    Parameters
-    ----------
-    errors, parts : pandas.DataFrame
-        As for `table`.
-    kinds : dict of str to str, optional
-        As for `courtside.figures.style.source_styles.kind_of`.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(
+    errors: pd.DataFrame, parts: pd.DataFrame, *, kinds: dict[str, str] | None = None
+) -> Figure:
+    """Draw errors above, their parts below (see `table`); `kinds` as for `source_styles`."""
     looks = source_styles.looks(errors["source"], kinds)
     joints = _joints(errors["joint"])
     heights = [26 + (2.5 + 1.2 * len(looks)) * len(joints), 24 + 10 * len(looks)]
@@ -65,17 +56,19 @@ def draw(errors, parts, *, kinds=None):
     return drawing
 
 
-def _joints(names):
-    """Return the joints in the order drawn: from the hands down, both sides together, all at the end."""
+def _joints(names: Iterable[str]) -> list[str]:
+    """Return the joints in the order drawn: from the hands down, sides together, all at the end."""
 
-    def rank(name):
+    def rank(name: str) -> tuple[int, str, str]:
         part = name.split("_", 1)[-1]
         return (ORDER.index(part) if part in ORDER else len(ORDER), part, name)
 
     return [*sorted(set(names) - {"all"}, key=rank), "all"]
 
 
-def _draw_errors(part, errors, looks, joints):
+def _draw_errors(
+    part: FigureBase, errors: pd.DataFrame, looks: dict[str, source_styles.Look], joints: list[str]
+) -> None:
     axes = part.subplots(1, len(SHOWN), sharex=True, sharey=True)
     step = 0.8 / len(looks)
     for axis, (alignment, words) in zip(axes, SHOWN.items(), strict=True):
@@ -100,7 +93,9 @@ def _draw_errors(part, errors, looks, joints):
     part.legend(handles=marks, loc="outside upper center", ncols=min(4, len(marks)))
 
 
-def _draw_parts(part, parts, looks):
+def _draw_parts(
+    part: FigureBase, parts: pd.DataFrame, looks: dict[str, source_styles.Look]
+) -> None:
     axes = part.subplots(1, len(FORMS), sharey=True, sharex=True)
     for axis, (form, words) in zip(axes, FORMS.items(), strict=True):
         rows = parts[parts["frame"] == form]
@@ -121,8 +116,8 @@ def _draw_parts(part, parts, looks):
     part.legend(handles=marks, loc="outside lower center", ncols=len(marks))
 
 
-def _draw_bar(axis, y, own):
-    """Draw one source's parts as a bar, with the size of the whole and of the corrections below it."""
+def _draw_bar(axis: Axes, y: float, own: pd.DataFrame) -> None:
+    """Draw one source's parts as a bar, with the sizes of error and corrections below it."""
     known = "all" in own.index and np.isfinite(own.loc["all", "mean_square_mm2"])
     if not known:
         axis.text(1, y, "no error known", va="center", fontsize=6.5)

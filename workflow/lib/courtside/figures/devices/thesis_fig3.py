@@ -1,10 +1,15 @@
-"""Figures 3.1 and 3.2 of the thesis: the wrists seen along the trunk, from the T-pose to the clap.
+"""Figures 3.1 and 3.2 of the thesis: the wrists seen along the trunk, from T-pose to clap.
 
-With the circle that the thesis expects, of radius 1 about the origin, and the arcs that straight arms can
-follow: about the subject's own shoulders.
+With the circle that the thesis expects, of radius 1 about the origin, and the arcs that straight
+arms can follow: about the subject's own shoulders.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from courtside.figures.style import source_styles, style
@@ -18,36 +23,36 @@ ROOM = 0.06
 BESIDE = ["shoulder_x", "shoulder_z", "radius", "mean_distance", "p95_distance", "mean_off_circle"]
 
 
-def table(paths, distortion, sources=None):
-    """Return the numbers drawn: each point of the paths with its own arc and that wrist's distortion.
+def table(
+    paths: pd.DataFrame, distortion: pd.DataFrame, sources: list[str] | None = None
+) -> pd.DataFrame:
+    """Return the numbers drawn: each point of the paths with its arc and its wrist's distortion.
 
-    Parameters
-    ----------
-    paths, distortion : pandas.DataFrame
-        Of `courtside.kinematics.wrist_arcs`, with `source`; distortion also with `unit_m`.
-    sources : list of str, optional
-        All of them otherwise.
+    `paths` and `distortion` are of `courtside.kinematics.wrist_arcs`, with `source`; distortion
+    also with `unit_m`. All sources by default.
     """
     rows = paths.merge(distortion[["source", "side", *BESIDE]], on=["source", "side"], how="left")
     return rows if sources is None else rows[rows["source"].isin(sources)].reset_index(drop=True)
 
 
-def draw(paths, distortion, source, *, kinds=None, truth=None):
+def draw(
+    paths: pd.DataFrame,
+    distortion: pd.DataFrame,
+    source: str,
+    *,
+    kinds: dict[str, str] | None = None,
+    truth: pd.DataFrame | None = None,
+) -> Figure:
     """Draw one source, the thesis's figure.
 
     Parameters
     ----------
-    paths, distortion : pandas.DataFrame
+    paths, distortion
         As for `table`.
-    source : str
-    kinds : dict of str to str, optional
+    kinds
         As for `courtside.figures.style.source_styles.kind_of`.
-    truth : pandas.DataFrame, optional
-        The true wrists in the form of `paths`, `source` being the source that they are to be compared with.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
+    truth
+        The true wrists in the form of `paths`; `source` is the one they are compared with.
     """
     drawing = style.figure(118)
     axis = drawing.subplots()
@@ -62,20 +67,14 @@ def draw(paths, distortion, source, *, kinds=None, truth=None):
     return drawing
 
 
-def draw_all(paths, distortion, *, kinds=None, truth=None):
-    """Draw all sources side by side, on equal axes.
-
-    Parameters
-    ----------
-    paths, distortion : pandas.DataFrame
-    kinds : dict of str to str, optional
-    truth : pandas.DataFrame, optional
-        As for `draw`.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw_all(
+    paths: pd.DataFrame,
+    distortion: pd.DataFrame,
+    *,
+    kinds: dict[str, str] | None = None,
+    truth: pd.DataFrame | None = None,
+) -> Figure:
+    """Draw all sources side by side, on equal axes; parameters as for `draw`."""
     looks = source_styles.looks(paths["source"], kinds)
     n_rows = -(-len(looks) // N_COLUMNS)
     drawing = style.figure(24 + 49 * n_rows)
@@ -99,11 +98,17 @@ def draw_all(paths, distortion, *, kinds=None, truth=None):
     return drawing
 
 
-def _of(rows, source):
+def _of(rows: pd.DataFrame | None, source: str) -> pd.DataFrame | None:
     return None if rows is None else rows[rows["source"] == source]
 
 
-def _panel(axis, own, off, look, true):
+def _panel(
+    axis: Axes,
+    own: pd.DataFrame,
+    off: pd.DataFrame,
+    look: source_styles.Look,
+    true: pd.DataFrame | None,
+) -> None:
     turn = np.linspace(-BEYOND, np.pi + BEYOND, 181)
     axis.plot(np.cos(turn), np.sin(turn), color=CIRCLE, linewidth=1.2, zorder=1)
     axis.axhline(0, color="#e5e5e5", linewidth=0.6, zorder=0)
@@ -124,7 +129,7 @@ def _panel(axis, own, off, look, true):
 
 
 def _arc(row):
-    """Return x and z of a wrist's own arc, from beside the body to the middle and a little further."""
+    """Return x and z of a wrist's own arc, from beside the body to slightly beyond the middle."""
     aside = np.clip(-abs(row.shoulder_x) / row.radius, -1, 1)
     turn = np.linspace(-BEYOND, np.arccos(aside) + BEYOND, 91)
     outwards = 1 if row.side == "left" else -1
@@ -132,7 +137,7 @@ def _arc(row):
     return x, row.shoulder_z + row.radius * np.sin(turn)
 
 
-def _names(axis, own):
+def _names(axis: Axes, own: pd.DataFrame) -> None:
     for side, path in own.groupby("side"):
         start = path[np.isfinite(path["x"])].head(1)
         for x, z in start[["x", "z"]].to_numpy():
@@ -141,14 +146,14 @@ def _names(axis, own):
             axis.annotate(f"{side} wrist", (x, z), ha=ha, va="center", fontsize=7, **place)
 
 
-def _limits(tables):
+def _limits(tables: Iterable[pd.DataFrame | None]) -> dict[str, tuple[float, float]]:
     known = [rows[["x", "z"]].to_numpy() for rows in tables if rows is not None]
-    known = np.concatenate([*known, np.transpose(LEAST)])
-    low, high = np.nanmin(known, axis=0) - ROOM, np.nanmax(known, axis=0) + ROOM
+    every = np.concatenate([*known, np.transpose(LEAST)])
+    low, high = np.nanmin(every, axis=0) - ROOM, np.nanmax(every, axis=0) + ROOM
     return {"xlim": (low[0], high[0]), "ylim": (low[1], high[1])}
 
 
-def _title(own, off):
+def _title(own: pd.DataFrame, off: pd.DataFrame) -> str:
     time_s = own["time_s"]
     mm = MM * off["mean_distance"] * off["unit_m"]
     pairs = zip(off["side"], off["mean_distance"], mm, strict=True)
@@ -159,12 +164,13 @@ def _title(own, off):
     )
 
 
-def _short(off):
-    return f"off own arcs {off['mean_distance'].mean():.3f}, off circle {off['mean_off_circle'].mean():.3f}"
+def _short(off: pd.DataFrame) -> str:
+    arcs, circle = off["mean_distance"].mean(), off["mean_off_circle"].mean()
+    return f"off own arcs {arcs:.3f}, off circle {circle:.3f}"
 
 
-def _marks(colour, true):
-    def mark(label, **look):
+def _marks(colour: str, true: pd.DataFrame | None) -> list[Line2D]:
+    def mark(label: str, **look) -> Line2D:
         return Line2D([], [], label=label, **look)
 
     hollow = {"color": colour, "linestyle": "none", "mfc": "white", "ms": 6}

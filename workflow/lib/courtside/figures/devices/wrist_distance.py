@@ -1,10 +1,13 @@
-"""The distance of the wrists over time, with T-poses and claps, and every clap from close by."""
+"""The distance of the wrists over time with T-poses and claps, and each clap enlarged."""
 
+import os
 import textwrap
 from string import ascii_lowercase
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -13,38 +16,37 @@ from courtside.figures.style import bars, source_styles, style
 
 ROW_MM, TICKS_MM, ZOOM_MM, LINE_MM = 19, 4, 48, 3.4
 N_COLUMNS, MOST_PANELS, MOST_NOTES = 3, 9, 18
-SAME_S = 0.5  # claps of different sources within that are one clap
+SAME_S = 0.5  # ASSUME: claps of different sources closer than this are one clap
 BEFORE_S, AFTER_S = 0.15, 0.3  # shown about a clap
 TOP_M = 0.6  # shown of it
-HELD_S = (0.03, 0.2)  # after the contact, while the hands are held together
+HELD_S = (0.03, 0.2)  # ASSUME: after the contact, while the hands are held together
 TPOSE, NOT = "#dddddd", "#888888"
 WRAP = 128
 MS = 1000
 
 
-def read(wrists_csv, events_csv):
+def read(
+    wrists_csv: str | os.PathLike, events_csv: str | os.PathLike
+) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Read wrists and events as `courtside.events.detect` has them."""
     events = pd.read_csv(events_csv)
     why = events["why"].astype(object).where(events["why"].notna(), "").astype(str)
     return pd.read_csv(wrists_csv), events.assign(why=why)
 
 
-def table(wrists, events, *, aligned=True):
-    """Put beside each event which panel shows it, and how far the wrists are apart while they are held.
+def table(wrists: pd.DataFrame, events: pd.DataFrame, *, aligned: bool = True) -> pd.DataFrame:
+    """Add to each event the panel that shows it, and the distance of the held wrists.
+
+    Events are ordered by source and time. `panel`: number of the zoom from 1, empty if there is
+    none; `floor_m`: median distance from 0.03 to 0.2 s after a clap or candidate; `note`: the
+    letter that marks a candidate which is not a clap.
 
     Parameters
     ----------
-    wrists, events : pandas.DataFrame
+    wrists, events
         Of `courtside.events.detect`.
-    aligned : bool
-        Whether time_s is on one clock for all sources; each source is shown by itself otherwise.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        events, ordered by source and time, with `panel`: number of the zoom from 1, empty where there is
-        none; `floor_m`: median distance from 0.03 to 0.2 s after a clap or candidate; `note`: the letter that
-        marks a candidate which is no clap.
+    aligned
+        Whether time_s is on one clock for all sources; otherwise each source is shown by itself.
     """
     rows = events.assign(panel=np.nan, floor_m=np.nan, note="")
     order = {source: at for at, source in enumerate(dict.fromkeys(wrists["source"]))}
@@ -64,23 +66,23 @@ def table(wrists, events, *, aligned=True):
     return rows
 
 
-def draw(wrists, events, *, kinds=None, aligned=True):
+def draw(
+    wrists: pd.DataFrame,
+    events: pd.DataFrame,
+    *,
+    kinds: dict[str, str] | None = None,
+    aligned: bool = True,
+) -> Figure:
     """Draw the whole take, one row for each source, and below it every clap.
 
     Parameters
     ----------
-    wrists : pandas.DataFrame
+    wrists
         Of `courtside.events.detect`.
-    events : pandas.DataFrame
-        Of `table`.
-    kinds : dict of str to str, optional
+    events, aligned
+        As for `table`, and as it returns them.
+    kinds
         As for `courtside.figures.style.source_styles.kind_of`.
-    aligned : bool
-        As for `table`.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
     """
     looks = source_styles.looks(wrists["source"], kinds)
     notes, panels = _notes(events), _panels(events)
@@ -100,9 +102,9 @@ def draw(wrists, events, *, kinds=None, aligned=True):
     return drawing
 
 
-def _together(shown, aligned):
-    """Return lists of the index of events that are one, claps before candidates that nobody else shows."""
-    groups = []
+def _together(shown: pd.DataFrame, aligned: bool) -> list[list[int]]:
+    """Return lists of the index of simultaneous events."""
+    groups: list[list[int]] = []
     for at, row in shown.sort_values("time_s", kind="stable").iterrows():
         for group in reversed(groups):
             near = row["time_s"] - shown.loc[group[0], "time_s"] <= SAME_S
@@ -114,21 +116,21 @@ def _together(shown, aligned):
     return groups
 
 
-def _letter(at):
+def _letter(at: int) -> str:
     more, letter = divmod(at, 26)
     return (ascii_lowercase[more - 1] if more else "") + ascii_lowercase[letter]
 
 
-def _panels(events):
-    """Return the numbers of the panels shown, in order of time; those with a clap come first to be kept."""
+def _panels(events: pd.DataFrame) -> list[float]:
+    """Return the numbers of the panels shown, in order of time; those with a clap have priority."""
     with_clap = set(events.loc[events["event"] == "clap", "panel"])
     numbers = events["panel"].dropna().unique()
     ranked = sorted(numbers, key=lambda number: (number not in with_clap, number))
     return sorted(ranked[:MOST_PANELS])
 
 
-def _notes(events):
-    """Return the lines that say why candidates are no claps, and what is missing."""
+def _notes(events: pd.DataFrame) -> list[str]:
+    """Return lines that say why candidates are not claps, and what is missing."""
     missed = events[events["event"] == "none"]
     lines = []
     for row in missed.head(MOST_NOTES).itertuples():
@@ -141,7 +143,7 @@ def _notes(events):
     return lines
 
 
-def _draw_rows(part, wrists, events, looks, aligned):
+def _draw_rows(part, wrists, events, looks, aligned) -> None:
     axes = part.subplots(len(looks), 1, sharex=aligned, squeeze=False)[:, 0]
     top = wrists["distance_m"].max()
     top = 1.25 * top if np.isfinite(top) else 1.0
@@ -156,7 +158,7 @@ def _draw_rows(part, wrists, events, looks, aligned):
     part.supylabel("distance of the wrists (m)", fontsize=8)
 
 
-def _draw_events(axis, own, colour, top):
+def _draw_events(axis: Axes, own, colour: str, top) -> None:
     spells = own.pivot_table(index="number", columns="event", values="time_s")
     if {"tpose_start", "tpose_stop"} <= set(spells):
         for row in spells.dropna(subset=["tpose_start", "tpose_stop"]).itertuples():
@@ -169,7 +171,7 @@ def _draw_events(axis, own, colour, top):
         axis.text(row.time_s, top, f" {row.note}", va="top", color=NOT, fontsize=7)
 
 
-def _draw_zooms(part, wrists, events, panels, looks, aligned):
+def _draw_zooms(part, wrists, events, panels, looks, aligned) -> None:
     n_rows = -(-len(panels) // N_COLUMNS)
     axes = part.subplots(n_rows, N_COLUMNS, squeeze=False).ravel()
     for axis, panel in zip(axes, panels, strict=False):
@@ -195,14 +197,14 @@ def _draw_zooms(part, wrists, events, panels, looks, aligned):
     )
 
 
-def _draw_close(axis, own, centre_s, look):
+def _draw_close(axis: Axes, own, centre_s, look) -> None:
     near = own[(own["time_s"] - centre_s).between(-BEFORE_S, AFTER_S)]
     time_ms = MS * (near["time_s"] - centre_s)
     axis.plot(time_ms, near["distance_m"], look.line, color=look.colour, linewidth=0.8)
     axis.plot(time_ms, near["distance_m"], look.marker, color=look.colour, markersize=2.2)
 
 
-def _draw_contact(axis, row, centre_s, colour):
+def _draw_contact(axis: Axes, row, centre_s, colour: str) -> None:
     at = MS * (row.time_s - centre_s)
     if row.event == "clap":
         reach = MS * point_covariance.WITHIN_90 * row.uncertainty_s
@@ -214,7 +216,7 @@ def _draw_contact(axis, row, centre_s, colour):
         axis.axvline(at, color=colour, linewidth=0.7, linestyle="--")
 
 
-def _title(members, claps, centre_s, aligned):
+def _title(members: pd.DataFrame, claps: pd.DataFrame, centre_s: float, aligned: bool) -> str:
     said = f"{centre_s:.2f} s" if aligned else f"{members['source'].iloc[0]}, {centre_s:.2f} s"
     if claps.empty:
         return f"{said}: no clap ({', '.join(members['note'])})"
@@ -225,7 +227,7 @@ def _title(members, claps, centre_s, aligned):
     return said
 
 
-def _marks():
+def _marks() -> list:
     return [
         Patch(color=TPOSE, label="T-pose"),
         bars.mark(style.MIDDLE, marker="", line="-", label="clap: contact"),

@@ -1,70 +1,77 @@
 """Medians with their 5-95 % ranges."""
 
+from collections.abc import Mapping, Sequence
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
+from numpy.typing import NDArray
 
 
-def draw(axis, x, rows, *, colour, marker="o", filled=True, line="-", label=None):
+def draw(
+    axis: Axes,
+    x: NDArray,
+    rows: pd.DataFrame,
+    *,
+    colour: str,
+    marker: str = "o",
+    filled: bool = True,
+    line: str = "-",
+    label: str | None = None,
+) -> Figure:
     """Draw medians with bars from the 5 to the 95 % quantile.
 
     Parameters
     ----------
-    axis : matplotlib.axes.Axes
     x : (n,) float
     rows : pandas.DataFrame, length n
         `p05`, `median`, `p95`.
-    colour : str
-    marker : str
-    filled : bool
+    filled
         Hollow marks otherwise.
-    line : str
+    line
         Style of the line that joins the medians; "none" for none.
-    label : str or None
     """
     axis.vlines(x, rows["p05"], rows["p95"], color=colour, linewidth=1.0, alpha=0.8)
     look = {"markersize": 4.5, "markerfacecolor": colour if filled else "white", "linewidth": 0.9}
     axis.plot(x, rows["median"], marker=marker, linestyle=line, color=colour, label=label, **look)
 
 
-def draw_level(axis, row, *, colour, line="--", label=None):
-    """Draw a level that depends on nothing: a band from the 5 to the 95 % quantile, a line at the median.
+def draw_level(
+    axis: Axes, row: Mapping, *, colour: str, line: str = "--", label: str | None = None
+) -> None:
+    """Draw a level as a band from the 5 to the 95 % quantile and a line at the median.
 
-    Parameters
-    ----------
-    axis : matplotlib.axes.Axes
-    row : mapping
-        `p05`, `median`, `p95`.
-    colour, line : str
-    label : str or None
+    `row` has `p05`, `median` and `p95`.
     """
     axis.axhspan(row["p05"], row["p95"], color=colour, alpha=0.13, linewidth=0, zorder=0)
     axis.axhline(row["median"], color=colour, linestyle=line, linewidth=0.9, label=label, zorder=1)
 
 
-def ticks_at(axis, values):
+def ticks_at(axis: Axes, values: Sequence[float]) -> None:
     """Put the ticks of a logarithmic x axis at given values only."""
     axis.set_xscale("log")
     axis.set_xticks(values, [f"{value:g}" for value in values])
     axis.set_xticks([], minor=True)
 
 
-def plain_log(axis):
+def plain_log(axis: Axes) -> None:
     """Make the y axis logarithmic, with numbers written out."""
     axis.set_yscale("log")
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
 
 
-def mark(colour, *, marker="o", filled=True, line="none", label=None):
-    """Return a line for a legend that looks as `draw` draws.
-
-    Parameters
-    ----------
-    colour, marker : str
-    filled : bool
-    line : str
-    label : str or None
-    """
+def mark(
+    colour: str,
+    *,
+    marker: str = "o",
+    filled: bool = True,
+    line: str = "none",
+    label: str | None = None,
+) -> Line2D:
+    """Return a line for a legend that looks as `draw` draws."""
     face = colour if filled else "white"
     look = {"markersize": 4.5, "markerfacecolor": face, "linewidth": 0.9}
     return Line2D([], [], marker=marker, color=colour, linestyle=line, label=label, **look)

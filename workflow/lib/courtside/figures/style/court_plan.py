@@ -1,21 +1,18 @@
 """A court from above, to scale."""
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+
+from courtside.calibration.court.court import Court
 
 PAINT = "#777777"
 
 
-def draw(axis, court, colour=PAINT, least_pt=0.0):
+def draw(axis: Axes, court: Court, colour: str = PAINT, least_pt: float = 0.0) -> Figure:
     """Draw the painted lines at their true width, and the net as a dashed line.
 
-    Parameters
-    ----------
-    axis : matplotlib.axes.Axes
-        In metres; its aspect becomes equal.
-    court : courtside.calibration.court.court.Court
-    colour : str
-    least_pt : float
-        Drawn around each line, for plans on which the true width would vanish.
+    The axis is in metres. An outline of `least_pt` keeps lines visible on plans at a small scale.
     """
     edge = colour if least_pt else "none"
     for x0, y0, x1, y1 in court.lines_m:

@@ -1,38 +1,34 @@
-"""Which joints of each skeleton stand for the common ones: six pairs of limb joints, and derived ones."""
+"""Common joints in each skeleton: six pairs of limb joints, and derived ones."""
 
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 
 import pandas as pd
 
+from courtside.records.keypoints.derived_joints import DerivedJoints
+from courtside.records.keypoints.skeleton import Skeleton
+
 SIDES = ("left", "right")
 
 
-def limbs(skeletons):
-    """Return the parts, without side, that all skeletons have as limb joints, in the first one's order."""
+def limbs(skeletons: Sequence[Skeleton]) -> list[str]:
+    """Return the limb joints of all skeletons, without side, in the order of the first one."""
     pairs = [_parts(skeleton) for skeleton in skeletons]
     return [part for part in pairs[0] if all(part in other for other in pairs)]
 
 
-def _parts(skeleton):
+def _parts(skeleton: Skeleton) -> list[str]:
     named = [joint.partition("_") for joint in skeleton.groups["limbs"]]
     return list(dict.fromkeys(part for _, _, part in named))
 
 
-def rows(skeletons, table):
+def rows(skeletons: list[Skeleton], table: DerivedJoints) -> pd.DataFrame:
     """Return the map, one row for each common joint and skeleton.
 
-    Parameters
-    ----------
-    skeletons : list of courtside.records.keypoints.skeleton.Skeleton
-    table : courtside.records.keypoints.derived_joints.DerivedJoints
-        Derived joints without a definition for each of the skeletons are left out.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        common; skeleton; numbers, joints, device_names, weights: tuples, of the skeleton's joints that stand
-        for it; definition: empty for a joint that the skeleton has itself; same: whether all skeletons share
-        the definition.
+    common; skeleton; numbers, joints, device_names, weights: tuples, of the skeleton's joints that
+    represent it; definition: empty for a joint that the skeleton has itself; same: whether all
+    skeletons share the definition. Derived joints of `table` that a skeleton does not define are
+    left out.
     """
     found = []
     for part in limbs(skeletons):
@@ -65,17 +61,17 @@ def _row(common, skeleton, joints, weights, definition, same):
     }
 
 
-def cell(row):
-    """Return a row of `rows` in short: numbers, names where the device has its own, `*` if computed."""
+def cell(row: Mapping) -> str:
+    """Return a row of `rows` in short: numbers, the device's other names, `*` if computed."""
     if not row["definition"]:
         pairs = zip(row["numbers"], row["joints"], row["device_names"], strict=True)
         return ", ".join(f"{n}" if own == name else f"{n} {own}" for n, name, own in pairs)
-    pairs = list(zip(row["weights"], row["numbers"], strict=True))
+    weighted = list(zip(row["weights"], row["numbers"], strict=True))
     terms = []
-    for weight, group in groupby(pairs, key=lambda pair: pair[0]):
+    for weight, group in groupby(weighted, key=lambda pair: pair[0]):
         members = [f"{number}" for _, number in group]
         inner = "+".join(members)
         if weight != 1.0:
             inner = f"{weight:g}({inner})" if len(members) > 1 else f"{weight:g} × {inner}"
         terms.append(inner)
-    return " + ".join(terms) + (" *" if len(pairs) > 1 else "")
+    return " + ".join(terms) + (" *" if len(weighted) > 1 else "")

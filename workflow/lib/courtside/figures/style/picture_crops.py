@@ -1,15 +1,18 @@
-"""Parts of a picture around a person, with stick figures drawn on them as lines, not as pixels."""
+"""Parts of a picture around a person, with stick figures drawn on them as vector lines."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.figures.style import style
 
 MARGIN = 1.2  # of the person's extent, around it
 LARGEST_PX = 800  # longest side of what is kept of a picture
-LEAST_PX = 60  # a box is no smaller: of a person of whom a joint or two are known
+LEAST_PX = 60  # the smallest box: for a person with only one or two known joints
 DETECTED, REPROJECTED, MARKED = (
     tuple(value / 255 for value in bgr[::-1])
     for bgr in (style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR)
@@ -18,7 +21,7 @@ DETECTED, REPROJECTED, MARKED = (
 
 @dataclass(frozen=True)
 class Box:
-    """A part of a picture: its middle and its width and height, px; it may reach beyond the picture."""
+    """A part of a picture: centre, width and height, px; it may reach beyond the picture."""
 
     x: float
     y: float
@@ -26,21 +29,17 @@ class Box:
     height: float
 
 
-def box(xy, size, aspect=1.0):
-    """Return the part of a picture that shows some points.
+def box(xy: ArrayLike, size: tuple[int, int], aspect: float = 1.0) -> Box:
+    """Return the part of a picture that shows some points; the whole picture if none is known.
 
     Parameters
     ----------
     xy : (..., 2) float
         Px; NaN are ignored.
-    size : (int, int)
-        Width and height of the picture, which is shown whole where no point is known.
-    aspect : float
+    size
+        Width and height of the picture.
+    aspect
         Width over height of the part.
-
-    Returns
-    -------
-    box : Box
     """
     known = np.asarray(xy, dtype=float).reshape(-1, 2)
     known = known[np.isfinite(known).all(axis=1)]
@@ -50,20 +49,12 @@ def box(xy, size, aspect=1.0):
     low, high = known.min(axis=0), known.max(axis=0)
     width, height = np.maximum(MARGIN * (high - low), LEAST_PX)
     width, height = max(width, height * aspect), max(height, width / aspect)
-    return Box(*((low + high) / 2), width, height)
+    x, y = (low + high) / 2
+    return Box(x, y, width, height)
 
 
-def show(axis, image, part):
-    """Show a part of a picture, in the picture's own coordinates.
-
-    Parameters
-    ----------
-    axis : matplotlib.axes.Axes
-    image : (H, W, 3) uint8
-        BGR.
-    part : Box
-        What lies beyond the picture stays empty.
-    """
+def show(axis: Axes, image: NDArray, part: Box) -> None:
+    """Show a part of a picture (BGR) in the picture's own coordinates, empty beyond its edges."""
     left, top = part.x - part.width / 2, part.y - part.height / 2
     x0, y0 = max(0, int(left)), max(0, int(top))
     x1, y1 = (max(0, int(np.ceil(end)) + 1) for end in (left + part.width, top + part.height))
@@ -81,19 +72,25 @@ def show(axis, image, part):
     axis.spines[:].set_visible(False)
 
 
-def sticks(axis, xy, bones, colour, *, width=1.2, outline=0.8, dots=True):
+def sticks(
+    axis: Axes,
+    xy: NDArray,
+    bones: Sequence[tuple[int, int]],
+    colour: str | tuple[float, ...],
+    *,
+    width: float = 1.2,
+    outline: float = 0.8,
+    dots: bool = True,
+) -> None:
     """Draw stick figures.
 
     Parameters
     ----------
-    axis : matplotlib.axes.Axes
     xy : (..., K, 2) float
         One or more figures, px; a line without both ends is left out.
-    bones : sequence of (int, int)
-    colour : str or tuple
-    width, outline : float
-        Points: of a line, and how much wider a black one behind it is.
-    dots : bool
+    width, outline
+        Points: of a line, and how much wider the black line behind it is.
+    dots
         Whether joints are drawn.
     """
     behind = [(width + outline, "black")] if outline else []
@@ -108,17 +105,7 @@ def sticks(axis, xy, bones, colour, *, width=1.2, outline=0.8, dots=True):
             axis.plot(*one.T, "o", color=colour, markeredgecolor="black", **look)
 
 
-def rings(axis, xy, colour=None, size=9.0):
-    """Put rings around points.
-
-    Parameters
-    ----------
-    axis : matplotlib.axes.Axes
-    xy : (n, 2) float
-    colour : str, optional
-        Red by default.
-    size : float
-        Points.
-    """
+def rings(axis: Axes, xy: NDArray, colour: str | None = None, size: float = 9.0) -> None:
+    """Put rings (`size` in points, red by default) around points (n, 2)."""
     look = {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 1.3, "zorder": 4}
     axis.plot(*np.reshape(xy, (-1, 2)).T, "o", markeredgecolor=colour or MARKED, **look)

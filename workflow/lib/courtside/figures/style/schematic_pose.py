@@ -1,8 +1,12 @@
-"""Where the joints of any skeleton are, roughly, in a T-pose: for a skeleton without a recording."""
+"""Approximate joints of any skeleton in a T-pose, for a skeleton without a recording."""
+
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-# ASSUME: a person of 1.75 m, body axes and units (half the wrist span), rounded to 1 cm. For drawing only.
+# ASSUME: a person of 1.75 m, body axes and units (half the wrist span), rounded to 1 cm.
+# For drawing only.
 MIDDLE = {
     "root": (-0.17, 0.0),
     **{f"torso_{at}": (-0.17 + 0.085 * at, 0.0) for at in range(1, 8)},
@@ -42,22 +46,12 @@ LEFT = {
 }
 
 
-def tpose(joints):
-    """Return the places of joints in a schematic T-pose.
-
-    Parameters
-    ----------
-    joints : sequence of str, length J
-
-    Returns
-    -------
-    xyz : (J, 3) float
-        Body axes and units; NaN for a joint whose name is not known here.
-    """
+def tpose(joints: Sequence[str]) -> NDArray:
+    """Return the joints (J, 3) of a schematic T-pose, in body axes and units; NaN if unknown."""
     return np.array([_place(joint) for joint in joints])
 
 
-def _place(joint):
+def _place(joint: str) -> tuple[float, float, float]:
     if joint in MIDDLE:
         return (0.0, *MIDDLE[joint])
     side, _, part = joint.partition("_")

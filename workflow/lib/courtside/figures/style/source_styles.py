@@ -1,5 +1,6 @@
-"""How each source of motion is drawn: one colour for each kind, in all figures."""
+"""The look of each source of motion: one colour for each kind, in all figures."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from courtside.figures.style import style
@@ -21,13 +22,13 @@ LINES, MARKERS = ("-", "--", "-.", ":"), "osD^v"
 
 @dataclass(frozen=True)
 class Look:
-    """How one source is drawn.
+    """The look of one source.
 
     Attributes
     ----------
-    kind : str
+    kind
         One of `COLOURS`, or `other`.
-    colour, line, marker : str
+    colour, line, marker
         Sources of one kind share the colour and differ in line and marker.
     """
 
@@ -37,21 +38,17 @@ class Look:
     marker: str
 
 
-def kind_of(source, kinds=None):
-    """Return the kind of a source.
+def kind_of(source: str, kinds: dict[str, str] | None = None) -> str:
+    """Return the kind of a source, `other` if it is unknown.
 
     Parameters
     ----------
-    source : str
-        As in the tables: `mocopi`, `d415-rgb`, `d415-depth`, `mocopi-corrected`, `cameras`, `truth`.
-    kinds : dict of str to str, optional
-        What the session says of it, by source or by device. Endings of names come first: a device of kind
-        `rgbd` gives a source of kind `rgb`, too.
-
-    Returns
-    -------
-    kind : str
-        `other` if nothing tells.
+    source
+        As in the tables: `mocopi`, `d415-rgb`, `d415-depth`, `mocopi-corrected`, `cameras`,
+        `truth`.
+    kinds
+        As the session states them, by source or by device. Endings of names come first: a device of
+        kind `rgbd` also gives a source of kind `rgb`.
     """
     for ending, kind in ENDINGS.items():
         if source.endswith(ending):
@@ -59,17 +56,10 @@ def kind_of(source, kinds=None):
     return (kinds or {}).get(source) or WHOLE.get(source, "other")
 
 
-def looks(sources, kinds=None):
-    """Return the look of each source, dict in the order given.
-
-    Parameters
-    ----------
-    sources : iterable of str
-        Repeated names count once.
-    kinds : dict of str to str, optional
-        As for `kind_of`.
-    """
-    found, count = {}, {}
+def looks(sources: Iterable[str], kinds: dict[str, str] | None = None) -> dict[str, Look]:
+    """Return the look of each source, in the order given; `kinds` as for `kind_of`."""
+    found: dict[str, Look] = {}
+    count: dict[str, int] = {}
     for source in dict.fromkeys(sources):
         kind = kind_of(source, kinds)
         at = count[kind] = count.get(kind, -1) + 1

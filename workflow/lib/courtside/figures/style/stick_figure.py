@@ -1,35 +1,39 @@
-"""The stick figure that is drawn of a person: 12 limb joints, neck and centre of the head."""
+"""The stick figure of a person: 12 limb joints, neck and centre of the head."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
+from courtside.records.keypoints.derived_joints import DerivedJoints
+from courtside.records.keypoints.skeleton import Skeleton
 
 HEAD = ("neck", "head_centre")
 
 
 @dataclass(frozen=True, eq=False)
 class Stick:
-    """What is drawn of a skeleton.
+    """The stick figure of a skeleton.
 
     Attributes
     ----------
     joints : tuple of str, length K
         The limb joints, neck, centre of the head: the paper's 14.
-    bones : tuple of (int, int)
-        Which of them a line joins.
+    bones
+        Pairs of them that a line joins.
     weights : (K, J) float
         Of the skeleton's own joints.
-    face : list of int
+    face
         The skeleton's own joints on the face.
     """
 
-    joints: tuple
-    bones: tuple
-    weights: np.ndarray
-    face: list
+    joints: tuple[str, ...]
+    bones: tuple[tuple[int, int], ...]
+    weights: NDArray
+    face: list[int]
 
-    def of(self, places):
-        """Return the drawn joints (..., K, n) of a skeleton's own (..., J, n); NaN without a part."""
+    def of(self, places: NDArray) -> NDArray:
+        """Return the drawn joints (..., K, n) of a skeleton's own (..., J, n), or NaN."""
         made = [
             np.tensordot(places[..., used, :], row[used], axes=([-2], [0]))
             for row in self.weights
@@ -37,20 +41,13 @@ class Stick:
         ]
         return np.stack(made, axis=-2)
 
-    def faces_of(self, *places):
-        """Return the joints on each face (P, n, 2), of one or more sets of a skeleton's own (P, J, 2)."""
+    def faces_of(self, *places) -> NDArray:
+        """Return the joints on each face (P, n, 2), from one or more sets of joints (P, J, 2)."""
         return np.concatenate([xy[:, self.face] for xy in places], axis=1)
 
 
-def stick(skeleton, table):
-    """Return the stick figure of a skeleton.
-
-    Parameters
-    ----------
-    skeleton : Skeleton
-    table : courtside.records.keypoints.derived_joints.DerivedJoints
-        Has a neck and a head_centre for it.
-    """
+def stick(skeleton: Skeleton, table: DerivedJoints) -> Stick:
+    """Return the stick figure of a skeleton; `table` defines its neck and head_centre."""
     joints = (*skeleton.groups["limbs"], *HEAD)
     weights = np.stack([table.weights(skeleton.name, name, skeleton.joints) for name in joints])
     limbs = [pair for pair in skeleton.bones if set(pair) <= set(skeleton.groups["limbs"])]

@@ -1,7 +1,10 @@
 """One look for all figures, and saving them with the numbers drawn."""
 
+import os
+
 import matplotlib
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -27,11 +30,11 @@ SETTINGS = {
 
 
 class RoundedLayout(ConstrainedLayoutEngine):
-    """Matplotlib's layout without the last digits, which its solver takes from addresses in memory."""
+    """Matplotlib's layout, rounded: its solver's last digits depend on addresses in memory."""
 
     DECIMALS = 6  # of the width and height of a page
 
-    def execute(self, drawing):
+    def execute(self, drawing: Figure) -> None:
         """Lay a figure out; Matplotlib calls it whenever it draws."""
         super().execute(drawing)
         for part in drawing.subfigs:
@@ -41,40 +44,35 @@ class RoundedLayout(ConstrainedLayoutEngine):
                 bounds = axes.get_position(original=which == "original").bounds
                 axes._set_position(np.round(bounds, self.DECIMALS), which=which)
 
-    def _round_subfigure(self, part):
+    def _round_subfigure(self, part) -> None:
         box = part.bbox_relative
         box.p0, box.p1 = np.round(box.p0, self.DECIMALS), np.round(box.p1, self.DECIMALS)
         for inner in part.subfigs:
             self._round_subfigure(inner)
 
 
-def figure(height_mm):
-    """Return an empty figure of page width.
-
-    A `Figure` made without pyplot belongs to nobody else: no window, no global state.
-    """
+def figure(height_mm: float) -> Figure:
+    """Return an empty figure of page width, made without pyplot: no window, no global state."""
     matplotlib.rcParams.update(SETTINGS)
     size = (WIDTH_MM / MM_PER_INCH, height_mm / MM_PER_INCH)
     return Figure(figsize=size, dpi=DOTS_PER_INCH, layout=RoundedLayout())
 
 
-def side_colour(joint):
+def side_colour(joint: str) -> str:
     """Return the colour of a joint's body side."""
     if joint.startswith("left_"):
         return LEFT
     return RIGHT if joint.startswith("right_") else MIDDLE
 
 
-def save(drawing, table, pdf, png, csv):
-    """Write a figure and its numbers, the same bytes each time.
-
-    Parameters
-    ----------
-    drawing : matplotlib.figure.Figure
-    table : pandas.DataFrame
-        What is drawn; float columns are kept to 4 decimals.
-    pdf, png, csv : str or Path
-    """
+def save(
+    drawing: Figure,
+    table: pd.DataFrame,
+    pdf: str | os.PathLike,
+    png: str | os.PathLike,
+    csv: str | os.PathLike,
+) -> None:
+    """Write a figure and its numbers (floats to 4 decimals), the same bytes each time."""
     with atomic(pdf) as temporary:
         drawing.savefig(
             temporary, metadata={"CreationDate": None, "Producer": None, "Creator": None}

@@ -1,9 +1,13 @@
-"""How fixed cameras shook during a take: pixels, and millimetres at the player."""
+"""Shake of fixed cameras during a take: in pixels, and in millimetres at the player."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from courtside.figures.style import style
+from courtside.geometry.camera import Camera
 from courtside.reconstruction import camera_shake
 
 PANEL_MM, MARGIN_MM = 38, 8
@@ -12,23 +16,21 @@ NAMED = 2  # knocks in a panel's title
 AXES = {"shift_x_px": (style.CYCLE[0], "right"), "shift_y_px": (style.CYCLE[1], "down")}
 
 
-def table(cameras, shakes, xyz):
-    """Return the numbers drawn.
+def table(
+    cameras: dict[str, Camera], shakes: dict[str, pd.DataFrame], xyz: NDArray
+) -> pd.DataFrame:
+    """Return the numbers drawn, one row per camera and frame.
+
+    `camera`, `frame_idx`, `time_s`, `shift_x_px`, `shift_y_px`, `rotation_deg`, `zoom_percent`,
+    `sigma_px`, `n_matches`, `shift_mm` (at the player), `knock_px` and `knock_deg` (of a bump that
+    first shows in this frame; else empty).
 
     Parameters
     ----------
-    cameras : dict of str to courtside.geometry.camera.Camera
-    shakes : dict of str to DataFrame
+    shakes
         Of `courtside.records.cameras.shake_table`, for each camera to draw.
     xyz : (3,) float
-        Where the player is, m, in the world; NaN where unknown.
-
-    Returns
-    -------
-    rows : DataFrame
-        One per camera and frame: `camera`, `frame_idx`, `time_s`, `shift_x_px`, `shift_y_px`,
-        `rotation_deg`, `zoom_percent`, `sigma_px`, `n_matches`, `shift_mm` (at the player), `knock_px` and
-        `knock_deg` (of a knock that this frame is the first to show; empty in others).
+        The player, m, in the world; NaN if unknown.
     """
     parts = []
     for name, shake in shakes.items():
@@ -39,31 +41,13 @@ def table(cameras, shakes, xyz):
             part.loc[part.time_s == knock.time_s, ["knock_px", "knock_deg"]] = values
         parts.append(part)
     rows = pd.concat(parts, ignore_index=True)
-    first = [
-        "camera",
-        "frame_idx",
-        "time_s",
-        "shift_x_px",
-        "shift_y_px",
-        "rotation_deg",
-        "zoom_percent",
-    ]
-    return rows[[*first, "sigma_px", "n_matches", "shift_mm", "knock_px", "knock_deg"]]
+    first = ["camera", "frame_idx", "time_s", "shift_x_px", "shift_y_px", "rotation_deg"]
+    last = ["sigma_px", "n_matches", "shift_mm", "knock_px", "knock_deg"]
+    return rows[[*first, "zoom_percent", *last]]
 
 
-def draw(rows):
-    """Draw the shift of each camera's picture over time, one panel per camera.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Of `table`.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-        Left axis px, right axis mm at the player where that is known.
-    """
+def draw(rows: pd.DataFrame) -> Figure:
+    """Draw the shift of each camera's picture over time, in px (left) and mm at the player."""
     groups = list(rows.groupby("camera", sort=False))
     drawing = style.figure(PANEL_MM * len(groups) + MARGIN_MM)
     panels = drawing.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
@@ -74,7 +58,7 @@ def draw(rows):
     return drawing
 
 
-def _draw_panel(axis, name, part):
+def _draw_panel(axis: Axes, name: str, part: pd.DataFrame) -> None:
     for column, (colour, label) in AXES.items():
         axis.plot(part.time_s, part[column], color=colour, linewidth=0.8, label=label)
     known = part[list(AXES)].to_numpy()
@@ -89,7 +73,7 @@ def _draw_panel(axis, name, part):
     _draw_mm(axis, part)
 
 
-def _draw_mm(axis, part):
+def _draw_mm(axis: Axes, part: pd.DataFrame) -> None:
     """Give the panel a right axis in mm at the player."""
     shift_px = np.hypot(part.shift_x_px, part.shift_y_px)
     seen = np.isfinite(part.shift_mm) & (shift_px > 0)
@@ -100,13 +84,11 @@ def _draw_mm(axis, part):
     right.set_ylabel("at the player (mm)")
 
 
-def _summary(part, known):
+def _summary(part: pd.DataFrame, known: NDArray) -> str:
     if not known.size:
         return "too little background seen"
-    off = part.groupby(part.knock_px.notna().cumsum())[list(AXES)].transform(
-        lambda x: x - x.median()
-    )
-    off = off.to_numpy()
+    spells = part.groupby(part.knock_px.notna().cumsum())[list(AXES)]
+    off = spells.transform(lambda x: x - x.median()).to_numpy()
     words = [f"{np.sqrt(np.nanmean(off**2)):.2f} px rms"]
     missing = int(part.shift_x_px.isna().sum())
     if missing:

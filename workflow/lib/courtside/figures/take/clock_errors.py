@@ -1,13 +1,16 @@
-"""Errors of the cameras' clocks against the truth, in milliseconds and in millimetres at a fast wrist."""
+"""Errors of the cameras' clocks against the truth, in ms and in mm at a fast wrist."""
 
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from courtside.calibration import point_covariance
 from courtside.figures.style import bars, style
 
-SPEED_M_S = 12.0  # of a wrist in a smash: millimetres per millisecond
-LIMIT_MS = 8.0  # what the study asks for at 30 frames per second
-FURTHEST_MS = 40.0  # errors beyond are marked at the edge, with their number
+SPEED_M_S = 12.0  # ASSUME: of a wrist in a smash; millimetres per millisecond
+LIMIT_MS = 8.0  # a quarter of a frame at 30 frames per second: 10 cm at such a wrist
+FURTHEST_MS = 40.0  # larger errors are marked at the edge, with their number
 COLOURS = {"yes": style.CYCLE[0], "no": style.CYCLE[1], "unused": "#888888"}
 WORDS = {
     "yes": "90 % interval holds the truth",
@@ -17,20 +20,12 @@ WORDS = {
 LABELS = ["session", "take", "camera", "calibration", "model"]
 
 
-def table(rows):
-    """Put the intervals and what they hold beside the errors of clocks.
+def table(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add intervals, and whether they hold the truth, to the tables of `evaluate_clocks`.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `courtside.figures.players_table.read`: the tables of `evaluate_clocks`.
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        Ordered by label, with lower_ms and upper_ms of the 90 % interval about worst_error_ms, the largest
-        error in the take; worst_error_mm at `SPEED_M_S`; and `holds`: yes, no, or unused for a clock whose
-        status is not `found`.
+    Rows are ordered by label. lower_ms and upper_ms are the 90 % interval about worst_error_ms, the
+    largest error in the take; worst_error_mm is at `SPEED_M_S`; `holds`: yes, no, or unused for a
+    clock whose status is not `found`.
     """
     rows = rows.sort_values(LABELS, kind="stable").reset_index(drop=True)
     reach = point_covariance.WITHIN_90 * rows["sigma_ms"]
@@ -43,18 +38,8 @@ def table(rows):
     )
 
 
-def draw(rows):
-    """Draw the errors, one line per camera of a take.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        Of `table`.
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(rows: pd.DataFrame) -> Figure:
+    """Draw the errors of `table`, one line per camera of a take."""
     drawing = style.figure(40 + 3.8 * len(rows))
     axis = drawing.subplots()
     edge = _edge(rows)
@@ -83,13 +68,13 @@ def draw(rows):
     return drawing
 
 
-def _edge(rows):
+def _edge(rows: pd.DataFrame) -> float:
     known = rows.loc[rows["holds"] != "unused", ["lower_ms", "upper_ms"]].abs().to_numpy()
     known = known[np.isfinite(known)]
     return float(np.clip(1.1 * known.max(initial=0.0), 1.5 * LIMIT_MS, FURTHEST_MS))
 
 
-def _beyond(axis, at, error_ms, edge, colour):
+def _beyond(axis: Axes, at: float, error_ms: float, edge: float, colour: str) -> None:
     if not np.isfinite(error_ms):
         return
     side = np.sign(error_ms)
@@ -108,13 +93,13 @@ def _beyond(axis, at, error_ms, edge, colour):
     )
 
 
-def _names(rows):
+def _names(rows: pd.DataFrame) -> list[str]:
     shown = ["session", "take", "camera"]
     shown += [name for name in ("calibration", "model") if rows[name].nunique() > 1]
     return rows[shown].agg(" ".join, axis=1).tolist()
 
 
-def _title(rows):
+def _title(rows: pd.DataFrame) -> str:
     used = rows[rows["holds"] != "unused"]
     left = len(rows) - len(used)
     if used.empty:

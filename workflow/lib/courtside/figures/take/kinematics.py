@@ -1,8 +1,12 @@
-"""Where the neck went over the court, how fast, and how far the joints were bent."""
+"""Path of the neck over the court, its speed, and joint angles."""
 
 import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from courtside.calibration import point_covariance
+from courtside.calibration.court.court import Court
 from courtside.figures.style import court_plan, style
 
 ROW_MM = 105
@@ -16,27 +20,19 @@ ANGLES = {
 }
 
 
-def table(frames):
-    """Return the numbers drawn, the columns of `courtside.exports.measures.frames` that are used."""
+def table(frames: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers drawn: the columns of `courtside.exports.measures.frames` in use."""
     drawn = ["time_s", "person", "neck_x_m", "neck_y_m"]
     drawn += [f"{name}_ground_speed_{end}" for name in SPEEDS for end in ("m_s", "sd_m_s")]
     drawn += [f"{name}_{end}" for name in ANGLES for end in ("deg", "sd_deg")]
     return frames[drawn]
 
 
-def draw(frames, summary, court):
+def draw(frames: pd.DataFrame, summary: pd.DataFrame, court: Court | None) -> Figure:
     """Draw each person in a row: the neck's path from above, speeds and angles over time.
 
-    Parameters
-    ----------
-    frames, summary : pandas.DataFrame
-        Of `courtside.exports.measures`.
-    court : courtside.calibration.court.court.Court or None
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-        Bands hold 90 % by the keypoints' noise alone.
+    `frames` and `summary` are of `courtside.exports.measures`. Bands are 90 % intervals from the
+    keypoints' noise alone.
     """
     people = list(dict.fromkeys(frames.person))
     drawing = style.figure(ROW_MM * max(len(people), 1))
@@ -51,7 +47,9 @@ def draw(frames, summary, court):
     return drawing
 
 
-def _draw_path(axis, own, measured, court, person):
+def _draw_path(
+    axis: Axes, own: pd.DataFrame, measured: pd.DataFrame, court: Court | None, person: str
+) -> None:
     if court is not None:
         court_plan.draw(axis, court)
     x, y = (own[key].to_numpy() for key in ("neck_x_m", "neck_y_m"))
@@ -75,7 +73,9 @@ def _draw_path(axis, own, measured, court, person):
     axis.set_aspect("equal")
 
 
-def _band(axis, own, name, ends, colour, label):
+def _band(
+    axis: Axes, own: pd.DataFrame, name: str, ends: tuple[str, str], colour: str, label: str
+) -> None:
     value, sigma = (own[f"{name}_{end}"].to_numpy() for end in ends)
     reach = point_covariance.WITHIN_90 * sigma
     band = own.time_s, value - reach, value + reach
@@ -83,7 +83,7 @@ def _band(axis, own, name, ends, colour, label):
     axis.plot(own.time_s, value, color=colour, linewidth=0.9, label=label)
 
 
-def _draw_speeds(axis, own):
+def _draw_speeds(axis: Axes, own: pd.DataFrame) -> None:
     for name, colour in SPEEDS.items():
         _band(axis, own, name, ("ground_speed_m_s", "ground_speed_sd_m_s"), colour, NAMES[name])
     axis.set(ylabel="ground speed (m/s)")
@@ -92,7 +92,7 @@ def _draw_speeds(axis, own):
     axis.tick_params(labelbottom=False)
 
 
-def _draw_angles(axis, own):
+def _draw_angles(axis: Axes, own: pd.DataFrame) -> None:
     for name, colour in ANGLES.items():
         _band(axis, own, name, ("deg", "sd_deg"), colour, name.replace("_", " "))
     axis.set(xlabel="time (s)", ylabel="angle (degrees)")

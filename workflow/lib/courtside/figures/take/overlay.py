@@ -1,60 +1,47 @@
-"""What the network saw, and what the 3D skeleton says it should have seen, on the pictures."""
+"""Detected joints and the reprojected 3D skeleton on the pictures."""
+
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from courtside.figures.style import style
 from courtside.geometry import camera as camera_models
+from courtside.geometry.camera import Camera
 from courtside.records.keypoints import missing_reason
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 
 MARGIN = 1.25  # of the person's extent, around it
 PANEL_PX = 520  # longest side of a panel
 
 
-def chosen_times(points, n_frames):
-    """Return `n_frames` times (s) spread over a take, its ends left out."""
+def chosen_times(points: Keypoints3D, n_frames: int) -> NDArray:
+    """Return `n_frames` times (s) evenly spread over a take, without its ends."""
     at = np.linspace(0, len(points.time_s) - 1, n_frames + 2)[1:-1].round().astype(int)
     return points.time_s[np.unique(at)]
 
 
-def nearest(view, time_s):
+def nearest(view: Keypoints2D, time_s: float) -> int:
     """Return the index of the frame of a `Keypoints2D` nearest to a time."""
     return int(np.abs(view.time_s - time_s).argmin())
 
 
-def reproject(camera, points, time_s):
-    """Return the skeletons nearest to a time as one camera sees them.
-
-    Parameters
-    ----------
-    camera : Camera
-    points : Keypoints3D
-    time_s : float
-
-    Returns
-    -------
-    xy : (P, J, 2) float
-        Pixels.
-    """
+def reproject(camera: Camera, points: Keypoints3D, time_s: float) -> NDArray:
+    """Return the skeletons nearest to a time as one camera sees them, (P, J, 2) px."""
     at = int(np.abs(points.time_s - time_s).argmin())
     return camera_models.project(camera, points.xyz[:, at])
 
 
-def table(cameras, views, points, times_s):
-    """Return detected and reprojected joints.
+def table(
+    cameras: list[Camera], views: list[Keypoints2D], points: Keypoints3D, times_s: Sequence[float]
+) -> pd.DataFrame:
+    """Return detected and reprojected joints, one row per time, camera, person and joint.
 
-    Parameters
-    ----------
-    cameras : list of Camera, length C
-    views : list of Keypoints2D, length C
-    points : Keypoints3D
-    times_s : sequence of float
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        One row per time, camera, person and joint.
+    `views` are in the order of `cameras`.
     """
     parts = []
     for time_s in times_s:
@@ -81,8 +68,10 @@ def table(cameras, views, points, times_s):
     return pd.concat(parts, ignore_index=True)
 
 
-def panel(image, detected, reprojected, accepted, skeleton):
-    """Draw one picture.
+def panel(
+    image: NDArray, detected: NDArray, reprojected: NDArray, accepted: NDArray, skeleton: Skeleton
+) -> NDArray:
+    """Draw one picture and cut out the part around the persons.
 
     Parameters
     ----------
@@ -91,12 +80,6 @@ def panel(image, detected, reprojected, accepted, skeleton):
     detected, reprojected : (P, J, 2) float
         Pixels.
     accepted : (P, J) bool
-    skeleton : Skeleton
-
-    Returns
-    -------
-    panel : (h, w, 3) uint8
-        Cut out around the persons, BGR.
     """
     width = max(1, round(_extent(detected, reprojected, image)[2] / 300))
     image = image.copy()
@@ -113,8 +96,8 @@ def panel(image, detected, reprojected, accepted, skeleton):
     return cv2.resize(cut, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
 
 
-def _extent(detected, reprojected, image):
-    """Return centre x, y and side of the square to show; the whole picture where nobody is seen."""
+def _extent(detected: NDArray, reprojected: NDArray, image: NDArray) -> tuple[float, float, float]:
+    """Return centre x, y and side of the square to show; the whole picture if nobody is seen."""
     known = np.concatenate([detected, reprojected]).reshape(-1, 2)
     known = known[np.isfinite(known).all(axis=1)]
     if not len(known):
@@ -123,29 +106,25 @@ def _extent(detected, reprojected, image):
     return (*((low + high) / 2), MARGIN * (high - low).max())
 
 
-def _draw_bones(image, xy, skeleton, colour, width):
+def _draw_bones(
+    image: NDArray, xy: NDArray, skeleton: Skeleton, colour: tuple[int, int, int], width: int
+) -> None:
     for start, stop in skeleton.bones:
         _line(image, xy[skeleton.index(start)], xy[skeleton.index(stop)], colour, width)
     for x, y in xy[np.isfinite(xy).all(axis=1)]:
         cv2.circle(image, (round(x), round(y)), 2 * width, colour, -1, cv2.LINE_AA)
 
 
-def _line(image, start, stop, colour, width):
+def _line(
+    image: NDArray, start: NDArray, stop: NDArray, colour: tuple[int, int, int], width: int
+) -> None:
     if np.isfinite([start, stop]).all():
         ends = [tuple(int(v) for v in np.round(end)) for end in (start, stop)]
         cv2.line(image, *ends, colour, width, cv2.LINE_AA)
 
 
-def draw(panels, times_s, camera_names):
-    """Return the figure of panels: rows are times, columns cameras.
-
-    Parameters
-    ----------
-    panels : list of list of (h, w, 3) uint8
-        BGR, `panels[time][camera]`.
-    times_s : sequence of float
-    camera_names : list of str
-    """
+def draw(panels: list[list[NDArray]], times_s: Sequence[float], camera_names: list[str]) -> Figure:
+    """Return the figure of `panels[time][camera]` (BGR): rows are times, columns cameras."""
     drawing = style.figure(18 + style.WIDTH_MM / len(camera_names) * len(times_s))
     axes = drawing.subplots(len(times_s), len(camera_names), squeeze=False)
     for row, time_s, line in zip(axes, times_s, panels, strict=True):

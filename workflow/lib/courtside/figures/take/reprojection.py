@@ -1,25 +1,21 @@
-"""How far the cameras' keypoints lie from the 3D skeleton they gave, per joint and camera."""
+"""Distances of the cameras' keypoints from the projected 3D skeleton, per joint and camera."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from courtside.figures.style import style
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 SMALLEST_PX = 0.5  # where the logarithmic axis begins
 
 
-def table(points):
+def table(points: Keypoints3D) -> pd.DataFrame:
     """Return the statistics of reprojection errors.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        joint, camera, n (frames and persons with an error), n_accepted, then of all errors
-        p05_px, median_px, p95_px, mean_px, and of the accepted ones accepted_median_px.
+    joint, camera, n (frames and persons with an error), n_accepted, then of all errors p05_px,
+    median_px, p95_px, mean_px, and of the accepted ones accepted_median_px.
     """
     rows = []
     for at, joint in enumerate(points.joints):
@@ -34,17 +30,17 @@ def table(points):
     return pd.DataFrame(rows, columns=["joint", "camera", "n", "n_accepted", *names])
 
 
-def _spread(values):
+def _spread(values: NDArray) -> tuple:
     if not len(values):
         return (np.nan,) * 4
     return (*np.percentile(values, [5, 50, 95]), values.mean())
 
 
-def _median(values):
+def _median(values: NDArray) -> float:
     return np.median(values) if len(values) else np.nan
 
 
-def draw(rows):
+def draw(rows: pd.DataFrame) -> Figure:
     """Draw the table of `table`: medians with 5-95 % ranges, one panel per camera."""
     cameras, joints = list(dict.fromkeys(rows.camera)), list(dict.fromkeys(rows.joint))
     drawing = style.figure(30 + 3.6 * len(joints))
@@ -53,20 +49,12 @@ def draw(rows):
         part = rows[rows.camera == camera].set_index("joint").loc[joints]
         place = np.arange(len(joints))
         share = part.n_accepted.sum() / max(part.n.sum(), 1)
-        axis.hlines(
-            place, part.p05_px, part.p95_px, color="#999999", linewidth=1.2, label="5-95 % of all"
-        )
-        axis.plot(
-            part.median_px, place, "o", color=style.RIGHT, markersize=3, label="median of all"
-        )
-        axis.plot(
-            part.accepted_median_px,
-            place,
-            "|",
-            color=style.LEFT,
-            markersize=7,
-            label="median of accepted",
-        )
+        look = {"color": "#999999", "linewidth": 1.2, "label": "5-95 % of all"}
+        axis.hlines(place, part.p05_px, part.p95_px, **look)
+        look = {"color": style.RIGHT, "markersize": 3, "label": "median of all"}
+        axis.plot(part.median_px, place, "o", **look)
+        look = {"color": style.LEFT, "markersize": 7, "label": "median of accepted"}
+        axis.plot(part.accepted_median_px, place, "|", **look)
         axis.set_title(f"{camera}: {100 * share:.0f} % accepted")
         axis.set(yticks=place, yticklabels=[joint.replace("_", " ") for joint in joints])
         axis.set_xlabel("reprojection error (px)")

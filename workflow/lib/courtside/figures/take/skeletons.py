@@ -1,17 +1,25 @@
 """The metric skeletons in the hall, with the paths of hands and feet."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
 
 from courtside.figures.style import style
+from courtside.geometry.camera import Camera
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 
 PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 ROOM_M = 0.2  # shown around the skeletons
 ARROW_M = 0.6
 
 
-def table(points):
+def table(points: Keypoints3D) -> pd.DataFrame:
     """Return the drawn paths: time_s, person, joint, x_m, y_m, z_m."""
     parts = [
         pd.DataFrame(
@@ -29,20 +37,10 @@ def table(points):
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(points, cameras, skeleton, n_poses=5):
-    """Draw skeletons at several times, once in perspective and once from above.
-
-    Parameters
-    ----------
-    points : Keypoints3D
-    cameras : list of Camera
-    skeleton : Skeleton
-    n_poses : int
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(
+    points: Keypoints3D, cameras: list[Camera], skeleton: Skeleton, n_poses: int = 5
+) -> Figure:
+    """Draw skeletons at several times, in perspective and from above."""
     drawing = style.figure(95)
     space = drawing.add_subplot(1, 2, 1, projection="3d")
     above = drawing.add_subplot(1, 2, 2)
@@ -51,12 +49,14 @@ def draw(points, cameras, skeleton, n_poses=5):
     return drawing
 
 
-def _poses(points, n_poses):
+def _poses(points: Keypoints3D, n_poses: int) -> list[tuple[int, float]]:
     at = np.unique(np.linspace(0, len(points.time_s) - 1, n_poses).round().astype(int))
     return list(zip(at, np.linspace(0.35, 1.0, len(at)), strict=True))
 
 
-def _bones(points, skeleton, n_poses):
+def _bones(
+    points: Keypoints3D, skeleton: Skeleton, n_poses: int
+) -> Iterator[tuple[NDArray, str, float]]:
     """Yield both ends (2, 3), colour and opacity of every bone to draw."""
     for frame, opacity in _poses(points, n_poses):
         for person in range(len(points.person_id)):
@@ -67,14 +67,14 @@ def _bones(points, skeleton, n_poses):
                 yield ends, colours.pop() if len(colours) == 1 else style.MIDDLE, opacity
 
 
-def _paths(points):
+def _paths(points: Keypoints3D) -> Iterator[tuple[NDArray, str]]:
     for joint in PATHS:
         at = list(points.joints).index(joint)
         for person in range(len(points.person_id)):
             yield points.xyz[person, :, at], style.side_colour(joint)
 
 
-def _limits(points):
+def _limits(points: Keypoints3D) -> tuple[NDArray, NDArray]:
     known = points.xyz.reshape(-1, 3)
     known = known[np.isfinite(known).all(axis=1)]
     if not len(known):
@@ -83,7 +83,7 @@ def _limits(points):
     return np.floor(2 * (low - ROOM_M)) / 2, np.ceil(2 * (high + ROOM_M)) / 2
 
 
-def _draw_space(axis, points, skeleton, n_poses):
+def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton, n_poses: int) -> None:
     low, high = _limits(points)
     for ends, colour, opacity in _bones(points, skeleton, n_poses):
         axis.plot(*ends.T, color=colour, alpha=opacity, linewidth=1.2)
@@ -99,14 +99,16 @@ def _draw_space(axis, points, skeleton, n_poses):
     axis.set_title("Skeletons and paths of wrists and ankles")
 
 
-def _floor(axis, low, high):
+def _floor(axis: Axes, low: NDArray, high: NDArray) -> None:
     for x in np.arange(np.ceil(low[0]), high[0] + 1e-9):
         axis.plot([x, x], [low[1], high[1]], [0, 0], color="#cccccc", linewidth=0.5)
     for y in np.arange(np.ceil(low[1]), high[1] + 1e-9):
         axis.plot([low[0], high[0]], [y, y], [0, 0], color="#cccccc", linewidth=0.5)
 
 
-def _draw_above(axis, points, cameras, skeleton, n_poses):
+def _draw_above(
+    axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton: Skeleton, n_poses: int
+) -> None:
     for ends, colour, opacity in _bones(points, skeleton, n_poses):
         axis.plot(*ends[:, :2].T, color=colour, alpha=opacity, linewidth=1.0)
     for path, colour in _paths(points):

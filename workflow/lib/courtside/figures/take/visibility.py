@@ -1,24 +1,19 @@
-"""What the cameras saw over time: the network's confidence, and how many views each joint rests on."""
+"""The network's confidence over time, and the number of views behind each joint."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 
 from courtside.figures.style import style
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
 
 
-def table(points, views):
+def table(points: Keypoints3D, views: list[Keypoints2D]) -> pd.DataFrame:
     """Return scores and numbers of views over time.
 
-    Parameters
-    ----------
-    points : Keypoints3D
-    views : list of Keypoints2D
-
-    Returns
-    -------
-    rows : pandas.DataFrame
-        time_s, person, joint, n_views, and one column score_<camera> each; empty where the camera saw
-        nothing.
+    time_s, person, joint, n_views, and one column score_<camera> each; empty if the camera saw
+    nothing.
     """
     n_persons, n_frames, n_joints = points.n_views.shape
     columns = {
@@ -33,18 +28,8 @@ def table(points, views):
     return pd.DataFrame(columns)
 
 
-def draw(rows, skeleton):
-    """Draw the table of `table`: one line panel of scores, one picture of view counts.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-    skeleton : Skeleton
-
-    Returns
-    -------
-    drawing : matplotlib.figure.Figure
-    """
+def draw(rows: pd.DataFrame, skeleton: Skeleton) -> Figure:
+    """Draw the table of `table`: one line panel of scores, one picture of view counts."""
     joints = list(skeleton.joints)
     drawing = style.figure(60 + 3.0 * len(joints))
     upper, lower = drawing.subplots(2, 1, sharex=True, height_ratios=[1, 0.07 * len(joints) + 0.6])

@@ -56,9 +56,8 @@ def positions(xyz: NDArray, middle: NDArray) -> tuple[str, NDArray]:
         Joints with three coordinates, none further than 32 m from the middle.
     """
     offset_m = np.asarray(xyz, dtype=float) - middle
-    known: NDArray = (np.abs(np.where(np.isfinite(offset_m), offset_m, np.inf)) <= REACH_M).all(
-        axis=-1
-    )
+    near = np.abs(np.where(np.isfinite(offset_m), offset_m, np.inf)) <= REACH_M
+    known = np.asarray(near.all(axis=-1))
     steps = np.round(np.where(known[..., None], offset_m, 0) / STEP_M).astype(np.int32)
     return integers(_held(np.moveaxis(steps, 1, -1), np.moveaxis(known, 1, -1)[:, :, None])), known
 
