@@ -58,7 +58,7 @@ def of_ties(
     clicks : dict of str to (P, 2) float
         Of this trial, by camera.
     sets
-        Sets of court points.
+        Of court points.
     **settings
         `click_sigma_px` and `click_loss` of `joint_adjustment.solve`.
     """
@@ -129,13 +129,8 @@ def score(
 ) -> dict:
     """Return the errors of calibrated cameras, by the names of `ERRORS`.
 
-    Parameters
-    ----------
-    cameras, truth
-        In the same order.
-    clicks : dict of str to (P, 2) float
-    point_covariance
-        Covariance (N, 3, 3) m2 of points (N, 3), of cameras with a known covariance.
+    `truth` is in the same order, `clicks` (P, 2) px by camera. `point_covariance` returns (N, 3, 3)
+    m2 for points (N, 3), for cameras with a known covariance.
     """
     grid = quality.volume(court)
     seen = {true.name: np.vstack([project(true, grid), clicks[true.name]]) for true in truth}

@@ -43,31 +43,18 @@ class Truth(Protocol):
 
 
 def at_times(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
-    """Interpolate true positions at other times by a cubic spline.
+    """Interpolate true positions (P, T, J, 3) at other times (U,) by a cubic spline, (P, U, J, 3).
 
-    Parameters
-    ----------
-    time_s : (T,) float
-        Times of the truth on the reference clock.
-    xyz : (P, T, J, 3) float
-    wanted_s : (U,) float
-
-    Returns
-    -------
-    xyz : (P, U, J, 3) float
-        NaN outside the span of `time_s`.
+    Both times are on the reference clock; NaN outside the span of `time_s`.
     """
     found = CubicSpline(time_s, xyz, axis=1, extrapolate=False)(wanted_s)
     return np.asarray(found)
 
 
 def true_places(points: Keypoints3D, truth: Truth) -> NDArray:
-    """Return the truth at a record's times, with the record's persons in their order.
+    """Return the truth (P, T, K, 3) at a record's times, with the record's persons in their order.
 
-    Returns
-    -------
-    true_xyz : (P, T, K, 3) float
-        NaN outside the truth's span, and for a person who is not in the truth.
+    NaN outside the truth's span, and for a person who is not in the truth.
     """
     known, wanted = list(map(str, truth.person_id)), list(map(str, points.person_id))
     there = [at for at, person in enumerate(wanted) if person in known]
@@ -111,16 +98,10 @@ def table(
 ) -> pd.DataFrame:
     """Summarise errors: one row for each person and joint, and for sets of the limb joints.
 
-    `COLUMNS`. missing_percent is over the frames with truth; bias is the mean error, bias_mm its
-    length, sd_mm the root mean square about it; sigma_mm the root of the mean trace of the stated
-    covariance; coverage the share of the errors within their stated ellipsoid, in percent, empty
-    without a stated covariance.
-
-    Parameters
-    ----------
-    person_id : sequence of str, length P
-    names, error, covariance
-        As `errors` returns them.
+    From what `errors` returns to `COLUMNS`. missing_percent is over the frames with truth; bias is
+    the mean error, bias_mm its length, sd_mm the root mean square about it; sigma_mm the root of
+    the mean trace of the stated covariance; coverage the share of the errors within their stated
+    ellipsoid, in percent, empty without a stated covariance.
     """
     groups = {name: [names.index(name)] for name in names}
     for label, sides in SETS.items():
@@ -174,18 +155,10 @@ def _summary(error: NDArray, covariance: NDArray) -> dict:
 
 
 def identity_percent(points: Keypoints3D, joints: Sequence[str], true_xyz: NDArray) -> NDArray:
-    """Return the share of frames in which each person has the right identity.
+    """Return the share of frames in which each person has the right identity, (P,) percent.
 
-    Parameters
-    ----------
-    points, joints, true_xyz
-        As for `errors`.
-
-    Returns
-    -------
-    percent : (P,) float
-        Share of the frames with that person in which no other true person is nearer, by the mean
-        distance over the joints; NaN for a person without frames.
+    That is the share of the frames with that person in which no other true person is nearer, by the
+    mean distance over the joints; NaN for a person without frames. Parameters as for `errors`.
     """
     names = [name for name in points.joints.tolist() if name in set(joints)]
     own = [points.joints.tolist().index(name) for name in names]

@@ -57,17 +57,9 @@ def distances(
 ) -> pd.DataFrame:
     """Fill in the distances: measured over all frames of a person, true over the same span.
 
-    Distances are in space. They stay empty if the truth does not cover the measured frames, or if
-    frames between the first and the last are missing: the paths would differ in span.
-
-    Parameters
-    ----------
-    rows
-        As `table` returns them.
-    frames, summary
-        As `courtside.exports.measures` writes them.
-    truth, derived, sex_of
-        As for `table`.
+    `rows` are of `table`, `frames` and `summary` of `courtside.exports.measures`. Distances are in
+    space. They stay empty if the truth does not cover the measured frames, or if frames between the
+    first and the last are missing: the paths would differ in span.
     """
     rows, measured = rows.copy(), summary.set_index(["person", "measure"])
     for at, row in rows.iterrows():

@@ -132,19 +132,10 @@ def _cameras(found: list[Camera], truth: list[Camera]) -> Callable:
 
 
 def place_linearly(matrices: dict[str, NDArray], seen: dict[str, NDArray]) -> NDArray:
-    """Triangulate from the projection matrices that DLT gives, which may be skewed.
+    """Triangulate (N, 3) m from the projection matrices (3, 4) that DLT gives, which may be skewed.
 
-    Parameters
-    ----------
-    matrices : dict of str to (3, 4) float
-        From homogeneous world points (m) to homogeneous pixels, by camera.
-    seen : dict of str to (N, 2) float
-        Px; NaN where missing.
-
-    Returns
-    -------
-    xyz : (N, 3) float
-        Metres; NaN if fewer than two cameras see the point.
+    They map homogeneous world points (m) to homogeneous pixels; `seen` are px (N, 2) by camera, NaN
+    where missing. The result is NaN if fewer than two cameras see the point.
 
     Notes
     -----
@@ -166,12 +157,7 @@ def place_linearly(matrices: dict[str, NDArray], seen: dict[str, NDArray]) -> ND
 def measure(way: Way, seen: dict[str, NDArray]) -> NDArray:
     """Return the length of a racket in every frame, (F,) m; NaN where an end lacks a second view.
 
-    Parameters
-    ----------
-    way
-        With a calibration.
-    seen : dict of str to (2 F, 2) float
-        Clicks of top and butt, frame after frame, px; NaN where missing.
+    `seen` are clicks (2 F, 2) px of top and butt by camera, frame after frame, NaN where missing.
     """
     if way.place is None:
         raise ValueError(f"{way.method}: expected a calibration, found {way.outcome}")
@@ -180,19 +166,11 @@ def measure(way: Way, seen: dict[str, NDArray]) -> NDArray:
 
 
 def score(length_m: NDArray, true_m: float, below: NDArray) -> dict[str, float]:
-    """Return the errors of measured lengths, by the names of `ERRORS`, and `n_frames`.
+    """Return the errors of measured lengths (F,), by the names of `ERRORS`, and `n_frames`.
 
-    Mean absolute error, mean error, standard deviations below and above, mm.
+    Mean absolute error, mean error, standard deviations of the frames in which the racket is
+    `below` (F,) the net's height, and above, mm. NaN are left out.
 
-    Parameters
-    ----------
-    length_m : (F,) float
-        NaN where missing.
-    below : (F,) bool
-        Frames in which the racket is below the net's height.
-
-    Notes
-    -----
     # ASSUME: the published standard deviations divide by n - 1, which the paper does not say.
     """
     there = np.isfinite(length_m)

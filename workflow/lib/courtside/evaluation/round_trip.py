@@ -25,13 +25,7 @@ ALL = "all"  # in place of a joint: means over the joints
 
 @dataclass(frozen=True)
 class Span:
-    """Consecutive frames of a take.
-
-    Attributes
-    ----------
-    words
-        For tables: how many frames from when.
-    """
+    """Consecutive frames of a take; in words, for tables, how many frames from when."""
 
     frames: slice
     words: str
@@ -84,14 +78,9 @@ def round_to_grid(xy: NDArray, step_px: float) -> NDArray:
 
 
 def span(points: Keypoints3D, n_frames: int | None, start_s: float | None = None) -> Span:
-    """Choose the frames of a table.
+    """Choose `n_frames` consecutive frames of a table; all if None or if the take has fewer.
 
-    Parameters
-    ----------
-    n_frames
-        Consecutive frames; all if None or if the take has fewer.
-    start_s
-        Time of the first; by default the frames are the middle of the take.
+    They start at `start_s`, or are the middle of the take.
 
     Raises
     ------
@@ -177,12 +166,7 @@ def round_trips(
 ) -> dict[str, tuple[str, NDArray]]:
     """Return the rows `exact`, `rounded` and `rounded_published`: (unit, distances (...)) by name.
 
-    Parameters
-    ----------
-    xyz : (..., 3) float
-        Metres.
-    published_width
-        px.
+    `xyz` (..., 3) in metres, `published_width` in px.
 
     Raises
     ------

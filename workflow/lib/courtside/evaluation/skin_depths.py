@@ -43,7 +43,7 @@ def estimate(
     skin_m: dict[str, float] | None = None,
     beyond_m: dict[str, float] | None = None,
 ) -> pd.DataFrame:
-    """Measure how deep limb joints lie behind the skin, and how far beyond their limbs they are.
+    """Measure the depth of limb joints behind the skin, and their offset beyond the limb.
 
     `COLUMNS`: for each joint, both sides together, the median depth behind the skin along the
     viewing ray and its robust standard deviation, metres; their number n; and the distance beyond
@@ -53,12 +53,9 @@ def estimate(
     ----------
     pairs : list of ((T, J, 3) float, (T, K, 3) float)
         Lifted and true skeletons of clips, in the axes of the camera, metres; NaN where missing.
-    joints, true_joints
-        Names of the J and of the K joints.
-    skin_m
-        Used for lifting; `lifting.SKIN_TO_JOINT_M` by default.
-    beyond_m
-        Used for lifting; 0 for joints that are not in it.
+        `joints` and `true_joints` are the names of the J and of the K joints.
+    skin_m, beyond_m
+        Used for lifting; by default `lifting.SKIN_TO_JOINT_M`, and 0.
 
     Raises
     ------

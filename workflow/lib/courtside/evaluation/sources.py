@@ -30,23 +30,11 @@ ROOT = ("left_hip", "right_hip")
 
 
 def at_times(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
-    """Interpolate joints at other times between neighbouring frames.
+    """Interpolate joints (T, J, 3) at other times (U,) between neighbouring frames, (U, J, 3).
 
-    Parameters
-    ----------
-    time_s : (T,) float
-    xyz : (T, J, 3) float
-    wanted_s : (U,) float
-
-    Returns
-    -------
-    xyz : (U, J, 3) float
-        NaN outside the span, beside a missing value, and in gaps longer than `LONGEST_S`.
-
-    Notes
-    -----
-    A cubic through two frames before and two after (Catmull & Rom 1974), taken as evenly spaced; a
-    straight line where the outer ones are missing.
+    NaN outside the span, beside a missing value, and in gaps longer than `LONGEST_S`. A cubic
+    through two frames before and two after (Catmull & Rom 1974), taken as evenly spaced; a straight
+    line where the outer ones are missing.
     """
     wanted_s = np.asarray(wanted_s, float)
     right = np.clip(np.searchsorted(time_s, wanted_s), 1, len(time_s) - 1)
@@ -80,16 +68,10 @@ def shared(source: BodyMotion, reference: BodyMotion) -> list[str]:
 def matched(
     source: BodyMotion, reference: BodyMotion, *, form: str = "fixed", shift_s: float = 0.0
 ) -> tuple[NDArray, NDArray]:
-    """Return both motions (T, M, 3) at the source's times, in mm, NaN where missing.
+    """Return both motions (T, M, 3) at the source's times plus `shift_s`, in mm, NaN where missing.
 
-    The source is in its own units first, so that its scale is that of its T-pose.
-
-    Parameters
-    ----------
-    form
-        `fixed` or `following`.
-    shift_s
-        Added to the source's times.
+    The source is in its own units first, so that its scale is that of its T-pose. `form` is `fixed`
+    or `following`.
     """
     names = shared(source, reference)
     own = getattr(source, form)[:, [list(source.joints).index(name) for name in names]]
@@ -137,18 +119,12 @@ def _procrustes(measured: NDArray, true: NDArray) -> NDArray:
 
 
 def table(names: list[str], errors_mm: dict[str, NDArray], true_known: NDArray) -> pd.DataFrame:
-    """Summarise errors: one row for each alignment and joint, and for all joints.
+    """Summarise errors (T, M, 3) mm: one row for each alignment and joint, and for all joints.
 
     alignment, joint, n, missing_percent; bias_x_mm, bias_y_mm, bias_z_mm: mean error along the
     body's axes; bias_mm: its length; sd_mm: root mean square about it; rmse_mm: root mean square
     error (its square is the sum of those of bias_mm and sd_mm); median_mm and p95_mm of the
-    distances.
-
-    Parameters
-    ----------
-    names : list of str, length M errors_mm : dict of str to (T, M, 3) float
-    true_known : (T, M) bool
-        Where the reference has a value: missing values are counted there.
+    distances. Missing values are counted where the reference has a value, `true_known` (T, M).
     """
     groups = {name: [at] for at, name in enumerate(names)} | {"all": list(range(len(names)))}
     rows = [
@@ -321,19 +297,11 @@ def read(path: str | os.PathLike) -> Sim3:
 def against(
     body_from_device: Sim3, device_from_world: NDArray, body_from_world: Sim3
 ) -> dict[str, float]:
-    """Return the errors of a body frame.
+    """Return the errors of a body frame by the same definition as the true one.
 
     angle_deg: of the rotation between the axes. unit_percent: by how much the unit is too long.
     origin_mm: distance of the origins, without meaning for a source without a place in the world.
-
-    Parameters
-    ----------
-    body_from_device
-        By the source.
-    device_from_world : (3, 4) float
-        True pose of the source's own axes, metres.
-    body_from_world
-        True frame, by the same definition.
+    `device_from_world` (3, 4) is the true pose of the source's own axes, metres.
     """
     rotation = body_from_device.rotation @ device_from_world[:, :3] @ body_from_world.rotation.T
     world_from_device = Sim3(1.0, device_from_world[:, :3], device_from_world[:, 3]).inverse()

@@ -97,12 +97,8 @@ def against(
 ) -> NDArray:
     """Return the paired differences of trials from their reference; NaN where one is missing.
 
-    Parameters
-    ----------
-    rows, reference
-        Of `tidy`.
-    on
-        Columns that make a pair; at most one row of `reference` has the same values.
+    Both tables are of `tidy`. Columns `on` make a pair; at most one row of `reference` has the same
+    values.
     """
     known = reference[[*on, value]].rename(columns={value: "reference"})
     both = rows[[*on, value]].merge(known, on=on, how="left", validate="many_to_one")

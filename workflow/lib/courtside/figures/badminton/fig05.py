@@ -139,18 +139,10 @@ def draw(
     images: list[NDArray],
     bones: Sequence[tuple[str, str]],
 ) -> Figure:
-    """Draw the shares of both layouts above, examples below.
+    """Draw the shares of both layouts (`table`) above, examples (`examples`) below.
 
-    Parameters
-    ----------
-    shares_of
-        Of `table`.
-    chosen
-        Of `examples`.
-    images : list of (H, W, 3) uint8
-        Of each example, BGR, faces hidden if asked for.
-    bones
-        Joints that a line joins.
+    `images` (H, W, 3) are those of the examples, BGR, with faces hidden if asked for; a line joins
+    the joints of a bone.
     """
     heights = SHARES_MM, EXAMPLE_MM + 18
     drawing = style.figure(sum(heights))

@@ -71,16 +71,10 @@ def draw(
     measured: pd.DataFrame,
     court: Court | None = None,
 ) -> Figure:
-    """Draw the steps from top to bottom.
+    """Draw the steps of `table` from top to bottom.
 
-    Parameters
-    ----------
-    rows
-        Of `table`.
-    images : dict of str to (H, W, 3) uint8
-        By camera, BGR, faces hidden if asked for.
-    measured
-        Of `courtside.exports.measures.frames`.
+    `images` (H, W, 3) are BGR by camera, with faces hidden if asked for; `measured` is of
+    `courtside.exports.measures.frames`.
     """
     cell = style.WIDTH_MM / len(images)
     heights = [height + HEAD_MM for height in (min(cell / WIDE, ROW_MM[0]), *ROW_MM[1:])]

@@ -148,14 +148,8 @@ def draw(
 ) -> Figure:
     """Draw every camera's picture of the persons, and below how often joints disagree in the take.
 
-    Parameters
-    ----------
-    rows
-        Of `table`.
-    images : dict of str to (H, W, 3) uint8
-        By camera, BGR, faces hidden if asked for.
-    detected, reprojected : dict of str to (P, K, 2) float
-        By camera the joints of the stick figure, px.
+    `rows` are of `table`; `images` (H, W, 3) are BGR by camera, with faces hidden if asked for;
+    `detected` and `reprojected` are the joints (P, K, 2) px of the stick figure by camera.
     """
     names, n_rows = list(images), rows.groupby(["person", "camera"], sort=False).ngroups
     width = min(style.WIDTH_MM / len(names), WIDEST_MM)

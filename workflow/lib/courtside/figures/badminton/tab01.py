@@ -25,19 +25,12 @@ LEGEND = (
 
 
 def table(rows: pd.DataFrame, published: pd.DataFrame, person: str | None = None) -> pd.DataFrame:
-    """Put the published values beside the rows of one person.
+    """Put the published values beside the rows of one person, by default the first.
 
     The columns stay the same; published rows have `published` as row, no person and 2 cameras.
-    Joints are in the published order, others follow, and `all` is last.
-
-    Parameters
-    ----------
-    rows
-        Of `courtside.evaluation.round_trip.table`, for one or more sets of cameras.
-    published
-        joint, mean_mm, sd_mm, n_frames, source.
-    person
-        The first one by default.
+    Joints are in the published order, others follow, and `all` is last. `rows` are of
+    `courtside.evaluation.round_trip.table`, for one or more sets of cameras; `published` has joint,
+    mean_mm, sd_mm, n_frames, source.
     """
     own = rows[rows["person"] == (person or rows["person"].iloc[0])]
     theirs = pd.DataFrame(

@@ -62,12 +62,8 @@ def table(errors: pd.DataFrame, kinematics: pd.DataFrame) -> pd.DataFrame:
 def draw(rows: pd.DataFrame, cameras: dict[str, Sequence[str]]) -> Figure:
     """Draw medians with lines to the 95 % quantiles, raw beside corrected, and missing joints.
 
-    Parameters
-    ----------
-    rows
-        Of `table`; each take, calibration and network gets panels of its own.
-    cameras
-        Of each fusion that `WAYS` names, for the legend.
+    Each take, calibration and network of `table` gets panels of its own; `cameras` are those of
+    each fusion that `WAYS` names, for the legend.
     """
     blocks = list(rows.groupby(BLOCK, sort=False))
     ways = [way for way in WAYS if (rows["fusion"] == way).any()]

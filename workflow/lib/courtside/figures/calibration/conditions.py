@@ -29,19 +29,11 @@ DODGE = 0.12  # of the distance between neighbouring settings
 def table(
     rows: pd.DataFrame, x: str, group: str | None = None, n_bridging: int | None = None
 ) -> pd.DataFrame:
-    """Return the spread of the volume error by setting.
+    """Return the spread of the volume error by setting, from rows of `calibration.tidy`.
 
     way (a key of `METHODS`), in_sample, the settings, n, p05, median, p95 (cm), n_failed. Trials
-    with the scored points left out, if the way can do without them.
-
-    Parameters
-    ----------
-    rows
-        Of `calibration.tidy`.
-    x, group
-        Columns of the settings that are varied.
-    n_bridging
-        Only trials with so many bridging images.
+    with the scored points left out, if the way can do without them. `x` and `group` are the columns
+    of the settings that vary; only trials with `n_bridging` images count, if it is given.
     """
     if n_bridging is not None:
         rows = rows[rows["n_bridging"] == n_bridging]

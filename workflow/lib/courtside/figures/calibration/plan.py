@@ -40,12 +40,8 @@ def draw(
 ) -> Figure:
     """Draw the table of `table`: error above, widest angle between neighbours, fewest ties below.
 
-    Parameters
-    ----------
-    min_points
-        Fewest ties of a fixed camera.
-    widest_deg
-        Widest angle between neighbouring views that keeps a model connected.
+    `min_points` are the fewest ties of a fixed camera, `widest_deg` is the widest angle between
+    neighbouring views that keeps a model connected.
     """
     drawing = style.figure(110)
     above, angle, ties = drawing.subplots(3, 1, sharex=True, height_ratios=[2.2, 1, 1])

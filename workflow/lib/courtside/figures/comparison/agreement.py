@@ -51,14 +51,9 @@ def draw(
     networks: tuple[str, str],
     measures: list[str] | None = None,
 ) -> Figure:
-    """Draw differences against means of some measures, and the limits of all.
+    """Draw differences against means of some measures (by default `choose`), and the limits of all.
 
-    Parameters
-    ----------
-    pairs, table
-        Of `courtside.statistics.agreement`.
-    measures
-        Those of the upper panels; `choose` by default.
+    `pairs` and `table` are of `courtside.statistics.agreement`.
     """
     known = table[table["verdict"].isin(COLOURS)]
     measures = measures or choose(table)

@@ -31,16 +31,9 @@ WORDS = {  # of derived joints, in the table
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """One skeleton as it is drawn.
+    """One skeleton as it is drawn: joints (J, 3) in body axes and units, NaN where missing.
 
-    Attributes
-    ----------
-    source
-        Empty for a skeleton without a recording.
-    xyz : (J, 3) float
-        Body axes and units; NaN where missing.
-    kind
-        As for `courtside.figures.style.source_styles`.
+    `source` is empty without a recording, `kind` is as for `source_styles`.
     """
 
     source: str

@@ -43,16 +43,10 @@ def draw(
     kinds: dict[str, str] | None = None,
     truth: pd.DataFrame | None = None,
 ) -> Figure:
-    """Draw one source, the thesis's figure.
+    """Draw one source of `table`, the thesis's figure; `kinds` as for `source_styles.kind_of`.
 
-    Parameters
-    ----------
-    paths, distortion
-        As for `table`.
-    kinds
-        As for `courtside.figures.style.source_styles.kind_of`.
-    truth
-        The true wrists in the form of `paths`; `source` is the one they are compared with.
+    `truth` are the true wrists in the form of `paths`; its `source` is the one they are compared
+    with.
     """
     drawing = style.figure(118)
     axis = drawing.subplots()

@@ -39,14 +39,9 @@ def table(wrists: pd.DataFrame, events: pd.DataFrame, *, aligned: bool = True) -
 
     Events are ordered by source and time. `panel`: number of the zoom from 1, empty if there is
     none; `floor_m`: median distance from 0.03 to 0.2 s after a clap or candidate; `note`: the
-    letter that marks a candidate which is not a clap.
-
-    Parameters
-    ----------
-    wrists, events
-        Of `courtside.events.detect`.
-    aligned
-        Whether time_s is on one clock for all sources; otherwise each source is shown by itself.
+    letter that marks a candidate which is not a clap. `wrists` and `events` are of
+    `courtside.events.detect`; if time_s is not `aligned`, on one clock for all sources, each source
+    is shown by itself.
     """
     rows = events.assign(panel=np.nan, floor_m=np.nan, note="")
     order = {source: at for at, source in enumerate(dict.fromkeys(wrists["source"]))}
@@ -75,14 +70,8 @@ def draw(
 ) -> Figure:
     """Draw the whole take, one row for each source, and below it every clap.
 
-    Parameters
-    ----------
-    wrists
-        Of `courtside.events.detect`.
-    events, aligned
-        As for `table`, and as it returns them.
-    kinds
-        As for `courtside.figures.style.source_styles.kind_of`.
+    `wrists` are of `courtside.events.detect`, `events` of `table`, `aligned` as for it, `kinds` as
+    for `courtside.figures.style.source_styles.kind_of`.
     """
     looks = source_styles.looks(wrists["source"], kinds)
     notes, panels = _notes(events), _panels(events)

@@ -23,15 +23,8 @@ def draw(
 ) -> Figure:
     """Draw medians with bars from the 5 to the 95 % quantile.
 
-    Parameters
-    ----------
-    x : (n,) float
-    rows : pandas.DataFrame, length n
-        `p05`, `median`, `p95`.
-    filled
-        Hollow marks otherwise.
-    line
-        Style of the line that joins the medians; "none" for none.
+    `rows` have `p05`, `median` and `p95` at each of `x` (n,). `line` is the style of the line that
+    joins the medians, "none" for none; marks that are not `filled` are hollow.
     """
     axis.vlines(x, rows["p05"], rows["p95"], color=colour, linewidth=1.0, alpha=0.8)
     look = {"markersize": 4.5, "markerfacecolor": colour if filled else "white", "linewidth": 0.9}

@@ -20,12 +20,7 @@ FLOOR = "#bbbbbb"
 class Sight:
     """The direction from which a scene is drawn.
 
-    Attributes
-    ----------
-    azimuth_deg
-        Of the observer, from the world's x axis towards y.
-    elevation_deg
-        Of the observer above the floor.
+    The azimuth of the observer is from the world's x axis towards y, the elevation above the floor.
     """
 
     azimuth_deg: float = -62.0
@@ -53,15 +48,7 @@ def line(axis: Axes, sight: Sight, xyz: NDArray, form: str = "-", **look: Any) -
 def figures(
     axis: Axes, sight: Sight, xyz: NDArray, stick: Stick, width: float = 1.4, opacity: float = 1.0
 ) -> None:
-    """Draw stick figures, each line in the colour of its side of the body.
-
-    Parameters
-    ----------
-    xyz : (P, K, 3) float
-        Metres; NaN where missing.
-    width
-        Points.
-    """
+    """Draw stick figures (P, K, 3) m, each line in the colour of its side; `width` in points."""
     for person in xyz:
         for start, stop in stick.bones:
             colours = {style.side_colour(stick.joints[at]) for at in (start, stop)}

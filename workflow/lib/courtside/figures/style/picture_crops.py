@@ -30,16 +30,9 @@ class Box:
 
 
 def box(xy: ArrayLike, size: tuple[int, int], aspect: float = 1.0) -> Box:
-    """Return the part of a picture that shows some points; the whole picture if none is known.
+    """Return the part of a picture that shows some points (..., 2) px; all of it if none is known.
 
-    Parameters
-    ----------
-    xy : (..., 2) float
-        Px; NaN are ignored.
-    size
-        Width and height of the picture.
-    aspect
-        Width over height of the part.
+    `size` is width and height of the picture, `aspect` width over height of the part.
     """
     known = np.asarray(xy, dtype=float).reshape(-1, 2)
     known = known[np.isfinite(known).all(axis=1)]
@@ -82,16 +75,10 @@ def sticks(
     outline: float = 0.8,
     dots: bool = True,
 ) -> None:
-    """Draw stick figures.
+    """Draw one or more stick figures (..., K, 2) px; a line without both ends is left out.
 
-    Parameters
-    ----------
-    xy : (..., K, 2) float
-        One or more figures, px; a line without both ends is left out.
-    width, outline
-        Points: of a line, and how much wider the black line behind it is.
-    dots
-        Whether joints are drawn.
+    `width` is that of a line in points, `outline` how much wider the black line behind it is;
+    `dots` says whether joints are drawn.
     """
     behind = [(width + outline, "black")] if outline else []
     for one in np.reshape(xy, (-1, *np.shape(xy)[-2:])):

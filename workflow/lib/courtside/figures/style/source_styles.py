@@ -22,14 +22,9 @@ LINES, MARKERS = ("-", "--", "-.", ":"), "osD^v"
 
 @dataclass(frozen=True)
 class Look:
-    """The look of one source.
+    """The look of one source; those of one kind share the colour, and differ in line and marker.
 
-    Attributes
-    ----------
-    kind
-        One of `COLOURS`, or `other`.
-    colour, line, marker
-        Sources of one kind share the colour and differ in line and marker.
+    `kind` is one of `COLOURS`, or `other`.
     """
 
     kind: str

@@ -22,15 +22,9 @@ def table(
     """Return the numbers drawn, one row per camera and frame.
 
     `camera`, `frame_idx`, `time_s`, `shift_x_px`, `shift_y_px`, `rotation_deg`, `zoom_percent`,
-    `sigma_px`, `n_matches`, `shift_mm` (at the player), `knock_px` and `knock_deg` (of a bump that
-    first shows in this frame; else empty).
-
-    Parameters
-    ----------
-    shakes
-        Of `courtside.records.cameras.shake_table`, for each camera to draw.
-    xyz : (3,) float
-        The player, m, in the world; NaN if unknown.
+    `sigma_px`, `n_matches`, `shift_mm` (at the player `xyz`, (3,) m in the world, NaN if unknown),
+    `knock_px` and `knock_deg` (of a bump that first shows in this frame; else empty). `shakes` are
+    of `courtside.records.cameras.shake_table`, for each camera to draw.
     """
     parts = []
     for name, shake in shakes.items():

@@ -71,15 +71,9 @@ def table(
 def panel(
     image: NDArray, detected: NDArray, reprojected: NDArray, accepted: NDArray, skeleton: Skeleton
 ) -> NDArray:
-    """Draw one picture and cut out the part around the persons.
+    """Draw one picture (H, W, 3) BGR and cut out the part around the persons, (h, w, 3) BGR.
 
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-        BGR.
-    detected, reprojected : (P, J, 2) float
-        Pixels.
-    accepted : (P, J) bool
+    `detected` and `reprojected` are (P, J, 2) px, `accepted` is (P, J).
     """
     width = max(1, round(_extent(detected, reprojected, image)[2] / 300))
     image = image.copy()

@@ -48,12 +48,8 @@ Groups = dict[tuple[str, str], list[dict]]  # figures by session and take
 def title(stem: str, planned: bool = False) -> tuple[str, str]:
     """Return the heading of a figure, and how it was made, from the name of its file.
 
-    Parameters
-    ----------
-    stem
-        Such as `overlay.sfm-n40.all-robust.blazepose-full`.
-    planned
-        Whether it is of a session that is only planned.
+    Such as `overlay.sfm-n40.all-robust.blazepose-full`; a `planned` session has headings of its
+    own.
     """
     name, _, way = stem.partition(".")
     for start, words in PAPERS.items():
@@ -100,12 +96,7 @@ def figure(said: dict, name: str) -> tuple[Markup, bytes]:
 def groups(figures: Iterable[dict], sessions: Iterable[str]) -> Groups:
     """Return figures by (session, take), in the order of the sessions; those of no session last.
 
-    Parameters
-    ----------
-    figures
-        Each with `session` and `take`, empty where it belongs to none.
-    sessions
-        In the order of the report.
+    Each has `session` and `take`, empty if it belongs to none.
     """
     order = {name: at for at, name in enumerate(sessions)}
 
