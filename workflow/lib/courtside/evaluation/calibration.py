@@ -1,6 +1,7 @@
 """One trial of the study: clicks of the court, several calibrations from them, and their errors."""
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +46,7 @@ def of_ties(
     clicks: dict[str, NDArray],
     *,
     sets: Sequence[str],
-    **settings,
+    **settings: Any,
 ) -> list[dict]:
     """Evaluate the ways that start from structure from motion: `sfm`, `sim3` and `paper`.
 

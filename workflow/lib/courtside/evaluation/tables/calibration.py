@@ -48,7 +48,7 @@ def tidy(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.concat(whole, ignore_index=True)[list(rows.columns)]
 
 
-def pick(rows: pd.DataFrame, **values) -> pd.DataFrame:
+def pick(rows: pd.DataFrame, **values: object) -> pd.DataFrame:
     """Return the rows in which the named columns have these values."""
     there = np.ones(len(rows), dtype=bool)
     for column, value in values.items():

@@ -41,7 +41,7 @@ class Stick:
         ]
         return np.stack(made, axis=-2)
 
-    def faces_of(self, *places) -> NDArray:
+    def faces_of(self, *places: NDArray) -> NDArray:
         """Return the joints on each face (P, n, 2), from one or more sets of joints (P, J, 2)."""
         return np.concatenate([xy[:, self.face] for xy in places], axis=1)
 
