@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
 from courtside.calibration.court.court import Court
-from courtside.calibration.court.resection import Linear
+from courtside.calibration.court.resection import Fitted, Linear
 from courtside.calibration.records.tie_points import Record
 from courtside.geometry.camera import Camera, project
 from courtside.geometry.triangulation import triangulate
@@ -67,7 +67,7 @@ def of_ties(
     xyz_in_sfm = sfm_alignment.reconstruct(sfm, clicks)
     for n_clicks, in_sample, use in choices(court, sets):
         row = {"n_clicks": n_clicks, "in_sample": in_sample}
-        if record.fault:
+        if record.fault or record.ties is None:
             rows.append({"method": "sfm", **row, "outcome": record.fault})
         else:
             solved = joint_adjustment.solve(record.ties, clicks, court, points=use, **settings)
@@ -145,10 +145,11 @@ def score(
 
 
 def score_linear(
-    found: dict[str, Linear], truth: list[Camera], court: Court, clicks: dict[str, NDArray]
+    found: dict[str, Linear | Fitted], truth: list[Camera], court: Court, clicks: dict[str, NDArray]
 ) -> dict:
     """Return the errors of the projection matrices that DLT gives, which may be skewed."""
-    matrices = np.stack([found[camera.name].matrix for camera in truth])
+    matrix = known_points.matrices(found)
+    matrices = np.stack([matrix[camera.name] for camera in truth])
 
     def place(seen: dict[str, NDArray]) -> NDArray:
         xy = np.stack([seen[camera.name] for camera in truth])
@@ -159,6 +160,7 @@ def score_linear(
     seen = {camera.name: project(camera, grid) for camera in truth}
     errors = quality.court_points(court, place(clicks))
     errors |= quality.over_volume(place(seen) - grid)
-    if all(result.camera for result in found.values()):
-        errors |= quality.poses([found[camera.name].camera for camera in truth], truth)
+    placed = [camera for true in truth if (camera := found[true.name].camera)]
+    if len(placed) == len(truth):
+        errors |= quality.poses(placed, truth)
     return {"outcome": ""} | errors

@@ -1,6 +1,6 @@
 """One trial of measuring a racket: its length from two cameras, calibrated in several ways."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sized
 from dataclasses import dataclass
 from functools import partial
 
@@ -76,7 +76,7 @@ def calibrate(
     known: dict = {"court": court, "clicks": clicks, "sigma_px": click_sigma_px, "truth": truth}
     tied: dict = {"click_sigma_px": click_sigma_px, "click_bias_px": click_bias_px}
     tied |= {"click_loss": click_loss, "clicks": clicks, "court": court, "truth": truth}
-    made = [
+    made: list[tuple[str, Sized, Callable]] = [
         ("dlt", eight, partial(_by_points, points=eight, linear=True, **known)),
         ("known", eight, partial(_by_points, points=eight, linear=False, **known)),
         ("paper", court.indices(THREE), partial(_by_paper, record, court, clicks, truth)),
@@ -105,7 +105,7 @@ def _by_points(court: Court, clicks, sigma_px, truth, *, points, linear):
     way = known_points.Method(linear, False, points)
     found = known_points.calibrate(way, court, clicks, sizes, {}, click_sigma_px=sigma_px)
     if linear:
-        return partial(place_linearly, {name: each.matrix for name, each in found.items()})
+        return partial(place_linearly, known_points.matrices(found))
     return partial(sfm_alignment.reconstruct, known_points.cameras(found))
 
 

@@ -84,7 +84,7 @@ def find(
     limits = LIMITS | dict(limits or {})
     measures = measure(motion)
     over = np.stack([measures[key] / limit for key, limit in limits.items()])
-    good = (over <= 1).all(axis=0)
+    good = np.all(over <= 1, axis=0)
     spells = [
         (first, stop)
         for first, stop in _joined(filtering.runs(good), motion.time_s)

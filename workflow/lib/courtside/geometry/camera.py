@@ -85,6 +85,12 @@ def project(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
     return distort(camera.dist, normalised) * _focal(camera) + camera.K[:2, 2]
 
 
+def in_picture(camera: Camera, xy: NDArray) -> NDArray:
+    """Say which px (..., 2) lie in the picture, (...) bool; NaN does not."""
+    with np.errstate(invalid="ignore"):
+        return np.all((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5), axis=-1)
+
+
 def projection_jacobian(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
     """Return the derivative (..., 2, 3) of `project` at points (..., 3) m, distortion included.
 

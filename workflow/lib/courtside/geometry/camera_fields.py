@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -24,7 +25,7 @@ UNSCALED = "unscaled"  # unit of cameras of a session without a court
 EXPORT_AGAIN = "export the calibration again or mend the file"
 
 
-def numbers(where: str, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
+def numbers(where: str | Path, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
     """Return a field's `value`, None where missing, as a finite float array of one of `shapes`.
 
     Raises
@@ -120,6 +121,6 @@ def short(value: object) -> str:
     return " ".join(str(value).split())[:80]
 
 
-def times(size: Sequence[int]) -> str:
+def times(size: Sequence[int] | NDArray) -> str:
     """Return a size in px as text, `1080x1920`."""
     return f"{size[0]}x{size[1]}"

@@ -69,7 +69,9 @@ def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
     The measured shake is not smoothed: its noise is far below a keypoint's, and smoothing would
     remove more tremor than noise.
     """
-    camera_models.check_size(camera, view.size, f"keypoints of camera {view.camera}")
+    camera_models.check_size(
+        camera, (int(view.size[0]), int(view.size[1])), f"keypoints of camera {view.camera}"
+    )
     turned = _bridged(table.time_s.to_numpy(float), camera_turns(camera, table))
     turned = turned[_rows(view, table)]
     unknown = np.isnan(turned).any(axis=1)

@@ -62,7 +62,7 @@ def widened(camera: Camera, margin_px: int) -> cameras.Camera:
     """Return the camera of a picture that is larger (or smaller) on each side by whole px."""
     middle = np.zeros((3, 3))
     middle[:2, 2] = margin_px
-    size = tuple(length + 2 * margin_px for length in camera.size)
+    size = (camera.size[0] + 2 * margin_px, camera.size[1] + 2 * margin_px)
     return replace(camera, size=size, K=camera.K + middle)
 
 

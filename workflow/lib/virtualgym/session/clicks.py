@@ -54,7 +54,7 @@ def simulate(
     for camera in cameras:
         error = bias + rng.standard_normal((len(points_xyz), 2)) * sigma_px_at_3840
         xy = projection.project(camera, points_xyz) + error * camera.size[0] / FULL_WIDTH_PX
-        seen = ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=1)
+        seen = projection.in_picture(camera, xy)
         clicks[camera.name] = np.where(seen[:, np.newaxis], xy, np.nan)
     return clicks
 
@@ -144,7 +144,7 @@ def of_camera(
             shown = rolling_shutter.Screen(moving, camera, *shutter).at(0.0)[:, :2]
             error = habit + rng.standard_normal((2, 2)) * preset.click_sigma_px_at_3840
             for end, xy in zip(ENDS, shown + error * per_px, strict=True):
-                if ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all():
+                if projection.in_picture(camera, xy).all():
                     clicks.append((camera.name, index, end, xy))
     return clicks
 

@@ -101,3 +101,10 @@ def cameras(found: Mapping[str, resection.Linear | resection.Fitted]) -> list[Ca
             )
         calibrated.append(result.camera)
     return calibrated
+
+
+def matrices(
+    found: Mapping[str, resection.Linear | resection.Fitted],
+) -> dict[str, NDArray]:
+    """Return the projection matrices (3, 4) that DLT gives, by camera."""
+    return {name: one.matrix for name, one in found.items() if isinstance(one, resection.Linear)}

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
+from courtside.geometry import camera as camera_models
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera, project
 from courtside.study.errors import InputError
@@ -16,9 +17,7 @@ from courtside.study.errors import InputError
 # tilt can hardly be separated from its principal point.
 STRAY_M, MISS_M, ROLL_DEG = (0.25, 0.25, 0.05), (0.35, 0.35, 0.2), 0.3
 STRAY_EVERY_M = 5.0  # ASSUME: of path between independent strays
-FINE = (
-    1000  # places by which the path's length is measured: centimetres apart on a walk round a court
-)
+FINE = 1000  # places to measure the path's length: centimetres apart on a walk round a court
 
 
 def camera(
@@ -72,8 +71,7 @@ def in_picture(camera: Camera, xyz: NDArray) -> tuple[NDArray, NDArray]:
     """Return where a camera sees points (N, 3), px, and which are in its picture, (N,) bool."""
     with np.errstate(invalid="ignore"):
         xy = project(camera, xyz)
-        inside = ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=1)
-    return xy, inside
+    return xy, camera_models.in_picture(camera, xy)
 
 
 def places_on_path(points_m: ArrayLike, n_places: int, height_m: float) -> NDArray:

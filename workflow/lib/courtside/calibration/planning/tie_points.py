@@ -77,7 +77,7 @@ def network(
     """
     images = [*fixed, *walked]
     order = path_order(fixed, walked)
-    found, tried, wanted = [], 0, CHUNK
+    found, tried, wanted = [], 0, float(CHUNK)
     while tried < wanted:
         xyz = points_on_surfaces(hall_m, CHUNK, texture.floor, rng)
         seen, n_alive = _seen(images, order, xyz, texture, rng)

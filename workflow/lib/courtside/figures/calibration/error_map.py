@@ -51,9 +51,7 @@ def table(
 
 
 def _sees(camera: Camera, xyz: NDArray) -> NDArray:
-    xy = camera_models.project(camera, xyz)
-    with np.errstate(invalid="ignore"):
-        return ((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5)).all(axis=-1)
+    return camera_models.in_picture(camera, camera_models.project(camera, xyz))
 
 
 def draw(rows: pd.DataFrame, cameras: list[Camera], court: Court, title: str) -> Figure:

@@ -214,7 +214,7 @@ def _places(layer: Layer, persons: list[str], frames: NDArray, joints: list[str]
 
 def _bones(joints: NDArray, skeleton: Skeleton) -> tuple[tuple[str, str], ...]:
     present = set(np.asarray(joints).tolist())
-    return tuple(tuple(bone) for bone in skeleton.bones if set(bone) <= present)
+    return tuple((start, end) for start, end in skeleton.bones if {start, end} <= present)
 
 
 def packed(layer: Layer, middle: NDArray, every: int = 1) -> dict:
