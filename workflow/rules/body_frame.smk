@@ -1,6 +1,7 @@
 """Sources of a take in one body frame: T-pose, unit, clocks; inertial ones corrected by vision.
 
-Inputs: device motions and clocks. Outputs: results/{session}/takes/{take}/ devices (corrected), body.
+Inputs: device motions and clocks. Outputs: results/{session}/takes/{take}/ devices (corrected),
+body.
 Steps: correct_inertial, choose_tpose (for all sources of a take), align_bodies, measure_arcs.
 """
 
@@ -8,63 +9,63 @@ Steps: correct_inertial, choose_tpose (for all sources of a take), align_bodies,
 rule correct_inertial:
     input:
         bvh=lambda w: device_of(w).file,
-        skeleton=CONFIG / "skeletons" / "mocopi27.yaml",
-        vision=lambda w: sources_of(w, corrected=False)[vision_of(w)][0],
-        sync=f"{TAKE}/sync/devices.{{model}}.json",
+        skeleton=paths.skeleton(CONFIG, "mocopi27"),
+        vision=of_job(devices.vision_file),
+        sync=paths.DEVICE_CLOCKS,
     output:
-        bvh=f"{TAKE}/devices/{{device}}-corrected.{{model}}.bvh",
-        motion=f"{TAKE}/devices/{{device}}-corrected.{{model}}.npz",
-        report=f"{TAKE}/devices/{{device}}-corrected.{{model}}.json",
+        bvh=paths.CORRECTED_BVH,
+        motion=paths.CORRECTED_SOURCE,
+        report=paths.CORRECTION_REPORT,
     log:
         "results/{session}/logs/correct_inertial/{take}.{device}.{model}.log",
     benchmark:
         "results/{session}/benchmarks/correct_inertial/{take}.{device}.{model}.tsv"
     params:
         code=code("correct_inertial.py"),
-        step=correction_parameters,
+        step=of_job(devices.correction),
     script:
         "../scripts/correct_inertial.py"
 
 
 rule choose_tpose:
     input:
-        devices=source_files,
-        sync=f"{TAKE}/sync/devices.{{model}}.json",
+        devices=of_job(devices.source_files),
+        sync=paths.DEVICE_CLOCKS,
     output:
-        chosen=f"{TAKE}/sync/tpose.{{model}}.json",
+        chosen=paths.TPOSE,
     log:
         "results/{session}/logs/choose_tpose/{take}.{model}.log",
     params:
         code=code("choose_tpose.py"),
-        step=lambda w: {"devices": clock_owners(w), "stated": list(take_of(w).clocks)},
+        step=of_job(devices.tpose),
     script:
         "../scripts/choose_tpose.py"
 
 
 rule align_bodies:
     input:
-        device=lambda w: sources_of(w)[w.source][0],
-        sync=f"{TAKE}/sync/devices.{{model}}.json",
-        chosen=f"{TAKE}/sync/tpose.{{model}}.json",
-        derived=CONFIG / "derived_joints.yaml",
+        device=of_job(lambda job: devices.sources(job)[job["source"]].file),
+        sync=paths.DEVICE_CLOCKS,
+        chosen=paths.TPOSE,
+        derived=paths.derived_joints(CONFIG),
     output:
-        body=f"{TAKE}/body/{{source}}.{{model}}.npz",
-        frame=f"{TAKE}/body/{{source}}.{{model}}.json",
+        body=paths.BODY,
+        frame=paths.BODY_FRAME,
     log:
         "results/{session}/logs/align_bodies/{take}.{source}.{model}.log",
     params:
         code=code("align_bodies.py"),
-        step=lambda w: {"skeleton": sources_of(w)[w.source][1], "like": clock_source(w)},
+        step=of_job(devices.alignment),
     script:
         "../scripts/align_bodies.py"
 
 
 rule measure_arcs:
     input:
-        bodies=body_files_of,
+        bodies=of_job(devices.bodies),
     output:
-        paths=f"{TAKE}/body/arcs.{{model}}.paths.csv",
-        distortion=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
+        paths=paths.part(paths.ARCS, what="paths"),
+        distortion=paths.part(paths.ARCS, what="distortion"),
     log:
         "results/{session}/logs/measure_arcs/{take}.{model}.log",
     params:

@@ -1,79 +1,74 @@
 """Where the fixed cameras are, and the court points clicked for that.
 
-Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points, or these alone.
+Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points,
+or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
-Steps: import_cameras (`file`), calibrate_cameras (`sfm-n40`, the default), align_cameras (`paper-n40`,
-`paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`);
-propose_court_points (where the points probably are), build_clicking_page.
+Steps: import_cameras (`file`), calibrate_cameras (`sfm-n40`, the default), align_cameras
+(`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
+`known8-board`, `dlt18`); propose_court_points (where the points probably are), build_clicking_page.
 """
-
-FOUND = "results/{session}/calibration/{calibration}"
 
 
 rule import_cameras:
     input:
         calibration=lambda w: session_of(w).calibration_file,
     output:
-        cameras="results/{session}/calibration/file/cameras.toml",
-        quality="results/{session}/calibration/file/quality.json",
+        cameras=paths.part(paths.CAMERAS, calibration="file"),
+        quality=paths.part(paths.CALIBRATION_QUALITY, calibration="file"),
     log:
         "results/{session}/logs/import_cameras/file.log",
     params:
         code=code("import_cameras.py"),
         names=lambda w: session_of(w).calibration_camera_names(),
-        crops_px=lambda w: {
-            name: camera.crop_px
-            for name, camera in session_of(w).cameras.items()
-            if camera.crop_px
-        },
+        crops_px=of_job(calibration.crops_px),
     script:
         "../scripts/import_cameras.py"
 
 
 rule calibrate_cameras:
     input:
-        ties=ties_file,
+        ties=of_job(calibration.ties),
         clicks=lambda w: session_of(w).court_points or [],
-        court=lambda w: court_file(session_of(w)) or [],
+        court=of_job(Job.court_file),
     output:
-        cameras=f"{FOUND}/cameras.toml",
-        covariance=f"{FOUND}/covariance.npz",
-        quality=f"{FOUND}/quality.json",
+        cameras=paths.CAMERAS,
+        covariance=paths.CAMERA_COVARIANCE,
+        quality=paths.CALIBRATION_QUALITY,
     log:
         "results/{session}/logs/calibrate_cameras/{calibration}.log",
     wildcard_constraints:
         calibration="sfm-n[0-9]+(-o[0-2])?",
     params:
         code=code("calibrate_cameras.py"),
-        step=click_parameters,
+        step=of_job(calibration.clicks),
     script:
         "../scripts/calibrate_cameras.py"
 
 
 rule align_cameras:
     input:
-        ties=ties_file,
+        ties=of_job(calibration.ties),
         clicks=lambda w: session_of(w).court_points,
-        court=lambda w: court_file(session_of(w)),
+        court=of_job(Job.court_file),
     output:
-        cameras=f"{FOUND}/cameras.toml",
-        quality=f"{FOUND}/quality.json",
+        cameras=paths.CAMERAS,
+        quality=paths.CALIBRATION_QUALITY,
     log:
         "results/{session}/logs/align_cameras/{calibration}.log",
     wildcard_constraints:
         calibration="(sim3|paper|paper-global)-n[0-9]+(-o[0-2])?",
     params:
         code=code("align_cameras.py"),
-        step=click_parameters,
+        step=of_job(calibration.clicks),
     script:
         "../scripts/align_cameras.py"
 
 
 rule calibrate_lens:
     input:
-        images=board_source,
+        images=of_job(calibration.boards),
     output:
-        lens="results/{session}/calibration/lens/{camera}.toml",
+        lens=paths.LENS,
     log:
         "results/{session}/logs/calibrate_lens/{camera}.log",
     params:
@@ -87,19 +82,19 @@ rule calibrate_lens:
 rule resect_cameras:
     input:
         clicks=lambda w: session_of(w).court_points,
-        court=lambda w: court_file(session_of(w)),
-        static=each_fixed("results/{session}/static/{camera}.png"),
-        lenses=lens_files,
+        court=of_job(Job.court_file),
+        static=of_job(calibration.each_fixed, paths.STATIC),
+        lenses=of_job(calibration.lenses),
     output:
-        cameras=f"{FOUND}/cameras.toml",
-        quality=f"{FOUND}/quality.json",
+        cameras=paths.CAMERAS,
+        quality=paths.CALIBRATION_QUALITY,
     log:
         "results/{session}/logs/resect_cameras/{calibration}.log",
     wildcard_constraints:
         calibration="(dlt|known)[0-9]+(-board)?",
     params:
         code=code("resect_cameras.py"),
-        step=click_parameters,
+        step=of_job(calibration.clicks),
         cameras=lambda w: list(session_of(w).cameras),
     script:
         "../scripts/resect_cameras.py"
@@ -107,11 +102,11 @@ rule resect_cameras:
 
 rule propose_court_points:
     input:
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        pictures=each_fixed("results/{session}/static/{camera}.png"),
-        court=lambda w: court_file(session_of(w)),
+        cameras=paths.CAMERAS,
+        pictures=of_job(calibration.each_fixed, paths.STATIC),
+        court=of_job(Job.court_file),
     output:
-        proposals="results/{session}/calibration/{calibration}/proposals.csv",
+        proposals=paths.COURT_PROPOSALS,
     log:
         "results/{session}/logs/propose_court_points/{calibration}.log",
     params:
@@ -124,17 +119,17 @@ rule propose_court_points:
 
 rule build_clicking_page:
     input:
-        pictures=each_fixed("results/{session}/static/{camera}.png"),
-        court=lambda w: court_file(session_of(w)),
+        pictures=of_job(calibration.each_fixed, paths.STATIC),
+        court=of_job(Job.court_file),
         clicks=lambda w: session_of(w).court_points or [],
-        proposals=proposals_file,
+        proposals=of_job(calibration.proposals),
         assets=sorted(ASSETS.glob("[cp]*")),
     output:
-        page="results/{session}/pages/clicking.html",
+        page=paths.CLICKING_PAGE,
     log:
         "results/{session}/logs/build_clicking_page/all.log",
     params:
         code=code("build_clicking_page.py"),
-        settings=clicking_settings,
+        settings=of_job(calibration.clicking),
     script:
         "../scripts/build_clicking_page.py"

@@ -1,6 +1,7 @@
 """Figures of devices: the thesis's, and what it could not show.
 
-Inputs: body motions, events, errors. Outputs: results/{session}/takes/{take}/figures/, results/figures/.
+Inputs: body motions, events, errors. Outputs: results/{session}/takes/{take}/figures/,
+results/figures/.
 Steps: draw_wrist_distance, draw_wrist_arcs, draw_skeleton_plates,
 draw_source_errors, draw_thesis_fig3, draw_smoothness.
 """
@@ -8,8 +9,8 @@ draw_source_errors, draw_thesis_fig3, draw_smoothness.
 
 rule draw_wrist_distance:
     input:
-        wrists=f"{TAKE}/sync/{{clocks}}.{{model}}.wrists.csv",
-        events=events_file,
+        wrists=paths.WRISTS,
+        events=of_job(devices.events),
     output:
         **device_figure("wrist_distance.{clocks}", "wrist_distance"),
     log:
@@ -19,71 +20,66 @@ rule draw_wrist_distance:
     params:
         code=code("draw_wrist_distance.py"),
         aligned=lambda w: w.clocks == "devices",
-        kinds=kinds_of,
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_wrist_distance.py"
 
 
 rule draw_wrist_arcs:
     input:
-        paths=f"{TAKE}/body/arcs.{{model}}.paths.csv",
-        distortion=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
-        truth=lambda w: true_arcs(w, "paths"),
+        paths=paths.part(paths.ARCS, what="paths"),
+        distortion=paths.part(paths.ARCS, what="distortion"),
+        truth=of_job(devices.true_arcs, paths.TRUE_PATHS),
     output:
         **device_figure("wrist_arcs", "wrist_arcs"),
     log:
         "results/{session}/logs/draw_wrist_arcs/{take}.{model}.log",
     params:
         code=code("draw_wrist_arcs.py"),
-        kinds=kinds_of,
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_wrist_arcs.py"
 
 
 rule draw_skeleton_plates:
     input:
-        bodies=body_files_of,
-        skeletons=plate_skeletons,
-        derived=CONFIG / "derived_joints.yaml",
+        bodies=of_job(devices.bodies),
+        skeletons=of_job(devices.plates),
+        derived=paths.derived_joints(CONFIG),
     output:
         **device_figure("skeleton_plates", "skeleton_plates"),
     log:
         "results/{session}/logs/draw_skeleton_plates/{take}.{model}.log",
     params:
         code=code("draw_skeleton_plates.py"),
-        skeletons=lambda w: {s: skeleton for s, (_, skeleton, _) in sources_of(w).items()},
-        kinds=kinds_of,
+        skeletons=of_job(devices.skeletons),
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_skeleton_plates.py"
 
 
 rule draw_source_errors:
     input:
-        errors="results/{session}/evaluation/takes/{take}/sources/{model}.errors.csv",
-        parts="results/{session}/evaluation/takes/{take}/sources/{model}.parts.csv",
+        errors=paths.SOURCE_ERRORS,
+        parts=paths.ERROR_PARTS,
     output:
         **device_figure("source_errors", "source_errors"),
     log:
         "results/{session}/logs/draw_source_errors/{take}.{model}.log",
     params:
         code=code("draw_source_errors.py"),
-        kinds=kinds_of,
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_source_errors.py"
 
 
 rule draw_thesis_fig3:
     input:
-        paths=lambda w: thesis_file(w, "paths"),
-        distortion=lambda w: thesis_file(w, "distortion"),
-        truth=thesis_truth,
+        paths=lambda w: devices.thesis_file(STUDY, "paths"),
+        distortion=lambda w: devices.thesis_file(STUDY, "distortion"),
+        truth=lambda w: devices.thesis_truth(STUDY),
     output:
-        **drawn(
-            "results/figures/thesis_fig3_{number}",
-            "thesis_fig3",
-            ("single view", "thesis"),
-            {"figure": "thesis_fig3_{number}"},
-        ),
+        **study_figure("thesis_fig3_{number}", "thesis_fig3", ("single view", "thesis")),
     log:
         "results/figures/logs/draw_thesis_fig3/{number}.log",
     wildcard_constraints:
@@ -91,28 +87,23 @@ rule draw_thesis_fig3:
     params:
         code=code("draw_thesis_fig3.py"),
         source=lambda w: STUDY.parameters["draw_thesis_fig3"]["sources"][int(w.number) - 1],
-        kinds=all_kinds(),
+        kinds=devices.all_kinds(STUDY),
     script:
         "../scripts/draw_thesis_fig3.py"
 
 
 rule draw_smoothness:
     input:
-        distortion=[row["distortion"] for row in smoothed_takes()],
-        errors=[row["errors"] for row in smoothed_takes() if row["errors"]],
-        truth=[row["truth"] for row in smoothed_takes() if row["truth"]],
+        distortion=devices.smoothed(STUDY, paths.ARCS, what="distortion"),
+        errors=devices.smoothed_truth(STUDY, paths.SOURCE_ERRORS),
+        truth=devices.smoothed_truth(STUDY, paths.TRUE_DISTORTION),
     output:
-        **drawn(
-            "results/figures/smoothness",
-            "smoothness",
-            ("single view", "sources"),
-            {"figure": "smoothness"},
-        ),
+        **study_figure("smoothness", "smoothness", ("single view", "sources")),
     log:
         "results/figures/logs/draw_smoothness/all.log",
     params:
         code=code("draw_smoothness.py"),
-        labels=[row["labels"] for row in smoothed_takes()],
-        kinds=all_kinds(),
+        labels=[one.labels for one in targets.devices.device_takes(STUDY)],
+        kinds=devices.all_kinds(STUDY),
     script:
         "../scripts/draw_smoothness.py"

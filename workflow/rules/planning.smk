@@ -7,8 +7,8 @@ Steps: plan_session.
 
 rule plan_session:
     input:
-        plan=CONFIG / "plans" / "{plan}.yaml",
-        court=planned_court,
+        plan=paths.plan(CONFIG, "{plan}"),
+        court=lambda w: paths.court(CONFIG, PLANS[w.plan].court),
     output:
         **plan_figure("growth"),
         **plan_figure("map"),

@@ -1,21 +1,19 @@
 """Structure from motion over the fixed cameras and bridging images.
 
 Inputs: static pictures, frames of the walks. Outputs: results/{session}/sfm/.
-Steps: extract_features and match_images (once per session, whatever the numbers of images), map_images (one number of
-bridging images), adjust_network (with the clicked court points).
+Steps: extract_features and match_images (once per session, whatever the numbers of images),
+map_images (one number of bridging images), adjust_network (with the clicked court points).
 """
-
-VARIANT = "results/{session}/sfm/{mapper}-n{n_images}-o{offset}"
 
 
 rule extract_features:
     input:
-        static=each_fixed("results/{session}/static/{camera}.png"),
-        frames=each_walk("results/{session}/frames/{walk}.csv"),
-        folders=each_walk("results/{session}/frames/{walk}"),
+        static=of_job(calibration.each_fixed, paths.STATIC),
+        frames=of_job(calibration.each_walk, paths.FRAME_TABLE),
+        folders=of_job(calibration.each_walk, paths.FRAMES),
     output:
-        database="results/{session}/sfm/features.db",
-        table="results/{session}/sfm/features.csv",
+        database=paths.FEATURES,
+        table=paths.FEATURE_TABLE,
     log:
         "results/{session}/logs/extract_features/all.log",
     benchmark:
@@ -34,12 +32,12 @@ rule extract_features:
 
 rule match_images:
     input:
-        features="results/{session}/sfm/features.db",
-        table="results/{session}/sfm/features.csv",
-        frames=each_walk("results/{session}/frames/{walk}.csv"),
+        features=paths.FEATURES,
+        table=paths.FEATURE_TABLE,
+        frames=of_job(calibration.each_walk, paths.FRAME_TABLE),
     output:
-        database="results/{session}/sfm/matches.db",
-        table="results/{session}/sfm/matches.csv",
+        database=paths.MATCHES,
+        table=paths.MATCH_TABLE,
     log:
         "results/{session}/logs/match_images/all.log",
     benchmark:
@@ -56,12 +54,12 @@ rule match_images:
 
 rule map_images:
     input:
-        matches="results/{session}/sfm/matches.db",
-        table="results/{session}/sfm/features.csv",
-        frames=each_walk("results/{session}/frames/{walk}.csv"),
+        matches=paths.MATCHES,
+        table=paths.FEATURE_TABLE,
+        frames=of_job(calibration.each_walk, paths.FRAME_TABLE),
     output:
-        model=expand(f"{VARIANT}/{{part}}.bin", part=MODEL_PARTS, allow_missing=True),
-        summary=f"{VARIANT}/summary.json",
+        model=paths.MODEL,
+        summary=paths.SFM_SUMMARY,
     log:
         "results/{session}/logs/map_images/{mapper}-n{n_images}-o{offset}.log",
     benchmark:
@@ -72,7 +70,7 @@ rule map_images:
         mem_mb=1500,
     params:
         code=code("map_images.py"),
-        step=map_parameters,
+        step=of_job(calibration.mapping),
         walks=lambda w: list(session_of(w).walks),
     script:
         "../scripts/map_images.py"
@@ -80,12 +78,12 @@ rule map_images:
 
 rule adjust_network:
     input:
-        model=expand(f"{VARIANT}/{{part}}.bin", part=MODEL_PARTS, allow_missing=True),
-        summary=f"{VARIANT}/summary.json",
+        model=paths.MODEL,
+        summary=paths.SFM_SUMMARY,
         clicks=lambda w: session_of(w).court_points or [],
-        court=lambda w: court_file(session_of(w)) or [],
+        court=of_job(Job.court_file),
     output:
-        ties=f"{VARIANT}/ties.npz",
+        ties=paths.TIES,
     log:
         "results/{session}/logs/adjust_network/{mapper}-n{n_images}-o{offset}.log",
     benchmark:

@@ -108,6 +108,7 @@ def load(config, config_file, folder, root="."):
         artefacts=known,
         models=_models(models, found),
         parameters=config,
+        folder=folder,
     )
 
 

@@ -1,8 +1,12 @@
 """What a checked configuration says, as plain records."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 
+from courtside.study import paths
 from courtside.study.configuration import consent
+from courtside.study.methods import HALFBODY, Calibration, Fusion, Variant
 
 
 @dataclass(frozen=True)
@@ -172,12 +176,8 @@ class Session:
             "sim3": walked and clicked,
             "paper": walked and clicked,
         }
-        return [
-            way
-            for way in self.parameters["calibrations"]
-            if next(there for kind, there in possible.items() if way.startswith(kind))
-            and (boards or not way.endswith("-board"))
-        ]
+        ways = map(Calibration.parse, self.parameters["calibrations"])
+        return [way.name for way in ways if possible[way.kind] and (boards or not way.board)]
 
     def take_calibrations(self):
         """Return those of the session's calibrations that its takes are measured with."""
@@ -190,15 +190,16 @@ class Session:
 
     def fused_cameras(self, fusion):
         """Return the cameras that a way to fuse views rests on; empty where the session names none."""
-        if fusion == "halfbody":
+        how = Fusion.parse(fusion)
+        if how.rule == HALFBODY:
             return tuple((self.halfbody or {}).values())
-        return {"all": tuple(self.cameras), **self.views}.get(fusion.rpartition("-")[0], ())
+        return {"all": tuple(self.cameras), **self.views}.get(how.cameras, ())
 
     def variants(self):
-        """Return the names of all structures from motion of the sweep: `{mapper}-n{N}-o{offset}`."""
+        """Return all structures from motion of the sweep."""
         sweep = self.parameters["sweep"]
         return [
-            f"{mapper}-n{count}-o{offset}"
+            Variant(mapper, count, offset)
             for mapper in sweep["mappers"]
             for count in sweep["n_images"]
             for offset in range(sweep["n_offsets"] if count <= sweep["offsets_up_to"] else 1)
@@ -257,12 +258,43 @@ class Study:
     models : dict of str to Model
     parameters : dict
         The study's configuration as checked.
+    folder : Path
+        The folder config/.
     """
 
     sessions: dict
     artefacts: dict
     models: dict
     parameters: dict
+    folder: Path = Path("config")
+
+    def takes(self) -> Iterator[tuple[Session, Take]]:
+        """Yield every take with its session."""
+        for session in self.sessions.values():
+            for take in session.takes.values():
+                yield session, take
+
+    def named_takes(self, names: Iterable[str]) -> list[tuple[Session, Take]]:
+        """Return those takes, named `session/take`, that the study has."""
+        pairs = [name.split("/") for name in names]
+        found = [(self.sessions[s], t) for s, t in pairs if s in self.sessions]
+        return [(session, session.takes[take]) for session, take in found if take in session.takes]
+
+    def stages(self, model: str) -> tuple[str, ...]:
+        """Return the stages of a network's skeletons; the last is the best.
+
+        Joints are corrected only of networks whose offsets were estimated.
+        """
+        estimated = paths.joint_offsets(self.folder, model).is_file()
+        return paths.STAGES if estimated else paths.STAGES[:-1]
+
+    def court_file(self, session: Session) -> Path | None:
+        """Return the file of a session's court, None without a court."""
+        return paths.court(self.folder, session.court) if session.court else None
+
+    def skeleton_file(self, model: str) -> Path:
+        """Return the file of the skeleton of a network."""
+        return paths.skeleton(self.folder, self.models[model].skeleton)
 
 
 def imported(name):
