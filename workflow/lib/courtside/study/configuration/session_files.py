@@ -1,11 +1,13 @@
 """Building sessions from their files, and variations of virtual ones from a condition."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
+from courtside.study.configuration.yaml_files import Content
 
 MADE = "results/"
 VIRTUAL = f"{MADE}virtual"  # made by the workflow itself
@@ -19,15 +21,17 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
 }
 
 
-def is_there(path):
-    """Tell whether there is a file or folder; of a name that no disk takes there is none."""
+def is_there(path: Path) -> bool:
+    """Tell whether a file or folder exists; one whose name no disk takes does not."""
     try:
         return path.exists()
     except OSError:
         return False
 
 
-def session(name, file, content, parameters, root="."):
+def session(
+    name: str, file: str | Path, content: Content, parameters: Content, root: str | Path = "."
+) -> Session:
     """Build a `Session`.
 
     Parameters
@@ -76,8 +80,8 @@ def session(name, file, content, parameters, root="."):
     )
 
 
-def variations(base, name, content):
-    """Build the sessions that differ from a virtual one in some of its settings.
+def variations(base: Session, name: str, content: Content) -> dict[str, Session]:
+    """Build the sessions `{name}-{k}` that differ from a virtual one in some of its settings.
 
     Parameters
     ----------
@@ -85,14 +89,8 @@ def variations(base, name, content):
     name : str
         Of the condition.
     content : dict
-        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys of
-        `virtual`
-        that are the same for all; `override`: steps' parameters that differ from the base session's.
-
-    Returns
-    -------
-    sessions : dict of str to Session
-        `{name}-{k}`.
+        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys
+        of `virtual` that are the same for all; `override`: parameters of steps that differ.
     """
     found, vary = {}, content["vary"]
     for k, values in enumerate(product(*vary.values())):
@@ -110,7 +108,7 @@ def variations(base, name, content):
             withheld={},
             walks=files["walks"],
             court_points=files["court_points"],
-            virtual={**base.virtual, "boards": False, **content.get("set", {}), **varied},
+            virtual={**(base.virtual or {}), "boards": False, **content.get("set", {}), **varied},
             condition={"condition": name, **varied},
             # Only their errors are wanted, not camera files.
             parameters=_merged(base.parameters, content.get("override", {})) | {"calibrations": []},
@@ -118,7 +116,7 @@ def variations(base, name, content):
     return found
 
 
-def _merged(parameters, override):
+def _merged(parameters: Content, override: Content) -> Content:
     return {
         key: {**value, **override.get(key, {})}
         if isinstance(value, dict)
@@ -127,7 +125,7 @@ def _merged(parameters, override):
     }
 
 
-def _subjects(content):
+def _subjects(content: Content) -> dict[str, Subject]:
     return {
         key: Subject(
             **{**(value or {}), "consent": consent.stated(value or {}, "virtual" in content)}
@@ -136,7 +134,9 @@ def _subjects(content):
     }
 
 
-def _take(name, content, filmed, subjects):
+def _take(
+    name: str, content: Content, filmed: Content | None, subjects: dict[str, Subject]
+) -> Take:
     there = tuple(content.get("subjects", subjects))
     return Take(
         name=name,
@@ -153,7 +153,7 @@ def _take(name, content, filmed, subjects):
     )
 
 
-def _devices(content, subjects):
+def _devices(content: Content, subjects: tuple[str, ...]) -> dict[str, Device]:
     return {
         name: Device(
             kind=KINDS.get(Path(device["file"]).suffix.lower(), "rgb"),
@@ -164,11 +164,11 @@ def _devices(content, subjects):
     }
 
 
-def _walks(content):
+def _walks(content: Content) -> dict[str, str]:
     return {key: value.get("video") or value["images"] for key, value in content.items()}
 
 
-def _virtual(name, content):
+def _virtual(name: str, content: Content) -> Content:
     """Return the files that a simulation makes, by the keys of a session."""
     folder = f"{VIRTUAL}/{name}"
     return {
@@ -182,7 +182,7 @@ def _virtual(name, content):
     }
 
 
-def _virtual_take(folder, made, cameras):
+def _virtual_take(folder: str, made: Content, cameras: Iterable[str]) -> Content:
     endings = {"inertial": "bvh", "rgbd": "bag"}
     return {
         "videos": {camera: f"{folder}/{camera}.mp4" for camera in made.get("cameras", cameras)},
@@ -193,6 +193,6 @@ def _virtual_take(folder, made, cameras):
     }
 
 
-def _camera(content):
+def _camera(content: Content) -> FixedCamera:
     crop_px = tuple(content["crop_px"]) if "crop_px" in content else None
     return FixedCamera(**{**content, "crop_px": crop_px})

@@ -109,7 +109,7 @@ def evaluations(study: Study, kind: str) -> list[str]:
 def _evaluations(
     study: Study, session: Session, take: Take, way: dict[str, str], kind: str
 ) -> list[str]:
-    found: list[tuple[str, dict[str, str]]] = {
+    kinds: dict[str, list[tuple[str, dict[str, str]]]] = {
         "errors": [(paths.ERRORS, {})],
         "kinematics": [(paths.MEASURE_ERRORS, {"fusion": name}) for name in session.fusions()],
         "clocks": [(paths.CLOCK_ERRORS, {})] if not take.synchronised else [],
@@ -118,8 +118,8 @@ def _evaluations(
             for stage in ("pose3d", study.stages(way["model"])[-1])
             if session.fusions("compared_fusions")
         ],
-    }[kind]
-    return [_fill(pattern, session, take, way, **more) for pattern, more in found]
+    }
+    return [_fill(pattern, session, take, way, **more) for pattern, more in kinds[kind]]
 
 
 def _ways(session: Session) -> Iterator[dict[str, str]]:
