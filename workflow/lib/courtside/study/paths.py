@@ -31,6 +31,8 @@ BACKDROPS = VIRTUAL + "/backdrops.npz"
 VIRTUAL_CLICKS = VIRTUAL + "/court_points.csv"
 TRUTH = VIRTUAL + "/truth.npz"
 TRUE_TAKE = VIRTUAL_TAKE + "/truth.npz"
+VIRTUAL_FILM = VIRTUAL_TAKE + "/{name}.mp4"
+VIRTUAL_DEVICE = VIRTUAL_TAKE + "/{name}.{suffix}"
 RACKET_CLICKS = VIRTUAL_TAKE + "/racket.csv"
 
 # Pictures of fixed cameras and walks.

@@ -9,7 +9,7 @@ from typing import Any
 from courtside.study.configuration import configuration, yaml_files
 
 HEIGHT_M = 1.6  # at which people hold a camera
-TEXTURE = "plain"
+TEXTURE = "plain"  # a plan without a word on texture expects few tie points
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,14 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from courtside.study.configuration import consent, take_faults
-from courtside.study.configuration.session_files import VIRTUAL, is_there
+from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
-from courtside.study.paths import EXTERNAL
+from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
 
-CALIBRATED = r"results/[^/]+/calibration/[^/]+/cameras\.toml"  # by the workflow, in another session
+# Cameras that the workflow finds in another session.
+CALIBRATED = CAMERAS.replace(".", r"\.").format(session="[^/]+", calibration="[^/]+")
+SIMULATED = VIRTUAL.format(session="")
 
 
 def find(
@@ -212,7 +214,7 @@ def _condition_faults(
 def _path_faults(
     where: str, path: str, known: dict[str, Artefact] | None, root: Path
 ) -> Iterator[str]:
-    if path.startswith(f"{VIRTUAL}/") or re.fullmatch(CALIBRATED, path):
+    if path.startswith(SIMULATED) or re.fullmatch(CALIBRATED, path):
         return
     if not path.startswith(EXTERNAL):
         if not is_there(root / path):

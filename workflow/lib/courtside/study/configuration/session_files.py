@@ -5,12 +5,11 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
+from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
 from courtside.study.configuration.yaml_files import Content
 
-MADE = "results/"
-VIRTUAL = f"{MADE}virtual"  # made by the workflow itself
 KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
     ".bvh": "inertial",
     ".bag": "rgbd",
@@ -46,7 +45,11 @@ def session(
     """
     clicked = content.get("court_points")
     unclicked = None
-    if clicked and not clicked.startswith(MADE) and not is_there(Path(root) / clicked):
+    if (
+        clicked
+        and not clicked.startswith(f"{paths.RESULTS}/")
+        and not is_there(Path(root) / clicked)
+    ):
         clicked, unclicked = None, clicked
     subjects = _subjects(content)
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
@@ -170,27 +173,32 @@ def _walks(content: Content) -> dict[str, str]:
 
 def _virtual(name: str, content: Content) -> Content:
     """Return the files that a simulation makes, by the keys of a session."""
-    folder = f"{VIRTUAL}/{name}"
+    takes = {key: take["virtual"] for key, take in content.get("takes", {}).items()}
     return {
-        "static": {camera: f"{folder}/{camera}.mp4" for camera in content["cameras"]},
-        "walks": {walk: f"{folder}/{walk}.mp4" for walk in content.get("walks", {})},
-        "court_points": f"{folder}/court_points.csv",
+        "static": _films(paths.RECORDING, content["cameras"], session=name),
+        "walks": _films(paths.RECORDING, content.get("walks", {}), session=name),
+        "court_points": paths.VIRTUAL_CLICKS.format(session=name),
         "takes": {
-            take: _virtual_take(f"{folder}/takes/{take}", made["virtual"], content["cameras"])
-            for take, made in content.get("takes", {}).items()
+            take: _virtual_take(name, take, made, content["cameras"])
+            for take, made in takes.items()
         },
     }
 
 
-def _virtual_take(folder: str, made: Content, cameras: Iterable[str]) -> Content:
-    endings = {"inertial": "bvh", "rgbd": "bag"}
+def _virtual_take(session: str, take: str, made: Content, cameras: Iterable[str]) -> Content:
+    known, endings = {"session": session, "take": take}, {"inertial": "bvh", "rgbd": "bag"}
+    devices = {name: endings[device["kind"]] for name, device in made.get("devices", {}).items()}
     return {
-        "videos": {camera: f"{folder}/{camera}.mp4" for camera in made.get("cameras", cameras)},
+        "videos": _films(paths.VIRTUAL_FILM, made.get("cameras", cameras), **known),
         "devices": {
-            name: {"file": f"{folder}/{name}.{endings[device['kind']]}"}
-            for name, device in made.get("devices", {}).items()
+            name: {"file": paths.VIRTUAL_DEVICE.format(name=name, suffix=suffix, **known)}
+            for name, suffix in devices.items()
         },
     }
+
+
+def _films(pattern: str, names: Iterable[str], **known: str) -> dict[str, str]:
+    return {name: pattern.format(name=name, **known) for name in names}
 
 
 def _camera(content: Content) -> FixedCamera:

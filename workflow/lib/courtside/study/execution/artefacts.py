@@ -16,7 +16,7 @@ from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading
 from courtside.study.execution import files
 
-LARGEST_MEMBER_BYTES = 1 << 30
+LARGEST_MEMBER_BYTES = 1 << 30  # ASSUME: far more than any pinned member has
 AGAIN = "delete the file and fetch it again"
 PIP_OPTIONS = [
     "--no-deps",

@@ -10,7 +10,7 @@ from typing import Any
 from courtside.study.execution import files
 
 LOCKED = re.compile(r"^([A-Za-z0-9._-]+)(?:\[[^]]*\])?==", re.M)
-GIT_SECONDS = 20
+GIT_SECONDS = 20  # ASSUME: enough for `git status` on a slow disk; a run does not wait longer
 
 
 def found(repository: str | Path) -> dict[str, Any]:
