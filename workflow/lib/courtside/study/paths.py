@@ -121,11 +121,10 @@ MEASURE_ERRORS = TAKE_EVALUATION + "kinematics/" + FUSED + ".csv"
 GAINS = TAKE_EVALUATION + "gains/{stage}.{calibration}.{model}.csv"
 DETECTION_ERRORS = TAKE_EVALUATION + "detection/{model}.csv"
 ROUND_TRIP = TAKE_EVALUATION + "round_trip/{calibration}.{model}.csv"
-SOURCE_TABLE = TAKE_EVALUATION + "sources/{model}.{what}.csv"
-SOURCE_ERRORS, ERROR_PARTS, TRUE_PATHS, TRUE_DISTORTION = (
-    SOURCE_TABLE.replace("{what}", what)
-    for what in ("errors", "parts", "true_paths", "true_distortion")
-)
+SOURCE_ERRORS = TAKE_EVALUATION + "sources/{model}.errors.csv"
+ERROR_PARTS = TAKE_EVALUATION + "sources/{model}.parts.csv"
+TRUE_PATHS = TAKE_EVALUATION + "sources/{model}.true_paths.csv"
+TRUE_DISTORTION = TAKE_EVALUATION + "sources/{model}.true_distortion.csv"
 BODY_FRAME_ERRORS = TAKE_EVALUATION + "body_frames/{model}.csv"
 
 # Figures, without their format, and tables.

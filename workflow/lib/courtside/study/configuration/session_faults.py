@@ -36,8 +36,8 @@ def find(
     cameras, subjects = content["cameras"], content.get("subjects", {})
     court = content["court"]
     if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
-        there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
-        yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
+        known_courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
+        yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
     yield from _source_faults(file, content)
     yield from consent.faults(file, content)
     for key, views in content.get("views", {}).items():
@@ -46,14 +46,14 @@ def find(
         f"{file}: halfbody", content.get("halfbody", {}).values(), cameras
     )
     paths = dict(_paths(content))
-    for name, take in content.get("takes", {}).items():
-        take = take or {}
+    for name, given in content.get("takes", {}).items():
+        take: Content = given or {}
         yield from take_faults.find(
             f"{file}: takes.{name}", take, cameras, subjects, "virtual" in content
         )
         # Recordings of somebody who has withdrawn may be gone.
         withdrawn = consent.withdrawn(subjects, "virtual" in content)
-        if not withdrawn & set(take.get("subjects", subjects)):
+        if not withdrawn & set(take.get("subjects", [*subjects])):
             paths |= dict(_take_paths(f"takes.{name}", take))
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():

@@ -43,14 +43,7 @@ def session(
     root : str or Path
         Where relative paths start.
     """
-    clicked = content.get("court_points")
-    unclicked = None
-    if (
-        clicked
-        and not clicked.startswith(f"{paths.RESULTS}/")
-        and not is_there(Path(root) / clicked)
-    ):
-        clicked, unclicked = None, clicked
+    clicked, unclicked = _clicks(content, root)
     subjects = _subjects(content)
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     takes = {
@@ -81,6 +74,14 @@ def session(
         halfbody=content.get("halfbody"),
         parameters=_merged(parameters, content.get("override", {})),
     )
+
+
+def _clicks(content: Content, root: str | Path) -> tuple[str | None, str | None]:
+    """Return the clicked court points, and where those are to be saved that nobody has clicked."""
+    clicks = content.get("court_points")
+    if not clicks or clicks.startswith(f"{paths.RESULTS}/") or is_there(Path(root) / clicks):
+        return clicks, None
+    return None, clicks
 
 
 def variations(base: Session, name: str, content: Content) -> dict[str, Session]:

@@ -45,17 +45,7 @@ def find(
 
     `where` names file and take; `virtual` says whether the session is.
     """
-    if virtual and ("virtual" not in take or set(RECORDINGS) & set(take)):
-        yield (
-            f"{where}: expected the key 'virtual' and not 'videos' in a virtual session, found "
-            f"{sorted(take)}; correct the take"
-        )
-    if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
-        yield (
-            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded "
-            "session, found "
-            f"{sorted(take)}; correct the take"
-        )
+    yield from _kind_faults(where, take, virtual)
     if not subjects:
         yield (
             f"{where}: expected `subjects` in the session, found none; name the persons of the take"
@@ -86,6 +76,21 @@ def find(
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
         yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
+
+
+def _kind_faults(where: str, take: Content, virtual: bool) -> Iterator[str]:
+    """Check that a take is virtual in a virtual session, and recorded in a recorded one."""
+    if virtual and ("virtual" not in take or set(RECORDINGS) & set(take)):
+        yield (
+            f"{where}: expected the key 'virtual' and not 'videos' in a virtual session, found "
+            f"{sorted(take)}; correct the take"
+        )
+    if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
+        yield (
+            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded "
+            "session, found "
+            f"{sorted(take)}; correct the take"
+        )
 
 
 def _device_faults(
