@@ -6,8 +6,8 @@ from snakemake.utils import min_version
 
 min_version("9.27.1")
 
-# Millions of objects make a plan, and all stay: to look for garbage among them as often as usual
-# takes a seventh of the time.
+# A plan has millions of objects, and all stay: the usual garbage collection takes a seventh of the
+# time.
 gc.freeze()
 gc.set_threshold(200_000, 20, 20)
 
@@ -43,10 +43,8 @@ report: "workflow/report/study.rst"
 
 onstart:
     files.delete_unfinished("results")
-    # On one machine, no limit of job starts per second: to keep it, Snakemake 9.27 looks at all
-    # jobs that are
-    # ready anew each second for every job that it has started, which cost minutes in the default
-    # study.
+    # On one machine, job starts per second are not limited: to limit them, Snakemake 9.27 looks at
+    # all ready jobs each second for every job that it has started (minutes in the default study).
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
 

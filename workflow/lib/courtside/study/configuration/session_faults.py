@@ -193,8 +193,7 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
         elif base in found:
             keys = {**found[base][1]["virtual"], **condition.get("set", {}), **condition["vary"]}
-            # Any of the layouts varied may be the wrong one; a name in `vary` stands for its
-            # values.
+            # Any of the varied layouts may be wrong; a name in `vary` stands for its values.
             layouts = condition["vary"].get("layout", [keys["layout"]])
             faults += [f for at in layouts for f in setting_faults(where, {**keys, "layout": at})]
         faults += _condition_faults(where, name, condition, found)

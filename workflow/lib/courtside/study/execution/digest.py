@@ -76,15 +76,8 @@ def modules_of(script: str | Path, library: str | Path) -> set[str]:
 class Remembered:
     """Digests that are kept in a file from run to run, as parsing takes longer than a small plan.
 
-    All is found by the SHA-256 of files' content, so that nothing kept can be out of date. A file
-    that is missing or damaged costs time only. Files are read once in the life of an object.
-
-    Parameters
-    ----------
-    path : str or Path
-        A JSON file.
-    lock_text : str
-        As of `rule_digest`.
+    Entries are found by the SHA-256 of file contents, so that none can be out of date. A missing
+    or damaged JSON file `path` costs time only. Each file is read once in the life of an object.
     """
 
     def __init__(self, path: str | Path, lock_text: str) -> None:
@@ -93,7 +86,7 @@ class Remembered:
         self._used: dict[str, str] = {}
         self._sha256 = cache(files.sha256)
         self._file = cache(_file)
-        # Of another way to digest, or another lock, nothing kept counts.
+        # Entries made by another version of this module, or with another lock, are not used.
         self._own = hashlib.sha256((files.sha256(__file__) + lock_text).encode()).hexdigest()
 
     def digest(self, script: str | Path, library: str | Path) -> str:

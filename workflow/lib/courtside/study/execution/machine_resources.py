@@ -7,14 +7,11 @@ from pathlib import Path
 
 from courtside.study.errors import SPARE_MEMORY, InputError
 
-LEAST_FREE_MB = 20  # below, not even Snakemake's own notes and logs are sure of their place
+LEAST_FREE_MB = 20  # below, Snakemake's own metadata and logs may not fit
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 CLOSED = {errno.EROFS, errno.EACCES, errno.EPERM}
-NO_MEMORY = (
-    "Insufficient memory",
-    "bad_alloc",
-    "bad allocation",
-)  # of OpenCV and other C++ libraries
+# In messages of OpenCV and other C++ libraries.
+NO_MEMORY = ("Insufficient memory", "bad_alloc", "bad allocation")
 AGAIN = "then give the same command again"
 
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from courtside.study.errors import SPARE_MEMORY
 
-N_NAMED = 3  # folders or files that a line names before it counts the rest
+N_NAMED = 3  # folders or files that a line names; the rest are counted
 N_FAULTS = 3
-UNFINISHED = (" INFO ", " WARNING ")  # a log that ends so tells of no fault
+UNFINISHED = (" INFO ", " WARNING ")  # the last line of a log without an error
 # What a file is, by what its path must contain and how it ends; the first that fits counts.
 KINDS = (
     ("reports", "", ("report.html",)),

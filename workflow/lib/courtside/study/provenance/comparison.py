@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from courtside.study.errors import DAMAGED
 from courtside.study.execution import files
 
-# Of no importance to what a study says: logs, seconds, this record itself.
+# Not compared: logs, run times, records of runs.
 LEFT_OUT = {"logs", "benchmarks", "run", ".snakemake"}
 # First match wins: pattern of the path below results/, relative and absolute tolerance, why. The
-# absolute one
-# is in the file's own unit: px of 2D keypoints, m of 3D ones and of cameras, cm of most errors.
+# absolute one is in the file's own unit: px of 2D keypoints, m of 3D ones and of cameras, cm of
+# most errors.
 TOLERANCES = (
     ("external/*", 0.0, 0.0, "pinned by checksum"),
     ("networks/*", 0.0, 0.0, "the same weights in the same order"),
@@ -37,14 +37,11 @@ TOLERANCES = (
 )
 # Drawings and binary exports whose numbers are in the table beside them.
 TABLED = {".pdf", ".png", ".c3d"}
-# What a processor's last digit changes as a whole, and whose numbers are in files that are
-# compared: films,
-# the pictures that they begin with, recordings (keypoints), COLMAP's databases and models (ties,
-# summaries),
-# pages (tables).
+# Files that the processor's last digit changes as a whole, and whose numbers are also in files that
+# are compared: films and the pictures that they begin with, recordings (keypoints), COLMAP's
+# databases and models (ties, summaries), pages (tables).
 UNREAD = ("*.mp4", "virtual/*/backdrops.npz", "*.bag", "*.db", "*.bin", "*.html")
-# Numbers in these hold seconds of computing time, which no two runs share; the report shows those
-# figures.
+# These hold computing times, which differ from run to run; the report shows those figures.
 TIMED = ("*/figures/growth.*", "report.html")
 EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
 OTHER_BYTES, ONLY_HERE, ONLY_THERE = "other bytes", "only here", "only there"

@@ -9,8 +9,7 @@ from typing import Any
 from courtside.study.errors import InputError
 from courtside.study.execution.artefacts import Artefact
 
-# A package of a lock that pip can install: `name[extra]==version ; marker \` and the lines of its
-# hashes.
+# A package of a lock: `name[extra]==version ; marker \` and the lines of its hashes.
 PACKAGE = re.compile(
     r"^(?P<name>[A-Za-z0-9._-]+)(?:\[[^]]*\])?==(?P<version>[^\s;\\]+)"
     r"(?: *; *(?P<marker>[^\\\n]+?))? *\\?\n"

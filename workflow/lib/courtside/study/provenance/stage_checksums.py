@@ -8,8 +8,7 @@ from courtside.study.errors import InputError
 from courtside.study.execution import files
 from courtside.study.provenance import comparison
 
-# In the order in which the study computes them. First match wins: pattern of the path below
-# results/.
+# In the order of computation. First match wins: pattern of the path below results/.
 STAGES = (
     ("artefacts", "external/*"),
     ("networks", "networks/*"),
