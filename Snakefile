@@ -6,26 +6,13 @@ from snakemake.utils import min_version
 
 min_version("9.27.1")
 
-# Millions of objects make a plan, and all stay: to look for garbage among them as often as usual takes a seventh of the time.
+# A plan has millions of objects, and all stay: the usual garbage collection takes a seventh of the
+# time.
 gc.freeze()
 gc.set_threshold(200_000, 20, 20)
 
 
 include: "workflow/rules/common.smk"
-include: "workflow/rules/consent_inputs.smk"
-include: "workflow/rules/inputs.smk"
-include: "workflow/rules/take_inputs.smk"
-include: "workflow/rules/device_inputs.smk"
-include: "workflow/rules/recording_inputs.smk"
-include: "workflow/rules/targets.smk"
-include: "workflow/rules/take_targets.smk"
-include: "workflow/rules/players_targets.smk"
-include: "workflow/rules/single_view_inputs.smk"
-include: "workflow/rules/page_inputs.smk"
-include: "workflow/rules/evaluation_inputs.smk"
-include: "workflow/rules/stroke_inputs.smk"
-include: "workflow/rules/report_inputs.smk"
-include: "workflow/rules/report_figures.smk"
 include: "workflow/rules/artefacts.smk"
 include: "workflow/rules/simulation.smk"
 include: "workflow/rules/video.smk"
@@ -56,8 +43,8 @@ report: "workflow/report/study.rst"
 
 onstart:
     files.delete_unfinished("results")
-    # On one machine, no limit of job starts per second: to keep it, Snakemake 9.27 looks at all jobs that are
-    # ready anew each second for every job that it has started, which cost minutes in the default study.
+    # On one machine, job starts per second are not limited: to limit them, Snakemake 9.27 looks at
+    # all ready jobs each second for every job that it has started (minutes in the default study).
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
 
@@ -65,7 +52,13 @@ onstart:
 onsuccess:
     files.delete_unfinished("results")
     record_provenance()
-    print(end_of_run(), *waiting_for_clicks(), *left_out(), sep="\n", file=sys.stderr)
+    print(
+        end_of_run(),
+        *run.waiting_for_clicks(STUDY),
+        *run.left_out(STUDY),
+        sep="\n",
+        file=sys.stderr,
+    )
 
 
 onerror:
@@ -76,23 +69,23 @@ onerror:
 
 rule all:
     input:
-        every_calibration(),
-        every_photo_model(),
-        every_evaluation(),
-        every_check(),
-        every_export(),
-        every_figure(),
-        every_shake(),
-        every_kinematics(),
-        every_comparison_of_views(),
-        every_players_figure(),
-        every_device_figure(),
-        every_body_frame(),
-        every_clicking_page(),
-        every_viewer(),
-        every_overlay_video(),
-        every_plan(),
-        every_study_figure(),
+        targets.calibration.every_calibration(STUDY),
+        targets.calibration.every_photo_model(STUDY),
+        targets.calibration.every_evaluation(STUDY),
+        targets.takes.every_check(STUDY),
+        targets.takes.every_export(STUDY),
+        targets.takes.every_figure(STUDY),
+        targets.takes.every_shake(STUDY),
+        targets.takes.every_kinematics(STUDY),
+        targets.takes.every_comparison_of_views(STUDY),
+        targets.together.every_players_figure(STUDY),
+        targets.devices.every_device_figure(STUDY),
+        targets.devices.every_body_frame(STUDY),
+        targets.pages.every_clicking_page(STUDY),
+        targets.pages.every_viewer(STUDY),
+        targets.pages.every_overlay_video(STUDY),
+        targets.pages.every_plan(STUDY),
+        targets.calibration.every_study_figure(STUDY),
 
 
 rule report:

@@ -13,6 +13,8 @@ import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from courtside.study.execution import digest
+
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "workflow" / "lib"
 MODULES = sorted(LIBRARY.rglob("*.py"))
@@ -77,6 +79,21 @@ def test_functions_stay_short():
     found = {str(path): long_functions(path.read_text()) for path in [*MODULES, *SCRIPTS]}
     assert {name: functions for name, functions in found.items() if functions} == {}
     assert long_functions("def f():\n" + "    x = 1\n" * 41) == ["f: 42"]
+
+
+def functions_of_rules(text):
+    """Return the Python functions of a rule file, as source."""
+    return re.findall(r"^def .*?(?=^\S|\Z)", text, flags=re.M | re.S)
+
+
+def test_rule_files_are_few_and_their_functions_short():
+    assert len(RULES) <= 23
+    found = [source for path in RULES for source in functions_of_rules(path.read_text())]
+    assert len(found) > 10
+    assert [fault for source in found for fault in long_functions(source, limit=6)] == []
+    long = 'rule a:\n    input:\n        f,\n\n\ndef f():\n    """Text."""\n' + "    x = 1\n" * 6
+    (source,) = functions_of_rules(f"{long}\n\nrule b:\n    input:\n        f,\n")
+    assert long_functions(source, limit=6) == ["f: 7"]
 
 
 def rules():
@@ -174,6 +191,27 @@ def test_the_lock_covers_the_direct_dependencies():
     for requirement in map(Requirement, wanted):
         found = versions[canonicalize_name(requirement.name)]
         assert all(requirement.specifier.contains(version) for version in found), requirement
+
+
+def imported(path):
+    """Return the top-level names of all absolute imports of a module."""
+    names = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names.add(node.module.split(".")[0])
+    return names
+
+
+def test_every_package_that_the_workflow_imports_is_declared():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    declared = {canonicalize_name(Requirement(r).name) for r in project["dependencies"]}
+    ours = {"courtside", "virtualgym", *sys.stdlib_module_names}
+    used = set().union(*map(imported, [*MODULES, *SCRIPTS])) - ours
+    assert len(used) > 10
+    names = {canonicalize_name(digest.INSTALLED_AS.get(name, name)) for name in used}
+    assert sorted(names - declared) == []
 
 
 def test_nothing_large_or_foreign_is_tracked():

@@ -10,12 +10,14 @@ from pathlib import Path
 
 import pytest
 
+from courtside.study import paths
 from courtside.study.execution import digest
 
 ROOT = Path(__file__).parents[1]
 LIBRARY = ROOT / "workflow" / "lib"
 MODULES = sorted(LIBRARY.rglob("*.py"))
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
+PATHS = LIBRARY / "courtside" / "study" / "paths.py"
 LEVELS = {  # a room imports rooms of lower levels only
     "study": 1,
     "statistics": 2,
@@ -51,7 +53,8 @@ OWNERS = {
     "ezc3d": "exports",
     "embreex": "virtualgym",
 }
-TRUTH = ("truth.npz", "TRUE_TAKE", "true_take_file", "backdrops")  # how rules name files of truth
+# How rules name files of truth.
+TRUTH = ("truth.npz", "TRUTH", "TRUE_TAKE", "true_take", "BACKDROPS", "backdrops")
 FOR_SCRIPTS = {"courtside", "virtualgym", "numpy", "pandas", "cv2", *sys.stdlib_module_names}
 
 
@@ -161,11 +164,31 @@ def test_methods_reach_neither_simulation_nor_truth(path):
         assert not any(words in path.read_text() for words in ("truth.npz", "backdrops"))
 
 
-def test_only_the_records_of_truth_and_the_simulation_name_its_file():
+def test_only_the_records_of_truth_the_simulation_and_the_paths_name_its_file():
     naming = [path for path in MODULES if "truth.npz" in path.read_text()]
     assert any("virtualgym" in path.parts for path in naming)
     others = [path for path in naming if not {"virtualgym", "truth"}.intersection(path.parts)]
+    others.remove(PATHS)
     assert [path for path in others if "truth" not in path.stem] == []
+
+
+def test_only_the_inputs_of_evaluations_use_the_paths_of_truth():
+    truth = [
+        name
+        for name, pattern in vars(paths).items()
+        if isinstance(pattern, str) and is_truth(pattern)
+    ]
+    assert sorted(truth) == ["BACKDROPS", "TRUE_TAKE", "TRUTH"]
+    words = re.compile(rf"paths\.({'|'.join(truth)})\b")
+    users = [path for path in MODULES if words.search(path.read_text())]
+    assert users == [LIBRARY / "courtside" / "study" / "jobs" / "evaluation.py"]
+
+
+@pytest.mark.parametrize("path", [*MODULES, *SCRIPTS], ids=lambda p: "/".join(p.parts[-2:]))
+def test_only_rules_and_the_study_itself_know_paths_jobs_and_targets(path):
+    known = [f"courtside.study.{name}" for name in ("paths", "jobs", "targets")]
+    found = [name for name in imports(path.read_text()) if name.startswith(tuple(known))]
+    assert "study" in path.parts or found == []
 
 
 def rule_blocks():

@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
 PARTS = ("input", "output", "params")
-DRAWN = {"figure", "session_figure", "device_figure", "drawn", "fig_of_take"}  # give these three
+DRAWN = {"figure", "session_figure", "study_figure", "device_figure", "calibrated_figure"}
 FILES_OF_A_FIGURE = {"pdf", "png", "csv"}
 # Files that a script finds by another one: members of folders, assets, what a simulation writes.
 FOR_SNAKEMAKE = {"assets", "files", "photos", "videos", "boards", "clicks", "devices", "racket"}

@@ -10,9 +10,9 @@ for artefact in STUDY.artefacts.values():
         name:
             f"fetch_{artefact.name.replace('-', '_')}"
         output:
-            member_paths=[
-                f"results/external/{artefact.name}/{member}" for member in artefact.members
-            ],
+            member_paths=expand(
+                paths.EXTERNAL_MEMBER, artefact=artefact.name, member=artefact.members
+            ),
         log:
             f"results/external/logs/fetch_artefact/{artefact.name}.log",
         retries: 2
@@ -29,15 +29,15 @@ for artefact in STUDY.artefacts.values():
 
 rule convert_network:
     input:
-        tflite_path=tflite_file,
+        tflite_path=of_job(recordings.tflite),
     output:
-        onnx_path="results/networks/{model}/{part}.onnx",
+        onnx_path=paths.ONNX,
     log:
         "results/networks/logs/convert_network/{model}.{part}.log",
     wildcard_constraints:
         part="detector|landmarks",
     params:
         code=code("convert_network.py"),
-        outputs=lambda wildcards: network(wildcards).outputs,
+        outputs=of_job(lambda job: recordings.network(job).outputs),
     script:
         "../scripts/convert_network.py"

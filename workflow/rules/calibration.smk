@@ -1,79 +1,74 @@
 """Where the fixed cameras are, and the court points clicked for that.
 
-Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points, or these alone.
+Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points,
+or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
-Steps: import_cameras (`file`), calibrate_cameras (`sfm-n40`, the default), align_cameras (`paper-n40`,
-`paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`, `known8-board`, `dlt18`);
-propose_court_points (where the points probably are), build_clicking_page.
+Steps: import_cameras (`file`), calibrate_cameras (`sfm-n40`, the default), align_cameras
+(`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
+`known8-board`, `dlt18`); propose_court_points (where the points probably are), build_clicking_page.
 """
-
-FOUND = "results/{session}/calibration/{calibration}"
 
 
 rule import_cameras:
     input:
         calibration_path=lambda w: session_of(w).calibration_file,
     output:
-        cameras_toml="results/{session}/calibration/file/cameras.toml",
-        quality_json="results/{session}/calibration/file/quality.json",
+        cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
+        quality_json=paths.part(paths.CALIBRATION_QUALITY, calibration="file"),
     log:
         "results/{session}/logs/import_cameras/file.log",
     params:
         code=code("import_cameras.py"),
         names=lambda w: session_of(w).calibration_camera_names(),
-        crops_px=lambda w: {
-            name: camera.crop_px
-            for name, camera in session_of(w).cameras.items()
-            if camera.crop_px
-        },
+        crops_px=of_job(calibration.crops_px),
     script:
         "../scripts/import_cameras.py"
 
 
 rule calibrate_cameras:
     input:
-        ties_npz=ties_file,
+        ties_npz=of_job(calibration.ties),
         clicks_csv=lambda w: session_of(w).court_points or [],
-        court_yaml=lambda w: court_file(session_of(w)) or [],
+        court_yaml=of_job(Job.court_file),
     output:
-        cameras_toml=f"{FOUND}/cameras.toml",
-        covariance_npz=f"{FOUND}/covariance.npz",
-        quality_json=f"{FOUND}/quality.json",
+        cameras_toml=paths.CAMERAS,
+        covariance_npz=paths.CAMERA_COVARIANCE,
+        quality_json=paths.CALIBRATION_QUALITY,
     log:
         "results/{session}/logs/calibrate_cameras/{calibration}.log",
     wildcard_constraints:
         calibration="sfm-n[0-9]+(-o[0-2])?",
     params:
         code=code("calibrate_cameras.py"),
-        step=click_parameters,
+        step=of_job(calibration.clicks),
     script:
         "../scripts/calibrate_cameras.py"
 
 
 rule align_cameras:
     input:
-        ties_npz=ties_file,
+        ties_npz=of_job(calibration.ties),
         clicks_csv=lambda w: session_of(w).court_points,
-        court_yaml=lambda w: court_file(session_of(w)),
+        court_yaml=of_job(Job.court_file),
     output:
-        cameras_toml=f"{FOUND}/cameras.toml",
-        quality_json=f"{FOUND}/quality.json",
+        cameras_toml=paths.CAMERAS,
+        quality_json=paths.CALIBRATION_QUALITY,
     log:
         "results/{session}/logs/align_cameras/{calibration}.log",
     wildcard_constraints:
         calibration="(sim3|paper|paper-global)-n[0-9]+(-o[0-2])?",
     params:
         code=code("align_cameras.py"),
-        step=click_parameters,
+        step=of_job(calibration.clicks),
     script:
         "../scripts/align_cameras.py"
 
 
 rule calibrate_lens:
     input:
-        files=board_source,
+        files=of_job(calibration.boards),
     output:
-        lens_toml="results/{session}/calibration/lens/{camera}.toml",
+        lens_toml=paths.LENS,
     log:
         "results/{session}/logs/calibrate_lens/{camera}.log",
     params:
@@ -87,19 +82,19 @@ rule calibrate_lens:
 rule resect_cameras:
     input:
         clicks_csv=lambda w: session_of(w).court_points,
-        court_yaml=lambda w: court_file(session_of(w)),
-        static_png=each_fixed("results/{session}/static/{camera}.png"),
-        lens_toml=lens_files,
+        court_yaml=of_job(Job.court_file),
+        static_png=of_job(calibration.each_fixed, paths.STATIC),
+        lens_toml=of_job(calibration.lenses),
     output:
-        cameras_toml=f"{FOUND}/cameras.toml",
-        quality_json=f"{FOUND}/quality.json",
+        cameras_toml=paths.CAMERAS,
+        quality_json=paths.CALIBRATION_QUALITY,
     log:
         "results/{session}/logs/resect_cameras/{calibration}.log",
     wildcard_constraints:
         calibration="(dlt|known)[0-9]+(-board)?",
     params:
         code=code("resect_cameras.py"),
-        step=click_parameters,
+        step=of_job(calibration.clicks),
         cameras=lambda w: list(session_of(w).cameras),
     script:
         "../scripts/resect_cameras.py"
@@ -107,11 +102,11 @@ rule resect_cameras:
 
 rule propose_court_points:
     input:
-        cameras_toml="results/{session}/calibration/{calibration}/cameras.toml",
-        pictures=each_fixed("results/{session}/static/{camera}.png"),
-        court_yaml=lambda w: court_file(session_of(w)),
+        cameras_toml=paths.CAMERAS,
+        pictures=of_job(calibration.each_fixed, paths.STATIC),
+        court_yaml=of_job(Job.court_file),
     output:
-        proposals_csv="results/{session}/calibration/{calibration}/proposals.csv",
+        proposals_csv=paths.COURT_PROPOSALS,
     log:
         "results/{session}/logs/propose_court_points/{calibration}.log",
     params:
@@ -124,17 +119,17 @@ rule propose_court_points:
 
 rule build_clicking_page:
     input:
-        pictures=each_fixed("results/{session}/static/{camera}.png"),
-        court_yaml=lambda w: court_file(session_of(w)),
+        pictures=of_job(calibration.each_fixed, paths.STATIC),
+        court_yaml=of_job(Job.court_file),
         clicks_csv=lambda w: session_of(w).court_points or [],
-        proposals_csv=proposals_file,
+        proposals_csv=of_job(calibration.proposals),
         assets=sorted(ASSETS.glob("[cp]*")),
     output:
-        page_html="results/{session}/pages/clicking.html",
+        page_html=paths.CLICKING_PAGE,
     log:
         "results/{session}/logs/build_clicking_page/all.log",
     params:
         code=code("build_clicking_page.py"),
-        step=clicking_settings,
+        step=of_job(calibration.clicking),
     script:
         "../scripts/build_clicking_page.py"

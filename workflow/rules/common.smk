@@ -1,16 +1,17 @@
-"""What all rules share: the checked configuration, the library on the path, names of files.
+"""What all rules share: the checked configuration, the library, binders of input functions.
 
 Inputs: config/. Outputs: none. Steps: check every YAML file, then offer the functions below.
+Which files and settings belong to a job is decided in `courtside.study.jobs`, what the study makes
+in `courtside.study.targets`; every file is named in `courtside.study.paths`.
 """
 
 import os
-import re
 import sys
-from itertools import product
 from pathlib import Path
 
 REPOSITORY = Path(str(workflow.current_basedir)).parents[1]
 CONFIG = Path(os.path.relpath(REPOSITORY / "config"))  # relative: a study may move with its results
+CAPTIONS = os.path.relpath(REPOSITORY / "workflow" / "report")
 SCRIPTS = REPOSITORY / "workflow" / "scripts"
 LIBRARY = REPOSITORY / "workflow" / "lib"
 ASSETS = Path(os.path.relpath(LIBRARY / "courtside" / "pages" / "assets"))
@@ -19,12 +20,24 @@ PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
 os.environ.update(OPENBLAS_NUM_THREADS="1")  # sums do not depend on the number of cores
 
-from courtside.study.configuration import configuration, plans
+from courtside.study import paths, targets
+from courtside.study.configuration import configuration, consent, plans
 from courtside.study.errors import InputError
 from courtside.study.execution import digest, files, future_dates, machine_resources
+from courtside.study.jobs import (
+    calibration,
+    devices,
+    evaluation,
+    figures,
+    pages,
+    recordings,
+    report_page,
+    takes,
+)
+from courtside.study.jobs.job import Job
 
 try:
-    for folder in filter(Path.exists, [Path.cwd(), Path("results")]):
+    for folder in filter(Path.exists, [Path.cwd(), Path(paths.RESULTS)]):
         machine_resources.check(folder)
 except InputError as error:
     sys.exit(f"Error: {error}")
@@ -34,14 +47,11 @@ configfile: str(REPOSITORY / "config" / "config.yaml")
 
 
 NAME = "[a-z0-9][a-z0-9_-]*"
-MODEL_PARTS = ["cameras", "images", "points3D", "rigs", "frames"]  # files of a COLMAP model
-STAGES = ["pose3d", "pose3d_filtered", "pose3d_corrected"]
-FORMATS = ["pdf", "png", "csv"]
 
 try:
     STUDY = configuration.load(config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd())
-    PLANS = {name: plans.read(CONFIG / "plans" / f"{name}.yaml") for name in config["plans"]}
-    future_dates.check([CONFIG, "results/external", *(f"data/{name}" for name in STUDY.sessions)])
+    PLANS = {name: plans.read(paths.plan(CONFIG, name)) for name in config["plans"]}
+    future_dates.check([CONFIG, paths.EXTERNAL, *(f"data/{name}" for name in STUDY.sessions)])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))
 
@@ -59,7 +69,7 @@ wildcard_constraints:
     model="|".join(STUDY.models),
     calibration=NAME,
     fusion=NAME,
-    stage="|".join(STAGES),
+    stage="|".join(paths.STAGES),
     walk=NAME,
     mapper="global|incremental",
     n_images="[1-9][0-9]*",
@@ -68,24 +78,36 @@ wildcard_constraints:
 
 
 def code(script):
-    """Return the digest of a script, the code that it reaches, the packages they import: a change reruns the rule."""
+    """Return the digest of a script, of the code that it reaches, and of imported packages."""
     return DIGESTS.digest(SCRIPTS / script, LIBRARY)
+
+
+def asked(function, *args, **options):
+    """Return what a function of the library says; its error is told in one line."""
+    try:
+        return function(*args, **options)
+    except InputError as error:
+        raise WorkflowError(str(error)) from None
+
+
+def of_job(function, *args, **options):
+    """Return the input function of a library function whose first argument is the `Job`."""
+    return lambda w: asked(function, Job(STUDY, dict(w.items())), *args, **options)
 
 
 def session_of(wildcards):
     """Return the `Session` that a job belongs to."""
-    return STUDY.sessions[wildcards.session]
+    return Job(STUDY, dict(wildcards.items())).session
 
 
 def take_of(wildcards):
     """Return the `Take` that a job belongs to."""
-    session = session_of(wildcards)
-    if wildcards.take in session.withheld:
-        raise WorkflowError(
-            f"{session.file}: expected analysis in the consent of {', '.join(session.withheld[wildcards.take])}, "
-            f"found none: nothing is made of take {wildcards.take}"
-        )
-    return session.takes[wildcards.take]
+    return of_job(lambda job: job.take)(wildcards)
+
+
+def device_of(wildcards):
+    """Return the `Device` that a job belongs to."""
+    return of_job(lambda job: job.device)(wildcards)
 
 
 def step(name):
@@ -93,58 +115,59 @@ def step(name):
     return lambda wildcards: session_of(wildcards).parameters[name]
 
 
-def each_camera(pattern):
-    """Return an input function for the files of all cameras of a take, in the take's order."""
-    return lambda wildcards: [
-        pattern.format(**dict(wildcards.items()), camera=camera)
-        for camera in take_of(wildcards).videos
-    ]
+def whole(path):
+    """Return a recording as an input; of a folder, only its files have useful dates (`inside`)."""
+    return ancient(path) if Path(path).is_dir() else path
 
 
 def models_of(imported):
-    """Return a pattern of the names of networks, or of skeletons whose keypoints other programs find."""
+    """Return a pattern of the names of networks, or of skeletons of imported keypoints."""
     found = [name for name, m in STUDY.models.items() if (m.decoder == "imported") == imported]
     return "|".join(found) or "none-at-all"
 
 
-def skeleton_file(wildcards):
-    """Return the path of the skeleton of a job's network."""
-    return CONFIG / "skeletons" / f"{STUDY.models[wildcards.model].skeleton}.yaml"
-
-
-def network(wildcards):
-    """Return the entry of a model's network in config/models.yaml."""
-    return getattr(STUDY.models[wildcards.model], wildcards.part)
-
-
-def tflite_file(wildcards):
-    """Return the TFLite file of a model's network."""
-    return f"results/external/{network(wildcards).artefact}/{network(wildcards).member}"
+def drawn(stem, name, category, labels):
+    """Return the three files of a figure; the PNG goes into the report with its caption."""
+    shown = {"caption": f"../report/draw_{name}.rst", "labels": labels}
+    shown |= {"category": category[0], "subcategory": category[1]}
+    return {"pdf": f"{stem}.pdf", "csv": f"{stem}.csv", "png": report(f"{stem}.png", **shown)}
 
 
 def figure(name):
     """Return the three files of a take's figure."""
-    stem = f"results/{{session}}/takes/{{take}}/figures/{name}.{{calibration}}.{{fusion}}.{{model}}"
     labels = {"figure": name, "network": "{model}", "calibration": "{calibration}"}
+    stem = paths.part(paths.TAKE_FIGURE, figure=name)
     return drawn(stem, name, ("{session}", "{take}"), labels)
 
 
-def session_figure(name):
+def calibrated_figure(name, label):
+    """Return the three files of a figure of a take with all ways to fuse views."""
+    labels = {"figure": label, "calibration": "{calibration}", "network": "{model}"}
+    stem = paths.part(paths.CALIBRATED_FIGURE, figure=name)
+    return drawn(stem, name, ("{session}", "{take}"), labels)
+
+
+def device_figure(name, caption):
+    """Return the three files of a figure of a take's devices."""
+    stem = paths.part(paths.DEVICE_FIGURE, figure=name)
+    return drawn(stem, caption, ("{session}", "{take}"), {"figure": caption, "network": "{model}"})
+
+
+def session_figure(name, caption=None, **labels):
     """Return the three files of a session's figure of the calibration study."""
-    labels = {"figure": name}
-    return drawn(f"results/{{session}}/figures/{name}", name, ("calibration", "{session}"), labels)
+    stem = paths.part(paths.SESSION_FIGURE, figure=name)
+    labels = labels or {"figure": name}
+    return drawn(stem, caption or name, ("calibration", "{session}"), labels)
 
 
-def drawn(stem, name, category, labels):
-    """Return the three files of a figure; the PNG goes into the report with its caption."""
-    return {
-        "pdf": f"{stem}.pdf",
-        "csv": f"{stem}.csv",
-        "png": report(
-            f"{stem}.png",
-            caption=f"../report/draw_{name}.rst",
-            category=category[0],
-            subcategory=category[1],
-            labels=labels,
-        ),
-    }
+def study_figure(name, caption, category, **labels):
+    """Return the three files of a figure of the study."""
+    stem = paths.part(paths.STUDY_FIGURE, figure=name)
+    return drawn(stem, caption, category, labels or {"figure": name})
+
+
+def plan_figure(part):
+    """Return the three files of a figure of a planned session, by keys that name the part."""
+    stem = paths.part(paths.PLAN_FIGURE, figure=part)
+    made = drawn(stem, f"plan_{part}", ("planning", "{plan}"), {"figure": f"plan_{part}"})
+    return {f"{part}_{form}": path for form, path in made.items()}

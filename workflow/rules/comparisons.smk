@@ -1,40 +1,37 @@
 """What takes say together: sets of cameras, networks side by side, clocks, a subject over sessions.
 
-Inputs: 3D keypoints, kinematics, errors. Outputs: results/{session}/takes/{take}/views/, results/figures/.
-Steps: compare_views (real takes), tabulate_players, draw_clock_errors, compare_networks, draw_agreement,
-compare_sessions.
+Inputs: 3D keypoints, kinematics, errors. Outputs: results/{session}/takes/{take}/views/,
+results/figures/.
+Steps: compare_views (real takes), tabulate_players, draw_clock_errors, compare_networks,
+draw_agreement, compare_sessions.
 """
 
 
 rule compare_views:
     input:
-        pose3d_npz=lambda w: [
-            f"results/{w.session}/takes/{w.take}/pose3d/{w.calibration}/{fusion}/{w.model}.npz"
-            for fusion in every_fusion(w)[::-1]
-        ],
+        pose3d_npz=of_job(lambda job: takes.every_fused(job)[::-1]),
     output:
-        distances_csv=f"{TAKE}/views/{{calibration}}.{{model}}.csv",
+        distances_csv=paths.VIEW_DISTANCES,
     log:
         "results/{session}/logs/compare_views/{take}.{calibration}.{model}.log",
     params:
         code=code("compare_views.py"),
-        fusions=lambda w: every_fusion(w)[::-1],
-        labels=lambda w: {
-            **{key: w[key] for key in ("session", "take", "calibration", "model")},
-            "stage": "pose3d",
-        },
+        fusions=of_job(lambda job: takes.every_fusion(job)[::-1]),
+        labels=of_job(
+            evaluation.chosen, ("session", "take", "calibration", "model"), stage="pose3d"
+        ),
     script:
         "../scripts/compare_views.py"
 
 
 rule tabulate_players:
     input:
-        errors=lambda w: evaluations_of_takes("errors"),
-        kinematics=lambda w: evaluations_of_takes("kinematics"),
-        clocks=lambda w: evaluations_of_takes("clocks"),
-        gains=lambda w: evaluations_of_takes("gains"),
+        errors=lambda w: targets.takes.evaluations(STUDY, "errors"),
+        kinematics=lambda w: targets.takes.evaluations(STUDY, "kinematics"),
+        clocks=lambda w: targets.takes.evaluations(STUDY, "clocks"),
+        gains=lambda w: targets.takes.evaluations(STUDY, "gains"),
     output:
-        table_csv="results/figures/players.csv",
+        table_csv=paths.PLAYERS_TABLE,
     log:
         "results/figures/logs/tabulate_players/all.log",
     params:
@@ -45,14 +42,9 @@ rule tabulate_players:
 
 rule draw_clock_errors:
     input:
-        errors_csv=lambda w: evaluations_of_takes("clocks"),
+        errors_csv=lambda w: targets.takes.evaluations(STUDY, "clocks"),
     output:
-        **drawn(
-            "results/figures/clock_errors",
-            "clock_errors",
-            ("players", "clocks"),
-            {"figure": "clocks"},
-        ),
+        **study_figure("clock_errors", "clock_errors", ("players", "clocks"), figure="clocks"),
     log:
         "results/figures/logs/draw_clock_errors/all.log",
     params:
@@ -63,17 +55,17 @@ rule draw_clock_errors:
 
 rule compare_networks:
     input:
-        measures_csv=[row["summary"] for row in compared_takes()],
-        pose3d_npz=[row["pose3d"] for row in compared_takes()],
+        measures_csv=[row.measures for row in targets.together.compared_takes(STUDY)],
+        pose3d_npz=[row.pose3d for row in targets.together.compared_takes(STUDY)],
     output:
-        pairs_csv="results/figures/agreement.pairs.csv",
-        table_csv="results/figures/agreement.table.csv",
+        pairs_csv=paths.NETWORK_PAIRS,
+        table_csv=paths.NETWORK_AGREEMENT,
     log:
         "results/figures/logs/compare_networks/all.log",
     params:
         code=code("compare_networks.py"),
-        labels=[row["labels"] for row in compared_takes()],
-        joint_labels=[row["joint_labels"] for row in compared_takes()],
+        labels=[row.labels for row in targets.together.compared_takes(STUDY)],
+        joint_labels=[row.joint_labels for row in targets.together.compared_takes(STUDY)],
         networks=STUDY.parameters["compare_networks"]["networks"],
         step={
             key: STUDY.parameters["compare_networks"][key]
@@ -85,15 +77,10 @@ rule compare_networks:
 
 rule draw_agreement:
     input:
-        pairs_csv="results/figures/agreement.pairs.csv",
-        table_csv="results/figures/agreement.table.csv",
+        pairs_csv=paths.NETWORK_PAIRS,
+        table_csv=paths.NETWORK_AGREEMENT,
     output:
-        **drawn(
-            "results/figures/agreement",
-            "agreement",
-            ("players", "networks"),
-            {"figure": "agreement"},
-        ),
+        **study_figure("agreement", "agreement", ("players", "networks")),
     log:
         "results/figures/logs/draw_agreement/all.log",
     params:
@@ -105,18 +92,16 @@ rule draw_agreement:
 
 rule compare_sessions:
     input:
-        measures_csv=[row["summary"] for row in archived_takes()],
-        agreement_csv="results/figures/agreement.table.csv" if compared_takes() else [],
+        measures_csv=[row.measures for row in targets.together.archived_takes(STUDY)],
+        agreement_csv=paths.NETWORK_AGREEMENT if targets.together.compared_takes(STUDY) else [],
     output:
-        **drawn(
-            "results/figures/archive", "archive", ("players", "sessions"), {"figure": "archive"}
-        ),
+        **study_figure("archive", "archive", ("players", "sessions")),
     log:
         "results/figures/logs/compare_sessions/all.log",
     params:
         code=code("compare_sessions.py"),
         step=lambda w: {
-            "labels": [row["labels"] for row in archived_takes()],
+            "labels": [row.labels for row in targets.together.archived_takes(STUDY)],
             **{
                 key: STUDY.parameters["compare_sessions"][key]
                 for key in ("subject", "measures", "allow_mixed")

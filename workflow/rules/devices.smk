@@ -1,18 +1,18 @@
-"""Devices of their own beside the fixed cameras, or alone: mocopi, depth cameras, single videos, Nuitrack.
+"""Devices beside the fixed cameras, or alone: mocopi, depth cameras, single videos, Nuitrack.
 
 Inputs: recordings of devices. Outputs: results/{session}/takes/{take}/ devices, sync.
-Steps: import_device, extract_colour, convert_landmarks, lift_depth, select_person (of the fixed cameras),
-synchronise_devices, list_events (whatever happens to the clocks).
+Steps: import_device, extract_colour, convert_landmarks, lift_depth, select_person (of the fixed
+cameras), synchronise_devices, list_events (whatever happens to the clocks).
 """
 
 
 rule import_device:
     input:
         recording=lambda w: whole(device_of(w).file),
-        files=lambda w: inside(device_of(w).file),
-        skeleton_yaml=device_skeleton,
+        files=lambda w: recordings.inside(device_of(w).file),
+        skeleton_yaml=of_job(devices.skeleton_file),
     output:
-        motion_npz=f"{TAKE}/devices/{{device}}.npz",
+        motion_npz=paths.DEVICE,
     log:
         "results/{session}/logs/import_device/{take}.{device}.log",
     params:
@@ -25,11 +25,11 @@ rule import_device:
 rule extract_colour:
     input:
         recording=lambda w: whole(device_of(w).file),
-        files=lambda w: inside(device_of(w).file),
+        files=lambda w: recordings.inside(device_of(w).file),
     output:
-        video=f"{TAKE}/devices/{{device}}.mp4",
-        frames_csv=f"{TAKE}/devices/{{device}}.frames.csv",
-        camera_toml=f"{TAKE}/devices/{{device}}.toml",
+        video=paths.COLOUR_VIDEO,
+        frames_csv=paths.COLOUR_FRAMES,
+        camera_toml=paths.COLOUR_CAMERA,
     log:
         "results/{session}/logs/extract_colour/{take}.{device}.log",
     benchmark:
@@ -43,10 +43,10 @@ rule extract_colour:
 
 rule convert_landmarks:
     input:
-        pose2d_npz=f"{TAKE}/pose2d/{{model}}/{{device}}.npz",
-        frames_csv=lambda w: colour_file(w, "frames.csv"),
+        pose2d_npz=paths.part(paths.POSE2D, camera="{device}"),
+        frames_csv=of_job(devices.colour_frames),
     output:
-        device_npz=f"{TAKE}/devices/{{device}}-rgb.{{model}}.npz",
+        device_npz=paths.RGB_SOURCE,
     log:
         "results/{session}/logs/convert_landmarks/{take}.{device}.{model}.log",
     params:
@@ -59,12 +59,12 @@ rule convert_landmarks:
 rule lift_depth:
     input:
         recording=lambda w: whole(device_of(w).file),
-        files=lambda w: inside(device_of(w).file),
-        pose2d=f"{TAKE}/pose2d/{{model}}/{{device}}.npz",
-        frames=lambda w: colour_file(w, "frames.csv"),
-        skeleton=skeleton_file,
+        files=lambda w: recordings.inside(device_of(w).file),
+        pose2d=paths.part(paths.POSE2D, camera="{device}"),
+        frames=of_job(devices.colour_frames),
+        skeleton=of_job(Job.skeleton_file),
     output:
-        device_npz=f"{TAKE}/devices/{{device}}-depth.{{model}}.npz",
+        device_npz=paths.DEPTH_SOURCE,
     log:
         "results/{session}/logs/lift_depth/{take}.{device}.{model}.log",
     benchmark:
@@ -79,32 +79,32 @@ rule lift_depth:
 
 rule select_person:
     input:
-        pose3d_npz=fused_file,
+        pose3d_npz=of_job(devices.fused),
     output:
-        device_npz=f"{TAKE}/devices/cameras.{{model}}.npz",
+        device_npz=paths.CAMERA_SOURCE,
     log:
         "results/{session}/logs/select_person/{take}.{model}.log",
     params:
         code=code("select_person.py"),
-        person=worn_by,
+        person=of_job(devices.person),
     script:
         "../scripts/select_person.py"
 
 
 rule synchronise_devices:
     input:
-        device_npz=lambda w: source_files(w, corrected=False),
+        device_npz=of_job(devices.source_files, corrected=False),
     output:
-        sync_json=f"{TAKE}/sync/devices.{{model}}.json",
-        wrists_csv=f"{TAKE}/sync/devices.{{model}}.wrists.csv",
-        events_csv=f"{TAKE}/sync/devices.{{model}}.events.csv",
-        checks_csv=f"{TAKE}/sync/devices.{{model}}.checks.csv",
+        sync_json=paths.DEVICE_CLOCKS,
+        wrists_csv=paths.part(paths.WRISTS, clocks="devices"),
+        events_csv=paths.DEVICE_EVENTS,
+        checks_csv=paths.DEVICE_CHECKS,
     log:
         "results/{session}/logs/synchronise_devices/{take}.{model}.log",
     params:
         code=code("synchronise_devices.py"),
-        devices=lambda w: clock_owners(w, corrected=False),
-        stated=lambda w: stated_clocks(w, take_of(w).devices),
+        devices=of_job(devices.clocks, corrected=False),
+        stated=of_job(lambda job: takes.clocks(job, job.take.devices)),
         step=step("synchronise_devices"),
     script:
         "../scripts/synchronise_devices.py"
@@ -112,10 +112,10 @@ rule synchronise_devices:
 
 rule list_events:
     input:
-        device_npz=lambda w: source_files(w, corrected=False),
+        device_npz=of_job(devices.source_files, corrected=False),
     output:
-        wrists_csv=f"{TAKE}/sync/events.{{model}}.wrists.csv",
-        events_csv=f"{TAKE}/sync/events.{{model}}.csv",
+        wrists_csv=paths.part(paths.WRISTS, clocks="events"),
+        events_csv=paths.OWN_EVENTS,
     log:
         "results/{session}/logs/list_events/{take}.{model}.log",
     params:

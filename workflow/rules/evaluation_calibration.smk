@@ -1,46 +1,44 @@
-"""Calibrations of virtual sessions against their truth. Only this file and evaluation_takes.smk read truth.
+"""Calibrations of virtual sessions against their truth.
+
+Only this file and evaluation_takes.smk read truth.
 
 Inputs: ties, truth. Outputs: results/{session}/evaluation/, results/figures/calibration.csv.
-Steps: evaluate_calibration (one structure from motion), evaluate_known (calibration from known points alone),
-evaluate_racket (the length of a racket), tabulate_calibration.
+Steps: evaluate_calibration (one structure from motion), evaluate_known (calibration from known
+points alone), evaluate_racket (the length of a racket), tabulate_calibration.
 """
 
 
 rule evaluate_calibration:
     input:
-        ties_npz=f"{VARIANT}/ties.npz",
-        summary_json=f"{VARIANT}/summary.json",
-        truth_npz="results/virtual/{session}/truth.npz",
-        court_yaml=lambda w: court_file(session_of(w)),
+        ties_npz=paths.TIES,
+        summary_json=paths.SFM_SUMMARY,
+        truth_npz=paths.TRUTH,
+        court_yaml=of_job(Job.court_file),
     output:
-        errors_csv="results/{session}/evaluation/{mapper}-n{n_images}-o{offset}.csv",
+        errors_csv=paths.SFM_ERRORS,
     log:
         "results/{session}/logs/evaluate_calibration/{mapper}-n{n_images}-o{offset}.log",
     benchmark:
         "results/{session}/benchmarks/evaluate_calibration/{mapper}-n{n_images}-o{offset}.tsv"
     params:
         code=code("evaluate_calibration.py"),
-        step=lambda w: evaluation_parameters(
-            w,
-            labels={"mapper": w.mapper, "n_bridging": w.n_images, "offset": w.offset},
-            keys=["click_sigma_px", "click_bias_px", "click_loss"],
-        ),
+        step=of_job(evaluation.sfm_errors),
     script:
         "../scripts/evaluate_calibration.py"
 
 
 rule evaluate_known:
     input:
-        truth_npz="results/virtual/{session}/truth.npz",
-        court_yaml=lambda w: court_file(session_of(w)),
-        lens_toml=every_lens_file,
+        truth_npz=paths.TRUTH,
+        court_yaml=of_job(Job.court_file),
+        lens_toml=of_job(evaluation.lenses),
     output:
-        errors_csv="results/{session}/evaluation/known.csv",
+        errors_csv=paths.KNOWN_ERRORS,
     log:
         "results/{session}/logs/evaluate_known/all.log",
     params:
         code=code("evaluate_known.py"),
-        step=lambda w: evaluation_parameters(w, labels={}, keys=["click_sigma_px"]),
+        step=of_job(evaluation.known_errors),
         cameras=lambda w: list(session_of(w).cameras),
     script:
         "../scripts/evaluate_known.py"
@@ -48,29 +46,27 @@ rule evaluate_known:
 
 rule evaluate_racket:
     input:
-        ties_npz=lambda w: [
-            f"results/{w.session}/sfm/{variant}/ties.npz" for variant in racket_models(w.session)
-        ],
-        truth_npz="results/virtual/{session}/truth.npz",
-        court_yaml=lambda w: court_file(session_of(w)),
+        ties_npz=of_job(evaluation.racket_ties),
+        truth_npz=paths.TRUTH,
+        court_yaml=of_job(Job.court_file),
     output:
-        lengths_csv="results/{session}/evaluation/racket.csv",
+        lengths_csv=paths.RACKET_LENGTHS,
     log:
         "results/{session}/logs/evaluate_racket/all.log",
     benchmark:
         "results/{session}/benchmarks/evaluate_racket/all.tsv"
     params:
         code=code("evaluate_racket.py"),
-        step=racket_parameters,
+        step=of_job(evaluation.racket),
     script:
         "../scripts/evaluate_racket.py"
 
 
 rule tabulate_calibration:
     input:
-        errors_csv=every_error(tabulated()),
+        errors_csv=targets.calibration.every_error(targets.calibration.tabulated(STUDY)),
     output:
-        table_csv="results/figures/calibration.csv",
+        table_csv=paths.CALIBRATION_TABLE,
     log:
         "results/figures/logs/tabulate_calibration/all.log",
     params:

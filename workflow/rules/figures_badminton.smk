@@ -1,6 +1,7 @@
-"""Figures and the table of the badminton paper, drawn from sessions and takes; figure 8 with three cameras.
+"""Figures and the table of the badminton paper; its comparison with three cameras.
 
-Inputs: errors against the truth, 2D and 3D keypoints, people, clocks, videos, truth of virtual takes.
+Inputs: errors against the truth, 2D and 3D keypoints, people, clocks, videos, truth of virtual
+takes.
 Outputs: results/figures/, results/{session}/figures/, results/{session}/takes/{take}/figures/.
 Steps: draw_badminton_fig05, 06, 08 to 12, draw_badminton_tab01, draw_three_cameras.
 """
@@ -8,25 +9,18 @@ Steps: draw_badminton_fig05, 06, 08 to 12, draw_badminton_tab01, draw_three_came
 
 rule draw_badminton_fig05:
     input:
-        errors=[f"{folder}/detection/{model}.csv" for folder, model in fig05_evaluations()],
-        pose2d=[source["pose2d"] for source in fig05_sources()],
-        videos=[source["video"] for source in fig05_sources()],
-        skeleton=CONFIG
-        / "skeletons"
-        / f"{STUDY.models[STUDY.parameters['models'][0]].skeleton}.yaml",
+        errors=figures.fig05_errors(STUDY),
+        pose2d=[source["pose2d"] for source in figures.fig05_sources(STUDY)],
+        videos=[source["video"] for source in figures.fig05_sources(STUDY)],
+        skeleton=STUDY.skeleton_file(STUDY.parameters["models"][0]),
     output:
-        **drawn(
-            "results/figures/badminton_fig05",
-            "badminton_fig05",
-            ("players", "detection"),
-            {"figure": "badminton_fig05"},
-        ),
+        **study_figure("badminton_fig05", "badminton_fig05", ("players", "detection")),
     log:
         "results/figures/logs/draw_badminton_fig05/all.log",
     params:
         code=code("draw_badminton_fig05.py"),
-        layouts=fig05_layouts(),
-        sources=[source["name"] for source in fig05_sources()],
+        layouts=targets.together.fig05_layouts(STUDY),
+        sources=[source["name"] for source in figures.fig05_sources(STUDY)],
         blur_faces=True,
     script:
         "../scripts/draw_badminton_fig05.py"
@@ -34,15 +28,15 @@ rule draw_badminton_fig05:
 
 rule draw_badminton_fig06:
     input:
-        ties_npz=first_of_each_count("results/{session}/sfm/{variant}/ties.npz"),
-        summary_json=first_of_each_count("results/{session}/sfm/{variant}/summary.json"),
-        court_yaml=lambda w: court_file(session_of(w)),
+        ties_npz=of_job(figures.of_each_count, paths.TIES),
+        summary_json=of_job(figures.of_each_count, paths.SFM_SUMMARY),
+        court_yaml=of_job(Job.court_file),
     output:
-        **drawn(
-            "results/{session}/figures/badminton_fig06.{mapper}",
+        **session_figure(
+            "badminton_fig06.{mapper}",
             "badminton_fig06",
-            ("calibration", "{session}"),
-            {"figure": "badminton_fig06", "mapper": "{mapper}"},
+            figure="badminton_fig06",
+            mapper="{mapper}",
         ),
     log:
         "results/{session}/logs/draw_badminton_fig06/{mapper}.log",
@@ -55,7 +49,7 @@ rule draw_badminton_fig06:
 
 rule draw_badminton_fig08:
     input:
-        errors_csv=lambda w: every_error([session_of(w)]),
+        errors_csv=of_job(figures.session_errors),
     output:
         **session_figure("badminton_fig08"),
     log:
@@ -68,62 +62,57 @@ rule draw_badminton_fig08:
 
 rule draw_badminton_fig09:
     input:
-        unpack(seen_and_made),
-        measures=f"{TAKE}/kinematics/{FUSED}.frames.csv",
-        court=lambda w: court_file(session_of(w)) or [],
+        unpack(of_job(figures.seen_and_made)),
+        measures=paths.FRAME_MEASURES,
+        court=of_job(Job.court_file),
     output:
-        **fig_of_take("badminton_fig09"),
+        **figure("badminton_fig09"),
     log:
-        f"results/{{session}}/logs/draw_badminton_fig09/{OF_FUSED}.log",
+        f"results/{{session}}/logs/draw_badminton_fig09/{paths.OF_FUSED}.log",
     params:
         code=code("draw_badminton_fig09.py"),
-        step=stroke,
-        blur_faces=blurred,
+        step=of_job(figures.stroke),
+        blur_faces=of_job(takes.blur_faces),
     script:
         "../scripts/draw_badminton_fig09.py"
 
 
 rule draw_badminton_fig10:
     input:
-        unpack(seen_and_made),
-        court=lambda w: court_file(session_of(w)) or [],
+        unpack(of_job(figures.seen_and_made)),
+        court=of_job(Job.court_file),
     output:
-        **fig_of_take("badminton_fig10"),
+        **figure("badminton_fig10"),
     log:
-        f"results/{{session}}/logs/draw_badminton_fig10/{OF_FUSED}.log",
+        f"results/{{session}}/logs/draw_badminton_fig10/{paths.OF_FUSED}.log",
     params:
         code=code("draw_badminton_fig10.py"),
-        step=lambda w: {**stroke(w), "n_instants": 3},
-        blur_faces=blurred,
+        step=of_job(figures.stroke, n_instants=3),
+        blur_faces=of_job(takes.blur_faces),
     script:
         "../scripts/draw_badminton_fig10.py"
 
 
 rule draw_badminton_fig11:
     input:
-        unpack(seen_and_made),
+        unpack(of_job(figures.seen_and_made)),
     output:
-        **fig_of_take("badminton_fig11"),
+        **figure("badminton_fig11"),
     log:
-        f"results/{{session}}/logs/draw_badminton_fig11/{OF_FUSED}.log",
+        f"results/{{session}}/logs/draw_badminton_fig11/{paths.OF_FUSED}.log",
     params:
         code=code("draw_badminton_fig11.py"),
-        step=lambda w: {**stroke(w), "limit_torso": STUDY.parameters["draw_stroke"]["limit_torso"]},
-        blur_faces=blurred,
+        step=of_job(figures.stroke, limit_torso=STUDY.parameters["draw_stroke"]["limit_torso"]),
+        blur_faces=of_job(takes.blur_faces),
     script:
         "../scripts/draw_badminton_fig11.py"
 
 
 rule draw_badminton_fig12:
     input:
-        lengths_csv=[f"results/{name}/evaluation/racket.csv" for name in racket_sessions()],
+        lengths_csv=expand(paths.RACKET_LENGTHS, session=targets.calibration.racket_sessions(STUDY)),
     output:
-        **drawn(
-            "results/figures/badminton_fig12",
-            "badminton_fig12",
-            ("calibration", "racket"),
-            {"figure": "badminton_fig12"},
-        ),
+        **study_figure("badminton_fig12", "badminton_fig12", ("calibration", "racket")),
     log:
         "results/figures/logs/draw_badminton_fig12/all.log",
     params:
@@ -134,15 +123,10 @@ rule draw_badminton_fig12:
 
 rule draw_badminton_tab01:
     input:
-        rows_csv="results/{session}/evaluation/takes/{take}/round_trip/{calibration}.{model}.csv",
-        published_csv=CONFIG / "published" / "badminton_tab01.csv",
+        rows_csv=paths.ROUND_TRIP,
+        published_csv=paths.published(CONFIG, "badminton_tab01"),
     output:
-        **drawn(
-            f"{TAKE}/figures/badminton_tab01.{{calibration}}.{{model}}",
-            "badminton_tab01",
-            ("{session}", "{take}"),
-            {"figure": "badminton_tab01", "calibration": "{calibration}", "network": "{model}"},
-        ),
+        **calibrated_figure("badminton_tab01", "badminton_tab01"),
     log:
         "results/{session}/logs/draw_badminton_tab01/{take}.{calibration}.{model}.log",
     params:
@@ -154,22 +138,14 @@ rule draw_badminton_tab01:
 
 rule draw_three_cameras:
     input:
-        errors_csv=["results/{session}/evaluation/takes/{take}/errors/{calibration}.{model}.csv"],
-        kinematics_csv=lambda w: [
-            f"results/{w.session}/evaluation/takes/{w.take}/kinematics/{w.calibration}/{fusion}/{w.model}.csv"
-            for fusion in every_fusion(w)
-        ],
+        errors_csv=[paths.ERRORS],
+        kinematics_csv=of_job(takes.every_fused, paths.MEASURE_ERRORS),
     output:
-        **drawn(
-            f"{TAKE}/figures/three_cameras.{{calibration}}.{{model}}",
-            "three_cameras",
-            ("{session}", "{take}"),
-            {"figure": "three cameras", "calibration": "{calibration}", "network": "{model}"},
-        ),
+        **calibrated_figure("three_cameras", "three cameras"),
     log:
         "results/{session}/logs/draw_three_cameras/{take}.{calibration}.{model}.log",
     params:
         code=code("draw_three_cameras.py"),
-        cameras=lambda w: {name: session_of(w).fused_cameras(name) for name in every_fusion(w)},
+        cameras=of_job(figures.fused_cameras),
     script:
         "../scripts/draw_three_cameras.py"

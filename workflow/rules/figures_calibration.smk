@@ -1,19 +1,21 @@
 """Figures of the calibration study that the paper does not have.
 
-Inputs: ties, errors against the truth, courts, cameras. Outputs: results/figures/, results/{session}/figures/.
+Inputs: ties, errors against the truth, courts, cameras. Outputs: results/figures/,
+results/{session}/figures/.
 Steps: draw_court_points, draw_coverage, draw_growth, draw_error_map, draw_capture.
 """
 
 
 rule draw_court_points:
     input:
-        court_yaml=CONFIG / "courts" / "{court}.yaml",
+        court_yaml=paths.court(CONFIG, "{court}"),
     output:
-        **drawn(
-            "results/figures/court_points.{court}",
+        **study_figure(
+            "court_points.{court}",
             "court_points",
             ("calibration", "courts"),
-            {"figure": "court points", "court": "{court}"},
+            figure="court points",
+            court="{court}",
         ),
     log:
         "results/figures/logs/draw_court_points/{court}.log",
@@ -25,7 +27,7 @@ rule draw_court_points:
 
 rule draw_coverage:
     input:
-        errors_csv=lambda w: every_error([session_of(w)]),
+        errors_csv=of_job(figures.session_errors),
     output:
         **session_figure("coverage"),
     log:
@@ -38,7 +40,7 @@ rule draw_coverage:
 
 rule draw_growth:
     input:
-        benchmarks_tsv=lambda w: timings(session_of(w)),
+        benchmarks_tsv=of_job(figures.timings),
     output:
         **session_figure("growth"),
     log:
@@ -51,15 +53,15 @@ rule draw_growth:
 
 rule draw_error_map:
     input:
-        cameras_toml=f"{FOUND}/cameras.toml",
-        covariance_npz=f"{FOUND}/covariance.npz",
-        court_yaml=lambda w: court_file(session_of(w)),
+        cameras_toml=paths.CAMERAS,
+        covariance_npz=paths.CAMERA_COVARIANCE,
+        court_yaml=of_job(Job.court_file),
     output:
-        **drawn(
-            "results/{session}/figures/error_map.{calibration}",
+        **session_figure(
+            "error_map.{calibration}",
             "error_map",
-            ("calibration", "{session}"),
-            {"figure": "expected error", "calibration": "{calibration}"},
+            figure="expected error",
+            calibration="{calibration}",
         ),
     log:
         "results/{session}/logs/draw_error_map/{calibration}.log",
@@ -72,20 +74,16 @@ rule draw_error_map:
 
 rule draw_capture:
     input:
-        errors_csv=lambda w: every_error(varied(drawn_conditions()[w.condition])),
+        errors_csv=of_job(figures.condition_errors),
     output:
-        **drawn(
-            "results/figures/{condition}",
-            "capture",
-            ("calibration", "capture conditions"),
-            {"figure": "{condition}"},
-        ),
+        **study_figure("{condition}", "capture", ("calibration", "capture conditions")),
     log:
         "results/figures/logs/draw_capture/{condition}.log",
     wildcard_constraints:
-        condition="|".join(drawn_conditions()) or "(?!)",  # without conditions, no figure
+        # Without conditions, no figure.
+        condition="|".join(targets.calibration.drawn_conditions(STUDY)) or "(?!)",
     params:
         code=code("draw_capture.py"),
-        step=lambda w: varied_axes(drawn_conditions()[w.condition]),
+        step=of_job(figures.condition_axes),
     script:
         "../scripts/draw_capture.py"

@@ -1,6 +1,7 @@
 """Figures of devices: the thesis's, and what it could not show.
 
-Inputs: body motions, events, errors. Outputs: results/{session}/takes/{take}/figures/, results/figures/.
+Inputs: body motions, events, errors. Outputs: results/{session}/takes/{take}/figures/,
+results/figures/.
 Steps: draw_wrist_distance, draw_wrist_arcs, draw_skeleton_plates,
 draw_source_errors, draw_thesis_fig3, draw_smoothness.
 """
@@ -8,8 +9,8 @@ draw_source_errors, draw_thesis_fig3, draw_smoothness.
 
 rule draw_wrist_distance:
     input:
-        wrists_csv=f"{TAKE}/sync/{{clocks}}.{{model}}.wrists.csv",
-        events_csv=events_file,
+        wrists_csv=paths.WRISTS,
+        events_csv=of_job(devices.events),
     output:
         **device_figure("wrist_distance.{clocks}", "wrist_distance"),
     log:
@@ -19,71 +20,66 @@ rule draw_wrist_distance:
     params:
         code=code("draw_wrist_distance.py"),
         aligned=lambda w: w.clocks == "devices",
-        kinds=kinds_of,
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_wrist_distance.py"
 
 
 rule draw_wrist_arcs:
     input:
-        paths_csv=f"{TAKE}/body/arcs.{{model}}.paths.csv",
-        distortion_csv=f"{TAKE}/body/arcs.{{model}}.distortion.csv",
-        truth_csv=lambda w: true_arcs(w, "paths"),
+        paths_csv=paths.part(paths.ARCS, what="paths"),
+        distortion_csv=paths.part(paths.ARCS, what="distortion"),
+        truth_csv=of_job(devices.true_arcs, paths.TRUE_PATHS),
     output:
         **device_figure("wrist_arcs", "wrist_arcs"),
     log:
         "results/{session}/logs/draw_wrist_arcs/{take}.{model}.log",
     params:
         code=code("draw_wrist_arcs.py"),
-        kinds=kinds_of,
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_wrist_arcs.py"
 
 
 rule draw_skeleton_plates:
     input:
-        body_npz=body_files_of,
-        skeleton_yaml=plate_skeletons,
-        derived_yaml=CONFIG / "derived_joints.yaml",
+        body_npz=of_job(devices.bodies),
+        skeleton_yaml=of_job(devices.plates),
+        derived_yaml=paths.derived_joints(CONFIG),
     output:
         **device_figure("skeleton_plates", "skeleton_plates"),
     log:
         "results/{session}/logs/draw_skeleton_plates/{take}.{model}.log",
     params:
         code=code("draw_skeleton_plates.py"),
-        skeletons=lambda w: {s: skeleton for s, (_, skeleton, _) in sources_of(w).items()},
-        kinds=kinds_of,
+        skeletons=of_job(devices.skeletons),
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_skeleton_plates.py"
 
 
 rule draw_source_errors:
     input:
-        errors_csv="results/{session}/evaluation/takes/{take}/sources/{model}.errors.csv",
-        parts_csv="results/{session}/evaluation/takes/{take}/sources/{model}.parts.csv",
+        errors_csv=paths.SOURCE_ERRORS,
+        parts_csv=paths.ERROR_PARTS,
     output:
         **device_figure("source_errors", "source_errors"),
     log:
         "results/{session}/logs/draw_source_errors/{take}.{model}.log",
     params:
         code=code("draw_source_errors.py"),
-        kinds=kinds_of,
+        kinds=of_job(devices.kinds),
     script:
         "../scripts/draw_source_errors.py"
 
 
 rule draw_thesis_fig3:
     input:
-        paths_csv=lambda w: thesis_file(w, "paths"),
-        distortion_csv=lambda w: thesis_file(w, "distortion"),
-        truth_csv=thesis_truth,
+        paths_csv=lambda w: devices.thesis_file(STUDY, "paths"),
+        distortion_csv=lambda w: devices.thesis_file(STUDY, "distortion"),
+        truth_csv=lambda w: devices.thesis_truth(STUDY),
     output:
-        **drawn(
-            "results/figures/thesis_fig3_{number}",
-            "thesis_fig3",
-            ("single view", "thesis"),
-            {"figure": "thesis_fig3_{number}"},
-        ),
+        **study_figure("thesis_fig3_{number}", "thesis_fig3", ("single view", "thesis")),
     log:
         "results/figures/logs/draw_thesis_fig3/{number}.log",
     wildcard_constraints:
@@ -91,28 +87,23 @@ rule draw_thesis_fig3:
     params:
         code=code("draw_thesis_fig3.py"),
         source=lambda w: STUDY.parameters["draw_thesis_fig3"]["sources"][int(w.number) - 1],
-        kinds=all_kinds(),
+        kinds=devices.all_kinds(STUDY),
     script:
         "../scripts/draw_thesis_fig3.py"
 
 
 rule draw_smoothness:
     input:
-        distortion_csv=[row["distortion"] for row in smoothed_takes()],
-        errors_csv=[row["errors"] for row in smoothed_takes() if row["errors"]],
-        truth_csv=[row["truth"] for row in smoothed_takes() if row["truth"]],
+        distortion_csv=devices.smoothed(STUDY, paths.ARCS, what="distortion"),
+        errors_csv=devices.smoothed_truth(STUDY, paths.SOURCE_ERRORS),
+        truth_csv=devices.smoothed_truth(STUDY, paths.TRUE_DISTORTION),
     output:
-        **drawn(
-            "results/figures/smoothness",
-            "smoothness",
-            ("single view", "sources"),
-            {"figure": "smoothness"},
-        ),
+        **study_figure("smoothness", "smoothness", ("single view", "sources")),
     log:
         "results/figures/logs/draw_smoothness/all.log",
     params:
         code=code("draw_smoothness.py"),
-        labels=[row["labels"] for row in smoothed_takes()],
-        kinds=all_kinds(),
+        labels=[one.labels for one in targets.devices.device_takes(STUDY)],
+        kinds=devices.all_kinds(STUDY),
     script:
         "../scripts/draw_smoothness.py"

@@ -1,19 +1,20 @@
 """Figures of a take: what was seen, what was made of it, and how far to trust it.
 
 Inputs: 2D and 3D keypoints, cameras, videos. Outputs: results/{session}/takes/{take}/figures/.
-Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics, draw_shake.
+Steps: draw_overlay, draw_skeletons, draw_reprojection, draw_visibility, draw_kinematics,
+draw_shake.
 """
 
 
 rule draw_overlay:
     input:
-        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
-        pose2d=each_camera("results/{session}/takes/{take}/pose2d/{model}/{camera}.npz"),
-        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        pose3d=paths.POSE3D,
+        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        people=paths.PEOPLE,
+        sync=paths.CAMERA_CLOCKS,
+        cameras=paths.CAMERAS,
         videos=lambda w: list(take_of(w).videos.values()),
-        skeleton=skeleton_file,
+        skeleton=of_job(Job.skeleton_file),
     output:
         **figure("overlay"),
     log:
@@ -21,16 +22,16 @@ rule draw_overlay:
     params:
         code=code("draw_overlay.py"),
         step=step("draw_overlay"),
-        blur_faces=blurred,
+        blur_faces=of_job(takes.blur_faces),
     script:
         "../scripts/draw_overlay.py"
 
 
 rule draw_skeletons:
     input:
-        pose3d_npz="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
-        cameras_toml="results/{session}/calibration/{calibration}/cameras.toml",
-        skeleton_yaml=skeleton_file,
+        pose3d_npz=paths.POSE3D,
+        cameras_toml=paths.CAMERAS,
+        skeleton_yaml=of_job(Job.skeleton_file),
     output:
         **figure("skeletons"),
     log:
@@ -43,7 +44,7 @@ rule draw_skeletons:
 
 rule draw_reprojection:
     input:
-        pose3d_npz="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
+        pose3d_npz=paths.POSE3D,
     output:
         **figure("reprojection"),
     log:
@@ -56,11 +57,11 @@ rule draw_reprojection:
 
 rule draw_visibility:
     input:
-        pose3d="results/{session}/takes/{take}/pose3d/{calibration}/{fusion}/{model}.npz",
-        pose2d=each_camera("results/{session}/takes/{take}/pose2d/{model}/{camera}.npz"),
-        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        skeleton=skeleton_file,
+        pose3d=paths.POSE3D,
+        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        people=paths.PEOPLE,
+        sync=paths.CAMERA_CLOCKS,
+        skeleton=of_job(Job.skeleton_file),
     output:
         **figure("visibility"),
     log:
@@ -73,13 +74,13 @@ rule draw_visibility:
 
 rule draw_kinematics:
     input:
-        frames_csv=f"{TAKE}/kinematics/{FUSED}.frames.csv",
-        summary_csv=f"{TAKE}/kinematics/{FUSED}.summary.csv",
-        court_yaml=lambda w: court_file(session_of(w)) or [],
+        frames_csv=paths.FRAME_MEASURES,
+        summary_csv=paths.MEASURES,
+        court_yaml=of_job(Job.court_file),
     output:
         **figure("kinematics"),
     log:
-        f"results/{{session}}/logs/draw_kinematics/{OF_FUSED}.log",
+        f"results/{{session}}/logs/draw_kinematics/{paths.OF_FUSED}.log",
     params:
         code=code("draw_kinematics.py"),
     script:
@@ -88,14 +89,14 @@ rule draw_kinematics:
 
 rule draw_shake:
     input:
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        shake=each_camera(f"{TAKE}/shake/{{camera}}.csv"),
-        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
+        cameras=paths.CAMERAS,
+        shake=of_job(takes.each_camera, paths.SHAKE),
+        pose3d=paths.POSE3D,
     output:
         **figure("shake"),
-        text_path=f"{TAKE}/figures/shake.{{calibration}}.{{fusion}}.{{model}}.txt",
+        text_path=paths.SHAKE_TEXT,
     log:
-        f"results/{{session}}/logs/draw_shake/{OF_FUSED}.log",
+        f"results/{{session}}/logs/draw_shake/{paths.OF_FUSED}.log",
     params:
         code=code("draw_shake.py"),
     script:

@@ -1,53 +1,50 @@
-"""Pages and videos to look around in: a viewer per take, the skeleton burnt into videos, other programs' projects.
+"""Pages and videos to look around in: viewers, videos with skeletons, Pose2Sim projects.
 
-Inputs: 3D keypoints of all stages, devices, cameras, videos. Outputs: results/{session}/takes/{take}/pages/, videos/,
-pose2sim/.
+Inputs: 3D keypoints of all stages, devices, cameras, videos. Outputs:
+results/{session}/takes/{take}/pages/, videos/, pose2sim/.
 Steps: build_viewer, export_overlay_video, export_pose2sim.
 """
 
 
 rule build_viewer:
     input:
-        layers=lambda w: [layer["file"] for layer in viewer_layers(w)],
-        skeletons=lambda w: [CONFIG / "skeletons" / f"{name}.yaml" for name in layer_skeletons(w)],
-        cameras=viewed_cameras,
-        court=viewed_court,
-        clocks=device_clocks,
+        layers=of_job(pages.layer_files),
+        skeletons=of_job(pages.skeleton_files),
+        cameras=of_job(pages.viewed_cameras),
+        court=of_job(pages.viewed_court),
+        clocks=of_job(devices.take_clocks),
         assets=sorted(ASSETS.glob("[pv]*")),
     output:
-        html=f"{TAKE}/pages/viewer.{{model}}.html",
+        html=paths.VIEWER,
     log:
         "results/{session}/logs/build_viewer/{take}.{model}.log",
     params:
         code=code("build_viewer.py"),
         title=lambda w: f"{w.session}, {w.take}",
-        layers=lambda w: [
-            {key: value for key, value in layer.items() if key != "file"}
-            for layer in viewer_layers(w)
-        ],
+        layers=of_job(pages.layer_settings),
     script:
         "../scripts/build_viewer.py"
 
 
 rule export_overlay_video:
     input:
-        pose3d=f"{TAKE}/pose3d/{FUSED}.npz",
-        pose2d=f"{TAKE}/pose2d/{{model}}/{{camera}}.npz",
-        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
+        pose3d=paths.POSE3D,
+        pose2d=paths.POSE2D,
+        people=paths.PEOPLE,
+        sync=paths.CAMERA_CLOCKS,
+        cameras=paths.CAMERAS,
         video=lambda w: take_of(w).videos[w.camera],
-        skeleton=skeleton_file,
+        skeleton=of_job(Job.skeleton_file),
     output:
-        mp4=f"{TAKE}/videos/{FUSED}.{{camera}}.mp4",
+        mp4=paths.OVERLAY_VIDEO,
     log:
-        f"results/{{session}}/logs/export_overlay_video/{OF_FUSED}.{{camera}}.log",
+        f"results/{{session}}/logs/export_overlay_video/{paths.OF_FUSED}.{{camera}}.log",
     benchmark:
-        f"results/{{session}}/benchmarks/export_overlay_video/{OF_FUSED}.{{camera}}.tsv"
+        f"results/{{session}}/benchmarks/export_overlay_video/{paths.OF_FUSED}.{{camera}}.tsv"
     params:
         code=code("export_overlay_video.py"),
-        step=overlay_parameters,
-        blur_faces=blurred,
+        step=of_job(pages.overlay),
+        blur_faces=of_job(takes.blur_faces),
         trim_s=lambda w: take_of(w).trim_s,
     script:
         "../scripts/export_overlay_video.py"
@@ -55,16 +52,16 @@ rule export_overlay_video:
 
 rule export_pose2sim:
     input:
-        pose3d=exported,
-        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
-        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        skeleton=skeleton_file,
+        pose3d=of_job(takes.exported),
+        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        people=paths.PEOPLE,
+        sync=paths.CAMERA_CLOCKS,
+        cameras=paths.CAMERAS,
+        skeleton=of_job(Job.skeleton_file),
     output:
-        folder=directory(f"{TAKE}/pose2sim/{FUSED}"),
+        folder=directory(paths.POSE2SIM),
     log:
-        f"results/{{session}}/logs/export_pose2sim/{OF_FUSED}.log",
+        f"results/{{session}}/logs/export_pose2sim/{paths.OF_FUSED}.log",
     params:
         code=code("export_pose2sim.py"),
     script:

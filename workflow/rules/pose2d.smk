@@ -1,19 +1,20 @@
 """2D keypoints of each camera, by a network or of another program; 3D keypoints of another program.
 
-Inputs: a take's videos, networks, backgrounds, JSON folders, TRC files. Outputs: results/{session}/takes/{take}/pose2d/.
+Inputs: a take's videos, networks, backgrounds, JSON folders, TRC files. Outputs:
+results/{session}/takes/{take}/pose2d/.
 Steps: detect_pose, import_pose2d, import_pose3d.
 """
 
 
 rule detect_pose:
     input:
-        video=video_of,
-        background=background_file,
-        detector="results/networks/{model}/detector.onnx",
-        landmarks="results/networks/{model}/landmarks.onnx",
-        skeleton=skeleton_file,
+        video=of_job(recordings.video),
+        background=of_job(recordings.background),
+        detector=paths.part(paths.ONNX, part="detector"),
+        landmarks=paths.part(paths.ONNX, part="landmarks"),
+        skeleton=of_job(Job.skeleton_file),
     output:
-        pose2d_npz="results/{session}/takes/{take}/pose2d/{model}/{camera}.npz",
+        pose2d_npz=paths.POSE2D,
     log:
         "results/{session}/logs/detect_pose/{take}.{model}.{camera}.log",
     benchmark:
@@ -25,8 +26,8 @@ rule detect_pose:
         step=step("detect_pose"),
         redetect=lambda w: not STUDY.models[w.model].tracking,
         decoder=lambda w: STUDY.models[w.model].decoder_options(),
-        trim_s=trimmed,
-        max_people=followed,
+        trim_s=of_job(recordings.trim_s),
+        max_people=of_job(recordings.max_people),
     script:
         "../scripts/detect_pose.py"
 
@@ -34,11 +35,11 @@ rule detect_pose:
 rule import_pose2d:
     input:
         folder=lambda w: whole(take_of(w).pose2d[w.model][w.camera]),
-        files=lambda w: inside(take_of(w).pose2d[w.model][w.camera]),
+        files=lambda w: recordings.inside(take_of(w).pose2d[w.model][w.camera]),
         video=lambda w: take_of(w).videos[w.camera],
-        skeleton=skeleton_file,
+        skeleton=of_job(Job.skeleton_file),
     output:
-        pose2d_npz="results/{session}/takes/{take}/pose2d/{model}/{camera}.npz",
+        pose2d_npz=paths.POSE2D,
     log:
         "results/{session}/logs/import_pose2d/{take}.{model}.{camera}.log",
     wildcard_constraints:
@@ -53,9 +54,9 @@ rule import_pose2d:
 rule import_pose3d:
     input:
         trc_files=lambda w: list(take_of(w).pose3d[w.model].values()),
-        skeleton_yaml=skeleton_file,
+        skeleton_yaml=of_job(Job.skeleton_file),
     output:
-        pose3d_npz="results/{session}/takes/{take}/pose3d/imported/trc/{model}.npz",
+        pose3d_npz=paths.POSE3D_IMPORTED,
     log:
         "results/{session}/logs/import_pose3d/{take}.{model}.log",
     params:

@@ -1,4 +1,4 @@
-"""The report: one HTML file of all that the study found, for a coach to read. Made only when asked for.
+"""The report: one HTML file of all results, for a coach to read. Made only when asked for.
 
 Inputs: measures, figures, checks, qualities of all sessions. Outputs: results/report.html.
 Steps: build_report.
@@ -7,14 +7,14 @@ Steps: build_report.
 
 rule build_report:
     input:
-        files=lambda w: report_files(reported_study()),
+        files=lambda w: report_page.files(report_page.content(STUDY, workflow.rules, CAPTIONS)),
         assets=sorted(ASSETS.glob("[pr]*")),
     output:
-        html=REPORT,
+        html=paths.REPORT,
     log:
         "results/run/logs/build_report/all.log",
     params:
         code=code("build_report.py"),
-        study=lambda w: reported_study(),
+        study=lambda w: report_page.content(STUDY, workflow.rules, CAPTIONS),
     script:
         "../scripts/build_report.py"

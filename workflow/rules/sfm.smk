@@ -1,21 +1,19 @@
 """Structure from motion over the fixed cameras and bridging images.
 
 Inputs: static pictures, frames of the walks. Outputs: results/{session}/sfm/.
-Steps: extract_features and match_images (once per session, whatever the numbers of images), map_images (one number of
-bridging images), adjust_network (with the clicked court points).
+Steps: extract_features and match_images (once per session, whatever the numbers of images),
+map_images (one number of bridging images), adjust_network (with the clicked court points).
 """
-
-VARIANT = "results/{session}/sfm/{mapper}-n{n_images}-o{offset}"
 
 
 rule extract_features:
     input:
-        static_png=each_fixed("results/{session}/static/{camera}.png"),
-        frames_csv=each_walk("results/{session}/frames/{walk}.csv"),
-        folders=each_walk("results/{session}/frames/{walk}"),
+        static_png=of_job(calibration.each_fixed, paths.STATIC),
+        frames_csv=of_job(calibration.each_walk, paths.FRAME_TABLE),
+        folders=of_job(calibration.each_walk, paths.FRAMES),
     output:
-        features_db="results/{session}/sfm/features.db",
-        table_csv="results/{session}/sfm/features.csv",
+        features_db=paths.FEATURES,
+        table_csv=paths.FEATURE_TABLE,
     log:
         "results/{session}/logs/extract_features/all.log",
     benchmark:
@@ -34,12 +32,12 @@ rule extract_features:
 
 rule match_images:
     input:
-        features_db="results/{session}/sfm/features.db",
-        features_csv="results/{session}/sfm/features.csv",
-        frames_csv=each_walk("results/{session}/frames/{walk}.csv"),
+        features_db=paths.FEATURES,
+        features_csv=paths.FEATURE_TABLE,
+        frames_csv=of_job(calibration.each_walk, paths.FRAME_TABLE),
     output:
-        matches_db="results/{session}/sfm/matches.db",
-        table_csv="results/{session}/sfm/matches.csv",
+        matches_db=paths.MATCHES,
+        table_csv=paths.MATCH_TABLE,
     log:
         "results/{session}/logs/match_images/all.log",
     benchmark:
@@ -56,12 +54,12 @@ rule match_images:
 
 rule map_images:
     input:
-        matches_db="results/{session}/sfm/matches.db",
-        features_csv="results/{session}/sfm/features.csv",
-        frames_csv=each_walk("results/{session}/frames/{walk}.csv"),
+        matches_db=paths.MATCHES,
+        features_csv=paths.FEATURE_TABLE,
+        frames_csv=of_job(calibration.each_walk, paths.FRAME_TABLE),
     output:
-        model=expand(f"{VARIANT}/{{part}}.bin", part=MODEL_PARTS, allow_missing=True),
-        summary_json=f"{VARIANT}/summary.json",
+        model=paths.MODEL,
+        summary_json=paths.SFM_SUMMARY,
     log:
         "results/{session}/logs/map_images/{mapper}-n{n_images}-o{offset}.log",
     benchmark:
@@ -72,7 +70,7 @@ rule map_images:
         mem_mb=1500,
     params:
         code=code("map_images.py"),
-        step=map_parameters,
+        step=of_job(calibration.mapping),
         walks=lambda w: list(session_of(w).walks),
     script:
         "../scripts/map_images.py"
@@ -80,12 +78,12 @@ rule map_images:
 
 rule adjust_network:
     input:
-        model=expand(f"{VARIANT}/{{part}}.bin", part=MODEL_PARTS, allow_missing=True),
-        summary_json=f"{VARIANT}/summary.json",
+        model=paths.MODEL,
+        summary_json=paths.SFM_SUMMARY,
         clicks_csv=lambda w: session_of(w).court_points or [],
-        court_yaml=lambda w: court_file(session_of(w)) or [],
+        court_yaml=of_job(Job.court_file),
     output:
-        ties_npz=f"{VARIANT}/ties.npz",
+        ties_npz=paths.TIES,
     log:
         "results/{session}/logs/adjust_network/{mapper}-n{n_images}-o{offset}.log",
     benchmark:

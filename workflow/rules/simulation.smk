@@ -1,8 +1,9 @@
 """Virtual sessions: recordings with exact truth.
 
-Inputs: a session's `virtual` settings, its court, the virtual body. Outputs: results/virtual/{session}/.
-Steps: simulate_session (one rule per session, named after it, for its files bear its cameras' names),
-simulate_take (likewise, one per take).
+Inputs: a session's `virtual` settings, its court, the virtual body. Outputs:
+results/virtual/{session}/.
+Steps: simulate_session (one rule per session, named after it, for its files bear its cameras'
+names), simulate_take (likewise, one per take).
 """
 
 for session in STUDY.sessions.values():
@@ -10,7 +11,7 @@ for session in STUDY.sessions.values():
         continue
 
     filming = [take for take in session.takes.values() if take.videos]
-    backdrops = [f"results/virtual/{session.name}/backdrops.npz"] if filming else []
+    backdrops = expand(paths.BACKDROPS, session=session.name) if filming else []
 
     if session.filmed():
 
@@ -18,22 +19,23 @@ for session in STUDY.sessions.values():
             name:
                 f"simulate_{session.name.replace('-', '_')}"
             input:
-                court_yaml=court_file(session),
+                court_yaml=STUDY.court_file(session),
             output:
-                videos=[f"results/virtual/{session.name}/{name}.mp4" for name in session.filmed()],
+                videos=expand(paths.RECORDING, session=session.name, name=session.filmed()),
                 boards=(
-                    directory(f"results/virtual/{session.name}/boards")
+                    directory(paths.VIRTUAL_BOARDS.format(session=session.name))
                     if session.films_boards()
                     else []
                 ),
                 backdrops_npz=backdrops,
-                clicks=f"results/virtual/{session.name}/court_points.csv",
-                truth_npz=f"results/virtual/{session.name}/truth.npz",
+                clicks=paths.VIRTUAL_CLICKS.format(session=session.name),
+                truth_npz=paths.TRUTH.format(session=session.name),
             log:
                 f"results/virtual/logs/simulate_session/{session.name}.log",
             benchmark:
                 f"results/virtual/benchmarks/simulate_session/{session.name}.tsv"
-            priority: int(max((take.virtual["seconds"] for take in filming), default=0))  # as its takes
+            # As its takes.
+            priority: int(max((take.virtual["seconds"] for take in filming), default=0))
             threads: 2 if session.virtual["walk_frames"] > 24 else 1
             resources:
                 mem_mb=2000,
@@ -50,14 +52,14 @@ for session in STUDY.sessions.values():
             name:
                 f"simulate_{session.name}_{take.name}".replace("-", "_")
             input:
-                court_yaml=court_file(session),
-                body_files=body_files,
+                court_yaml=STUDY.court_file(session),
+                body_files=recordings.virtual_body(STUDY),
                 backdrops_npz=backdrops if take.videos else [],
             output:
                 videos=list(take.videos.values()),
                 devices=[device.file for device in take.devices.values()],
-                racket=f"results/virtual/{session.name}/takes/{take.name}/racket.csv",
-                truth_npz=f"results/virtual/{session.name}/takes/{take.name}/truth.npz",
+                racket=paths.RACKET_CLICKS.format(session=session.name, take=take.name),
+                truth_npz=paths.TRUE_TAKE.format(session=session.name, take=take.name),
             log:
                 f"results/virtual/logs/simulate_take/{session.name}.{take.name}.log",
             benchmark:

@@ -1,22 +1,18 @@
 """Metric skeletons and the files that other programs open.
 
-Inputs: 2D keypoints, cameras. Outputs: results/{session}/takes/{take}/ sync, people, pose3d, pose3d_filtered,
-pose3d_corrected, kinematics.
-Steps: synchronise_cameras, associate_people, triangulate (raw, always kept), filter_motion, correct_joints,
-export_take, measure_kinematics.
+Inputs: 2D keypoints, cameras. Outputs: results/{session}/takes/{take}/ sync, people, pose3d,
+pose3d_filtered, pose3d_corrected, kinematics.
+Steps: synchronise_cameras, associate_people, triangulate (raw, always kept), filter_motion,
+correct_joints, export_take, measure_kinematics.
 """
-
-TAKE = "results/{session}/takes/{take}"
-FUSED = "{calibration}/{fusion}/{model}"
-OF_FUSED = "{take}.{calibration}.{fusion}.{model}"
 
 
 rule synchronise_cameras:
     input:
-        cameras_toml="results/{session}/calibration/{calibration}/cameras.toml",
-        pose2d_npz=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
+        cameras_toml=paths.CAMERAS,
+        pose2d_npz=of_job(takes.each_camera, paths.POSE2D),
     output:
-        sync_json=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
+        sync_json=paths.CAMERA_CLOCKS,
     log:
         "results/{session}/logs/synchronise_cameras/{take}.{calibration}.{model}.log",
     benchmark:
@@ -25,20 +21,20 @@ rule synchronise_cameras:
         code=code("synchronise_cameras.py"),
         step=step("synchronise_cameras"),
         synchronised=lambda w: take_of(w).synchronised,
-        stated=lambda w: stated_clocks(w, take_of(w).videos),
+        stated=of_job(lambda job: takes.clocks(job, job.take.videos)),
     script:
         "../scripts/synchronise_cameras.py"
 
 
 rule associate_people:
     input:
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        skeleton=skeleton_file,
-        court=lambda w: court_file(session_of(w)) or [],
+        cameras=paths.CAMERAS,
+        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        sync=paths.CAMERA_CLOCKS,
+        skeleton=of_job(Job.skeleton_file),
+        court=of_job(Job.court_file),
     output:
-        people_npz=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
+        people_npz=paths.PEOPLE,
     log:
         "results/{session}/logs/associate_people/{take}.{calibration}.{model}.log",
     benchmark:
@@ -52,38 +48,38 @@ rule associate_people:
 
 rule triangulate:
     input:
-        cameras="results/{session}/calibration/{calibration}/cameras.toml",
-        covariance=camera_covariance_file,
-        pose2d=each_camera(f"{TAKE}/pose2d/{{model}}/{{camera}}.npz"),
-        sync=f"{TAKE}/sync/{{calibration}}/cameras.{{model}}.json",
-        people=f"{TAKE}/people/{{calibration}}/{{model}}.npz",
-        shake=shake_files,
-        skeleton=skeleton_file,
+        cameras=paths.CAMERAS,
+        covariance=of_job(calibration.covariance),
+        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        sync=paths.CAMERA_CLOCKS,
+        people=paths.PEOPLE,
+        shake=of_job(takes.shake),
+        skeleton=of_job(Job.skeleton_file),
     output:
-        pose3d_npz=f"{TAKE}/pose3d/{FUSED}.npz",
+        pose3d_npz=paths.POSE3D,
     log:
-        f"results/{{session}}/logs/triangulate/{OF_FUSED}.log",
+        f"results/{{session}}/logs/triangulate/{paths.OF_FUSED}.log",
     benchmark:
-        f"results/{{session}}/benchmarks/triangulate/{OF_FUSED}.tsv"
+        f"results/{{session}}/benchmarks/triangulate/{paths.OF_FUSED}.tsv"
     wildcard_constraints:
         fusion=f"(?!trc){NAME}",
     params:
         code=code("triangulate.py"),
         step=step("triangulate"),
         persons=lambda w: list(take_of(w).subjects),
-        fusion=fusion_options,
+        fusion=of_job(takes.fusion),
     script:
         "../scripts/triangulate.py"
 
 
 rule filter_motion:
     input:
-        raw_npz=f"{TAKE}/pose3d/{FUSED}.npz",
-        skeleton_yaml=skeleton_file,
+        raw_npz=paths.POSE3D,
+        skeleton_yaml=of_job(Job.skeleton_file),
     output:
-        filtered_npz=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
+        filtered_npz=paths.POSE3D_FILTERED,
     log:
-        f"results/{{session}}/logs/filter_motion/{OF_FUSED}.log",
+        f"results/{{session}}/logs/filter_motion/{paths.OF_FUSED}.log",
     params:
         code=code("filter_motion.py"),
         step=step("filter_motion"),
@@ -93,26 +89,26 @@ rule filter_motion:
 
 rule correct_joints:
     input:
-        filtered_npz=f"{TAKE}/pose3d_filtered/{FUSED}.npz",
-        offsets_csv=lambda w: CONFIG / "joint_offsets" / f"{w.model}.csv",
+        filtered_npz=paths.POSE3D_FILTERED,
+        offsets_csv=lambda w: paths.joint_offsets(CONFIG, w.model),
     output:
-        corrected_npz=f"{TAKE}/pose3d_corrected/{FUSED}.npz",
+        corrected_npz=paths.POSE3D_CORRECTED,
     log:
-        f"results/{{session}}/logs/correct_joints/{OF_FUSED}.log",
+        f"results/{{session}}/logs/correct_joints/{paths.OF_FUSED}.log",
     params:
         code=code("correct_joints.py"),
-        sex_of=sex_of,
+        sex_of=of_job(takes.sexes),
     script:
         "../scripts/correct_joints.py"
 
 
 rule export_take:
     input:
-        pose3d_npz=exported,
+        pose3d_npz=of_job(takes.exported),
     output:
-        trc_path=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.trc",
-        c3d_path=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.c3d",
-        csv_path=f"{TAKE}/{{stage}}/{FUSED}.{{person}}.csv",
+        trc_path=paths.part(paths.EXPORT, suffix="trc"),
+        c3d_path=paths.part(paths.EXPORT, suffix="c3d"),
+        csv_path=paths.part(paths.EXPORT, suffix="csv"),
     log:
         "results/{session}/logs/export_take/{take}.{stage}.{calibration}.{fusion}.{model}.{person}.log",
     params:
@@ -123,20 +119,20 @@ rule export_take:
 
 rule measure_kinematics:
     input:
-        raw_npz=f"{TAKE}/pose3d/{FUSED}.npz",
-        skeleton_yaml=skeleton_file,
-        derived_yaml=CONFIG / "derived_joints.yaml",
+        raw_npz=paths.POSE3D,
+        skeleton_yaml=of_job(Job.skeleton_file),
+        derived_yaml=paths.derived_joints(CONFIG),
     output:
-        frames_csv=f"{TAKE}/kinematics/{FUSED}.frames.csv",
-        summary_csv=f"{TAKE}/kinematics/{FUSED}.summary.csv",
-        cutoffs_csv=f"{TAKE}/kinematics/{FUSED}.cutoffs.csv",
+        frames_csv=paths.FRAME_MEASURES,
+        summary_csv=paths.MEASURES,
+        cutoffs_csv=paths.CUTOFFS,
     log:
-        f"results/{{session}}/logs/measure_kinematics/{OF_FUSED}.log",
+        f"results/{{session}}/logs/measure_kinematics/{paths.OF_FUSED}.log",
     benchmark:
-        f"results/{{session}}/benchmarks/measure_kinematics/{OF_FUSED}.tsv"
+        f"results/{{session}}/benchmarks/measure_kinematics/{paths.OF_FUSED}.tsv"
     params:
         code=code("measure_kinematics.py"),
         step=step("measure_kinematics"),
-        sex_of=sex_of,
+        sex_of=of_job(takes.sexes),
     script:
         "../scripts/measure_kinematics.py"

@@ -1,8 +1,10 @@
 """Pictures of the fixed cameras without people, and the frames of walks.
 
-Inputs: videos of a session. Outputs: results/{session}/static/, frames/, takes/{take}/movement/, background/.
-Steps: extract_static (of a camera's `static` recording), extract_frames (of a walk), check_movement (of a camera between
-its static recording and a take), estimate_background (of a take whose camera has no static recording).
+Inputs: videos of a session. Outputs: results/{session}/static/, frames/, takes/{take}/movement/,
+background/.
+Steps: extract_static (of a camera's `static` recording), extract_frames (of a walk), check_movement
+(of a camera between its static recording and a take), estimate_background (of a take whose camera
+has no static recording).
 """
 
 
@@ -10,8 +12,8 @@ rule extract_static:
     input:
         video_path=lambda w: session_of(w).cameras[w.camera].static,
     output:
-        out_png="results/{session}/static/{camera}.png",
-        out_csv="results/{session}/static/{camera}.csv",
+        out_png=paths.STATIC,
+        out_csv=paths.STATIC_CHECK,
     log:
         "results/{session}/logs/extract_static/{camera}.log",
     params:
@@ -24,10 +26,10 @@ rule extract_static:
 rule extract_frames:
     input:
         video_path=lambda w: whole(session_of(w).walks[w.walk]),
-        photos=lambda w: inside(session_of(w).walks[w.walk]),
+        photos=lambda w: recordings.inside(session_of(w).walks[w.walk]),
     output:
-        folder=directory("results/{session}/frames/{walk}"),
-        table_csv="results/{session}/frames/{walk}.csv",
+        folder=directory(paths.FRAMES),
+        table_csv=paths.FRAME_TABLE,
     log:
         "results/{session}/logs/extract_frames/{walk}.log",
     benchmark:
@@ -42,10 +44,10 @@ rule extract_frames:
 
 rule check_movement:
     input:
-        static_png="results/{session}/static/{camera}.png",
+        static_png=paths.STATIC,
         video_path=lambda w: take_of(w).videos[w.camera],
     output:
-        movement_csv="results/{session}/takes/{take}/movement/{camera}.csv",
+        movement_csv=paths.MOVEMENT,
     log:
         "results/{session}/logs/check_movement/{take}.{camera}.log",
     params:
@@ -57,10 +59,10 @@ rule check_movement:
 
 rule measure_shake:
     input:
-        static_png="results/{session}/static/{camera}.png",
+        static_png=paths.STATIC,
         video_path=lambda w: take_of(w).videos[w.camera],
     output:
-        shake_csv="results/{session}/takes/{take}/shake/{camera}.csv",
+        shake_csv=paths.SHAKE,
     log:
         "results/{session}/logs/measure_shake/{take}.{camera}.log",
     benchmark:
@@ -76,7 +78,7 @@ rule estimate_background:
     input:
         source=lambda w: take_of(w).videos[w.camera],
     output:
-        background_png="results/{session}/takes/{take}/background/{camera}.png",
+        background_png=paths.BACKGROUND,
     log:
         "results/{session}/logs/estimate_background/{take}.{camera}.log",
     benchmark:

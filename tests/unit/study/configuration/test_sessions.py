@@ -81,7 +81,7 @@ def test_calibration_with_boards_needs_those_of_every_camera():
 def test_the_sweep_has_offsets_for_few_images_only():
     sweep = {"n_images": [5, 40, 75], "n_offsets": 3, "offsets_up_to": 40}
     parameters = {"sweep": sweep | {"mappers": ["global", "incremental"]}}
-    found = session(parameters=parameters).variants()
+    found = [variant.name for variant in session(parameters=parameters).variants()]
     assert found == [
         *("global-n5-o0", "global-n5-o1", "global-n5-o2"),
         *("global-n40-o0", "global-n40-o1", "global-n40-o2", "global-n75-o0"),

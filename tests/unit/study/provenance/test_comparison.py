@@ -38,7 +38,7 @@ def outcomes(trees):
     return {v.name: v.outcome for v in comparison.compare(*trees) if v.outcome != comparison.EQUAL}
 
 
-def test_equal_trees(trees):
+def test_equal_trees_are_bit_equal_and_logs_do_not_count(trees):
     verdicts = comparison.compare(*trees)
     names = {POSE, TABLE, "gym/figures/f.csv", "gym/figures/f.pdf", "gym/video.mp4"}
     assert {v.name for v in verdicts} == names  # logs say when, not what
@@ -56,14 +56,14 @@ def test_equal_trees(trees):
     ],
     ids=["1 mm", "3 mm", "a value that was missing", "another reason", "another shape"],
 )
-def test_arrays(trees, xyz, reason, outcome, largest):
+def test_arrays_are_close_within_their_tolerance(trees, xyz, reason, outcome, largest):
     write(trees[1] / POSE, xyz=np.array(xyz), reason=np.array(reason))
     (found,) = [v for v in comparison.compare(*trees) if v.name == POSE]
     assert found.outcome == outcome
     np.testing.assert_allclose(found.largest, largest, atol=1e-9)
 
 
-def test_other_arrays(trees):
+def test_missing_or_damaged_arrays_are_different(trees):
     write(trees[1] / POSE, xyz=np.array([[1.0, np.nan, 3.0]]))
     assert outcomes(trees) == {POSE: comparison.DIFFERENT}
     (trees[1] / POSE).write_bytes(b"PK not really")
@@ -83,7 +83,7 @@ def test_other_arrays(trees):
     ],
     ids=["close", "digits", "far", "filled", "renamed", "column", "row"],
 )
-def test_tables(trees, text, outcome):
+def test_tables_are_close_within_their_tolerance(trees, text, outcome):
     (trees[1] / TABLE).write_text(text)
     assert outcomes(trees) == {TABLE: outcome}
 
@@ -100,14 +100,14 @@ def test_tables(trees, text, outcome):
         ({"a": [1.0], "c": True, "d": "x"}, comparison.DIFFERENT),
     ],
 )
-def test_trees_of_keys(trees, content, outcome):
+def test_json_is_close_where_only_numbers_differ_a_little(trees, content, outcome):
     one = {"a": [1.0, {"b": None}], "c": True, "d": "x"}
     (trees[0] / "s.json").write_text(json.dumps(one))
     (trees[1] / "s.json").write_text(json.dumps(content, indent=1))
     assert outcomes(trees) == {"s.json": outcome}
 
 
-def test_toml(trees):
+def test_cameras_a_little_apart_are_within_tolerance(trees):
     folder = "gym/calibration/file"
     for tree, value in zip(trees, (1000.0, 1000.5), strict=True):
         (tree / folder).mkdir(parents=True)
@@ -167,7 +167,7 @@ def test_figures_of_run_times_are_not_compared(trees):
     assert outcomes(trees) == {"gym/figures/growth.csv": comparison.TIMES}
 
 
-def test_files_of_one_tree_alone(trees):
+def test_files_that_only_one_tree_has_are_faults(trees):
     (trees[0] / "mine.csv").write_text("x")
     (trees[1] / "yours.csv").write_text("x")
     assert outcomes(trees) == {

@@ -25,7 +25,7 @@ def author():
     return ["-c", "user.name=a", "-c", "user.email=a@b"]
 
 
-def test_a_clean_checkout(repository):
+def test_a_clean_checkout_has_a_commit_and_is_not_dirty(repository):
     head = subprocess.run(
         ["git", "rev-parse", "HEAD"], cwd=repository, capture_output=True, text=True, check=True
     )
@@ -43,12 +43,12 @@ def test_a_changed_or_new_file_is_dirty(repository, name):
     assert environment.commit(repository)["dirty"] is True
 
 
-def test_no_checkout_and_no_lock(tmp_path):
+def test_without_checkout_and_lock_all_packages_are_listed(tmp_path):
     found = environment.found(tmp_path)
     assert (found["commit"], found["dirty"], found["lock_sha256"]) == (None, None, None)
     assert found["packages"]["numpy"] == np.__version__
 
 
-def test_no_git(repository, monkeypatch):
+def test_without_git_there_is_no_commit(repository, monkeypatch):
     monkeypatch.setenv("PATH", "")
     assert environment.commit(repository) == {"commit": None, "dirty": None}

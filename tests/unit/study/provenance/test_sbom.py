@@ -167,7 +167,7 @@ def test_what_is_not_pinned_is_refused(lock, n_named, n_found):
         sbom.of_study(lock, [], **ABOUT)
 
 
-def test_forms_of_a_lock():
+def test_every_form_of_a_pin_in_a_lock_is_read():
     lock = (
         "# made by\n"
         f"A.b[extra]==1.0.post1 ; python_version < '4' \\\n    --hash=sha256:{HASH} \\\n"

@@ -1,1 +1,11 @@
-"""The study itself: its configuration, its execution, where results come from."""
+"""The study itself: its configuration, its execution, where results come from.
+
+errors: the error that a user can mend
+methods: `Calibration`, `Variant` and `Fusion`, parsed from their names
+paths: the name of every file
+configuration: YAML files checked as a whole, `Study`, `Session` and `Take`
+targets: the files that the study makes
+jobs: the files and settings that belong to a job
+execution: writing files, logs, digests of code, pinned artefacts, the machine
+provenance: records of results, verification, comparison, bill of materials
+"""

@@ -1,1 +1,10 @@
-"""The study and its sessions: YAML files, checked as a whole, every fault in one line."""
+"""The study and its sessions: YAML files, checked as a whole, every fault in one line.
+
+configuration: `load` checks everything and returns the `Study`
+sessions: the records `Study`, `Session`, `Take`, `FixedCamera`, `Device`, `Subject`, `Model`
+session_files: `session` and `variations` build sessions from checked files
+session_faults, take_faults: what schemas cannot check
+consent: `refusing`, `withheld` and `left_out` say what persons have not agreed to
+plans: `read` a session that is only planned
+yaml_files: `read` YAML without duplicate keys
+"""

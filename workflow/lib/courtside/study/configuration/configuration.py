@@ -4,7 +4,9 @@ import difflib
 import functools
 import re
 import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import yaml
@@ -16,20 +18,16 @@ from courtside.study.configuration import (
     take_faults,
     yaml_files,
 )
+from courtside.study.configuration.sessions import Model, Session, Study
+from courtside.study.configuration.yaml_files import Content
 from courtside.study.errors import InputError
-from courtside.study.execution import artefacts
+from courtside.study.execution.artefacts import Artefact
 
 SCHEMAS = Path(__file__).parents[4] / "schemas"
-RESERVED = (
-    "external",
-    "networks",
-    "run",
-    "figures",
-    "virtual",
-    "plans",
-)  # folders of results/ that are no session
+# Folders of results/ that are no session.
+RESERVED = ("external", "networks", "run", "figures", "virtual", "plans")
 
-# Of folders and files of the study: none that leaves its folder, is an option or a device of Windows.
+# Names of folders and files: none leaves its folder, is an option, or a device of Windows.
 NAME = re.compile(r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9])\Z)[a-z0-9][a-z0-9_-]{0,63}")
 # JSON Schema lets 3.0 pass for an integer, and a comparison lets nan pass for any number.
 TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
@@ -48,12 +46,12 @@ VALIDATOR = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_c
 class ConfigurationError(InputError):
     """All faults of a configuration; the message has one line for each."""
 
-    def __init__(self, faults):
+    def __init__(self, faults: Iterable[str]) -> None:
         super().__init__(*faults)
         self.faults = self.lines
 
 
-def load(config, config_file, folder, root="."):
+def load(config: Content, config_file: str, folder: str | Path, root: str | Path = ".") -> Study:
     """Check the whole configuration and return what it says.
 
     Parameters
@@ -67,22 +65,19 @@ def load(config, config_file, folder, root="."):
     root : str or Path
         The folder that relative paths in sessions start from.
 
-    Returns
-    -------
-    study : courtside.study.configuration.sessions.Study
-
     Raises
     ------
     ConfigurationError
         With every fault of every file.
     """
-    folder, faults = Path(folder), []
+    folder = Path(folder)
+    faults: list[str] = []
     external = _checked(folder / "external.yaml", "external", faults)
     models = _checked(folder / "models.yaml", "models", faults)
     faults += schema_faults(config, "config", config_file)
     known = None
     if external is not None:
-        known = {name: artefacts.Artefact.of(name, entry) for name, entry in external.items()}
+        known = {name: Artefact.of(name, entry) for name, entry in external.items()}
     if models is not None:
         for name, entry in models.items():
             faults += _model_faults(folder, name, entry, known)
@@ -101,18 +96,19 @@ def load(config, config_file, folder, root="."):
             found[name] = (file, content)
     if not faults:
         faults += session_faults.conditions(config_file, config, found)
-    if faults:
+    if faults or known is None or models is None:
         raise ConfigurationError(faults)
-    return sessions.Study(
+    return Study(
         sessions=_sessions(config, found, root),
         artefacts=known,
         models=_models(models, found),
         parameters=config,
+        folder=folder,
     )
 
 
-def _models(models, found):
-    """Return the networks, and the skeletons whose keypoints other programs found."""
+def _models(models: Content, found: dict[str, tuple]) -> dict[str, Model]:
+    """Return the networks, and the skeletons of imported keypoints."""
     imported = [name for _, content in found.values() for name in take_faults.imported(content)]
     return {
         **{name: sessions.imported(name) for name in imported},
@@ -120,17 +116,20 @@ def _models(models, found):
     }
 
 
-def _sessions(config, found, root):
-    """Return all `Session`s: those of the files, and the variations that conditions make of them."""
-    made = {name: session_files.session(name, *pair, config, root) for name, pair in found.items()}
+def _sessions(config: Content, found: dict[str, tuple], root: str | Path) -> dict[str, Session]:
+    """Return the sessions of the files, and the variations that conditions make of them."""
+    made = {
+        name: session_files.session(name, file, content, config, root)
+        for name, (file, content) in found.items()
+    }
     for name in config["variations"]:
         condition = config["conditions"][name]
         made |= session_files.variations(made[condition["session"]], name, condition)
     return made
 
 
-def _checked(path, schema, faults):
-    """Return what a file says, None if it has faults; add those to `faults`."""
+def _checked(path: Path, schema: str, faults: list[str]) -> Content | None:
+    """Return the content of a file, None if it has faults; add those to `faults`."""
     try:
         content = yaml_files.read(path)
     except InputError as error:
@@ -141,14 +140,14 @@ def _checked(path, schema, faults):
     return None if found else content
 
 
-def _names(config, key):
-    """Return the well-formed names of a list; the schema tells the others."""
+def _names(config: Content, key: str) -> list[str]:
+    """Return the well-formed names of a list; the schema reports the others."""
     names = config.get(key)
     names = names if isinstance(names, list) else []
     return [name for name in names if isinstance(name, str) and NAME.fullmatch(name)]
 
 
-def _name_faults(where, name, file):
+def _name_faults(where: str, name: str, file: Path) -> Iterator[str]:
     if name in RESERVED:
         yield f"{where}: expected none of {RESERVED}, found {name!r}; rename it"
     elif not file.is_file():
@@ -158,21 +157,10 @@ def _name_faults(where, name, file):
         yield f"{where}: expected a file {file}, found {there}; {advice}"
 
 
-def schema_faults(content, schema, file):
-    """Return what a schema finds wrong, one line for each fault.
+def schema_faults(content: Content, schema: str, file: str | Path) -> list[str]:
+    """Return what a schema finds wrong, one line each: `file: key: expected ..., found ...`.
 
-    Parameters
-    ----------
-    content : dict
-    schema : str
-        Name of a file in workflow/schemas/, without `.schema.yaml`.
-    file : str or Path
-        For the message.
-
-    Returns
-    -------
-    faults : list of str
-        `file: key: expected ..., found ...`
+    `schema` is the name of a file in workflow/schemas/, without `.schema.yaml`.
     """
     errors = _validator(schema).iter_errors(content)
     return [
@@ -182,15 +170,18 @@ def schema_faults(content, schema, file):
     ]
 
 
-def _rules(schema):
-    """Read a file of the project itself by libyaml: many times as fast, but hostile nesting would kill it."""
+def _rules(schema: str) -> Content:
+    """Read a schema by libyaml, which is many times as fast as `yaml_files`.
+
+    Hostile nesting would kill it: only for files of the project itself.
+    """
     text = (SCHEMAS / f"{schema}.schema.yaml").read_text(encoding="utf-8")
     return yaml.load(text, Loader=yaml.CSafeLoader)
 
 
 @functools.cache
-def _validator(schema):
-    """Return what checks a kind of file; reading a schema takes longer than checking by it."""
+def _validator(schema: str) -> jsonschema.protocols.Validator:
+    """Return the validator of a kind of file; made once, as reading takes longer than checking."""
     rules = _rules(schema)
     if schema == "session":
         steps = _rules("config")
@@ -208,20 +199,20 @@ def _validator(schema):
     return VALIDATOR(rules)
 
 
-def _overridable(steps):
-    """Return the schema of `override`: the step blocks, with no key required, and some of the lists."""
+def _overridable(steps: Content) -> Content:
+    """Return the schema of `override`: step blocks without required keys, and some of the lists."""
     blocks = {
         key: {name: value for name, value in block.items() if name != "required"}
         for key, block in steps["properties"].items()
         if block.get("type") == "object" and key != "conditions"
     }
     lists = ("models", "calibrations", "take_calibrations", "fusions", "compared_fusions")
-    lists += ("export_stages", "take_figures")
-    blocks |= {key: steps["properties"][key] for key in lists}
+    more = ("export_stages", "take_figures")
+    blocks |= {key: steps["properties"][key] for key in (*lists, *more)}
     return {"type": "object", "additionalProperties": False, "properties": blocks}
 
 
-def _lines(error):
+def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all values open
     where = ".".join(_plain(str(part)) for part in error.absolute_path) or "top level"
     if error.validator in ("additionalProperties", "propertyNames") and isinstance(
         error.instance, dict
@@ -239,10 +230,13 @@ def _lines(error):
         yield f"{where}: expected {wanted}, found {_shown(error.instance)}"
 
 
-def _key_lines(error, where):
+def _key_lines(error: Any, where: str) -> Iterator[str]:
     known = list(error.schema.get("properties", {})) if isinstance(error.schema, dict) else []
     if error.validator == "propertyNames" or not known:
-        yield f"{where}: expected names of {error.schema.get('description', 'a fixed form')}, {error.message}"
+        yield (
+            f"{where}: expected names of {error.schema.get('description', 'a fixed form')}, "
+            f"{error.message}"
+        )
         return
     for key in error.instance:
         if key not in known:
@@ -251,7 +245,7 @@ def _key_lines(error, where):
             yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
 
 
-def _wanted(error):
+def _wanted(error: Any) -> str:
     words = {
         "type": "a value of type {}",
         "enum": "one of {}",
@@ -269,17 +263,19 @@ def _wanted(error):
     return words.get(error.validator, error.validator + " {}").format(error.validator_value)
 
 
-def _plain(text):
+def _plain(text: str) -> str:
     """Return a text as it is, or quoted if it would break the line."""
     return text if text.isprintable() else repr(text)
 
 
-def _shown(value):
+def _shown(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 80 else f"{text[:77]}..."
 
 
-def _model_faults(folder, name, entry, known):
+def _model_faults(
+    folder: Path, name: str, entry: Content, known: dict[str, Artefact] | None
+) -> Iterator[str]:
     file = folder / "models.yaml"
     if not (folder / "skeletons" / f"{entry['skeleton']}.yaml").is_file():
         there = sorted(path.stem for path in (folder / "skeletons").glob("*.yaml"))

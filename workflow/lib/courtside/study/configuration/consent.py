@@ -1,48 +1,34 @@
 """What the persons of a session have agreed to, and what is left out where they have not."""
 
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from courtside.study.configuration.sessions import Session, Subject, Take
+
 WORDS = {
     "analysis": "measures, figures and the 3D view of how they moved",
     "export": "files of how they moved for other programs",
     "pictures": "pictures and videos in which they can be seen, faces made unrecognisable",
     "faces": "pictures and videos that show their faces",
 }
-# Of a recording where nothing is stated: what can be made unrecognisable. How somebody moves cannot, and
-# a file of it goes wherever its reader sends it: that has to be agreed to.
+# Where nothing is stated: what can be made unrecognisable. How somebody moves cannot, and a file
+# of it goes wherever its reader sends it: that has to be agreed to.
 UNSTATED = ("analysis", "pictures")
 NEEDS = {"export": "analysis", "pictures": "analysis", "faces": "pictures"}
 
 
-def stated(subject, virtual):
-    """Return what a person has agreed to.
+def stated(subject: Mapping[str, Any], virtual: bool) -> tuple[str, ...]:
+    """Return what a person, as the session's file has it, has agreed to: words of `WORDS`.
 
-    Parameters
-    ----------
-    subject : dict
-        As the session's file has it.
-    virtual : bool
-        Whether the session is: nobody is there who could object.
-
-    Returns
-    -------
-    consent : tuple of str
-        Words of `WORDS`; empty for somebody who has withdrawn.
+    Empty for somebody who has withdrawn; everything in a virtual session, where nobody can object.
     """
     return tuple(subject.get("consent", WORDS if virtual else UNSTATED))
 
 
-def withdrawn(subjects, virtual):
-    """Return the names of those who have not agreed to be measured.
-
-    Parameters
-    ----------
-    subjects : dict
-        As the session's file has them.
-    virtual : bool
-
-    Returns
-    -------
-    names : set of str
-    """
+def withdrawn(subjects: Mapping[str, Any], virtual: bool) -> set[str]:
+    """Return who, of a session's file, has not agreed to be measured."""
     return {
         name
         for name, subject in subjects.items()
@@ -50,33 +36,19 @@ def withdrawn(subjects, virtual):
     }
 
 
-def refusing(session, take, word):
-    """Return the persons of a take who have not agreed to something, in their order.
-
-    Parameters
-    ----------
-    session : courtside.study.configuration.sessions.Session
-    take : courtside.study.configuration.sessions.Take
-    word : str
-        Of `WORDS`.
-    """
+def refusing(session: "Session", take: "Take", word: str) -> tuple[str, ...]:
+    """Return the persons of a take who have not agreed to `word`, in their order."""
     if word not in WORDS:
         raise ValueError(f"expected one of {tuple(WORDS)}, found {word!r}")
     return tuple(name for name in take.subjects if word not in session.subjects[name].consent)
 
 
-def withheld(takes, subjects):
-    """Return the takes of which nothing may be made: those with a person who has not agreed to `analysis`.
+def withheld(
+    takes: Mapping[str, "Take"], subjects: Mapping[str, "Subject"]
+) -> dict[str, tuple[str, ...]]:
+    """Return the takes that may not be measured, and by whose refusal.
 
-    Parameters
-    ----------
-    takes : dict of str to courtside.study.configuration.sessions.Take
-    subjects : dict of str to courtside.study.configuration.sessions.Subject
-
-    Returns
-    -------
-    withheld : dict of str to tuple of str
-        The persons for whose sake, by take. A recording of several persons cannot be measured without one.
+    A recording of several persons cannot be measured without one of them.
     """
     found = {
         name: tuple(who for who in take.subjects if "analysis" not in subjects[who].consent)
@@ -85,19 +57,10 @@ def withheld(takes, subjects):
     return {name: who for name, who in found.items() if who}
 
 
-def left_out(session, wanted=("export", "pictures")):
+def left_out(session: "Session", wanted: Iterable[str] = ("export", "pictures")) -> list[str]:
     """Say what is not made of a session for want of consent.
 
-    Parameters
-    ----------
-    session : courtside.study.configuration.sessions.Session
-    wanted : sequence of str
-        Words of `WORDS` that are told of, beside `analysis`.
-
-    Returns
-    -------
-    lines : list of str
-        One for each thing left out and each set of persons for whose sake.
+    One line for each thing left out (analysis, and the words `wanted`) and each set of persons.
     """
     lines = [
         f"nothing is made of {takes}: {persons} not agreed to analysis (consent)"
@@ -112,38 +75,28 @@ def left_out(session, wanted=("export", "pictures")):
     return lines
 
 
-def faults(file, content):
-    """Return what contradicts itself in what persons have agreed to, one line each.
-
-    Parameters
-    ----------
-    file : Path
-        The session's.
-    content : dict
-        As its schema allows it.
-
-    Yields
-    ------
-    fault : str
-    """
+def faults(file: Path, content: dict[str, Any]) -> Iterator[str]:
+    """Yield what contradicts itself in the consent of persons, one line each."""
     virtual = "virtual" in content
     shown = not content.get("blur_faces", not virtual) and bool(content.get("takes"))
     for name, subject in content.get("subjects", {}).items():
         agreed = stated(subject or {}, virtual)
         for word in (w for w in agreed if NEEDS.get(w, w) not in agreed):
             yield (
-                f"{file}: subjects.{name}.consent: expected {NEEDS[word]} with {word}, found {list(agreed)}; "
+                f"{file}: subjects.{name}.consent: expected {NEEDS[word]} with {word}, found "
+                f"{list(agreed)}; "
                 "add it, or write [] for somebody who has withdrawn"
             )
         if shown and "pictures" in agreed and "faces" not in agreed:
             yield (
-                f"{file}: blur_faces: expected `faces` in the consent of {name} to show faces, found "
+                f"{file}: blur_faces: expected `faces` in the consent of {name} to show faces, "
+                "found "
                 f"{list(agreed)}; ask them, or remove blur_faces: false"
             )
 
 
-def _together(who):
-    """Yield takes with the same persons, and these persons, in words; takes without any are left out."""
+def _together(who: Mapping[str, tuple[str, ...]]) -> Iterator[tuple[str, str]]:
+    """Yield takes with the same persons, and these persons, in words."""
     for persons in dict.fromkeys(filter(None, who.values())):
         takes = [name for name, others in who.items() if others == persons]
         noun, verb = (

@@ -1,13 +1,15 @@
 """A planned session, as `config/plans/<plan>.yaml` states it."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from courtside.study.configuration import configuration, yaml_files
 
 HEIGHT_M = 1.6  # at which people hold a camera
-TEXTURE = "plain"
+TEXTURE = "plain"  # a plan without a word on texture expects few tie points
 
 
 @dataclass(frozen=True)
@@ -84,22 +86,8 @@ class Plan:
     target_cm: float | None
 
 
-def read(path):
-    """Read a plan.
-
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    plan : Plan
-
-    Raises
-    ------
-    InputError
-        Every fault of the file, one line each.
-    """
+def read(path: str | Path) -> Plan:
+    """Read a plan; an `InputError` has every fault of the file, one line each."""
     content = yaml_files.read(path)
     faults = configuration.schema_faults(content, "plan", Path(path))
     if not faults:
@@ -124,12 +112,15 @@ def read(path):
     )
 
 
-def _faults(path, content):
+def _faults(path: str | Path, content: dict[str, Any]) -> Iterator[str]:
     low, high = (
         [pick(pair) for pair in zip(*content["hall_m"], strict=True)] for pick in (min, max)
     )
     if any(b - a < 1 for a, b in zip(low, high, strict=True)):
-        yield f"{path}: hall_m: expected corners 1 m or more apart along each axis, found {low}, {high}"
+        yield (
+            f"{path}: hall_m: expected corners 1 m or more apart along each axis, found {low}, "
+            f"{high}"
+        )
     walk = content["walk"]
     height_m = walk.get("height_m", HEIGHT_M)
     way_m = [walk["from_m"], *walk.get("via_m", []), walk["to_m"]]
@@ -137,11 +128,17 @@ def _faults(path, content):
     places |= {f"walk: place {at}": [*spot, height_m] for at, spot in enumerate(way_m)}
     for where, place in places.items():
         if not all(a <= x <= b for a, x, b in zip(low, place, high, strict=True)):
-            yield f"{path}: {where}: expected a place within hall_m, found {place}; correct one of them"
+            yield (
+                f"{path}: {where}: expected a place within hall_m, found {place}; correct one of "
+                "them"
+            )
     for one, other in pairwise(way_m):
         if one == other:
-            yield f"{path}: walk: expected places that differ, found {one} twice in a row; leave one out"
+            yield (
+                f"{path}: walk: expected places that differ, found {one} twice in a row; leave "
+                "one out"
+            )
 
 
-def _frozen(value):
+def _frozen(value: Any) -> Any:
     return tuple(_frozen(part) for part in value) if isinstance(value, list) else value

@@ -1,21 +1,29 @@
-"""What a session's file gets wrong beyond its schema: names, files, and ways to find the cameras."""
+"""Faults of a session's file beyond its schema: names, files, ways to find the cameras."""
 
 import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 from courtside.study.configuration import consent, take_faults
-from courtside.study.configuration.session_files import VIRTUAL, is_there
+from courtside.study.configuration.session_files import is_there
+from courtside.study.configuration.yaml_files import Content
+from courtside.study.execution.artefacts import Artefact
+from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
 
-EXTERNAL = "results/external/"
-CALIBRATED = r"results/[^/]+/calibration/[^/]+/cameras\.toml"  # by the workflow, in another session
+# Cameras that the workflow finds in another session.
+CALIBRATED = CAMERAS.replace(".", r"\.").format(session="[^/]+", calibration="[^/]+")
+SIMULATED = VIRTUAL.format(session="")
 
 
-def find(folder, file, content, known, root):
-    """Return what contradicts the rest of the configuration or the disk in a session, one line each.
+def find(
+    folder: Path, file: Path, content: Content, known: dict[str, Artefact] | None, root: Path
+) -> Iterator[str]:
+    """Yield what in a session contradicts the rest of the configuration or the disk, one line each.
 
     Parameters
     ----------
     folder : Path
-        config/.
+        The folder config/.
     file : Path
         The session's.
     content : dict
@@ -24,16 +32,12 @@ def find(folder, file, content, known, root):
         Artefacts by name.
     root : Path
         Where relative paths start.
-
-    Yields
-    ------
-    fault : str
     """
     cameras, subjects = content["cameras"], content.get("subjects", {})
     court = content["court"]
     if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
-        there = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
-        yield f"{file}: court: expected 'none' or one of {there}, found {court!r}"
+        known_courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
+        yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
     yield from _source_faults(file, content)
     yield from consent.faults(file, content)
     for key, views in content.get("views", {}).items():
@@ -42,21 +46,21 @@ def find(folder, file, content, known, root):
         f"{file}: halfbody", content.get("halfbody", {}).values(), cameras
     )
     paths = dict(_paths(content))
-    for name, take in content.get("takes", {}).items():
-        take = take or {}
+    for name, given in content.get("takes", {}).items():
+        take: Content = given or {}
         yield from take_faults.find(
             f"{file}: takes.{name}", take, cameras, subjects, "virtual" in content
         )
         # Recordings of somebody who has withdrawn may be gone.
         withdrawn = consent.withdrawn(subjects, "virtual" in content)
-        if not withdrawn & set(take.get("subjects", subjects)):
+        if not withdrawn & set(take.get("subjects", [*subjects])):
             paths |= dict(_take_paths(f"takes.{name}", take))
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
 
 
-def _take_paths(where, take):
+def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
     """Yield (key, path) of all recordings of a take."""
     for camera, path in take.get("videos", {}).items():
         yield f"{where}.videos.{camera}", path
@@ -68,7 +72,7 @@ def _take_paths(where, take):
         yield f"{where}.devices.{name}.file", device["file"]
 
 
-def _paths(content):
+def _paths(content: Content) -> Iterator[tuple[str, str]]:
     """Yield (key, path) of all recordings but those of takes."""
     if "calibration" in content:
         yield "calibration.file", content["calibration"]["file"]
@@ -87,8 +91,8 @@ def _paths(content):
         yield "court_points", clicks
 
 
-def _source_faults(file, content):
-    """Check that the cameras can be found one way or another, and that virtual sessions name no files."""
+def _source_faults(file: Path, content: Content) -> Iterator[str]:
+    """Check that cameras can be found in some way, and that virtual sessions name no files."""
     for name in sorted(set(content["cameras"]) & set(content.get("walks", {}))):
         yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
     if "virtual" in content:
@@ -98,7 +102,7 @@ def _source_faults(file, content):
         yield from _court_faults(file, content)
 
 
-def _virtual_faults(file, content):
+def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
     virtual, walks = content["virtual"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
     if not content["cameras"] and not any("devices" in take.get("virtual", {}) for take in takes):
@@ -112,74 +116,70 @@ def _virtual_faults(file, content):
     named = [key for key, _ in _paths(content) if not key.endswith(made)]
     if named:
         yield (
-            f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes its own; "
+            f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes "
+            "its own; "
             "remove it"
         )
     if content["court"] == "none":
-        yield f"{file}: court: expected a court to build the virtual hall around, found 'none'; name one"
+        yield (
+            f"{file}: court: expected a court to build the virtual hall around, found 'none'; "
+            "name one"
+        )
     yield from setting_faults(f"{file}: virtual", content["virtual"])
 
 
-def _recorded_faults(file, content):
+def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
     cameras, walks = content["cameras"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
     found = {"walks", "calibration", "court_points"} & set(content)
     if not found and (cameras or not takes):
         yield (
-            f"{file}: expected `walks`, `court_points` or `calibration`, found none; say how the cameras are "
+            f"{file}: expected `walks`, `court_points` or `calibration`, found none; say how the "
+            "cameras are "
             "to be found"
         )
     if len(cameras) < 2 and ("calibration" in content or any("videos" in take for take in takes)):
-        yield f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
+        yield (
+            f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
+        )
     for name in (name for name, walk in walks.items() if not walk):
         yield (
-            f"{file}: walks.{name}: expected `video` or `images`, found neither; name a file or a folder"
+            f"{file}: walks.{name}: expected `video` or `images`, found neither; name a file or a "
+            "folder"
         )
     for name, camera in cameras.items() if walks else ():
         if not (camera or {}).get("static"):
             yield (
-                f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty court, found "
+                f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty "
+                "court, found "
                 "none; bridging images are tied to it"
             )
 
 
-def _court_faults(file, content):
+def _court_faults(file: Path, content: Content) -> Iterator[str]:
     clicked = "court_points" in content
     if content["court"] == "none" and clicked:
         yield f"{file}: court_points: expected none without a court, found some; name their court"
     if content["court"] != "none" and content.get("walks") and content["cameras"] and not clicked:
         yield (
-            f"{file}: expected `court_points` for a session with a court, found none; say where they are to "
+            f"{file}: expected `court_points` for a session with a court, found none; say where "
+            "they are to "
             "be saved, and the study makes a page to click them on, or set court: none"
         )
 
 
-def setting_faults(where, virtual):
-    """Return what contradicts itself in the settings of a virtual session, one line each.
-
-    Parameters
-    ----------
-    where : str
-    virtual : dict
-        As its schema allows it.
-    """
+def setting_faults(where: str, virtual: Content) -> list[str]:
+    """Return what contradicts itself in the settings of a virtual session, one line each."""
     if "baseline_deg" in virtual and virtual["layout"] != "a":
         return [
-            f"{where}.baseline_deg: expected it with layout a only, found {virtual['layout']}; remove it"
+            f"{where}.baseline_deg: expected it with layout a only, found {virtual['layout']}; "
+            "remove it"
         ]
     return []
 
 
-def conditions(config_file, config, found):
-    """Return the faults of the conditions, one line each.
-
-    Parameters
-    ----------
-    config_file : str
-    config : dict
-    found : dict
-        (file, content) of each session, by name.
-    """
+def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> list[str]:
+    """Return the faults of the conditions; `found` has (file, content) of each session, by name."""
     faults = take_faults.unknown(
         f"{config_file}: variations", config["variations"], config["conditions"]
     )
@@ -193,14 +193,16 @@ def conditions(config_file, config, found):
             faults.append(f"{where}.session: expected a virtual session, found {base!r}; name one")
         elif base in found:
             keys = {**found[base][1]["virtual"], **condition.get("set", {}), **condition["vary"]}
-            # Any of the layouts varied may be the wrong one; a name in `vary` stands for its values.
+            # Any of the varied layouts may be wrong; a name in `vary` stands for its values.
             layouts = condition["vary"].get("layout", [keys["layout"]])
             faults += [f for at in layouts for f in setting_faults(where, {**keys, "layout": at})]
         faults += _condition_faults(where, name, condition, found)
     return faults
 
 
-def _condition_faults(where, name, condition, found):
+def _condition_faults(
+    where: str, name: str, condition: Content, found: Iterable[str]
+) -> Iterator[str]:
     for key in sorted(set(condition.get("set", {})) & set(condition["vary"])):
         yield f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
     # Variations are sessions named after their condition.
@@ -208,12 +210,16 @@ def _condition_faults(where, name, condition, found):
         yield f"{where}: expected a name that no session has, found session {taken!r}; rename it"
 
 
-def _path_faults(where, path, known, root):
-    if path.startswith(f"{VIRTUAL}/") or re.fullmatch(CALIBRATED, path):
+def _path_faults(
+    where: str, path: str, known: dict[str, Artefact] | None, root: Path
+) -> Iterator[str]:
+    if path.startswith(SIMULATED) or re.fullmatch(CALIBRATED, path):
         return
     if not path.startswith(EXTERNAL):
         if not is_there(root / path):
-            yield f"{where}: expected a file, found none at {path}; correct the path or put it there"
+            yield (
+                f"{where}: expected a file, found none at {path}; correct the path or put it there"
+            )
         return
     if known is None:
         return

@@ -1,14 +1,15 @@
 """Building sessions from their files, and variations of virtual ones from a condition."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
+from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
+from courtside.study.configuration.yaml_files import Content
 
-MADE = "results/"
-VIRTUAL = f"{MADE}virtual"  # made by the workflow itself
 KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
     ".bvh": "inertial",
     ".bag": "rgbd",
@@ -19,15 +20,17 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
 }
 
 
-def is_there(path):
-    """Tell whether there is a file or folder; of a name that no disk takes there is none."""
+def is_there(path: Path) -> bool:
+    """Tell whether a file or folder exists; one whose name no disk takes does not."""
     try:
         return path.exists()
     except OSError:
         return False
 
 
-def session(name, file, content, parameters, root="."):
+def session(
+    name: str, file: str | Path, content: Content, parameters: Content, root: str | Path = "."
+) -> Session:
     """Build a `Session`.
 
     Parameters
@@ -40,10 +43,7 @@ def session(name, file, content, parameters, root="."):
     root : str or Path
         Where relative paths start.
     """
-    clicked = content.get("court_points")
-    unclicked = None
-    if clicked and not clicked.startswith(MADE) and not is_there(Path(root) / clicked):
-        clicked, unclicked = None, clicked
+    clicked, unclicked = _clicks(content, root)
     subjects = _subjects(content)
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     takes = {
@@ -76,8 +76,16 @@ def session(name, file, content, parameters, root="."):
     )
 
 
-def variations(base, name, content):
-    """Build the sessions that differ from a virtual one in some of its settings.
+def _clicks(content: Content, root: str | Path) -> tuple[str | None, str | None]:
+    """Return the clicked court points, and where those are to be saved that nobody has clicked."""
+    clicks = content.get("court_points")
+    if not clicks or clicks.startswith(f"{paths.RESULTS}/") or is_there(Path(root) / clicks):
+        return clicks, None
+    return None, clicks
+
+
+def variations(base: Session, name: str, content: Content) -> dict[str, Session]:
+    """Build the sessions `{name}-{k}` that differ from a virtual one in some of its settings.
 
     Parameters
     ----------
@@ -85,14 +93,8 @@ def variations(base, name, content):
     name : str
         Of the condition.
     content : dict
-        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys of
-        `virtual`
-        that are the same for all; `override`: steps' parameters that differ from the base session's.
-
-    Returns
-    -------
-    sessions : dict of str to Session
-        `{name}-{k}`.
+        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys
+        of `virtual` that are the same for all; `override`: parameters of steps that differ.
     """
     found, vary = {}, content["vary"]
     for k, values in enumerate(product(*vary.values())):
@@ -110,7 +112,7 @@ def variations(base, name, content):
             withheld={},
             walks=files["walks"],
             court_points=files["court_points"],
-            virtual={**base.virtual, "boards": False, **content.get("set", {}), **varied},
+            virtual={**(base.virtual or {}), "boards": False, **content.get("set", {}), **varied},
             condition={"condition": name, **varied},
             # Only their errors are wanted, not camera files.
             parameters=_merged(base.parameters, content.get("override", {})) | {"calibrations": []},
@@ -118,7 +120,7 @@ def variations(base, name, content):
     return found
 
 
-def _merged(parameters, override):
+def _merged(parameters: Content, override: Content) -> Content:
     return {
         key: {**value, **override.get(key, {})}
         if isinstance(value, dict)
@@ -127,7 +129,7 @@ def _merged(parameters, override):
     }
 
 
-def _subjects(content):
+def _subjects(content: Content) -> dict[str, Subject]:
     return {
         key: Subject(
             **{**(value or {}), "consent": consent.stated(value or {}, "virtual" in content)}
@@ -136,7 +138,9 @@ def _subjects(content):
     }
 
 
-def _take(name, content, filmed, subjects):
+def _take(
+    name: str, content: Content, filmed: Content | None, subjects: dict[str, Subject]
+) -> Take:
     there = tuple(content.get("subjects", subjects))
     return Take(
         name=name,
@@ -153,7 +157,7 @@ def _take(name, content, filmed, subjects):
     )
 
 
-def _devices(content, subjects):
+def _devices(content: Content, subjects: tuple[str, ...]) -> dict[str, Device]:
     return {
         name: Device(
             kind=KINDS.get(Path(device["file"]).suffix.lower(), "rgb"),
@@ -164,35 +168,40 @@ def _devices(content, subjects):
     }
 
 
-def _walks(content):
+def _walks(content: Content) -> dict[str, str]:
     return {key: value.get("video") or value["images"] for key, value in content.items()}
 
 
-def _virtual(name, content):
+def _virtual(name: str, content: Content) -> Content:
     """Return the files that a simulation makes, by the keys of a session."""
-    folder = f"{VIRTUAL}/{name}"
+    takes = {key: take["virtual"] for key, take in content.get("takes", {}).items()}
     return {
-        "static": {camera: f"{folder}/{camera}.mp4" for camera in content["cameras"]},
-        "walks": {walk: f"{folder}/{walk}.mp4" for walk in content.get("walks", {})},
-        "court_points": f"{folder}/court_points.csv",
+        "static": _films(paths.RECORDING, content["cameras"], session=name),
+        "walks": _films(paths.RECORDING, content.get("walks", {}), session=name),
+        "court_points": paths.VIRTUAL_CLICKS.format(session=name),
         "takes": {
-            take: _virtual_take(f"{folder}/takes/{take}", made["virtual"], content["cameras"])
-            for take, made in content.get("takes", {}).items()
+            take: _virtual_take(name, take, made, content["cameras"])
+            for take, made in takes.items()
         },
     }
 
 
-def _virtual_take(folder, made, cameras):
-    endings = {"inertial": "bvh", "rgbd": "bag"}
+def _virtual_take(session: str, take: str, made: Content, cameras: Iterable[str]) -> Content:
+    known, endings = {"session": session, "take": take}, {"inertial": "bvh", "rgbd": "bag"}
+    devices = {name: endings[device["kind"]] for name, device in made.get("devices", {}).items()}
     return {
-        "videos": {camera: f"{folder}/{camera}.mp4" for camera in made.get("cameras", cameras)},
+        "videos": _films(paths.VIRTUAL_FILM, made.get("cameras", cameras), **known),
         "devices": {
-            name: {"file": f"{folder}/{name}.{endings[device['kind']]}"}
-            for name, device in made.get("devices", {}).items()
+            name: {"file": paths.VIRTUAL_DEVICE.format(name=name, suffix=suffix, **known)}
+            for name, suffix in devices.items()
         },
     }
 
 
-def _camera(content):
+def _films(pattern: str, names: Iterable[str], **known: str) -> dict[str, str]:
+    return {name: pattern.format(name=name, **known) for name in names}
+
+
+def _camera(content: Content) -> FixedCamera:
     crop_px = tuple(content["crop_px"]) if "crop_px" in content else None
     return FixedCamera(**{**content, "crop_px": crop_px})

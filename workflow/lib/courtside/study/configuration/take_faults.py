@@ -1,30 +1,24 @@
-"""What a take of a session gets wrong beyond its schema: recordings, devices, simulation, other programs."""
+"""Faults of a take beyond its schema: recordings, devices, simulation, imported keypoints."""
+
+from collections.abc import Collection, Iterable, Iterator
+from pathlib import Path
+
+from courtside.study.configuration.yaml_files import Content
 
 RECORDINGS = ("videos", "devices")  # keys of a take that was recorded
 
 
-def imported(content):
-    """Return the skeletons whose keypoints another program found, of all takes of a session, in order."""
+def imported(content: Content) -> list[str]:
+    """Return the skeletons of keypoints that takes of a session import, each once, in order."""
     takes = [take for take in content.get("takes", {}).values() if take]
     names = [name for take in takes for key in ("pose2d", "pose3d") for name in take.get(key, {})]
     return list(dict.fromkeys(names))
 
 
-def of_other_programs(folder, file, content):
-    """Check keypoints of other programs: known skeletons, cameras, persons; in every take that needs them.
+def of_other_programs(folder: Path, file: Path, content: Content) -> Iterator[str]:
+    """Check imported keypoints: known skeletons, cameras, persons, in every take that needs them.
 
-    Parameters
-    ----------
-    folder : Path
-        config/.
-    file : Path
-        The session's.
-    content : dict
-        As its schema allows it.
-
-    Yields
-    ------
-    fault : str
+    `folder` is config/, `file` the session's, `content` as its schema allows it.
     """
     there = sorted(path.stem for path in (folder / "skeletons").glob("*.yaml"))
     wanted = set(content.get("override", {}).get("models", []))
@@ -38,38 +32,24 @@ def of_other_programs(folder, file, content):
         missing = wanted & set(imported(content)) - set(take.get("pose2d", {}))
         for skeleton in sorted(missing if take.get("videos") else ()):
             yield (
-                f"{file}: takes.{name}.pose2d: expected {skeleton}, as override.models says, found none; "
+                f"{file}: takes.{name}.pose2d: expected {skeleton}, as override.models says, "
+                "found none; "
                 "name its folders"
             )
 
 
-def find(where, take, cameras, subjects, virtual):
-    """Return what contradicts itself or the session in a take, one line each.
+def find(
+    where: str, take: Content, cameras: Content, subjects: Content, virtual: bool
+) -> Iterator[str]:
+    """Yield what in a take contradicts itself or its session, one line each.
 
-    Parameters
-    ----------
-    where : str
-        File and take.
-    take, cameras, subjects : dict
-    virtual : bool
-        Whether the session is.
-
-    Yields
-    ------
-    fault : str
+    `where` names file and take; `virtual` says whether the session is.
     """
-    if virtual and ("virtual" not in take or set(RECORDINGS) & set(take)):
-        yield (
-            f"{where}: expected the key 'virtual' and not 'videos' in a virtual session, found "
-            f"{sorted(take)}; correct the take"
-        )
-    if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
-        yield (
-            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded session, found "
-            f"{sorted(take)}; correct the take"
-        )
+    yield from _kind_faults(where, take, virtual)
     if not subjects:
-        yield f"{where}: expected `subjects` in the session, found none; name the persons of the take"
+        yield (
+            f"{where}: expected `subjects` in the session, found none; name the persons of the take"
+        )
         return
     there = take.get("subjects", subjects)
     yield from unknown(f"{where}.videos", take.get("videos", {}), cameras)
@@ -81,14 +61,16 @@ def find(where, take, cameras, subjects, virtual):
     first = next(iter(take.get("videos", {})), None)
     if any(take.get("clocks", {}).get(first, {}).get(key, 0) for key in ("offset_s", "drift_ppm")):
         yield (
-            f"{where}.clocks.{first}: expected no offset or drift of the first camera, whose clock is the "
+            f"{where}.clocks.{first}: expected no offset or drift of the first camera, whose "
+            "clock is the "
             "reference, found one; state the other clocks against it"
         )
     yield from _filmed_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
         for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):
             yield (
-                f"{where}.steady: expected `static` of camera {name}, against which shake is measured, found "
+                f"{where}.steady: expected `static` of camera {name}, against which shake is "
+                "measured, found "
                 "none; name a recording of the empty court"
             )
     start_s, stop_s = take.get("trim_s", (0, 1))
@@ -96,12 +78,32 @@ def find(where, take, cameras, subjects, virtual):
         yield f"{where}.trim_s: expected a start before the stop, found [{start_s}, {stop_s}]"
 
 
-def _device_faults(where, take, cameras, subjects):
+def _kind_faults(where: str, take: Content, virtual: bool) -> Iterator[str]:
+    """Check that a take is virtual in a virtual session, and recorded in a recorded one."""
+    if virtual and ("virtual" not in take or set(RECORDINGS) & set(take)):
+        yield (
+            f"{where}: expected the key 'virtual' and not 'videos' in a virtual session, found "
+            f"{sorted(take)}; correct the take"
+        )
+    if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
+        yield (
+            f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded "
+            "session, found "
+            f"{sorted(take)}; correct the take"
+        )
+
+
+def _device_faults(
+    where: str, take: Content, cameras: Content, subjects: Collection[str]
+) -> Iterator[str]:
     """Check the devices of a take, recorded or virtual."""
     devices = {**take.get("devices", {}), **(take.get("virtual") or {}).get("devices", {})}
     worn = {device.get("subject", next(iter(subjects))) for device in devices.values()}
     if len(worn) > 1:
-        yield f"{where}.devices: expected one subject for all, found {sorted(worn)}; make a take for each"
+        yield (
+            f"{where}.devices: expected one subject for all, found {sorted(worn)}; make a take "
+            "for each"
+        )
     for name, device in devices.items():
         named = [device["subject"]] if "subject" in device else []
         yield from unknown(f"{where}.devices.{name}.subject", named, subjects)
@@ -109,7 +111,9 @@ def _device_faults(where, take, cameras, subjects):
             yield f"{where}.devices: expected names that no camera has, found {name!r}; rename it"
 
 
-def _filmed_faults(where, filmed, cameras, subjects):
+def _filmed_faults(
+    where: str, filmed: Content | None, cameras: Content, subjects: Collection[str]
+) -> Iterator[str]:
     """Check what a take of a virtual session is made from."""
     if not filmed:
         return
@@ -124,15 +128,8 @@ def _filmed_faults(where, filmed, cameras, subjects):
         )
 
 
-def unknown(where, names, known):
-    """Return a fault for each name that is not known.
-
-    Parameters
-    ----------
-    where : str
-    names : iterable of str
-    known : collection of str
-    """
+def unknown(where: str, names: Iterable[str], known: Collection[str]) -> list[str]:
+    """Return a fault for each name that is not known."""
     return [
         f"{where}: expected one of {sorted(known)}, found {name!r}"
         for name in names

@@ -1,6 +1,7 @@
 """YAML files without YAML's surprises: no duplicate keys, names stay text."""
 
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -10,12 +11,13 @@ LARGEST_BYTES = 1 << 20  # the largest that is read within seconds
 DEEPEST = 40  # levels
 MOST = 200_000  # values, those of an alias counted each time
 LARGEST = 10**4000  # Python refuses to write out longer numbers
+Content = dict[str, Any]  # of a YAML file, or of a part of it
 
 
 class _StrictLoader(yaml.SafeLoader):
     """A safe loader that refuses a key given twice."""
 
-    def construct_mapping(self, node, deep=False):
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
         """Build a dictionary; raise where a key repeats or is not text."""
         seen = set()
         for key_node, _ in node.value:
@@ -35,16 +37,8 @@ class _StrictLoader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-def read(path):
+def read(path: str | Path) -> Content:
     """Read a YAML file that holds a mapping.
-
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    content : dict
 
     Raises
     ------
@@ -69,8 +63,8 @@ def read(path):
     return content
 
 
-def _check_extent(path, content):
-    """Refuse what no configuration is, but aliases and hexadecimal numbers make of a few bytes."""
+def _check_extent(path: str | Path, content: Content) -> None:
+    """Refuse huge content, which aliases and hexadecimal numbers make of a few bytes."""
     waiting, count = [(content, 1)], 0
     while waiting:
         value, depth = waiting.pop()
@@ -87,7 +81,7 @@ def _check_extent(path, content):
             waiting += [(part, depth + 1) for part in inner]
 
 
-def _first_line(error):
+def _first_line(error: yaml.YAMLError) -> str:
     mark = getattr(error, "problem_mark", None)
     where = f"line {mark.line + 1}: " if mark else ""
     problem = getattr(error, "problem", None) or str(error).splitlines()[0]

@@ -1,1 +1,10 @@
-"""Running the study: logs, whole files, artefacts, digests of code, resources, the last words."""
+"""Running the study: logs, whole files, artefacts, digests of code, resources, the last words.
+
+files: `atomic`, `atomic_folder`, `write_json`, `read_json`, `sha256`
+log: `to_file` and `progress`, for scripts
+artefacts: `fetch` and `unpack` pinned files
+digest: `code_digest` and `Remembered`, which rerun rules whose code changed
+checksums: `Checksums` of large files, kept between runs
+future_dates, machine_resources: what is checked before any work
+summary: the words at the end of a run
+"""

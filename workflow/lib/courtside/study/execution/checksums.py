@@ -12,8 +12,8 @@ FORMAT = 1
 SETTLED_NS = 2_000_000_000
 
 
-def of_path(path):
-    """Return the SHA-256 of a file, or of a folder: of the names and checksums of all files in it."""
+def of_path(path: str | Path) -> str:
+    """Return the SHA-256 of a file, or of a folder: of names and checksums of all its files."""
     path = Path(path)
     if not path.is_dir():
         return files.sha256(path)
@@ -23,7 +23,7 @@ def of_path(path):
     return digest.hexdigest()
 
 
-def members(folder):
+def members(folder: str | Path) -> list[Path]:
     """Return all files in a folder, in the order of their names, without Snakemake's time stamp."""
     found = (path for path in Path(folder).rglob("*") if path.is_file())
     return sorted(path for path in found if path.name != ".snakemake_timestamp")
@@ -38,12 +38,12 @@ class Checksums:
         Where they are kept; a file that cannot be read as such is taken for an empty one.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         self.known = self._read()
         self.changed = False
 
-    def _read(self):
+    def _read(self) -> dict[str, list]:
         try:
             content = files.read_json(self.path)
             if content["format"] != FORMAT:
@@ -55,7 +55,7 @@ class Checksums:
         except DAMAGED:
             return {}
 
-    def of(self, path):
+    def of(self, path: str | Path) -> str | None:
         """Return the SHA-256 of a file or folder; None if there is none."""
         path = Path(path)
         if path.is_dir():
@@ -74,8 +74,8 @@ class Checksums:
             self.changed = True
         return value
 
-    def write(self):
-        """Keep what is known of files that are still there."""
+    def write(self) -> None:
+        """Write what is known of files that still exist."""
         if not self.changed:
             return
         there = {name: kept for name, kept in sorted(self.known.items()) if Path(name).exists()}

@@ -1,4 +1,4 @@
-"""A digest of the code that a rule runs, so that editing a library module reruns what uses it.
+"""A digest of the code that a rule runs, so that an edited library module reruns its users.
 
 Snakemake notices a changed script, but not a changed module that the script imports.
 """
@@ -8,6 +8,7 @@ import contextlib
 import hashlib
 import json
 import re
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -17,46 +18,23 @@ from courtside.study.execution import files
 PACKAGES = {"courtside", "virtualgym"}
 # Fields that differ between Python versions, or say where a node stands, not what it does.
 IGNORED = {"ctx", "kind", "type_comment", "type_ignores", "type_params"}
-
-
 # Packages that are imported by another name than they are installed by.
 INSTALLED_AS = {"cv2": "opencv-python-headless", "PIL": "pillow", "yaml": "pyyaml"}
 
 
-def rule_digest(script, library, lock_text):
-    """Return the digest of all that a rule runs, as `<code>-<packages>`, each 64 hexadecimal digits.
+def rule_digest(script: str | Path, library: str | Path, lock_text: str) -> str:
+    """Return the digest of all that a rule runs: `<code>-<packages>`, 64 hexadecimal digits each.
 
-    Parameters
-    ----------
-    script, library : str or Path
-        As of `code_digest`.
-    lock_text : str
-        The lock: `name==version` at the start of lines, perhaps with markers.
-
-    Notes
-    -----
-    Packages are those that the code imports itself, as the lock pins them: a new version of one reruns what
-    imports it, a new version of a tool that no rule imports reruns nothing.
+    Packages are those that the code imports itself, as the lock (`name==version` at the start of
+    lines, perhaps with markers) pins them: a new version of one reruns what imports it, a new
+    version of a tool that no rule imports reruns nothing.
     """
     pins = "\n".join(sorted(packages_of(script, library, lock_text)))
     return f"{code_digest(script, library)}-{hashlib.sha256(pins.encode()).hexdigest()}"
 
 
-def packages_of(script, library, lock_text):
-    """Return the pins of the packages that a script's code imports.
-
-    Parameters
-    ----------
-    script, library : str or Path
-        As of `code_digest`.
-    lock_text : str
-        As of `rule_digest`.
-
-    Returns
-    -------
-    pins : set of str
-        Each `name==version`, with its marker.
-    """
+def packages_of(script: str | Path, library: str | Path, lock_text: str) -> set[str]:
+    """Return the pins (`name==version` with marker) of the packages that a script imports."""
     paths = [Path(script), *(_file(name, Path(library)) for name in modules_of(script, library))]
     imported = {name for path in paths for name in _parsed(path)[2]}
     wanted = {_plain(INSTALLED_AS.get(name, name)) for name in imported}
@@ -65,36 +43,23 @@ def packages_of(script, library, lock_text):
 
 
 @cache
-def _pins(lock_text):
-    """Return {name: its pins} of a lock: several where platforms or interpreters differ."""
-    found = {}
+def _pins(lock_text: str) -> dict[str, list[str]]:
+    """Return {name: its pins} of a lock; several where platforms or interpreters differ."""
+    found: dict[str, list[str]] = {}
     for line in re.findall(r"^[A-Za-z0-9][^\n\\]*==[^\n\\]*", lock_text, re.M):
         found.setdefault(_plain(re.split(r"\[|==", line)[0]), []).append(line.strip())
     return found
 
 
-def _plain(name):
+def _plain(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def code_digest(script, library):
+def code_digest(script: str | Path, library: str | Path) -> str:
     """Return the digest of a script and of every library module it reaches, 64 hexadecimal digits.
 
-    Parameters
-    ----------
-    script : str or Path
-    library : str or Path
-        The folder that holds the packages of the library.
-
-    Returns
-    -------
-    digest : str
-        Changes with the syntax trees, not with comments, docstrings or formatting.
-
-    Raises
-    ------
-    InputError
-        If a file has a syntax error.
+    It changes with the syntax trees, not with comments, docstrings or formatting. `library` is the
+    folder that holds the packages of the library. A syntax error is an `InputError`.
     """
     parts = [_parsed(Path(script))[0]]
     parts += [
@@ -103,63 +68,29 @@ def code_digest(script, library):
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
-def modules_of(script, library):
-    """Return the names of all library modules that a file imports, directly or through one another.
-
-    Parameters
-    ----------
-    script : str or Path
-    library : str or Path
-        The folder that holds the packages of the library.
-
-    Returns
-    -------
-    names : set of str
-        Full names, packages included.
-    """
+def modules_of(script: str | Path, library: str | Path) -> set[str]:
+    """Return the full names of all library modules and packages that a file reaches."""
     return _reached(Path(script), Path(library), lambda path: _parsed(path)[1], _file)
 
 
 class Remembered:
-    """Digests that are kept in a file from run to run: parsing all code takes longer than a small plan.
+    """Digests that are kept in a file from run to run, as parsing takes longer than a small plan.
 
-    All is found by the SHA-256 of files' content, so that nothing kept can be out of date. A file that is
-    missing or damaged costs time only. Files are read once in the life of an object.
-
-    Parameters
-    ----------
-    path : str or Path
-        A JSON file.
-    lock_text : str
-        As of `rule_digest`.
+    Entries are found by the SHA-256 of file contents, so that none can be out of date. A missing
+    or damaged JSON file `path` costs time only. Each file is read once in the life of an object.
     """
 
-    def __init__(self, path, lock_text):
+    def __init__(self, path: str | Path, lock_text: str) -> None:
         self._path, self._lock_text = Path(path), lock_text
         self._kept = _read(self._path)
-        self._used = {}
+        self._used: dict[str, str] = {}
         self._sha256 = cache(files.sha256)
         self._file = cache(_file)
-        # Of another way to digest, or another lock, nothing kept counts.
+        # Entries made by another version of this module, or with another lock, are not used.
         self._own = hashlib.sha256((files.sha256(__file__) + lock_text).encode()).hexdigest()
 
-    def digest(self, script, library):
-        """Return `rule_digest` of a script, from the file where its code was met before.
-
-        Parameters
-        ----------
-        script : str or Path
-        library : str or Path
-
-        Returns
-        -------
-        digest : str
-
-        Raises
-        ------
-        InputError
-            If a file has a syntax error.
-        """
+    def digest(self, script: str | Path, library: str | Path) -> str:
+        """Return `rule_digest` of a script, from the file where its code was met before."""
         script, library = Path(script), Path(library)
         names = sorted(_reached(script, library, self._imports, self._file))
         paths = [script, *(self._file(name, library) for name in names)]
@@ -167,24 +98,24 @@ class Remembered:
         key = hashlib.sha256(content.encode()).hexdigest()
         return self._get(key, lambda: rule_digest(script, library, self._lock_text))
 
-    def save(self):
-        """Write what this run used, where that is not what the file holds, and where it may be written."""
+    def save(self) -> None:
+        """Write what this run used, if it is new and the file may be written."""
         if self._used != self._kept:
             with contextlib.suppress(OSError, InputError):
                 files.write_json(self._path, self._used)
             self._kept = dict(self._used)
 
-    def _imports(self, path):
+    def _imports(self, path: Path) -> list[str]:
         key = f"{self._own} {self._sha256(path)}"
         return self._get(key, lambda: " ".join(_parsed(path)[1])).split()
 
-    def _get(self, key, find):
+    def _get(self, key: str, find: Callable[[], str]) -> str:
         if key not in self._used:
             self._used[key] = self._kept[key] if key in self._kept else find()
         return self._used[key]
 
 
-def _read(path):
+def _read(path: Path) -> dict[str, str]:
     """Return what was kept, nothing where that cannot be read."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -194,7 +125,12 @@ def _read(path):
     return content if there else {}
 
 
-def _reached(script, library, imports_of, find):
+def _reached(
+    script: Path,
+    library: Path,
+    imports_of: Callable[[Path], Iterable[str]],
+    find: Callable[[str, Path], Path | None],
+) -> set[str]:
     found, waiting = set(), [script]
     while waiting:
         for name in imports_of(waiting.pop()):
@@ -206,12 +142,12 @@ def _reached(script, library, imports_of, find):
     return found
 
 
-def _with_parents(name):
+def _with_parents(name: str) -> list[str]:
     parts = name.split(".")
     return [".".join(parts[: at + 1]) for at in range(len(parts))]
 
 
-def _file(name, library):
+def _file(name: str, library: Path) -> Path | None:
     """Return the file of a module, None for a name that is not a module (a function, say)."""
     base = library.joinpath(*name.split("."))
     for file in (base.with_suffix(".py"), base / "__init__.py"):
@@ -221,7 +157,7 @@ def _file(name, library):
 
 
 @cache
-def _parsed(path):
+def _parsed(path: Path) -> tuple[str, tuple[str, ...], frozenset[str]]:
     """Return (tree as text, names imported from the library, other packages imported) of a file."""
     try:
         tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
@@ -234,7 +170,7 @@ def _parsed(path):
     return _text(tree), inner, frozenset(name.split(".")[0] for name in names) - PACKAGES
 
 
-def _imports(tree):
+def _imports(tree: ast.AST) -> Iterator[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -245,7 +181,7 @@ def _imports(tree):
         yield from names
 
 
-def _text(node):
+def _text(node: object) -> str:
     if isinstance(node, list):
         return "[" + ",".join(_text(item) for item in node) + "]"
     if not isinstance(node, ast.AST):
@@ -259,6 +195,6 @@ def _text(node):
     return f"{type(node).__name__}({','.join(fields)})"
 
 
-def _is_text(node):
+def _is_text(node: ast.AST) -> bool:
     """Tell docstrings, and other statements that are only a string."""
     return isinstance(node, ast.Expr) and isinstance(getattr(node.value, "value", None), str)

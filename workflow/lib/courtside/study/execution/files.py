@@ -6,7 +6,9 @@ import json
 import re
 import secrets
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from courtside.study.errors import reading
 
@@ -16,19 +18,11 @@ UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}(\.\w+)?")
 
 
 @contextlib.contextmanager
-def atomic(path):
+def atomic(path: str | Path) -> Iterator[Path]:
     """Give a temporary path beside `path`; rename it to `path` when the block ends well.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file to write. Missing parent folders are made.
-
-    Yields
-    ------
-    temporary : Path
-        Write here. It keeps the file's suffix, because some writers choose the format by it.
-        It is deleted if the block raises.
+    The temporary file keeps the suffix, because some writers choose the format by it, and is
+    deleted if the block raises. Missing parent folders of `path` are made.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -41,18 +35,11 @@ def atomic(path):
 
 
 @contextlib.contextmanager
-def atomic_folder(path):
+def atomic_folder(path: str | Path) -> Iterator[Path]:
     """Give a new folder beside `path`; rename it to `path` when the block ends well.
 
-    Parameters
-    ----------
-    path : str or Path
-        The folder to write. Missing parent folders are made; one of that name is replaced.
-
-    Yields
-    ------
-    temporary : Path
-        Write here. It is deleted if the block raises, and `path` stays as it was.
+    It is deleted if the block raises, and `path` stays as it was. Missing parent folders are made;
+    a folder `path` is replaced.
     """
     path = Path(path)
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
@@ -68,13 +55,8 @@ def atomic_folder(path):
             shutil.rmtree(rest, ignore_errors=True)
 
 
-def delete_unfinished(folder):
-    """Delete what killed jobs left below a folder; call it only when no job is running there.
-
-    Parameters
-    ----------
-    folder : str or Path
-    """
+def delete_unfinished(folder: str | Path) -> None:
+    """Delete what killed jobs left below a folder; only when no job is running there."""
     found = [path for path in Path(folder).rglob(".*") if UNFINISHED.fullmatch(path.name)]
     for path in found:
         if path.is_dir():
@@ -83,35 +65,19 @@ def delete_unfinished(folder):
             path.unlink(missing_ok=True)
 
 
-def write_json(path, content):
-    """Write a dictionary as a JSON file that people can read, whole or not at all."""
+def write_json(path: str | Path, content: Any) -> None:
+    """Write a JSON file that people can read, whole or not at all."""
     with atomic(path) as temporary:
         temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
-def read_json(path, advice="make it again"):
-    """Read a JSON file.
-
-    Parameters
-    ----------
-    path : str or Path
-    advice : str
-        What to do with a file that is none.
-
-    Returns
-    -------
-    content : dict, list, str, float, int, bool or None
-
-    Raises
-    ------
-    InputError
-        If it is missing or no JSON.
-    """
+def read_json(path: str | Path, advice: str = "make it again") -> Any:
+    """Read a JSON file; an `InputError` with `advice` where it is missing or no JSON."""
     with reading(path, "JSON", advice):
         return json.loads(Path(path).read_text(encoding="utf-8-sig"))
 
 
-def sha256(path):
+def sha256(path: str | Path) -> str:
     """Return the SHA-256 of a file as 64 hexadecimal digits, reading it in pieces."""
     digest = hashlib.sha256()
     with Path(path).open("rb") as stream:

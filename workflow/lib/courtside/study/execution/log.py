@@ -3,26 +3,25 @@
 import logging
 import sys
 import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from types import TracebackType
+from typing import TypeVar
 
 from courtside.study.errors import InputError
 from courtside.study.execution import machine_resources
 
 FORMAT = "%(asctime)s %(levelname)s %(message)s"
+T = TypeVar("T")
 logger = logging.getLogger("courtside")
 
 
-def to_file(path):
-    """Send messages, warnings and errors of this process to a log file.
+def to_file(path: str | Path) -> None:
+    """Send messages, warnings and errors of this process to a job's log file.
 
-    An `InputError` that nothing catches becomes one line, and so does a full disk, a file that may not be
-    written, or too little memory; any other error keeps its traceback. An error that cannot be written to
-    the log, for its disk is full too, goes to standard error.
-
-    Parameters
-    ----------
-    path : str or Path
-        The log file of the job; Snakemake shows it when the job fails.
+    An `InputError` that nothing catches becomes one line, and so does a full disk, a file that may
+    not be written, or too little memory; any other error keeps its traceback. An error that cannot
+    be written to the log, because its disk is full too, goes to standard error.
     """
     sys.excepthook = _log_exception
     path = Path(path)
@@ -33,12 +32,14 @@ def to_file(path):
 
 
 class _LogFile(logging.FileHandler):
-    def handleError(self, record):
+    def handleError(self, record: logging.LogRecord) -> None:
         if record.levelno >= logging.ERROR:
             print(self.format(record), file=sys.stderr)
 
 
-def _log_exception(kind, error, trace):
+def _log_exception(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
     line = str(error) if issubclass(kind, InputError) else machine_resources.in_words(error)
     if line is not None:
         logger.error("%s", line)
@@ -46,24 +47,18 @@ def _log_exception(kind, error, trace):
         logger.critical("unexpected error", exc_info=(kind, error, trace))
 
 
-def progress(items, total, what, every_s=5.0):
-    """Pass items through and say how far the work is, in the log and on a terminal.
+def progress(items: Iterable[T], total: int | None, what: str, every_s: float = 5.0) -> Iterator[T]:
+    """Pass items through and report progress, in the log and on a terminal.
 
     Parameters
     ----------
     items : iterable
-        The work.
     total : int or None
         How many are expected; None where that is unknown.
     what : str
         What is counted, with its owner: `"cam_01: frames"`.
     every_s : float
         Seconds between two messages.
-
-    Yields
-    ------
-    item
-        Each item, unchanged.
     """
     start = last = time.monotonic()
     count = 0
@@ -76,7 +71,7 @@ def progress(items, total, what, every_s=5.0):
     _say(what, count, total, time.monotonic() - start)
 
 
-def _say(what, count, total, elapsed_s):
+def _say(what: str, count: int, total: int | None, elapsed_s: float) -> None:
     rate = count / elapsed_s if elapsed_s > 0 else 0.0
     of = f" of {total}" if total else ""
     message = f"{what}: {count}{of}, {rate:.1f} per second"

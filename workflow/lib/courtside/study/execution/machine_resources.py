@@ -1,4 +1,4 @@
-"""What the machine lacks, in one line: room on the disk, the right to write, memory."""
+"""What the machine lacks, in one line: room on the disk, permission to write, memory."""
 
 import errno
 import os
@@ -7,29 +7,16 @@ from pathlib import Path
 
 from courtside.study.errors import SPARE_MEMORY, InputError
 
-LEAST_FREE_MB = 20  # below, not even Snakemake's own notes and logs are sure of their place
+LEAST_FREE_MB = 20  # below, Snakemake's own metadata and logs may not fit
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 CLOSED = {errno.EROFS, errno.EACCES, errno.EPERM}
-NO_MEMORY = (
-    "Insufficient memory",
-    "bad_alloc",
-    "bad allocation",
-)  # of OpenCV and other C++ libraries
+# In messages of OpenCV and other C++ libraries.
+NO_MEMORY = ("Insufficient memory", "bad_alloc", "bad allocation")
 AGAIN = "then give the same command again"
 
 
-def check(folder):
-    """Check that a study can write to a folder, before any work.
-
-    Parameters
-    ----------
-    folder : str or Path
-
-    Raises
-    ------
-    InputError
-        If it may not be written to, or its disk is full.
-    """
+def check(folder: str | Path) -> None:
+    """Check, before any work, that a study can write to a folder: an `InputError` if it cannot."""
     folder = Path(folder)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(
@@ -39,18 +26,16 @@ def check(folder):
     free_mb = shutil.disk_usage(folder).free / 1e6
     if free_mb < LEAST_FREE_MB:
         raise InputError(
-            f"{folder}: expected at least {LEAST_FREE_MB} MB free on its disk, found {free_mb:.1f} MB; "
+            f"{folder}: expected at least {LEAST_FREE_MB} MB free on its disk, found "
+            f"{free_mb:.1f} MB; "
             f"free some room, {AGAIN}"
         )
 
 
-def in_words(error):
+def in_words(error: BaseException | None) -> str | None:
     """Return one line on an error that comes of what the machine lacks, None for any other.
 
-    Parameters
-    ----------
-    error : BaseException
-        Those that it followed are looked at too: libraries stumble over a full disk again when they tidy up.
+    Errors that it followed are looked at too: libraries that tidy up fail on a full disk again.
     """
     while error is not None:
         line = _of_memory(error) or _of_disk(error)
@@ -60,7 +45,7 @@ def in_words(error):
     return None
 
 
-def _of_memory(error):
+def _of_memory(error: BaseException) -> str | None:
     text = " ".join(str(error).split())
     if not isinstance(error, MemoryError) and not any(word in text for word in NO_MEMORY):
         return None
@@ -69,12 +54,15 @@ def _of_memory(error):
     )
 
 
-def _of_disk(error):
+def _of_disk(error: BaseException) -> str | None:
     if not isinstance(error, OSError):
         return None
     name = error.filename if isinstance(error.filename, str) else "a result"
     if error.errno in FULL:
-        return f"{name}: expected room on the disk, found: {error.strerror}; free or allow some, {AGAIN}"
+        return (
+            f"{name}: expected room on the disk, found: {error.strerror}; free or allow some, "
+            f"{AGAIN}"
+        )
     if error.errno in CLOSED:
         return f"{name}: expected the right to use it, found: {error.strerror}; allow it, {AGAIN}"
     return None

@@ -1,12 +1,13 @@
-"""What a run says when it ends: what was made, where, how long it took, what to look at; or what to do."""
+"""The words at the end of a run: what was made and how long it took, or what to do."""
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from courtside.study.errors import SPARE_MEMORY
 
-N_NAMED = 3  # folders or files that a line names before it counts the rest
+N_NAMED = 3  # folders or files that a line names; the rest are counted
 N_FAULTS = 3
-UNFINISHED = (" INFO ", " WARNING ")  # a log that ends so tells of no fault
+UNFINISHED = (" INFO ", " WARNING ")  # the last line of a log without an error
 # What a file is, by what its path must contain and how it ends; the first that fits counts.
 KINDS = (
     ("reports", "", ("report.html",)),
@@ -22,23 +23,19 @@ KINDS = (
 )
 
 
-def finished(made, seconds, look_at=()):
-    """Return the words at the end of a run in which everything was made.
+def finished(made: Iterable[str], seconds: float, look_at: Iterable[str] = ()) -> str:
+    """Return a few lines on a run in which everything was made.
 
     Parameters
     ----------
-    made : list of str
-        Paths of the files that this run made.
+    made : iterable of str
+        The files that this run made.
     seconds : float
         How long it took.
-    look_at : sequence of str
-        What to look at, in this order; those that do not exist are left out.
-
-    Returns
-    -------
-    text : str
-        A few lines.
+    look_at : iterable of str
+        What to look at, in this order; files that do not exist are left out.
     """
+    made = list(made)
     if not made:
         return "Courtside: everything was there already, nothing had to be made."
     count = "1 file" if len(made) == 1 else f"{len(made)} files"
@@ -51,24 +48,25 @@ def finished(made, seconds, look_at=()):
     return "\n".join(lines)
 
 
-def failed(faults, n_finished, n_wanted, seconds, whole_log=""):
-    """Return the words at the end of a run that stopped.
+def failed(
+    faults: Sequence[tuple[str, list[str]]],
+    n_finished: int,
+    n_wanted: int,
+    seconds: float,
+    whole_log: str = "",
+) -> str:
+    """Return a few lines on a run that stopped: what failed and why, what to do.
 
     Parameters
     ----------
     faults : list of (str, list of str)
         Name of each job that failed, and its log files.
     n_finished, n_wanted : int
-        Jobs done; jobs that the run had before it.
+        Jobs done, and jobs to do at the start.
     seconds : float
         How long it took.
     whole_log : str
         Snakemake's own log of the run.
-
-    Returns
-    -------
-    text : str
-        A few lines: what failed and why, what to do.
     """
     lines = [f"Courtside: stopped after {n_finished} of {n_wanted} jobs, {duration(seconds)}."]
     for name, logs in faults[:N_FAULTS]:
@@ -86,7 +84,7 @@ def failed(faults, n_finished, n_wanted, seconds, whole_log=""):
     return "\n".join(lines)
 
 
-def duration(seconds):
+def duration(seconds: float) -> str:
     """Return a time in words: 42 s, 3 min 20 s, 2 h 5 min."""
     seconds = round(seconds)
     if seconds < 60:
@@ -97,8 +95,8 @@ def duration(seconds):
     return f"{minutes // 60} h {minutes % 60} min"
 
 
-def _by_kind(made):
-    found = {}
+def _by_kind(made: Iterable[str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
     for path in map(str, made):
         for kind, part, endings in KINDS:
             if part in path and path.endswith(endings):
@@ -108,8 +106,8 @@ def _by_kind(made):
     return dict(sorted(found.items(), key=lambda pair: order.index(pair[0])))
 
 
-def _places(paths):
-    """Return where files are: themselves if few, their folders otherwise."""
+def _places(paths: list[str]) -> str:
+    """Return the files themselves if few, their folders otherwise."""
     if len(paths) <= N_NAMED:
         return ", ".join(paths)
     folders = list(dict.fromkeys(str(Path(path).parent) for path in paths))
@@ -118,7 +116,7 @@ def _places(paths):
     return f"{named} and {rest} more folders" if rest > 0 else named
 
 
-def _last_fault(log):
+def _last_fault(log: str | Path) -> str:
     """Return the last error that a job's log holds, else its last line."""
     lines = Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
     lines = [line.strip() for line in lines if line.strip()]

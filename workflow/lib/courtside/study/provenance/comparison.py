@@ -5,18 +5,22 @@ import fnmatch
 import json
 import math
 import tomllib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from courtside.study.errors import DAMAGED
 from courtside.study.execution import files
 
-# Of no importance to what a study says: logs, seconds, this record itself.
+# Not compared: logs, run times, records of runs.
 LEFT_OUT = {"logs", "benchmarks", "run", ".snakemake"}
-# First match wins: pattern of the path below results/, relative and absolute tolerance, why. The absolute one
-# is in the file's own unit: px of 2D keypoints, m of 3D ones and of cameras, cm of most errors.
+# First match wins: pattern of the path below results/, relative and absolute tolerance, why. The
+# absolute one is in the file's own unit: px of 2D keypoints, m of 3D ones and of cameras, cm of
+# most errors.
 TOLERANCES = (
     ("external/*", 0.0, 0.0, "pinned by checksum"),
     ("networks/*", 0.0, 0.0, "the same weights in the same order"),
@@ -33,11 +37,11 @@ TOLERANCES = (
 )
 # Drawings and binary exports whose numbers are in the table beside them.
 TABLED = {".pdf", ".png", ".c3d"}
-# What a processor's last digit changes as a whole, and whose numbers are in files that are compared: films,
-# the pictures that they begin with, recordings (keypoints), COLMAP's databases and models (ties, summaries),
-# pages (tables).
+# Files that the processor's last digit changes as a whole, and whose numbers are also in files that
+# are compared: films and the pictures that they begin with, recordings (keypoints), COLMAP's
+# databases and models (ties, summaries), pages (tables).
 UNREAD = ("*.mp4", "virtual/*/backdrops.npz", "*.bag", "*.db", "*.bin", "*.html")
-# Numbers in these hold seconds of computing time, which no two runs share; the report shows those figures.
+# These hold computing times, which differ from run to run; the report shows those figures.
 TIMED = ("*/figures/growth.*", "report.html")
 EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
 OTHER_BYTES, ONLY_HERE, ONLY_THERE = "other bytes", "only here", "only there"
@@ -62,17 +66,8 @@ class Verdict:
     largest: float = math.nan
 
 
-def compare(here, there):
-    """Return the verdict on every file of two results trees, in the order of their names.
-
-    Parameters
-    ----------
-    here, there : str or Path
-
-    Returns
-    -------
-    verdicts : list of Verdict
-    """
+def compare(here: str | Path, there: str | Path) -> list[Verdict]:
+    """Return the verdict on every file of two results trees, in the order of their names."""
     ours, theirs = names(here), names(there)
     verdicts = []
     for name in sorted(ours | theirs):
@@ -83,8 +78,8 @@ def compare(here, there):
     return verdicts
 
 
-def names(folder):
-    """Return the files below a folder of results that a comparison looks at, as a set of relative paths."""
+def names(folder: str | Path) -> set[str]:
+    """Return the relative paths of all files below results that a comparison looks at."""
     paths = (path.relative_to(folder) for path in Path(folder).rglob("*") if path.is_file())
     return {
         path.as_posix()
@@ -93,28 +88,17 @@ def names(folder):
     }
 
 
-def tolerance(name):
+def tolerance(name: str) -> tuple[float, float]:
     """Return (relative, absolute) tolerance of a file by its name below the folder of results."""
     return _stated(name)[1:3]
 
 
-def _stated(name):
+def _stated(name: str) -> tuple[str, float, float, str]:
     return next(row for row in TOLERANCES if fnmatch.fnmatch(name, row[0]))
 
 
-def verdict(name, here, there):
-    """Return how one file compares with its twin.
-
-    Parameters
-    ----------
-    name : str
-        Below the folder of results: it decides on the tolerance.
-    here, there : Path
-
-    Returns
-    -------
-    verdict : Verdict
-    """
+def verdict(name: str, here: Path, there: Path) -> Verdict:
+    """Return how one file compares with its twin; `name` below results decides the tolerance."""
     if here.stat().st_size == there.stat().st_size and files.sha256(here) == files.sha256(there):
         return Verdict(name, EQUAL)
     for patterns, outcome in ((TIMED, TIMES), (UNREAD, OTHER_BYTES)):
@@ -134,8 +118,8 @@ def verdict(name, here, there):
     return _of_values(name, ours, theirs)
 
 
-def _of_drawing(name, here, there):
-    """Return the verdict on the table beside a drawing; with the same numbers it ought to be bit-equal."""
+def _of_drawing(name: str, here: Path, there: Path) -> Verdict:
+    """Return the verdict on the table beside a drawing; equal numbers should be drawn bit-equal."""
     tables = [path.with_suffix(".csv") for path in (here, there)]
     if not all(path.is_file() for path in tables):
         return Verdict(name, DIFFERENT)
@@ -144,7 +128,7 @@ def _of_drawing(name, here, there):
     return Verdict(name, outcome, of_table.largest)
 
 
-def _of_values(name, ours, theirs):
+def _of_values(name: str, ours: dict[Any, Any], theirs: dict[Any, Any]) -> Verdict:
     rtol, atol = tolerance(name)
     close, largest = True, math.nan
     for key, one in ours.items():
@@ -161,16 +145,16 @@ def _of_values(name, ours, theirs):
     return Verdict(name, CLOSE if close else DIFFERENT, float(largest))
 
 
-def _is_number(array):
+def _is_number(array: NDArray) -> bool:
     return array.dtype.kind in "iuf"
 
 
-def _from_npz(path):
+def _from_npz(path: Path) -> dict[Any, Any]:
     with np.load(path, allow_pickle=False) as content:
         return {key: content[key] for key in content.files}
 
 
-def _from_table(path):
+def _from_table(path: Path) -> dict[Any, Any]:
     """Return {(row, column): number or text}; an empty field is NaN, wherever it stands."""
     delimiter = "\t" if path.suffix == ".trc" else ","
     with path.open(encoding="utf-8", newline="") as stream:
@@ -178,19 +162,20 @@ def _from_table(path):
     return {(y, x): _value(word) for y, row in enumerate(rows) for x, word in enumerate(row)}
 
 
-def _from_words(path):
+def _from_words(path: Path) -> dict[Any, Any]:
     return {at: _value(word) for at, word in enumerate(path.read_text(encoding="utf-8").split())}
 
 
-def _value(word):
+def _value(word: str) -> float | str:
     try:
         return float(word) if word else math.nan
     except ValueError:
         return word
 
 
-def _from_tree(content, where=""):
+def _from_tree(content: Any, where: str = "") -> dict[Any, Any]:
     """Return {path of keys: leaf} of nested dictionaries and lists."""
+    pairs: Iterable[tuple[Any, Any]]
     if isinstance(content, dict):
         pairs = content.items()
     elif isinstance(content, list):
@@ -214,19 +199,9 @@ READERS = {
 }
 
 
-def table(verdicts):
-    """Return lines for people: what is bit-equal and what is not, and all files that differ or stand alone.
-
-    Parameters
-    ----------
-    verdicts : list of Verdict
-
-    Returns
-    -------
-    lines : list of str
-        One for each stated tolerance: files by outcome, the largest difference, the tolerance and its reason;
-        then one for each fault.
-    """
+def table(verdicts: Iterable[Verdict]) -> list[str]:
+    """Return lines for people: files by outcome for each stated tolerance, then each fault."""
+    verdicts = list(verdicts)
     outcomes = [EQUAL, CLOSE, OTHER_BYTES, TIMES, DIFFERENT, ONLY_HERE, ONLY_THERE]
     rows = [["files", *outcomes, "largest difference", "tolerance", "because"]]
     for pattern, rtol, atol, why in TOLERANCES:
@@ -245,6 +220,6 @@ def table(verdicts):
     return lines
 
 
-def _in_words(rtol, atol):
+def _in_words(rtol: float, atol: float) -> str:
     parts = [f"{atol:g}"] * bool(atol) + [f"{rtol:g} of the value"] * bool(rtol)
     return " + ".join(parts) or "none"

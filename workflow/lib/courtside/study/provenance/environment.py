@@ -5,21 +5,20 @@ import re
 import subprocess
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from courtside.study.execution import files
 
 LOCKED = re.compile(r"^([A-Za-z0-9._-]+)(?:\[[^]]*\])?==", re.M)
-GIT_SECONDS = 20
+GIT_SECONDS = 20  # ASSUME: enough for `git status` on a slow disk; a run does not wait longer
 
 
-def found(repository):
+def found(repository: str | Path) -> dict[str, Any]:
     """Return what a study of a repository would run with now.
 
-    Returns
-    -------
-    surroundings : dict
-        commit (40 digits, None outside a Git checkout), dirty (True if a file differs from the commit or is
-        new), lock_sha256, python, platform, packages (version of each package of the lock that is installed).
+    commit (40 digits, None outside a Git checkout), dirty (True if a file differs from the commit
+    or is new), lock_sha256, python, platform, packages (version of each package of the lock that
+    is installed).
     """
     repository = Path(repository)
     lock = repository / "environment.lock"
@@ -32,15 +31,15 @@ def found(repository):
     }
 
 
-def commit(repository):
-    """Return the commit of a checkout and whether it is dirty, both None where Git knows of none."""
+def commit(repository: str | Path) -> dict[str, Any]:
+    """Return the commit of a checkout and whether it is dirty; both None without Git."""
     head = _git(repository, "rev-parse", "HEAD")
     changes = _git(repository, "status", "--porcelain") if head else None
     return {"commit": head, "dirty": None if changes is None else bool(changes)}
 
 
-def packages(lock):
-    """Return {name: version} of the installed packages that a lock names, or of all without a lock."""
+def packages(lock: str | Path) -> dict[str, str]:
+    """Return {name: version} of installed packages that a lock names; of all without a lock."""
     lock = Path(lock)
     text = lock.read_text(encoding="utf-8") if lock.is_file() else None
     wanted = None if text is None else {_plain(name) for name in LOCKED.findall(text)}
@@ -52,12 +51,12 @@ def packages(lock):
     }
 
 
-def _plain(name):
+def _plain(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def _git(repository, *words):
-    """Return what Git says, None where it is not installed, not asked in time, or refuses."""
+def _git(repository: str | Path, *words: str) -> str | None:
+    """Return the output of Git, None where it is not installed, too slow, or fails."""
     try:
         done = subprocess.run(
             ["git", "--no-optional-locks", "-C", str(repository), *words],

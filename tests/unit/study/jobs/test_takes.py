@@ -1,0 +1,91 @@
+"""Files and settings of takes: written out for the tiny study."""
+
+from dataclasses import replace
+
+import pytest
+
+from courtside.study import paths
+from courtside.study.errors import InputError
+from courtside.study.jobs import takes
+
+RALLY = {"session": "players-tiny", "take": "rally"}
+SHOT = {"session": "players-tiny", "take": "shot"}
+REAL = {"session": "walk-4cams-tiny", "take": "balancing"}
+
+
+def test_files_of_each_camera_of_a_take(job):
+    found = takes.each_camera(job(**SHOT, model="net"), paths.POSE2D)
+    folder = "results/players-tiny/takes/shot/pose2d/net"
+    assert found == [f"{folder}/{name}.npz" for name in ("oblique", "back", "mirror")]
+
+
+def test_a_file_of_every_take_of_a_session(job):
+    found = takes.every_take(job(session="players-tiny", model="net"), "{take}/{model}/{x}", x="y")
+    assert found == ["shot/net/y", "rally/net/y"]
+
+
+def test_clocks_that_a_take_states_are_told_by_name(job, study):
+    session = study.sessions["players-tiny"]
+    stated = {"back": {"offset_s": 1.0}, "phone": {"offset_s": 2.0}}
+    told = replace(session, takes={"shot": replace(session.takes["shot"], clocks=stated)})
+    one = job(replace(study, sessions={"players-tiny": told}), **SHOT)
+    assert takes.clocks(one, one.take.videos) == {"back": {"offset_s": 1.0}}
+
+
+def test_shake_is_taken_out_of_steady_takes_but_for_comparison(job):
+    folder = "results/players-tiny/takes/rally/shake"
+    shake = [f"{folder}/{name}.csv" for name in ("oblique", "back", "mirror")]
+    assert takes.shake(job(**RALLY, fusion="all-robust")) == shake
+    assert takes.shake(job(**RALLY, fusion="all-unsteady")) == []
+    assert takes.shake(job(**SHOT, fusion="all-robust")) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "used", "rule"),
+    [
+        ("all-robust", ["oblique", "back", "mirror"], "robust"),
+        ("two-dlt", ["back", "mirror"], "dlt"),
+        ("two-unsteady", ["back", "mirror"], "robust"),
+        ("halfbody", ["back", "oblique", "mirror"], "halfbody"),
+    ],
+)
+def test_a_fusion_is_a_set_of_cameras_and_a_rule(job, name, used, rule):
+    assert takes.fusion(job(**SHOT, fusion=name)) == {"used": used, "rule": rule}
+
+
+def test_fusions_of_a_session_are_the_exported_ones_and_those_compared(job):
+    names = ["all-robust", "two-dlt", "halfbody", "three-robust", "three-dlt"]
+    one = job(**SHOT, calibration="known18", model="net")
+    assert takes.every_fusion(one) == names
+    folder = "results/players-tiny/takes/shot/pose3d/known18"
+    assert takes.every_fused(one) == [f"{folder}/{name}/net.npz" for name in names]
+
+
+def test_sexes_are_those_of_a_take_or_of_the_whole_session(job, study):
+    assert takes.sexes(job(**SHOT)) == {"p1": "m"}
+    assert takes.sexes(job(session="players-tiny")) == {"p1": "m", "p2": "f"}
+    session = study.sessions["players-tiny"]
+    unstated = {**session.subjects, "p1": replace(session.subjects["p1"], sex="other")}
+    other = replace(session, subjects=unstated)
+    one = job(replace(study, sessions={"players-tiny": other}), **SHOT)
+    assert takes.sexes(one) == {"p1": None}
+
+
+def test_files_for_other_programs_are_made_of_a_stage_with_consent(job, study):
+    way = {"calibration": "file", "fusion": "all-robust", "model": "net"}
+    folder = "results/walk-4cams-tiny/takes/balancing"
+    one = job(**REAL, **way, stage="pose3d_filtered")
+    assert takes.exported(one) == f"{folder}/pose3d_filtered/file/all-robust/net.npz"
+    assert takes.exported(job(**REAL, **way)) == f"{folder}/pose3d/file/all-robust/net.npz"
+    session = study.sessions["walk-4cams-tiny"]
+    subjects = {"p1": replace(session.subjects["p1"], consent=("analysis",))}
+    refusing = replace(study, sessions={session.name: replace(session, subjects=subjects)})
+    with pytest.raises(InputError, match="expected export"):
+        takes.exported(job(refusing, **REAL, **way))
+    with pytest.raises(InputError, match="expected pictures"):
+        takes.blur_faces(job(refusing, **REAL))
+
+
+def test_faces_are_blurred_in_real_sessions(job):
+    assert takes.blur_faces(job(**REAL))
+    assert not takes.blur_faces(job(**SHOT))

@@ -1,0 +1,142 @@
+"""What a run was, told by made-up jobs with the attributes of Snakemake's."""
+
+import json
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from courtside.study.errors import InputError
+from courtside.study.provenance import run
+
+
+def made_up(name, *outputs, script="draw.py", **params):
+    rule = SimpleNamespace(name=name, script=script and f"../scripts/{script}")
+    return SimpleNamespace(
+        name=name,
+        rule=rule,
+        input=["in.csv"],
+        output=list(outputs),
+        log=[f"{name}.log"],
+        params=params,
+        products=lambda: [*outputs, f"{name}.log"],
+    )
+
+
+class Dag:
+    """Jobs, of which some are finished."""
+
+    def __init__(self, jobs, finished):
+        self.jobs, self.done = jobs, finished
+        self.derived_targetfiles = [path for job in jobs for path in job.output]
+
+    def needrun_jobs(self, exclude_finished):
+        return self.jobs
+
+    def noneedrun_finished(self, job):
+        return job in self.done
+
+    finished = noneedrun_finished
+
+
+def workflow(jobs=(), finished=(), failed=None, touch=False):
+    settings = SimpleNamespace(configfiles=[], config={})
+    scheduler = None if failed is None else SimpleNamespace(failed=failed)
+    return SimpleNamespace(
+        dag=Dag(list(jobs), list(finished)),
+        scheduler=scheduler,
+        touch=touch,
+        config_settings=settings,
+        configfiles=[],
+    )
+
+
+def test_a_job_becomes_plain_values():
+    job = made_up("draw", "results/a.csv", code="abc", step={"n": 3})
+    assert run.plain_job(job, Dag([job], [job]), touched=False) == {
+        "rule": "draw",
+        "script": "draw.py",
+        "code": "abc",
+        "inputs": ["in.csv"],
+        "outputs": ["results/a.csv", "draw.log"],
+        "params": {"step": {"n": 3}},
+        "done": True,
+        "made": True,
+    }
+
+
+def test_files_that_were_only_touched_were_not_made():
+    job = made_up("all", script=None)
+    found = run.plain_job(job, Dag([job], [job]), touched=True)
+    assert (found["script"], found["code"]) == (None, None)
+    assert (found["done"], found["made"]) == (True, False)
+
+
+def test_the_command_is_said_from_the_folder_of_the_repository(tmp_path, monkeypatch):
+    study = tmp_path / "studies" / "mine"
+    study.mkdir(parents=True)
+    monkeypatch.chdir(study)
+    changed = {"sessions": ["a"], "name": "b"}
+    settings = SimpleNamespace(configfiles=[tmp_path / "config" / "tiny.yaml"], config=changed)
+    assert run.repeating_command(settings, tmp_path) == [
+        *("snakemake", "--directory", "studies/mine", "--configfile", "config/tiny.yaml"),
+        *("--config", 'sessions=["a"]', "name=b"),
+    ]
+    plain = SimpleNamespace(configfiles=[], config={})
+    assert run.repeating_command(plain, study) == ["snakemake"]
+
+
+def test_sidecars_tell_the_command_and_the_configuration(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "results").mkdir()
+    for name in ("in.csv", "results/a.csv", "draw.log"):
+        (tmp_path / name).write_text("x")
+    job = made_up("draw", "results/a.csv", code="abc")
+    run.record(workflow([job], [job]), tmp_path, {"sessions": []}, ["config/models.yaml"])
+    found = json.loads((tmp_path / "results" / "run" / "provenance.json").read_text())
+    assert found["command"] == "snakemake"
+
+
+def test_sidecars_that_cannot_be_written_are_told_in_one_line(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "results").write_text("no folder")
+    job = made_up("draw", "results/a.csv")
+    with pytest.raises(InputError, match=r"results/run: provenance not written: .* mend this"):
+        run.record(workflow([job], [job]), tmp_path, {}, [])
+
+
+def test_the_end_says_what_was_made():
+    job = made_up("draw", "results/x/figures/a.png")
+    words = run.ending(workflow([job], [job]), 42, [])
+    assert "1 file made in 42 s" in words
+    assert "results/x/figures/a.png" in words
+
+
+def test_the_end_says_what_failed():
+    jobs = [made_up("draw", "a.png"), made_up("draw_all", "b.png")]
+    words = run.ending(workflow(jobs, jobs[:1], failed=jobs[1:]), 42, [])
+    assert "stopped after 1 of 2 jobs" in words
+    assert "draw_all: no log of its own" in words
+
+
+def test_sessions_that_wait_for_clicks_are_told(study):
+    assert run.waiting_for_clicks(study) == []
+    waiting = replace(study.sessions["plain-tiny"], unclicked="data/p.csv")
+    (line,) = run.waiting_for_clicks(replace(study, sessions={"plain-tiny": waiting}))
+    assert line.startswith("plain-tiny: court points are not clicked yet: open results/plain-tiny/")
+    assert "save them as data/p.csv" in line
+
+
+def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(
+    study, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    assert run.left_out(study) == []
+    session = study.sessions["walk-4cams-tiny"]
+    withdrawn = replace(session, takes={}, withheld={"balancing": ("p1",)})
+    study = replace(study, sessions={"walk-4cams-tiny": withdrawn})
+    line = "nothing is made of take balancing: p1 has not agreed to analysis (consent)"
+    assert run.left_out(study) == [f"walk-4cams-tiny: {line}"]
+    made = "results/walk-4cams-tiny/takes/balancing"
+    (tmp_path / made).mkdir(parents=True)
+    assert run.left_out(study)[1] == f"walk-4cams-tiny: {made} was made before: delete it"

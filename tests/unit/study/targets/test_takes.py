@@ -1,0 +1,107 @@
+"""What the study makes of each take: written out for the tiny study."""
+
+from dataclasses import replace
+
+import pytest
+
+from courtside.study.targets import takes
+
+REAL = "results/walk-4cams-tiny/takes/balancing"
+FORMATS = ("pdf", "png", "csv")
+
+
+def agreeing(study, *words):
+    """Return the study whose real person has agreed to these things only."""
+    session = study.sessions["walk-4cams-tiny"]
+    subjects = {"p1": replace(session.subjects["p1"], consent=words)}
+    sessions = {**study.sessions, session.name: replace(session, subjects=subjects)}
+    return replace(study, sessions=sessions)
+
+
+def test_cameras_with_a_static_recording_are_checked_unless_shake_is_measured(study):
+    assert takes.every_check(study) == [
+        f"{REAL}/movement/cam01.csv",
+        f"{REAL}/movement/cam02.csv",
+        f"{REAL}/movement/cam03.csv",
+        "results/players-tiny/takes/shot/movement/oblique.csv",
+        "results/players-tiny/takes/shot/movement/back.csv",
+        "results/players-tiny/takes/shot/movement/mirror.csv",
+    ]
+
+
+def test_skeletons_of_every_stage_are_exported(study):
+    stages = ("pose3d", "pose3d_filtered", "pose3d_corrected")
+    assert takes.every_export(study) == [
+        f"{REAL}/{stage}/file/all-robust/blazepose-full.p1.{suffix}"
+        for stage in stages
+        for suffix in ("trc", "c3d", "csv")
+    ]
+
+
+def test_joints_are_corrected_only_of_networks_with_offsets(studies):
+    found = takes.every_export(studies(models=["blazepose-static"]))
+    assert len(found) == 6
+    assert not any("corrected" in path for path in found)
+
+
+def test_nothing_is_exported_of_whom_has_not_agreed(study):
+    assert takes.every_export(agreeing(study, "analysis", "pictures")) == []
+
+
+def test_figures_without_consent_to_pictures_show_nobody(study):
+    names = ("overlay", "skeletons", "reprojection", "visibility", "kinematics")
+    figures = [
+        f"{REAL}/figures/{name}.file.all-robust.blazepose-full.{suffix}"
+        for name in names
+        for suffix in FORMATS
+    ]
+    assert takes.every_figure(study) == figures
+    assert takes.every_figure(agreeing(study, "analysis")) == figures[3:]
+
+
+def test_shake_is_drawn_of_steady_takes(study):
+    stem = "results/players-tiny/takes/rally/figures/shake.known18.all-robust.blazepose-full"
+    assert takes.every_shake(study) == [f"{stem}.{suffix}" for suffix in FORMATS]
+
+
+def test_measures_of_all_takes_with_cameras(study):
+    way = "all-robust/blazepose-full.summary.csv"
+    assert takes.every_kinematics(study) == [
+        f"{REAL}/kinematics/file/{way}",
+        f"results/players-tiny/takes/shot/kinematics/known18/{way}",
+        f"results/players-tiny/takes/rally/kinematics/known18/{way}",
+    ]
+
+
+def test_sets_of_cameras_are_compared_in_real_takes(study):
+    assert takes.every_comparison_of_views(study) == [f"{REAL}/views/file.blazepose-full.csv"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [
+        ("errors", ["errors/known18.blazepose-full.csv"]),
+        ("kinematics", ["kinematics/known18/all-robust/blazepose-full.csv"]),
+        ("clocks", []),
+        (
+            "gains",
+            [
+                "gains/pose3d.known18.blazepose-full.csv",
+                "gains/pose3d_corrected.known18.blazepose-full.csv",
+            ],
+        ),
+    ],
+)
+def test_errors_are_those_of_virtual_takes(study, kind, names):
+    folder = "results/players-tiny/evaluation/takes"
+    expected = [f"{folder}/{take}/{name}" for take in ("shot", "rally") for name in names]
+    assert takes.evaluations(study, kind) == expected
+
+
+def test_clocks_are_evaluated_where_cameras_have_no_common_one(study):
+    session = study.sessions["players-tiny"]
+    apart = {**session.takes, "shot": replace(session.takes["shot"], synchronised=False)}
+    other = {**study.sessions, "players-tiny": replace(session, takes=apart)}
+    assert takes.evaluations(replace(study, sessions=other), "clocks") == [
+        "results/players-tiny/evaluation/takes/shot/clocks/known18.blazepose-full.csv"
+    ]

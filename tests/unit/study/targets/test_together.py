@@ -1,0 +1,52 @@
+"""What the study makes of several takes: written out for the tiny study."""
+
+from courtside.study.targets import together
+
+SHOT = "results/players-tiny/takes/shot"
+
+
+def test_figures_of_players(study):
+    method = "known18.all-robust.blazepose-full"
+    stems = [
+        f"{SHOT}/figures/badminton_tab01.known18.blazepose-full",
+        f"{SHOT}/figures/badminton_fig09.{method}",
+        f"{SHOT}/figures/badminton_fig10.{method}",
+        f"{SHOT}/figures/badminton_fig11.{method}",
+        "results/figures/badminton_fig05",
+        f"{SHOT}/figures/three_cameras.known18.blazepose-full",
+        "results/figures/archive",
+    ]
+    figures = [f"{stem}.{suffix}" for stem in stems for suffix in ("pdf", "png", "csv")]
+    assert together.every_players_figure(study) == [*figures, "results/figures/players.csv"]
+
+
+def test_a_study_without_the_named_takes_has_no_figure_of_players(studies):
+    assert together.every_players_figure(studies(sessions=["plain-tiny"])) == []
+
+
+def test_layouts_of_fig_5_are_those_whose_take_the_study_has(study, studies):
+    assert together.fig05_layouts(study) == {"b": ["players-tiny", ["oblique", "back"]]}
+    assert together.fig05_layouts(studies(sessions=["plain-tiny"])) == {}
+
+
+def test_takes_of_one_subject_are_compared_over_sessions(study, studies):
+    found = together.archived_takes(study)
+    assert [row.labels["take"] for row in found] == ["shot", "rally"]
+    assert found[0].measures == f"{SHOT}/kinematics/known18/all-robust/blazepose-full.summary.csv"
+    assert found[0].pose3d == f"{SHOT}/pose3d_filtered/known18/all-robust/blazepose-full.npz"
+    assert found[0].labels == {
+        "session": "players-tiny",
+        "take": "shot",
+        "calibration": "known18",
+        "model": "blazepose-full",
+    }
+    assert "model" not in found[0].joint_labels
+    other = {**study.parameters["compare_sessions"], "subject": "p2"}
+    assert together.archived_takes(studies(compare_sessions=other)) == []
+
+
+def test_networks_are_compared_take_by_take(study, studies):
+    assert together.compared_takes(study) == []
+    step = {**study.parameters["compare_networks"], "sessions": ["walk-4cams-tiny", "absent"]}
+    found = together.compared_takes(studies(compare_networks=step))
+    assert [row.labels["model"] for row in found] == ["blazepose-full", "blazepose-static"]

@@ -1,0 +1,61 @@
+"""Names of calibrations, structures from motion and fusions are parsed as the configuration means them."""
+
+import pytest
+
+from courtside.study import methods
+from courtside.study.errors import InputError
+from courtside.study.methods import Calibration, Fusion, Variant
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("file", Calibration("file", "file")),
+        ("sfm-n40", Calibration("sfm-n40", "sfm", Variant("global", 40, 0))),
+        ("sfm-n40-o1", Calibration("sfm-n40-o1", "sfm", Variant("global", 40, 1))),
+        ("sim3-n12", Calibration("sim3-n12", "sim3", Variant("global", 12, 0))),
+        ("paper-n40", Calibration("paper-n40", "paper", Variant("incremental", 40, 0))),
+        ("paper-global-n40", Calibration("paper-global-n40", "paper", Variant("global", 40, 0))),
+        ("paper-n5-o2", Calibration("paper-n5-o2", "paper", Variant("incremental", 5, 2))),
+        ("known18", Calibration("known18", "known", n_points=18)),
+        ("known8-board", Calibration("known8-board", "known", n_points=8, board=True)),
+        ("dlt18", Calibration("dlt18", "dlt", n_points=18)),
+    ],
+)
+def test_a_calibration_is_parsed_from_its_name(name, expected):
+    assert Calibration.parse(name) == expected
+
+
+@pytest.mark.parametrize("name", ["", "sfm", "sfm-n", "sfm-global-n40", "known", "n40", "file2"])
+def test_a_name_of_no_calibration_is_an_error_with_examples(name):
+    with pytest.raises(InputError, match="such as file, sfm-n40 or known18, found"):
+        Calibration.parse(name)
+
+
+def test_only_the_joint_adjustment_gives_a_covariance():
+    names = ["file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40", "known18", "dlt18"]
+    assert [name for name in names if Calibration.parse(name).has_covariance] == ["sfm-n40"]
+
+
+def test_a_structure_from_motion_is_parsed_and_named():
+    variant = Variant.parse("incremental-n75-o2")
+    assert variant == Variant("incremental", 75, 2)
+    assert variant.name == "incremental-n75-o2"
+    assert Variant("global", 40).name == "global-n40-o0"
+    with pytest.raises(InputError, match="such as global-n40-o0"):
+        Variant.parse("global-n40")
+
+
+@pytest.mark.parametrize(
+    ("name", "cameras", "rule", "steadied"),
+    [
+        ("all-robust", "all", "robust", True),
+        ("two-dlt", "two", "dlt", True),
+        ("all-unsteady", "all", "robust", False),
+        ("left-half-robust", "left-half", "robust", True),
+        ("halfbody", "", methods.HALFBODY, True),
+        ("trc", "", "trc", True),
+    ],
+)
+def test_a_fusion_is_parsed_from_its_name(name, cameras, rule, steadied):
+    assert Fusion.parse(name) == Fusion(name, cameras, rule, steadied)

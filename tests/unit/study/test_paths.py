@@ -1,0 +1,92 @@
+"""Files have the names that users, pages and documents know."""
+
+from pathlib import Path
+
+import pytest
+
+from courtside.study import paths
+
+KNOWN = {
+    "session": "gym",
+    "take": "rally",
+    "camera": "left",
+    "model": "net",
+    "calibration": "sfm-n40",
+    "fusion": "all-robust",
+    "person": "p1",
+    "suffix": "trc",
+    "stage": "pose3d_filtered",
+    "device": "d415",
+    "source": "d415-depth",
+    "what": "paths",
+    "mapper": "global",
+    "n_images": 40,
+    "offset": 0,
+    "figure": "overlay",
+}
+
+
+@pytest.mark.parametrize(
+    ("pattern", "path"),
+    [
+        (paths.CAMERAS, "results/gym/calibration/sfm-n40/cameras.toml"),
+        (paths.TIES, "results/gym/sfm/global-n40-o0/ties.npz"),
+        (paths.SFM_ERRORS, "results/gym/evaluation/global-n40-o0.csv"),
+        (paths.POSE2D, "results/gym/takes/rally/pose2d/net/left.npz"),
+        (paths.POSE3D, "results/gym/takes/rally/pose3d/sfm-n40/all-robust/net.npz"),
+        (
+            paths.SKELETONS,
+            "results/gym/takes/rally/pose3d_filtered/sfm-n40/all-robust/net.npz",
+        ),
+        (paths.EXPORT, "results/gym/takes/rally/pose3d_filtered/sfm-n40/all-robust/net.p1.trc"),
+        (paths.MEASURES, "results/gym/takes/rally/kinematics/sfm-n40/all-robust/net.summary.csv"),
+        (paths.SOURCE, "results/gym/takes/rally/devices/d415-depth.net.npz"),
+        (paths.DEPTH_SOURCE, "results/gym/takes/rally/devices/d415-depth.net.npz"),
+        (paths.ARCS, "results/gym/takes/rally/body/arcs.net.paths.csv"),
+        (paths.TRUE_TAKE, "results/virtual/gym/takes/rally/truth.npz"),
+        (
+            paths.TAKE_FIGURE,
+            "results/gym/takes/rally/figures/overlay.sfm-n40.all-robust.net",
+        ),
+        (paths.VIEWER, "results/gym/takes/rally/pages/viewer.net.html"),
+    ],
+)
+def test_a_pattern_filled_is_the_file(pattern, path):
+    assert pattern.format(**KNOWN) == path
+
+
+def test_no_two_patterns_are_the_same_file():
+    apart = {name: value for name, value in vars(paths).items() if isinstance(value, str)}
+    apart = {name: value for name, value in apart.items() if value.startswith("results/")}
+    assert len(apart) > 80
+    assert len(set(apart.values())) == len(apart)
+
+
+def test_a_model_of_colmap_is_five_files_of_one_folder():
+    found = [Path(pattern.format(**KNOWN)) for pattern in paths.MODEL]
+    assert {path.parent.as_posix() for path in found} == {"results/gym/sfm/global-n40-o0"}
+    names = ["cameras.bin", "images.bin", "points3D.bin", "rigs.bin", "frames.bin"]
+    assert [path.name for path in found] == names
+
+
+def test_a_pattern_can_be_filled_in_part():
+    assert paths.part(paths.LENS, session="gym") == "results/gym/calibration/lens/{camera}.toml"
+    assert paths.part("{a}/{b}", b="{c}") == "{a}/{c}"
+
+
+def test_a_figure_has_three_formats():
+    assert paths.formats(["x", "y"]) == ["x.pdf", "x.png", "x.csv", "y.pdf", "y.png", "y.csv"]
+
+
+def test_files_of_the_configuration_exist():
+    config = Path(__file__).parents[3] / "config"
+    found = [
+        paths.court(config, "badminton"),
+        paths.skeleton(config, "mocopi27"),
+        paths.joint_offsets(config, "blazepose-full"),
+        paths.derived_joints(config),
+        paths.published(config, "badminton_tab01"),
+        paths.plan(config, "plain-a"),
+        paths.session(config, "plain-a"),
+    ]
+    assert [path for path in found if not path.is_file()] == []

@@ -1,0 +1,79 @@
+"""Files and settings of structure from motion, of calibrations and of the page for clicking."""
+
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.jobs import recordings
+from courtside.study.jobs.job import Job
+from courtside.study.methods import Calibration
+
+CLICK_KEYS = ("click_sigma_px", "click_bias_px", "click_loss")
+
+
+def each_fixed(job: Job, pattern: str) -> list[str]:
+    """Return a file of each fixed camera of a session."""
+    return job.of_each(pattern, camera=job.session.cameras)
+
+
+def each_walk(job: Job, pattern: str) -> list[str]:
+    """Return a file of each walk of a session."""
+    return job.of_each(pattern, walk=job.session.walks)
+
+
+def mapping(job: Job) -> dict[str, Any]:
+    """Return the parameters of one mapping: those of its mapper among COLMAP's."""
+    chosen = dict(job.step("map_images"))
+    per_mapper = {"options": chosen.pop("colmap"), "attempts": chosen.pop("attempts")}
+    return {**chosen, **{key: value[job["mapper"]] for key, value in per_mapper.items()}}
+
+
+def clicks(job: Job) -> dict[str, Any]:
+    """Return the parameters of clicks, which all calibrations share."""
+    return job.some("adjust_network", CLICK_KEYS)
+
+
+def crops_px(job: Job) -> dict[str, tuple]:
+    """Return the parts of the calibrated pictures that videos show, by camera."""
+    return {name: camera.crop_px for name, camera in job.session.cameras.items() if camera.crop_px}
+
+
+def ties(job: Job) -> str:
+    """Return the ties of the structure from motion that a calibration rests on."""
+    return job.fill(paths.TIES, **vars(_way(job).variant))
+
+
+def covariance(job: Job) -> str | list:
+    """Return the covariance of cameras where their calibration has one."""
+    return job.fill(paths.CAMERA_COVARIANCE) if _way(job).has_covariance else []
+
+
+def _way(job: Job) -> Calibration:
+    return Calibration.parse(job["calibration"])
+
+
+def boards(job: Job) -> str | list[str]:
+    """Return the source of pictures of a chessboard: the simulated folder, or the pictures."""
+    if job.session.films_boards():
+        return job.fill(paths.VIRTUAL_BOARDS)
+    return recordings.inside((job.camera.chessboard or {})["images"])
+
+
+def lenses(job: Job) -> list[str]:
+    """Return the lens of each fixed camera where the calibration needs it."""
+    return each_fixed(job, paths.LENS) if _way(job).board else []
+
+
+def proposals(job: Job) -> str | list:
+    """Return proposed court points, of a session whose cameras were found from some clicks."""
+    ways = [way for way in job.session.calibrations() if Calibration.parse(way).kind == "sfm"]
+    if not (job.session.court_points and ways):
+        return []
+    return job.fill(paths.COURT_PROPOSALS, calibration=ways[0])
+
+
+def clicking(job: Job) -> dict[str, Any]:
+    """Return the settings of the page for clicking."""
+    session = job.session
+    path = session.unclicked or session.court_points or job.fill(paths.CLICKS)
+    said = {"session": session.name, "names": list(session.cameras), "jpeg_quality": None}
+    return {**said, "targets": {"court_points.csv": path}}

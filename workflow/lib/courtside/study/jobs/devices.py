@@ -1,0 +1,201 @@
+"""Files and settings of devices of their own: their sources, clocks, corrections and figures.
+
+A source is a skeleton over time: of a device, of one picture of it by depth or network, of all
+fixed cameras, or corrected.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.configuration.sessions import Study
+from courtside.study.errors import InputError
+from courtside.study.jobs.job import Job
+from courtside.study.targets.devices import DeviceTake, device_takes, thesis_take
+
+OF_KIND = {"inertial": "mocopi27", "nuitrack": "nuitrack19"}  # skeletons that devices come with
+PLATES = ("blazepose33", "mocopi27", "nuitrack19", "cpm14")  # skeletons drawn side by side
+
+
+@dataclass(frozen=True)
+class Source:
+    """The file of a source, the name of its skeleton, and the device whose clock it has."""
+
+    file: str
+    skeleton: str
+    device: str
+
+
+def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
+    """Return the sources of a take, the one whose clock is the reference first."""
+    of_network, found = job.model.skeleton, {}
+    if job.take.videos and job.session.take_calibrations():
+        found["cameras"] = Source(job.fill(paths.CAMERA_SOURCE), of_network, "cameras")
+    devices = sorted(job.take.devices.items(), key=lambda pair: pair[1].kind == "inertial")
+    for name, device in devices:
+        own = OF_KIND.get(device.kind)
+        for source in device.sources(name):
+            file = job.fill(paths.DEVICE, device=name) if own else _source_file(job, source)
+            found[source] = Source(file, own or of_network, name)
+    for name in correctable(job) if corrected else ():
+        source = f"{name}-corrected"
+        found[source] = Source(_source_file(job, source), OF_KIND["inertial"], name)
+    return found
+
+
+def _source_file(job: Job, source: str) -> str:
+    return job.fill(paths.SOURCE, source=source)
+
+
+def source_files(job: Job, corrected: bool = True) -> list[str]:
+    """Return the files of all sources of a take."""
+    return [source.file for source in sources(job, corrected).values()]
+
+
+def skeletons(job: Job) -> dict[str, str]:
+    """Return the name of the skeleton of each source of a take."""
+    return {name: source.skeleton for name, source in sources(job).items()}
+
+
+def bodies(job: Job, pattern: str = paths.BODY, corrected: bool = True) -> list[str]:
+    """Return the aligned skeletons of all sources of a take, or another file of each."""
+    return job.of_each(pattern, source=sources(job, corrected))
+
+
+def skeleton_file(job: Job) -> Path:
+    """Return the skeleton that a device comes with."""
+    return paths.skeleton(job.study.folder, OF_KIND[job.device.kind])
+
+
+def colour_frames(job: Job) -> str | list:
+    """Return the times of a depth camera's colour pictures; nothing for a plain video."""
+    return job.fill(paths.COLOUR_FRAMES) if job.device.kind == "rgbd" else []
+
+
+def fused(job: Job) -> str:
+    """Return the fixed cameras' skeletons to compare devices with: last stage, first method."""
+    session, stage = job.session, job.stages()[-1]
+    way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
+    return job.fill(paths.SKELETONS, stage=stage, **way)
+
+
+def person(job: Job) -> str:
+    """Return the person whom the devices of a take follow."""
+    return next(iter(job.take.devices.values())).subject
+
+
+def clocks(job: Job, corrected: bool = True) -> dict[str, str]:
+    """Return for each source of a take the device whose clock it has."""
+    return {name: source.device for name, source in sources(job, corrected).items()}
+
+
+def clock_source(job: Job) -> str:
+    """Return the synchronised source with this job's clock: itself, or of the same device."""
+    own = clocks(job)[job["source"]]
+    return next(source for source, device in clocks(job, corrected=False).items() if device == own)
+
+
+def tpose(job: Job) -> dict[str, Any]:
+    """Return the devices of all sources, and those whose clock is stated."""
+    return {"devices": clocks(job), "stated": list(job.take.clocks)}
+
+
+def alignment(job: Job) -> dict[str, str]:
+    """Return the skeleton of a source, and the synchronised source with its clock."""
+    return {"skeleton": sources(job)[job["source"]].skeleton, "like": clock_source(job)}
+
+
+def vision(job: Job) -> str | None:
+    """Return the source that corrects inertial ones: fixed cameras, a depth camera, or None."""
+    found = sources(job, corrected=False)
+    ranked = [name for end in ("cameras", "-depth") for name in found if name.endswith(end)]
+    return ranked[0] if ranked else None
+
+
+def correctable(job: Job) -> list[str]:
+    """Return the inertial devices of a take that vision can correct."""
+    inertial = [name for name, device in job.take.devices.items() if device.kind == "inertial"]
+    return [] if vision(job) is None else inertial
+
+
+def vision_file(job: Job) -> str:
+    """Return the file of the source that corrects inertial ones."""
+    return sources(job, corrected=False)[_vision(job)].file
+
+
+def correction(job: Job) -> dict[str, Any]:
+    """Return how an inertial device is corrected."""
+    source = _vision(job)
+    sigma_m = job.step("correct_inertial")["sigma_m"][source.rpartition("-")[2]]
+    return {"device": job["device"], "vision_device": source, "sigma_m": sigma_m}
+
+
+def _vision(job: Job) -> str:
+    found = vision(job)
+    if found is None:
+        raise InputError(
+            f"{job.session.file}: takes.{job.take.name}: expected fixed cameras or a depth camera "
+            f"to correct {job['device']} by, found neither"
+        )
+    return found
+
+
+def take_clocks(job: Job) -> str | list:
+    """Return the clocks of a take's devices, where it has any."""
+    return job.fill(paths.DEVICE_CLOCKS) if job.take.devices else []
+
+
+def kinds(job: Job) -> dict[str, str]:
+    """Return the kind of each device of a take."""
+    return {name: device.kind for name, device in job.take.devices.items()}
+
+
+def all_kinds(study: Study) -> dict[str, str]:
+    """Return the kind of each device of the study."""
+    return {name: device.kind for _, take in study.takes() for name, device in take.devices.items()}
+
+
+def events(job: Job) -> str:
+    """Return the events of a take, by the clocks that were found or by each device's own."""
+    return job.fill(paths.DEVICE_EVENTS if job["clocks"] == "devices" else paths.OWN_EVENTS)
+
+
+def plates(job: Job) -> list[Path]:
+    """Return the skeletons that are drawn side by side, those of a take's own sources included."""
+    names = dict.fromkeys((*PLATES, *skeletons(job).values()))
+    return [paths.skeleton(job.study.folder, name) for name in names]
+
+
+def true_arcs(job: Job, pattern: str) -> str | list:
+    """Return the true arcs of a take's wrists, where there is a truth."""
+    return job.fill(pattern) if job.session.virtual else []
+
+
+def thesis_file(study: Study, what: str) -> str:
+    """Return a table of the arcs of the take of figures 3.1 and 3.2."""
+    return _thesis_take(study).file(paths.ARCS, what=what)
+
+
+def thesis_truth(study: Study) -> str | list:
+    """Return the true arcs of that take, where there is a truth."""
+    found = _thesis_take(study).true_file(paths.TRUE_PATHS)
+    return found[0] if found else []
+
+
+def _thesis_take(study: Study) -> DeviceTake:
+    found = thesis_take(study)
+    if found is None:
+        name = study.parameters["draw_thesis_fig3"]["take"]
+        raise InputError(f"draw_thesis_fig3.take: expected a take of the study, found {name}")
+    return found
+
+
+def smoothed(study: Study, pattern: str, **more: str) -> list[str]:
+    """Return a file of every take with devices."""
+    return [one.file(pattern, **more) for one in device_takes(study)]
+
+
+def smoothed_truth(study: Study, pattern: str) -> list[str]:
+    """Return a file of every virtual take with devices, one that rests on its truth."""
+    return [path for one in device_takes(study) for path in one.true_file(pattern)]

@@ -1,0 +1,128 @@
+"""Truth of virtual sessions and takes, what is compared with it, and the labels of errors."""
+
+from collections.abc import Iterable
+from itertools import product
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.jobs import calibration
+from courtside.study.jobs.calibration import CLICK_KEYS
+from courtside.study.jobs.job import Job
+from courtside.study.jobs.takes import every_fusion
+from courtside.study.targets.calibration import racket_models
+
+PAIRS = [  # of fusions that are compared, ours first
+    ("two-robust", "two-dlt"),
+    ("three-robust", "three-dlt"),
+    ("three-robust", "halfbody"),
+    ("all-robust", "all-dlt"),
+    ("all-robust", "all-unsteady"),
+    ("two-robust", "two-unsteady"),
+]
+
+
+def true_takes(job: Job) -> list[str]:
+    """Return the truth of every take of a session."""
+    return job.of_each(paths.TRUE_TAKE, take=job.session.takes)
+
+
+def true_take(job: Job) -> str | list:
+    """Return the truth of a take where there is one."""
+    return job.fill(paths.TRUE_TAKE) if job.session.virtual else []
+
+
+def skeletons(job: Job) -> list[str]:
+    """Return the skeletons that are compared with the truth: every stage and fusion."""
+    return [job.fill(paths.SKELETONS, stage=stage, fusion=fusion) for stage, fusion in _pairs(job)]
+
+
+def skeleton_labels(job: Job) -> list[dict[str, str]]:
+    """Return the labels of these skeletons."""
+    return [{**job.wildcards, "stage": stage, "fusion": fusion} for stage, fusion in _pairs(job)]
+
+
+def _pairs(job: Job) -> product:
+    return product(job.stages(), every_fusion(job))
+
+
+def pairs(job: Job) -> list[tuple[str, str]]:
+    """Return the pairs of fusions of a session that are compared."""
+    return [pair for pair in PAIRS if set(pair) <= set(every_fusion(job))]
+
+
+def chosen(job: Job, names: Iterable[str], **more: str) -> dict[str, str]:
+    """Return some wildcards as labels, and more labels."""
+    return {**{name: job[name] for name in names}, **more}
+
+
+def estimated_by(session: str, file: str) -> str:
+    """Return a line on where a table of a development session comes from."""
+    command = f"snakemake --config sessions=[{session}] variations=[] -- {file}"
+    return f"Estimated on session {session} by: {command}"
+
+
+def sfm_errors(job: Job) -> dict[str, Any]:
+    """Return the settings of the evaluation of one structure from motion."""
+    labels = {"mapper": job["mapper"], "n_bridging": job["n_images"], "offset": job["offset"]}
+    return _drawn_clicks(job, labels, CLICK_KEYS)
+
+
+def known_errors(job: Job) -> dict[str, Any]:
+    """Return the settings of the evaluation of calibrations from known points alone."""
+    return _drawn_clicks(job, {}, ["click_sigma_px"])
+
+
+def _drawn_clicks(job: Job, labels: dict[str, str], keys: Iterable[str]) -> dict[str, Any]:
+    """Return how clicks are drawn, and what rows of errors are labelled with."""
+    session, draws = job.session, job.step("evaluate_calibration")
+    made = {key: job.virtual[key] for key in ("preset", "layout")}
+    made["width_px"] = job.virtual["size_px"][0]
+    varied = {key: value for key, value in session.condition.items() if key != "size_px"}
+    return {
+        "labels": {"session": session.name, **made, **varied, **labels},
+        "clicks": {
+            "n_draws": draws["n_draws"],
+            "seed": draws["seed"],
+            "preset": job.virtual["preset"],
+            "session": session.name,
+        },
+        "sets": draws["sets"],
+        **job.some("adjust_network", keys),
+    }
+
+
+def lenses(job: Job) -> list[str]:
+    """Return the lens of each fixed camera where all have pictures of a chessboard."""
+    if not all(camera.chessboard for camera in job.session.cameras.values()):
+        return []
+    return calibration.each_fixed(job, paths.LENS)
+
+
+def racket_ties(job: Job) -> list[str]:
+    """Return the ties of the structures from motion that a racket is measured with."""
+    return [job.fill(paths.TIES, **vars(v)) for v in racket_models(job.study, job.session)]
+
+
+def racket(job: Job) -> dict[str, Any]:
+    """Return what is known of the clicks of court and racket."""
+    settings, step = _drawn_clicks(job, {}, CLICK_KEYS), job.study.parameters["evaluate_racket"]
+    clicks = {**settings["clicks"], "n_draws": step["n_runs"]}
+    del settings["sets"]
+    return {**settings, "clicks": clicks, "length_m": step["length_m"], "tips_px": step["tips_px"]}
+
+
+def round_trip_skeletons(job: Job) -> list[str]:
+    """Return the skeletons of those sets of cameras of table 1 that a session names."""
+    wanted = job.study.parameters["evaluate_round_trip"]["fusions"]
+    named = [name for name in wanted if job.session.fused_cameras(name)]
+    return job.of_each(paths.POSE3D, fusion=named)
+
+
+def round_trip(job: Job) -> dict[str, Any]:
+    """Return which joints and frames table 1 is of."""
+    step = job.study.parameters["evaluate_round_trip"]
+    keys = ("joints", "derived_joints", "n_frames", "published_width")
+    return {
+        **{key: step[key] for key in keys},
+        "start_s": step["takes"][job.fill("{session}/{take}")],
+    }

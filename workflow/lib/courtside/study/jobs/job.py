@@ -1,0 +1,97 @@
+"""A job of the study: the checked configuration and the wildcards of the files that it makes."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from courtside.study.configuration import consent
+from courtside.study.configuration.sessions import Device, FixedCamera, Model, Session, Study, Take
+from courtside.study.errors import InputError
+
+
+@dataclass(frozen=True)
+class Job:
+    """What the files of a job belong to; `job["camera"]` is a wildcard."""
+
+    study: Study
+    wildcards: Mapping[str, str]
+
+    def __getitem__(self, name: str) -> str:
+        return self.wildcards[name]
+
+    @property
+    def session(self) -> Session:
+        """The session."""
+        return self.study.sessions[self["session"]]
+
+    @property
+    def take(self) -> Take:
+        """Its take; an error where somebody in it has not agreed to be measured."""
+        session, name = self.session, self["take"]
+        if name in session.withheld:
+            who = ", ".join(session.withheld[name])
+            raise InputError(
+                f"{session.file}: expected analysis in the consent of {who}, "
+                f"found none: nothing is made of take {name}"
+            )
+        return session.takes[name]
+
+    @property
+    def camera(self) -> FixedCamera:
+        """Its fixed camera."""
+        return self.session.cameras[self["camera"]]
+
+    @property
+    def device(self) -> Device:
+        """Its device."""
+        return self.take.devices[self["device"]]
+
+    @property
+    def virtual(self) -> dict[str, Any]:
+        """What its session is simulated from; empty of a real one."""
+        return self.session.virtual or {}
+
+    @property
+    def model(self) -> Model:
+        """Its pose network."""
+        return self.study.models[self["model"]]
+
+    def step(self, name: str) -> dict[str, Any]:
+        """Return the parameters of a step, with the session's overrides."""
+        return self.session.parameters[name]
+
+    def some(self, step: str, keys: Iterable[str]) -> dict[str, Any]:
+        """Return some parameters of a step."""
+        return {key: self.step(step)[key] for key in keys}
+
+    def fill(self, pattern: str, **more: Any) -> str:
+        """Fill a pattern of `paths` with the wildcards, and with more or other ones."""
+        return pattern.format(**{**self.wildcards, **more})
+
+    def of_each(self, pattern: str, **choice: Iterable[str]) -> list[str]:
+        """Fill a pattern with each value of one more wildcard."""
+        ((name, values),) = choice.items()
+        return [self.fill(pattern, **{name: value}) for value in values]
+
+    def court_file(self) -> Path | list:
+        """Return the court of its session, nothing without a court."""
+        return self.study.court_file(self.session) or []
+
+    def skeleton_file(self) -> Path:
+        """Return the skeleton of its pose network."""
+        return self.study.skeleton_file(self["model"])
+
+    def stages(self) -> tuple[str, ...]:
+        """Return the stages of its network's skeletons; the last is the best."""
+        return self.study.stages(self["model"])
+
+    def demand(self, word: str) -> None:
+        """Stop, with one line, where persons of its files have not agreed to something."""
+        who = consent.refusing(self.session, self.take, word)
+        who = tuple(name for name in who if name == self.wildcards.get("person", name))
+        if who:
+            raise InputError(
+                f"{self.session.file}: expected {word} in the consent of {', '.join(who)} for this "
+                f"file of take {self.take.name}, found none; ask them, or do not ask for the file"
+            )

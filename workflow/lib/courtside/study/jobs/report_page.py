@@ -1,0 +1,215 @@
+"""What the report is made of, as plain values: sessions, takes, figures and captions, tables."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.configuration import consent
+from courtside.study.configuration.sessions import Session, Study, Take
+from courtside.study.methods import Calibration, Variant
+from courtside.study.targets import calibration, devices, pages, takes, together
+
+CAPTION_PARAMETERS = ("networks", "source", "step", "blur_faces")  # those that captions ask for
+STEPS = (
+    "extract_features",
+    "match_images",
+    "adjust_network",
+    "detect_pose",
+    "synchronise_cameras",
+    "triangulate",
+    "filter_motion",
+    "measure_kinematics",
+)
+TABLES = {
+    paths.CALIBRATION_TABLE: (
+        "Calibration",
+        "Errors of the fixed cameras against the truth of simulated sessions, by method, number of "
+        "clicks and number of pictures of the walk.",
+    ),
+    paths.PLAYERS_TABLE: (
+        "Players",
+        "Errors of joints, paths and clocks against the truth of simulated takes, by cameras and "
+        "rule.",
+    ),
+}
+
+
+class Wildcards(SimpleNamespace):
+    """Wildcards of a figure, as captions and functions of parameters ask them."""
+
+    def items(self) -> Iterable[tuple[str, str]]:
+        """Return the names and values."""
+        return vars(self).items()
+
+
+def content(study: Study, rules: Iterable[Any], captions: str) -> dict[str, Any]:
+    """Return all that the report is made of.
+
+    Parameters
+    ----------
+    study : Study
+    rules : iterable of snakemake.rules.Rule
+        All rules, of which those that draw figures know the captions.
+    captions : str
+        The folder of the captions.
+    """
+    rules = list(rules)
+    sessions = [session for session in study.sessions.values() if not session.condition]
+    wanted = calibration.every_study_figure(study) + together.every_players_figure(study)
+    return {
+        "title": "Report of the study",
+        "parameters": {name: study.parameters[name] for name in STEPS},
+        "sessions": [_session(study, session) for session in sessions],
+        "figures": [_figure(path, rules, captions) for path in pictures(study)],
+        "tables": [
+            {"file": path, "title": title, "words": words, "link": _link(path)}
+            for path, (title, words) in TABLES.items()
+            if path in wanted
+        ],
+    }
+
+
+def files(told: Any) -> list[str]:
+    """Return every file and every caption that the content of the report names."""
+    if isinstance(told, dict):
+        told = [value for key, value in told.items() if key not in ("links", "link", "params")]
+    if isinstance(told, list | tuple):
+        return sorted({path for item in told for path in files(item)})
+    named = isinstance(told, str) and (
+        told.startswith(f"{paths.RESULTS}/") or told.endswith(".rst")
+    )
+    return [told] if named else []
+
+
+def pictures(study: Study) -> list[str]:
+    """Return the PNG of every figure of the study, each once."""
+    lists = (
+        takes.every_figure,
+        takes.every_shake,
+        together.every_players_figure,
+        devices.every_device_figure,
+        calibration.every_study_figure,
+        pages.every_plan,
+    )
+    found = [path for every in lists for path in every(study) if path.endswith(".png")]
+    return list(dict.fromkeys(found))
+
+
+def _link(path: str) -> str:
+    """Return a path as seen from the folder of the report."""
+    return str(Path(path).relative_to(Path(paths.REPORT).parent))
+
+
+def _figure(path: str, rules: Iterable[Any], captions: str) -> dict[str, Any]:
+    """Return a figure: its picture, and the caption, wildcards and parameters of its rule."""
+    drawn_by = next(rule for rule in rules if rule.is_producer(path))
+    wildcards = Wildcards(**drawn_by.get_wildcards(path))
+    caption = next(
+        output.flags["report"].caption for output in drawn_by.output if output.match(path)
+    )
+    params = {
+        name: value(wildcards) if callable(value) else value
+        for name, value in drawn_by.params.items()
+        if name in CAPTION_PARAMETERS
+    }
+    place, stem = Path(path).parts, path.removesuffix(".png")
+    return {
+        "png": path,
+        "caption": f"{captions}/{Path(caption).name}",
+        "wildcards": vars(wildcards),
+        "params": params,
+        "session": {"figures": "", "plans": "planned sessions"}.get(place[1], place[1]),
+        "take": place[3] if place[2] == "takes" else "",
+        "links": [(_link(f"{stem}.csv"), "numbers (CSV)"), (_link(f"{stem}.pdf"), "PDF")],
+    }
+
+
+def _session(study: Study, session: Session) -> dict[str, Any]:
+    """Return what the report says of a session."""
+    ways = [Calibration.parse(name) for name in session.calibrations()]
+    way = next(iter(session.take_calibrations()), ways[0].name if ways else None)
+    mapped = bool(session.walks) and any(one.kind in ("sfm", "sim3") for one in ways)
+    variant = _variant(session, way)
+    known = {"session": session.name, **vars(variant)}
+    quality = {
+        one.name: paths.CALIBRATION_QUALITY.format(**known, calibration=one.name) for one in ways
+    }
+    model = {
+        "model": paths.SFM_SUMMARY.format(**known),
+        "static": [paths.STATIC_CHECK.format(**known, camera=camera) for camera in session.cameras],
+    }
+    limits = session.parameters["extract_static"]
+    return {
+        "name": session.name,
+        "description": session.description,
+        "virtual": bool(session.virtual),
+        "way": way,
+        "mapper": variant.mapper if mapped else None,
+        "n_images": variant.n_images,
+        "fusion": next(iter(session.fusions()), None),
+        "model": session.parameters["models"][0],
+        "overrides": _overrides(study, session),
+        "withheld": consent.left_out(session),
+        "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
+        "files": {"quality": quality, **(model if mapped else {})},
+        "takes": [_take(study, session, take) for take in session.takes.values()],
+    }
+
+
+def _variant(session: Session, way: str | None) -> Variant:
+    """Return the reported structure from motion: global, with as many images as the calibration."""
+    variant = Calibration.parse(way).variant if way else None
+    first = session.parameters["sweep"]["n_images"][0]
+    return Variant("global", variant.n_images if variant else first)
+
+
+def _overrides(study: Study, session: Session) -> dict[str, dict]:
+    """Return the keys of the reported steps in which a session differs from the study."""
+    found: dict[str, dict] = {}
+    for name in STEPS:
+        own, usual = session.parameters[name], study.parameters[name]
+        differ = {key: value for key, value in own.items() if usual.get(key) != value}
+        found |= {name: differ} if differ else {}
+    return found
+
+
+def _take(study: Study, session: Session, take: Take) -> dict[str, Any]:
+    """Return what the report says of a take, measured with the first calibration and network."""
+    fusion, ways = next(iter(session.fusions()), None), session.take_calibrations()
+    known = {"session": session.name, "take": take.name, "model": session.parameters["models"][0]}
+    named: dict[str, Any] = {}
+    links: list[tuple[str, str]] = []
+    if take.videos and ways and fusion:
+        known |= {"calibration": ways[0], "fusion": fusion}
+        named = _measured(session, take, known)
+        links = [(named["summary"], "summary (CSV)"), (named["frames"], "frames (CSV)")]
+    if take.devices:
+        named["checks"] = paths.DEVICE_CHECKS.format(**known)
+    links += [(path, "3D viewer") for path in pages.viewers(session, take)]
+    for path in pages.overlay_videos(study, session, take):
+        links.append((path, f"video {Path(path).stem.rpartition('.')[2]}"))
+    return {
+        "name": take.name,
+        "fusion": fusion,
+        "files": named,
+        "links": [(_link(path), words) for path, words in links],
+    }
+
+
+def _measured(session: Session, take: Take, known: dict[str, str]) -> dict[str, Any]:
+    """Return the files of a take that was measured by fixed cameras, by what they say."""
+    patterns = {
+        "summary": paths.MEASURES,
+        "frames": paths.FRAME_MEASURES,
+        "pose3d": paths.POSE3D,
+        "sync": paths.CAMERA_CLOCKS,
+    }
+    patterns |= {"shake": paths.SHAKE_TEXT} if take.steady else {}
+    named: dict[str, Any] = {name: pattern.format(**known) for name, pattern in patterns.items()}
+    named["movement"] = takes.checks(session, take)
+    if session.virtual:
+        named["errors"] = paths.ERRORS.format(**known)
+        named["kinematics"] = paths.MEASURE_ERRORS.format(**known)
+    return named

@@ -1,0 +1,65 @@
+"""Files and settings of takes: keypoints, skeletons, measures, exports."""
+
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.jobs.job import Job
+from courtside.study.methods import Fusion
+
+
+def each_camera(job: Job, pattern: str) -> list[str]:
+    """Return a file of each camera of a take, in the take's order."""
+    return job.of_each(pattern, camera=job.take.videos)
+
+
+def every_take(job: Job, pattern: str, **more: str) -> list[str]:
+    """Return a file of every take of a session."""
+    return [job.fill(pattern, take=take, **more) for take in job.session.takes]
+
+
+def clocks(job: Job, names: Any) -> dict[str, dict]:
+    """Return the clocks that a take states, of the cameras or devices named."""
+    return {name: clock for name, clock in job.take.clocks.items() if name in names}
+
+
+def shake(job: Job) -> list[str]:
+    """Return the shake of each camera of a take, where it is taken out."""
+    if not job.take.steady or not Fusion.parse(job["fusion"]).steadied:
+        return []
+    return each_camera(job, paths.SHAKE)
+
+
+def fusion(job: Job) -> dict[str, Any]:
+    """Return which cameras of a take are fused, and by which rule."""
+    named = job.session.fused_cameras(job["fusion"])
+    used = [name for name in named if name in job.take.videos]
+    return {"used": used, "rule": Fusion.parse(job["fusion"]).rule}
+
+
+def every_fusion(job: Job) -> list[str]:
+    """Return all ways to fuse views that a session has, the exported ones first."""
+    return job.session.fusions() + job.session.fusions("compared_fusions")
+
+
+def every_fused(job: Job, pattern: str = paths.POSE3D) -> list[str]:
+    """Return a file of every way to fuse views."""
+    return job.of_each(pattern, fusion=every_fusion(job))
+
+
+def sexes(job: Job) -> dict[str, str | None]:
+    """Return {person: sex} of a take, else of the session; None unless stated as m or f."""
+    known = job.session.subjects
+    people = job.take.subjects if "take" in job.wildcards else known
+    return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
+
+
+def exported(job: Job) -> str:
+    """Return the skeletons that a file for other programs is made from, where that is agreed to."""
+    job.demand("export")
+    return job.fill(paths.SKELETONS, stage=job.wildcards.get("stage", "pose3d"))
+
+
+def blur_faces(job: Job) -> bool:
+    """Return whether faces are blurred in pictures of a take, where pictures are agreed to."""
+    job.demand("pictures")
+    return job.session.blur_faces

@@ -1,0 +1,128 @@
+"""Methods of the study, parsed from their names: calibration, structure from motion, fusion."""
+
+import re
+from dataclasses import dataclass
+
+from courtside.study.errors import InputError
+
+# The default choice of bridging images is o0; a name leaves it out.
+CALIBRATION = re.compile(
+    r"file|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
+    r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?"
+)
+VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
+HALFBODY = "halfbody"  # the paper's rule for three cameras
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One structure from motion of a session's sweep.
+
+    Attributes
+    ----------
+    mapper : str
+        `global` or `incremental`.
+    n_images, offset : int
+        Number of bridging images, and which choice of so many.
+    """
+
+    mapper: str
+    n_images: int
+    offset: int = 0
+
+    @classmethod
+    def parse(cls, name: str) -> "Variant":
+        """Parse a name such as `global-n40-o0`."""
+        found = VARIANT.fullmatch(name)
+        if found is None:
+            raise InputError(
+                f"expected a structure from motion such as global-n40-o0, found {name!r}"
+            )
+        return cls(found["mapper"], int(found["n_images"]), int(found["offset"]))
+
+    @property
+    def name(self) -> str:
+        """Its name in paths: `{mapper}-n{n_images}-o{offset}`."""
+        return f"{self.mapper}-n{self.n_images}-o{self.offset}"
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A way to find the fixed cameras of a session.
+
+    Attributes
+    ----------
+    name : str
+        `file`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`, `paper-global-n40`, `known18`,
+        `known8-board`, `dlt18` and the like.
+    kind : str
+        `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
+        together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
+        `known` (resection), `dlt`.
+    variant : Variant or None
+        The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
+        the paper.
+    n_points : int or None
+        Number of clicked points, where they are all that it rests on.
+    board : bool
+        Whether lenses come from pictures of a chessboard.
+    """
+
+    name: str
+    kind: str
+    variant: Variant | None = None
+    n_points: int | None = None
+    board: bool = False
+
+    @classmethod
+    def parse(cls, name: str) -> "Calibration":
+        """Parse a name of the configuration's `calibrations`."""
+        found = CALIBRATION.fullmatch(name)
+        if found is None or (found["mapped"] and found["kind"] != "paper"):
+            raise InputError(
+                f"expected a calibration such as file, sfm-n40 or known18, found {name!r}"
+            )
+        if found["points"]:
+            n_points, board = int(found["n_points"]), bool(found["board"])
+            return cls(name, found["points"], n_points=n_points, board=board)
+        if not found["kind"]:
+            return cls(name, "file")
+        incremental = found["kind"] == "paper" and not found["mapped"]
+        mapper = "incremental" if incremental else "global"
+        variant = Variant(mapper, int(found["n_images"]), int(found["offset"] or 0))
+        return cls(name, found["kind"], variant)
+
+    @property
+    def has_covariance(self) -> bool:
+        """Whether the covariance of the cameras is known."""
+        return self.kind == "sfm"
+
+
+@dataclass(frozen=True)
+class Fusion:
+    """A way to fuse views into 3D joints.
+
+    Attributes
+    ----------
+    name : str
+        `all-robust`, `two-dlt`, `all-unsteady`, `halfbody`; `trc` of another program's 3D joints.
+    cameras : str
+        Name of the set of cameras: `all`, or a key of the session's `views`; empty for `halfbody`
+        and `trc`.
+    rule : str
+        `robust`, `dlt`, `halfbody` or `trc`.
+    steadied : bool
+        Whether the shake of cameras is taken out, in takes where it is measured.
+    """
+
+    name: str
+    cameras: str
+    rule: str
+    steadied: bool = True
+
+    @classmethod
+    def parse(cls, name: str) -> "Fusion":
+        """Parse a name of the configuration's `fusions` or `compared_fusions`."""
+        cameras, _, rule = name.rpartition("-")
+        unsteady = rule == "unsteady"
+        return cls(name, cameras, "robust" if unsteady else rule, steadied=not unsteady)

@@ -1,0 +1,192 @@
+"""The name of every file of the study, as a pattern with Snakemake's wildcards.
+
+Fill a pattern with `str.format`. Names in braces are wildcards: `session`, `take`, `camera`,
+`model` (a pose network), `calibration` and `fusion` (see `courtside.study.methods`); `mapper`,
+`n_images` and `offset` of a structure from motion, ... Log files are named in the rules, each by
+the one rule that writes it. Paths below the folder config/ are functions of that folder.
+"""
+
+from pathlib import Path
+
+RESULTS = "results"
+SESSION = "results/{session}"
+TAKE = SESSION + "/takes/{take}"
+FUSED = "{calibration}/{fusion}/{model}"
+OF_FUSED = "{take}.{calibration}.{fusion}.{model}"  # in names of log and benchmark files
+FORMATS = ("pdf", "png", "csv")  # of every figure
+STAGES = ("pose3d", "pose3d_filtered", "pose3d_corrected")
+
+# From outside, and the networks made of it.
+EXTERNAL = "results/external/"
+NETWORKS = "results/networks/"
+EXTERNAL_MEMBER = EXTERNAL + "{artefact}/{member}"
+ONNX = NETWORKS + "{model}/{part}.onnx"
+
+# Simulated recordings and their truth.
+VIRTUAL = "results/virtual/{session}"
+VIRTUAL_TAKE = VIRTUAL + "/takes/{take}"
+RECORDING = VIRTUAL + "/{name}.mp4"  # of a camera or a walk
+VIRTUAL_BOARDS = VIRTUAL + "/boards"
+BACKDROPS = VIRTUAL + "/backdrops.npz"
+VIRTUAL_CLICKS = VIRTUAL + "/court_points.csv"
+TRUTH = VIRTUAL + "/truth.npz"
+TRUE_TAKE = VIRTUAL_TAKE + "/truth.npz"
+VIRTUAL_FILM = VIRTUAL_TAKE + "/{name}.mp4"
+VIRTUAL_DEVICE = VIRTUAL_TAKE + "/{name}.{suffix}"
+RACKET_CLICKS = VIRTUAL_TAKE + "/racket.csv"
+
+# Pictures of fixed cameras and walks.
+STATIC = SESSION + "/static/{camera}.png"
+STATIC_CHECK = SESSION + "/static/{camera}.csv"
+FRAMES = SESSION + "/frames/{walk}"
+FRAME_TABLE = SESSION + "/frames/{walk}.csv"
+MOVEMENT = TAKE + "/movement/{camera}.csv"
+SHAKE = TAKE + "/shake/{camera}.csv"
+BACKGROUND = TAKE + "/background/{camera}.png"
+
+# Structure from motion.
+SFM = SESSION + "/sfm/"
+VARIANT = "{mapper}-n{n_images}-o{offset}"  # see `courtside.study.methods.Variant`
+FEATURES = SFM + "features.db"
+FEATURE_TABLE = SFM + "features.csv"
+MATCHES = SFM + "matches.db"
+MATCH_TABLE = SFM + "matches.csv"
+MODEL = tuple(  # a COLMAP model
+    SFM + VARIANT + f"/{part}.bin" for part in ("cameras", "images", "points3D", "rigs", "frames")
+)
+SFM_SUMMARY = SFM + VARIANT + "/summary.json"
+TIES = SFM + VARIANT + "/ties.npz"
+BENCHMARK = SESSION + "/benchmarks/{rule}/{job}.tsv"
+
+# Calibration of the fixed cameras.
+CALIBRATION = SESSION + "/calibration/{calibration}"
+CAMERAS = CALIBRATION + "/cameras.toml"
+CAMERA_COVARIANCE = CALIBRATION + "/covariance.npz"
+CALIBRATION_QUALITY = CALIBRATION + "/quality.json"
+COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
+LENS = SESSION + "/calibration/lens/{camera}.toml"
+CLICKS = "data/{session}/court_points.csv"  # where clicks are saved if the session does not say it
+CLICKING_PAGE = SESSION + "/pages/clicking.html"
+
+# Keypoints, clocks and skeletons of a take.
+POSE2D = TAKE + "/pose2d/{model}/{camera}.npz"
+CAMERA_CLOCKS = TAKE + "/sync/{calibration}/cameras.{model}.json"
+PEOPLE = TAKE + "/people/{calibration}/{model}.npz"
+SKELETONS = TAKE + "/{stage}/" + FUSED + ".npz"
+POSE3D, POSE3D_FILTERED, POSE3D_CORRECTED = (SKELETONS.replace("{stage}", name) for name in STAGES)
+POSE3D_IMPORTED = TAKE + "/pose3d/imported/trc/{model}.npz"
+EXPORT = TAKE + "/{stage}/" + FUSED + ".{person}.{suffix}"
+POSE2SIM = TAKE + "/pose2sim/" + FUSED
+KINEMATICS = TAKE + "/kinematics/" + FUSED
+FRAME_MEASURES = KINEMATICS + ".frames.csv"
+MEASURES = KINEMATICS + ".summary.csv"
+CUTOFFS = KINEMATICS + ".cutoffs.csv"
+VIEW_DISTANCES = TAKE + "/views/{calibration}.{model}.csv"
+OVERLAY_VIDEO = TAKE + "/videos/" + FUSED + ".{camera}.mp4"
+VIEWER = TAKE + "/pages/viewer.{model}.html"
+
+# Devices of their own. `source`: a skeleton that a device gives.
+DEVICE = TAKE + "/devices/{device}.npz"
+COLOUR_VIDEO = TAKE + "/devices/{device}.mp4"
+COLOUR_FRAMES = TAKE + "/devices/{device}.frames.csv"
+COLOUR_CAMERA = TAKE + "/devices/{device}.toml"
+SOURCE = TAKE + "/devices/{source}.{model}.npz"
+CAMERA_SOURCE = SOURCE.replace("{source}", "cameras")
+RGB_SOURCE = SOURCE.replace("{source}", "{device}-rgb")
+DEPTH_SOURCE = SOURCE.replace("{source}", "{device}-depth")
+CORRECTED_SOURCE = SOURCE.replace("{source}", "{device}-corrected")
+CORRECTED_BVH = TAKE + "/devices/{device}-corrected.{model}.bvh"
+CORRECTION_REPORT = TAKE + "/devices/{device}-corrected.{model}.json"
+DEVICE_CLOCKS = TAKE + "/sync/devices.{model}.json"
+DEVICE_EVENTS = TAKE + "/sync/devices.{model}.events.csv"
+DEVICE_CHECKS = TAKE + "/sync/devices.{model}.checks.csv"
+WRISTS = TAKE + "/sync/{clocks}.{model}.wrists.csv"  # clocks: devices or events
+OWN_EVENTS = TAKE + "/sync/events.{model}.csv"
+TPOSE = TAKE + "/sync/tpose.{model}.json"
+BODY = TAKE + "/body/{source}.{model}.npz"
+BODY_FRAME = TAKE + "/body/{source}.{model}.json"
+ARCS = TAKE + "/body/arcs.{model}.{what}.csv"  # what: paths or distortion
+
+# Errors against truth.
+EVALUATION = SESSION + "/evaluation/"
+SFM_ERRORS = EVALUATION + VARIANT + ".csv"
+KNOWN_ERRORS = EVALUATION + "known.csv"
+RACKET_LENGTHS = EVALUATION + "racket.csv"
+JOINT_OFFSETS = EVALUATION + "joint_offsets.{model}.csv"
+SKIN_DEPTHS = EVALUATION + "skin_depths.{device}.{model}.csv"
+TAKE_EVALUATION = EVALUATION + "takes/{take}/"
+ERRORS = TAKE_EVALUATION + "errors/{calibration}.{model}.csv"
+CLOCK_ERRORS = TAKE_EVALUATION + "clocks/{calibration}.{model}.csv"
+MEASURE_ERRORS = TAKE_EVALUATION + "kinematics/" + FUSED + ".csv"
+GAINS = TAKE_EVALUATION + "gains/{stage}.{calibration}.{model}.csv"
+DETECTION_ERRORS = TAKE_EVALUATION + "detection/{model}.csv"
+ROUND_TRIP = TAKE_EVALUATION + "round_trip/{calibration}.{model}.csv"
+SOURCE_ERRORS = TAKE_EVALUATION + "sources/{model}.errors.csv"
+ERROR_PARTS = TAKE_EVALUATION + "sources/{model}.parts.csv"
+TRUE_PATHS = TAKE_EVALUATION + "sources/{model}.true_paths.csv"
+TRUE_DISTORTION = TAKE_EVALUATION + "sources/{model}.true_distortion.csv"
+BODY_FRAME_ERRORS = TAKE_EVALUATION + "body_frames/{model}.csv"
+
+# Figures, without their format, and tables.
+STUDY_FIGURE = "results/figures/{figure}"
+SESSION_FIGURE = SESSION + "/figures/{figure}"
+TAKE_FIGURE = TAKE + "/figures/{figure}.{calibration}.{fusion}.{model}"
+CALIBRATED_FIGURE = TAKE + "/figures/{figure}.{calibration}.{model}"
+DEVICE_FIGURE = TAKE + "/figures/{figure}.{model}"
+PLAN_FIGURE = "results/plans/{plan}/{figure}"
+SHAKE_TEXT = TAKE_FIGURE.replace("{figure}", "shake") + ".txt"
+CALIBRATION_TABLE = "results/figures/calibration.csv"
+PLAYERS_TABLE = "results/figures/players.csv"
+NETWORK_PAIRS = "results/figures/agreement.pairs.csv"
+NETWORK_AGREEMENT = "results/figures/agreement.table.csv"
+
+# Of a run.
+REPORT = "results/report.html"
+RUN = "results/run"
+
+
+def part(pattern: str, **known: str) -> str:
+    """Fill some wildcards of a pattern, and leave the others."""
+    for name, value in known.items():
+        pattern = pattern.replace(f"{{{name}}}", value)
+    return pattern
+
+
+def formats(stems: list[str]) -> list[str]:
+    """Return the files of figures, of every format."""
+    return [f"{stem}.{suffix}" for stem in stems for suffix in FORMATS]
+
+
+def court(config: Path, name: str) -> Path:
+    """Return the file of a court."""
+    return config / "courts" / f"{name}.yaml"
+
+
+def skeleton(config: Path, name: str) -> Path:
+    """Return the file of a skeleton."""
+    return config / "skeletons" / f"{name}.yaml"
+
+
+def joint_offsets(config: Path, model: str) -> Path:
+    """Return the file of how far a network's joints are from the anatomical ones."""
+    return config / "joint_offsets" / f"{model}.csv"
+
+
+def derived_joints(config: Path) -> Path:
+    """Return the file of joints that are computed from others."""
+    return config / "derived_joints.yaml"
+
+
+def published(config: Path, name: str) -> Path:
+    """Return a table of published numbers."""
+    return config / "published" / f"{name}.csv"
+
+
+def plan(config: Path, name: str) -> Path:
+    """Return the file of a planned session."""
+    return config / "plans" / f"{name}.yaml"
+
+
+def session(config: Path, name: str) -> Path:
+    """Return the file of a session."""
+    return config / "sessions" / f"{name}.yaml"

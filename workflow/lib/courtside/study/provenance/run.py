@@ -1,0 +1,123 @@
+"""A run of Snakemake: its jobs as plain values, the command that repeats it, its last words."""
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.configuration import consent
+from courtside.study.configuration.sessions import Session, Study
+from courtside.study.errors import InputError
+from courtside.study.execution import summary
+from courtside.study.provenance import environment, provenance
+
+
+def record(
+    workflow: Any, repository: Path, config: Mapping[str, Any], shared: Iterable[str]
+) -> None:
+    """Write the sidecars of all files that are newer than theirs.
+
+    Parameters
+    ----------
+    workflow : snakemake.workflow.Workflow
+    repository : Path
+    config : mapping
+        The merged configuration.
+    shared : iterable of str
+        YAML files that the study was read from, beside Snakemake's configuration files.
+
+    Raises
+    ------
+    InputError
+        If they cannot be written.
+    """
+    dag = workflow.dag
+    jobs = [plain_job(job, dag, touched=workflow.touch) for job in dag.jobs]
+    targets = {str(name) for name in dag.derived_targetfiles}
+    run = {
+        "command": repeating_command(workflow.config_settings, repository),
+        "surroundings": environment.found(repository),
+        "config": config,
+        "config_files": [os.path.relpath(path) for path in workflow.configfiles] + list(shared),
+    }
+    pinned = (paths.EXTERNAL, paths.NETWORKS)
+    try:
+        provenance.record(
+            jobs, paths.RUN, run=run, root=paths.RESULTS, pinned=pinned, targets=targets
+        )
+    except OSError as error:
+        raise InputError(
+            f"{paths.RUN}: provenance not written: {error}; mend this, then run "
+            "`snakemake --force -- FILE` for any file of the study"
+        ) from None
+
+
+def plain_job(job: Any, dag: Any, touched: bool) -> dict[str, Any]:
+    """Return what `provenance.record` needs of a Snakemake job."""
+    params = dict(job.params.items())
+    scripted = job.rule.script is not None
+    return {
+        "rule": job.rule.name,
+        "script": Path(str(job.rule.script)).name if scripted else None,
+        "code": params.pop("code", None),
+        "inputs": [str(name) for name in job.input],
+        "outputs": [str(name) for name in job.products()],
+        "params": params,
+        "done": dag.noneedrun_finished(job),
+        "made": dag.finished(job) and not touched,
+    }
+
+
+def repeating_command(settings: Any, repository: Path) -> list[str]:
+    """Return the command that makes files of this study, but for their names, as words."""
+    words = ["snakemake"]
+    folder = os.path.relpath(Path.cwd(), repository)
+    words += [] if folder == "." else ["--directory", folder]
+    given = [os.path.relpath(path, repository) for path in settings.configfiles]
+    words += ["--configfile", *given] if given else []
+    changed = [
+        f"{key}={value if isinstance(value, str) else json.dumps(value)}"
+        for key, value in settings.config.items()
+    ]
+    return words + (["--config", *changed] if changed else [])
+
+
+def ending(workflow: Any, seconds: float, look_at: Iterable[str]) -> str:
+    """Return the words at the end of a run, finished or stopped."""
+    dag, scheduler = workflow.dag, workflow.scheduler
+    wanted = [job for job in dag.needrun_jobs(exclude_finished=False) if job.output]
+    done = [job for job in wanted if dag.finished(job)]
+    failed = scheduler.failed if scheduler else ()
+    if not failed and len(done) == len(wanted):
+        made = [str(path) for job in done for path in job.output]
+        return summary.finished(made, seconds, list(look_at))
+    faults = [(job.name, [str(path) for path in job.log]) for job in failed]
+    return summary.failed(faults, len(done), len(wanted), seconds)
+
+
+def waiting_for_clicks(study: Study) -> list[str]:
+    """Return one line for each session whose court points nobody has clicked yet."""
+    waiting = [session for session in study.sessions.values() if session.unclicked]
+    pages = [paths.CLICKING_PAGE.format(session=session.name) for session in waiting]
+    return [
+        f"{session.name}: court points are not clicked yet: open {page} in a browser, "
+        f"click them, save them as {session.unclicked}, and run snakemake again"
+        for session, page in zip(waiting, pages, strict=True)
+    ]
+
+
+def left_out(study: Study) -> list[str]:
+    """Return one line for each thing that is not made for want of consent, by session."""
+    return [
+        f"{session.name}: {line}"
+        for session in study.sessions.values()
+        for line in consent.left_out(session) + remains(session)
+    ]
+
+
+def remains(session: Session) -> list[str]:
+    """Return one line for each take that was measured before somebody in it withdrew."""
+    known = [paths.TAKE.format(session=session.name, take=take) for take in session.withheld]
+    return [f"{folder} was made before: delete it" for folder in known if Path(folder).exists()]

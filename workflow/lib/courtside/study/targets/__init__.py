@@ -1,0 +1,12 @@
+"""What the study makes: the files that `snakemake` asks for, from the checked configuration alone.
+
+calibration: cameras, their errors, the figures of the calibration study
+takes: exports, figures, measures and errors of each take
+devices: figures and errors of takes with devices of their own
+together: figures and tables of several takes
+pages: viewers, clicking pages, videos with skeletons, plans
+"""
+
+from courtside.study.targets import calibration, devices, pages, takes, together
+
+__all__ = ["calibration", "devices", "pages", "takes", "together"]

@@ -1,0 +1,114 @@
+"""What the study makes of calibrations: cameras, errors, figures of the calibration study."""
+
+from collections.abc import Iterable
+
+from courtside.study import paths
+from courtside.study.configuration.sessions import Session, Study
+from courtside.study.methods import Calibration, Variant
+
+
+def every_calibration(study: Study) -> list[str]:
+    """Return the cameras of every session, found in every way that the study names."""
+    return [
+        paths.CAMERAS.format(session=session.name, calibration=way)
+        for session in study.sessions.values()
+        for way in session.calibrations()
+    ]
+
+
+def every_photo_model(study: Study) -> list[str]:
+    """Return the models of sessions without fixed cameras, which have walks or photos only."""
+    return [
+        paths.SFM_SUMMARY.format(session=session.name, **vars(variant))
+        for session in study.sessions.values()
+        if session.walks and not session.cameras
+        for variant in session.variants()
+    ]
+
+
+def every_evaluation(study: Study) -> list[str]:
+    """Return the errors of every calibration of the calibration study."""
+    return every_error(filmed_for_calibration(study))
+
+
+def every_error(sessions: Iterable[Session]) -> list[str]:
+    """Return all tables of calibration errors of virtual sessions."""
+    sessions = list(sessions)
+    known = [paths.KNOWN_ERRORS.format(session=session.name) for session in sessions]
+    return [
+        paths.SFM_ERRORS.format(session=session.name, **vars(variant))
+        for session in sessions
+        for variant in session.variants()
+    ] + known
+
+
+def every_study_figure(study: Study) -> list[str]:
+    """Return the figures and tables of the calibration study."""
+    names = [f"court_points.{court}" for court in courts_used(study)]
+    names += drawn_conditions(study)
+    stems = [paths.STUDY_FIGURE.format(figure=name) for name in names]
+    for session in swept(study):
+        names = ["badminton_fig08", "coverage", "growth"]
+        names += [f"badminton_fig06.{mapper}" for mapper in session.parameters["sweep"]["mappers"]]
+        stems += _figures(session, names)
+    for session in study.sessions.values():
+        if session.court:
+            ways = map(Calibration.parse, session.calibrations())
+            stems += _figures(session, [f"error_map.{w.name}" for w in ways if w.has_covariance])
+    if racket_sessions(study):
+        stems.append(paths.STUDY_FIGURE.format(figure="badminton_fig12"))
+    return paths.formats(stems) + [paths.CALIBRATION_TABLE] * bool(swept(study))
+
+
+def _figures(session: Session, names: Iterable[str]) -> list[str]:
+    return [paths.SESSION_FIGURE.format(session=session.name, figure=name) for name in names]
+
+
+def courts_used(study: Study) -> list[str]:
+    """Return the names of the courts of all sessions."""
+    return sorted({session.court for session in study.sessions.values() if session.court})
+
+
+def filmed_for_calibration(study: Study) -> list[Session]:
+    """Return the sessions of the calibration study: virtual, with a walk and without takes."""
+    return [s for s in study.sessions.values() if s.virtual and s.walks and not s.takes]
+
+
+def swept(study: Study) -> list[Session]:
+    """Return the sessions of the calibration study that are no variation of another."""
+    return [session for session in filmed_for_calibration(study) if not session.condition]
+
+
+def tabulated(study: Study) -> list[Session]:
+    """Return the sessions of the calibration table: without conditions that have a figure."""
+    drawn = drawn_conditions(study).values()
+    return [s for s in filmed_for_calibration(study) if s.condition.get("condition") not in drawn]
+
+
+def varied(study: Study, condition: str) -> list[Session]:
+    """Return the sessions that are variations under a condition."""
+    sessions = study.sessions.values()
+    return [s for s in sessions if s.condition.get("condition") == condition]
+
+
+def drawn_conditions(study: Study) -> dict[str, str]:
+    """Return {figure: condition} of the conditions that vary more than seeds."""
+    conditions = study.parameters["conditions"]
+    return {
+        name.replace("-", "_"): name
+        for name in study.parameters["variations"]
+        if not all(key.endswith("seed") for key in conditions[name]["vary"])
+    }
+
+
+def racket_models(study: Study, session: Session) -> list[Variant]:
+    """Return the structures from motion that a racket is measured with: one number of images."""
+    count = study.parameters["evaluate_racket"]["n_images"]
+    return [v for v in session.variants() if (v.mapper, v.n_images) == ("global", count)]
+
+
+def racket_sessions(study: Study) -> list[str]:
+    """Return the names of the sessions in which a racket is measured: those with such models."""
+    wanted = study.parameters["evaluate_racket"]["sessions"]
+    there = [name for name in wanted if name in study.sessions]
+    return [name for name in there if racket_models(study, study.sessions[name])]

@@ -1,0 +1,62 @@
+"""What the study makes of takes with devices of their own: figures, and errors of virtual ones."""
+
+from dataclasses import dataclass
+
+from courtside.study import paths
+from courtside.study.configuration.sessions import Session, Study, Take
+
+FIGURES = ("wrist_distance.devices", "wrist_distance.events", "wrist_arcs", "skeleton_plates")
+THESIS_FIGURES = ("thesis_fig3_1", "thesis_fig3_2")
+
+
+@dataclass(frozen=True)
+class DeviceTake:
+    """A take with devices, and the session's first network, which measures its videos."""
+
+    session: Session
+    take: Take
+    model: str
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """Its names for tables."""
+        return {"session": self.session.name, "take": self.take.name}
+
+    def file(self, pattern: str, **more: str) -> str:
+        """Return one of its files."""
+        return pattern.format(**self.labels, model=self.model, **more)
+
+    def true_file(self, pattern: str, **more: str) -> list[str]:
+        """Return a file that rests on the truth; none of a real take."""
+        return [self.file(pattern, **more)] if self.session.virtual else []
+
+
+def device_takes(study: Study) -> list[DeviceTake]:
+    """Return all takes with devices."""
+    return [
+        DeviceTake(session, take, session.parameters["models"][0])
+        for session, take in study.takes()
+        if take.devices
+    ]
+
+
+def thesis_take(study: Study) -> DeviceTake | None:
+    """Return the take of figures 3.1 and 3.2; None where the study does not have it."""
+    for session, take in study.named_takes([study.parameters["draw_thesis_fig3"]["take"]]):
+        return DeviceTake(session, take, session.parameters["models"][0])
+    return None
+
+
+def every_body_frame(study: Study) -> list[str]:
+    """Return the errors of the body frames of virtual takes with devices."""
+    return [path for one in device_takes(study) for path in one.true_file(paths.BODY_FRAME_ERRORS)]
+
+
+def every_device_figure(study: Study) -> list[str]:
+    """Return the figures of all takes with devices, and those of the thesis."""
+    stems, takes = [], device_takes(study)
+    for one in takes:
+        names = [*FIGURES, "source_errors"] if one.session.virtual else FIGURES
+        stems += [one.file(paths.DEVICE_FIGURE, figure=name) for name in names]
+    together = [*(THESIS_FIGURES if thesis_take(study) else ()), *["smoothness"] * bool(takes)]
+    return paths.formats(stems + [paths.STUDY_FIGURE.format(figure=name) for name in together])

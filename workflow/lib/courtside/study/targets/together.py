@@ -1,0 +1,127 @@
+"""What the study makes of several takes: the figures and tables that draw or compare them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from courtside.study import paths
+from courtside.study.configuration import consent
+from courtside.study.configuration.sessions import Session, Study
+from courtside.study.targets import takes
+
+STROKE_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11")
+
+
+@dataclass(frozen=True)
+class MeasuredTake:
+    """A take measured with one calibration and one network.
+
+    Attributes
+    ----------
+    measures, pose3d : str
+        Its summary of measures and its filtered skeletons.
+    labels : dict of str to str
+        Session, take, calibration and model.
+    """
+
+    measures: str
+    pose3d: str
+    labels: dict[str, str]
+
+    @property
+    def joint_labels(self) -> dict[str, str]:
+        """Its labels without the network."""
+        return {key: value for key, value in self.labels.items() if key != "model"}
+
+
+def every_players_figure(study: Study) -> list[str]:
+    """Return the figures that takes are drawn in together, and the table of players."""
+    stems = [*_round_trips(study), *_strokes(study)]
+    stems += [paths.STUDY_FIGURE.format(figure="badminton_fig05")] if fig05_layouts(study) else []
+    for session, take in study.named_takes(study.parameters["draw_three_cameras"]["takes"]):
+        models = session.parameters["models"][:1]
+        stems += _figures("three_cameras", session, take.name, models)
+    there = {
+        "clock_errors": takes.evaluations(study, "clocks"),
+        "agreement": compared_takes(study),
+        "archive": archived_takes(study),
+    }
+    stems += [paths.STUDY_FIGURE.format(figure=name) for name, found in there.items() if found]
+    return paths.formats(stems) + [paths.PLAYERS_TABLE] * bool(takes.evaluations(study, "errors"))
+
+
+def _round_trips(study: Study) -> list[str]:
+    named = study.named_takes(study.parameters["evaluate_round_trip"]["takes"])
+    return [
+        stem
+        for session, take in named
+        for stem in _figures("badminton_tab01", session, take.name, session.parameters["models"])
+    ]
+
+
+def _figures(figure: str, session: Session, take: str, models: Iterable[str]) -> list[str]:
+    known = {"figure": figure, "session": session.name, "take": take}
+    return [
+        paths.CALIBRATED_FIGURE.format(**known, calibration=calibration, model=model)
+        for calibration, model in product(session.take_calibrations(), models)
+    ]
+
+
+def _strokes(study: Study) -> list[str]:
+    return [
+        paths.TAKE_FIGURE.format(
+            session=session.name,
+            take=take.name,
+            figure=figure,
+            calibration=calibration,
+            fusion=fusion,
+            model=session.parameters["models"][0],
+        )
+        for session, take in study.named_takes(study.parameters["draw_stroke"]["takes"])
+        for calibration, fusion in product(session.take_calibrations(), session.fusions())
+        for figure in takes.shown(session, take, STROKE_FIGURES)
+    ]
+
+
+def fig05_layouts(study: Study) -> dict[str, list]:
+    """Return session and cameras of each layout of fig 5 that the study has and may show."""
+    wanted = study.parameters["draw_badminton_fig05"]["layouts"]
+    return {
+        layout: [session.name, place["cameras"]]
+        for layout, place in wanted.items()
+        for session, take in study.named_takes([place["take"]])
+        if not consent.refusing(session, take, "pictures")
+    }
+
+
+def measured_takes(
+    study: Study, sessions: Iterable[str], models: Iterable[str]
+) -> list[MeasuredTake]:
+    """Return every take of some sessions, with every calibration and each of some networks."""
+    found, models = [], list(models)
+    for session in (study.sessions[name] for name in sessions if name in study.sessions):
+        for take, way, model in product(session.takes, session.take_calibrations(), models):
+            labels = {"session": session.name, "take": take, "calibration": way, "model": model}
+            known = {**labels, "fusion": session.fusions()[0]}
+            measures, pose3d = (p.format(**known) for p in (paths.MEASURES, paths.POSE3D_FILTERED))
+            found.append(MeasuredTake(measures, pose3d, labels))
+    return found
+
+
+def compared_takes(study: Study) -> list[MeasuredTake]:
+    """Return the takes in which two networks are compared."""
+    step = study.parameters["compare_networks"]
+    return measured_takes(study, step["sessions"], step["networks"])
+
+
+def archived_takes(study: Study) -> list[MeasuredTake]:
+    """Return the takes of a subject that are compared over sessions."""
+    step = study.parameters["compare_sessions"]
+    rows = measured_takes(study, step["sessions"], study.parameters["models"][:1])
+    return [row for row in rows if _archived(study, row.labels, step)]
+
+
+def _archived(study: Study, labels: dict[str, str], step: dict[str, Any]) -> bool:
+    take = study.sessions[labels["session"]].takes[labels["take"]]
+    return step["subject"] in take.subjects and take.name.startswith(tuple(step["takes"]))
