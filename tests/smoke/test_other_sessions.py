@@ -55,7 +55,10 @@ def test_photos_alone_become_a_model(gym):
         "court": "none",
         "cameras": {},
         "walks": {"door": {"images": str(DOOR / "images")}},
-        "override": {"sweep": {"n_images": [12], "n_offsets": 1}},
+        "override": {
+            "sweep": {"n_images": [12], "n_offsets": 1},
+            "extract_features": {"max_features": 2048},
+        },
     }
     results = study(gym, "door", session)
     summary = json.loads((results / "sfm/global-n12-o0/summary.json").read_text())

@@ -9,6 +9,7 @@ from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
+from courtside.study.methods import Calibration
 
 
 def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibration, **options):
@@ -18,7 +19,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
     court = courts.read(court_yaml)
     marked = clicks.read(clicks_csv, [c.name for c in record.sfm_cameras], list(court.points))
     xyz_in_sfm = sfm_alignment.reconstruct(record.sfm_cameras, marked)
-    if calibration.startswith("paper"):
+    if Calibration.parse(calibration).kind == "paper":
         frame = sfm_alignment.paper_frame(court, xyz_in_sfm)
         world_from_sfm, how = frame.nearest, {"skew_deg": frame.skew_deg}
     else:

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from courtside.records.keypoints import skeleton
+from courtside.study.methods import Fusion
 
 TAKE = ["session", "take", "calibration", "model"]
 KEY = [*TAKE, "fusion"]
@@ -102,12 +103,13 @@ def _gains(rows: pd.DataFrame, gains: pd.DataFrame) -> pd.DataFrame:
     paired = {} if gains.empty else gains.set_index([*KEY, "stage", "than"]).to_dict("index")
     found = []
     for key, row in values.iterrows():
-        views, _, rule = key[-2].rpartition("-")
-        others = OTHERS.get(views, ()) if rule == "robust" else ()
+        fusion = Fusion.parse(key[-2])
+        ours = fusion.rule == "robust" and fusion.steadied
+        others = OTHERS.get(fusion.cameras, ()) if ours else ()
         gained: dict = {}
         nearer: list[bool] = []
         for other in others:
-            than = other if other == "halfbody" else f"{views}-{other}"
+            than = other if other == "halfbody" else f"{fusion.cameras}-{other}"
             against = (*key[:-2], than, key[-1])
             if against not in values.index:
                 continue

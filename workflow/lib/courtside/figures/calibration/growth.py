@@ -1,7 +1,6 @@
 """Run time of each step by number of bridging images."""
 
 import os
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,8 +9,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, style
+from courtside.study.methods import VARIANT, Variant
 
-VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_bridging>\d+)-o(?P<offset>\d+)")
 ONCE = "once per session"
 MARKERS = "osv^Dx"
 
@@ -23,10 +22,11 @@ def table(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
     """
     rows = []
     for path in map(Path, paths):
-        found = VARIANT.fullmatch(path.stem)
         runs = pd.read_csv(path, sep="\t", na_values="-")
-        of = {"mapper": found["mapper"] if found else ONCE}
-        of |= {key: int(found[key]) if found else np.nan for key in ("n_bridging", "offset")}
+        of: dict = {"mapper": ONCE, "n_bridging": np.nan, "offset": np.nan}
+        if VARIANT.fullmatch(path.stem):
+            found = Variant.parse(path.stem)
+            of = {"mapper": found.mapper, "n_bridging": found.n_images, "offset": found.offset}
         rows.append({"step": path.parent.name, **of, "seconds": runs["s"].mean()})
         rows[-1]["max_rss_mb"] = pd.to_numeric(runs["max_rss"], errors="coerce").mean()
     keys = ["step", "mapper", "n_bridging", "offset"]
