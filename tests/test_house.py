@@ -117,6 +117,23 @@ def test_rule_script_and_log_folder_have_one_name():
     assert {f"{script}.py" for _, script, _ in found} | PER_NAME == {p.name for p in SCRIPTS}
 
 
+def unannotated(path):
+    """Return the public functions and methods of a module that leave a type out."""
+    missing = []
+    for node in ast.walk(ast.parse(path.read_text())):
+        for one in getattr(node, "body", []) if isinstance(node, ast.Module | ast.ClassDef) else []:
+            if isinstance(one, ast.FunctionDef) and not one.name.startswith("_"):
+                arguments = [*one.args.posonlyargs, *one.args.args, *one.args.kwonlyargs]
+                arguments = [a for a in arguments if a.arg not in ("self", "cls")]
+                if one.returns is None or any(a.annotation is None for a in arguments):
+                    missing.append(f"{path.relative_to(LIBRARY)}: {one.name}")
+    return missing
+
+
+def test_public_functions_say_their_types():
+    assert [name for path in MODULES for name in unannotated(path)] == []
+
+
 def test_the_library_is_mirrored_by_tests():
     missing = []
     for path in MODULES:

@@ -1,5 +1,6 @@
 """Calibrate a camera's lens from pictures of a chessboard, held in different places before it."""
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -66,7 +67,9 @@ class Lens:
     dropped: dict[Path, str]
 
 
-def find(pictures: str | Path | Iterable[str | Path], inner_corners: Sequence[int]) -> Boards:
+def find(
+    pictures: str | Path | Iterable[str | os.PathLike], inner_corners: Sequence[int]
+) -> Boards:
     """Find a chessboard in pictures of one camera, in the order of their file names.
 
     OpenCV's sector-based detector (Duda & Frese 2018), which is sub-pixel by itself. It sometimes
@@ -100,7 +103,7 @@ def find(pictures: str | Path | Iterable[str | Path], inner_corners: Sequence[in
     return Boards(tuple(paths), xy, size or (0, 0), (columns, rows), dropped)
 
 
-def _paths(pictures: str | Path | Iterable[str | Path]) -> list[Path]:
+def _paths(pictures: str | Path | Iterable[str | os.PathLike]) -> list[Path]:
     if isinstance(pictures, (str, Path)):
         folder = Path(pictures)
         if not folder.is_dir():

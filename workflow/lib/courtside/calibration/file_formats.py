@@ -1,5 +1,6 @@
 """Read cameras calibrated elsewhere: by Qualisys, Pose2Sim and aniposelib, Caliscope, OpenCV."""
 
+import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -32,7 +33,7 @@ OPENCV_KEYS = {  # the first is what `camera.build` calls it
 }
 
 
-def read(path: str | Path) -> list[Camera]:
+def read(path: str | os.PathLike) -> list[Camera]:
     """Read the cameras of a calibration file, choosing the reader by what the file holds.
 
     Raises `InputError` if the form is not known, or a camera is incomplete, impossible or named

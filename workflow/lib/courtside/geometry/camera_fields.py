@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -25,7 +24,7 @@ UNSCALED = "unscaled"  # unit of cameras of a session without a court
 EXPORT_AGAIN = "export the calibration again or mend the file"
 
 
-def numbers(where: str | Path, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
+def numbers(where: str | os.PathLike, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
     """Return a field's `value`, None where missing, as a finite float array of one of `shapes`.
 
     Raises

@@ -34,8 +34,8 @@ def build(
     title: str,
     body_html: str,
     *,
-    css: Iterable[str | Path] = (),
-    js: Iterable[str | Path] = (),
+    css: Iterable[str | os.PathLike] = (),
+    js: Iterable[str | os.PathLike] = (),
     data: Mapping[str, object] | None = None,
     images: Mapping[str, Picture] | None = None,
     evaluates: bool = False,
@@ -113,7 +113,7 @@ def _with_type(picture: Picture) -> tuple[bytes, str]:
     return (picture, PNG) if isinstance(picture, bytes) else picture
 
 
-def _read(item: str | Path) -> str:
+def _read(item: str | os.PathLike) -> str:
     path = item if isinstance(item, Path) else ASSETS / item
     return path.read_text(encoding="utf-8")
 

@@ -1,5 +1,6 @@
 """Extract features of all images of a session once, into a COLMAP database with stable ids."""
 
+import os
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -29,8 +30,8 @@ class Group:
 
 
 def extract(
-    path: str | Path,
-    image_root: str | Path,
+    path: str | os.PathLike,
+    image_root: str | os.PathLike,
     groups: Sequence[Group],
     *,
     max_features: int,
@@ -92,7 +93,7 @@ def extract(
         return _content(temporary, groups)
 
 
-def _check_imported(path: Path, image_root: str | Path, group: Group) -> None:
+def _check_imported(path: Path, image_root: str | os.PathLike, group: Group) -> None:
     there = database.image_ids(path)
     missing = [name for name in group.images if name not in there]
     if missing:

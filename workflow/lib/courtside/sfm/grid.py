@@ -1,8 +1,8 @@
 """The grid of a session's walks: all frames that may bridge, in order, by their image names."""
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -54,7 +54,7 @@ class Grid:
         return near + among + [(a, b) for a in fixed for b in usable]
 
 
-def read(tables: Mapping[str, str | Path]) -> Grid:
+def read(tables: Mapping[str, str | os.PathLike]) -> Grid:
     """Read the frame tables of the walks: CSV by walk, as `extract_frames` writes it.
 
     Raises `InputError` if a file is missing or no frame table.

@@ -1,5 +1,6 @@
 """Mapping: from matches of some images to a COLMAP model."""
 
+import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -25,9 +26,9 @@ AGREE = 0.01
 
 
 def map_images(
-    matches_db: str | Path,
+    matches_db: str | os.PathLike,
     images: Sequence[str],
-    folder: str | Path,
+    folder: str | os.PathLike,
     *,
     mapper: str,
     seed: int,

@@ -1,6 +1,7 @@
 """Match image pairs once, and verify the matches by two-view geometries."""
 
 import contextlib
+import os
 import sqlite3
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,8 +12,8 @@ from courtside.sfm import database
 
 
 def match(
-    features_db: str | Path,
-    matches_db: str | Path,
+    features_db: str | os.PathLike,
+    matches_db: str | os.PathLike,
     pairs: Sequence[tuple[str, str]],
     *,
     seed: int,

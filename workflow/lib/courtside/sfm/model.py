@@ -1,7 +1,7 @@
 """Read a COLMAP model as a network of images, lenses and points."""
 
+import os
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pycolmap
@@ -18,7 +18,7 @@ HALF_PIXEL = 0.5  # COLMAP has the first pixel's corner at (0, 0), the project i
 LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)
 
 
-def read(folder: str | Path) -> tuple[Network, list[str], list[tuple[int, int]]]:
+def read(folder: str | os.PathLike) -> tuple[Network, list[str], list[tuple[int, int]]]:
     """Read the network of a model from the folder of COLMAP's binary files.
 
     Raises `InputError` if the files are damaged or do not belong together.

@@ -1,5 +1,6 @@
 """Check that a COLMAP model's files are complete: COLMAP itself reads past their end."""
 
+import os
 import struct
 from pathlib import Path
 
@@ -73,7 +74,7 @@ RECORDS = {
 }
 
 
-def check(folder: str | Path) -> None:
+def check(folder: str | os.PathLike) -> None:
     """Walk through the binary files of a model (`RECORDS`), each to its end.
 
     colmap/scene/reconstruction_io_binary.cc of COLMAP 4.

@@ -1,5 +1,6 @@
 """A court of known size: named points, the line edges that meet there, painted lines, net."""
 
+import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -66,7 +67,7 @@ class Court:
         return np.array([self.points.index(name) for name in names], dtype=int)
 
 
-def read(path: str | Path) -> Court:
+def read(path: str | os.PathLike) -> Court:
     """Read a court file: YAML; `config/courts/badminton.yaml` shows every key.
 
     Raises `InputError` if a key is missing or unknown, a value is not a number, a set names an
@@ -138,7 +139,7 @@ def _sets(path, table, points) -> dict[str, tuple[str, ...]]:
     return {name: tuple(members) for name, members in table.items()}
 
 
-def _net(path: str | Path, table: dict | None) -> dict | None:
+def _net(path: str | os.PathLike, table: dict | None) -> dict | None:
     if table is None:
         return None
     if not isinstance(table, dict) or set(table) != set(NET_KEYS):
@@ -153,7 +154,7 @@ def _net(path: str | Path, table: dict | None) -> dict | None:
     return {key: value.tolist() for key, value in numbers.items()}
 
 
-def _check(path: str | Path, court: Court) -> None:
+def _check(path: str | os.PathLike, court: Court) -> None:
     if not 0 < court.size_m[0] <= court.size_m[1]:
         raise InputError(
             f"{path}: expected size_m as [short side, long side], found {court.size_m.tolist()}; "

@@ -1,8 +1,8 @@
 """npz: tie-point constraints on the fixed cameras of a session, or why there are none."""
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -67,7 +67,7 @@ class Record:
     n_maps: tuple[int, int]
 
 
-def write(path: str | Path, record: Record) -> None:
+def write(path: str | os.PathLike, record: Record) -> None:
     """Write a `Record` to an npz file."""
     sfm = selection.of_cameras(record.sfm_cameras)
     reference = record.ties.knowledge.reference if record.ties else None
@@ -93,7 +93,7 @@ def write(path: str | Path, record: Record) -> None:
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path: str | Path) -> Record:
+def read(path: str | os.PathLike) -> Record:
     """Read a `Record`; an `InputError` says what is wrong with the file."""
     found = npz.read(path, FORM, SPEC)
     with reading(path, "cameras and ties that fit one another"):

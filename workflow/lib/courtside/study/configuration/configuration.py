@@ -2,6 +2,7 @@
 
 import difflib
 import functools
+import os
 import re
 import sys
 from collections.abc import Iterable, Iterator
@@ -51,7 +52,9 @@ class ConfigurationError(InputError):
         self.faults = self.lines
 
 
-def load(config: Content, config_file: str, folder: str | Path, root: str | Path = ".") -> Study:
+def load(
+    config: Content, config_file: str, folder: str | os.PathLike, root: str | os.PathLike = "."
+) -> Study:
     """Check the whole configuration and return what it says.
 
     Parameters
@@ -116,7 +119,9 @@ def _models(models: Content, found: dict[str, tuple]) -> dict[str, Model]:
     }
 
 
-def _sessions(config: Content, found: dict[str, tuple], root: str | Path) -> dict[str, Session]:
+def _sessions(
+    config: Content, found: dict[str, tuple], root: str | os.PathLike
+) -> dict[str, Session]:
     """Return the sessions of the files, and the variations that conditions make of them."""
     made = {
         name: session_files.session(name, file, content, config, root)
@@ -157,7 +162,7 @@ def _name_faults(where: str, name: str, file: Path) -> Iterator[str]:
         yield f"{where}: expected a file {file}, found {there}; {advice}"
 
 
-def schema_faults(content: Content, schema: str, file: str | Path) -> list[str]:
+def schema_faults(content: Content, schema: str, file: str | os.PathLike) -> list[str]:
     """Return what a schema finds wrong, one line each: `file: key: expected ..., found ...`.
 
     `schema` is the name of a file in workflow/schemas/, without `.schema.yaml`.

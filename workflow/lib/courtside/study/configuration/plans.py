@@ -1,5 +1,6 @@
 """A planned session, as `config/plans/<plan>.yaml` states it."""
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -86,7 +87,7 @@ class Plan:
     target_cm: float | None
 
 
-def read(path: str | Path) -> Plan:
+def read(path: str | os.PathLike) -> Plan:
     """Read a plan; an `InputError` has every fault of the file, one line each."""
     content = yaml_files.read(path)
     faults = configuration.schema_faults(content, "plan", Path(path))
@@ -112,7 +113,7 @@ def read(path: str | Path) -> Plan:
     )
 
 
-def _faults(path: str | Path, content: dict[str, Any]) -> Iterator[str]:
+def _faults(path: str | os.PathLike, content: dict[str, Any]) -> Iterator[str]:
     low, high = (
         [pick(pair) for pair in zip(*content["hall_m"], strict=True)] for pick in (min, max)
     )

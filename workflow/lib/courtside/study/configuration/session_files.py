@@ -1,5 +1,6 @@
 """Building sessions from their files, and variations of virtual ones from a condition."""
 
+import os
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
@@ -29,7 +30,11 @@ def is_there(path: Path) -> bool:
 
 
 def session(
-    name: str, file: str | Path, content: Content, parameters: Content, root: str | Path = "."
+    name: str,
+    file: str | os.PathLike,
+    content: Content,
+    parameters: Content,
+    root: str | os.PathLike = ".",
 ) -> Session:
     """Build a `Session`.
 
@@ -76,7 +81,7 @@ def session(
     )
 
 
-def _clicks(content: Content, root: str | Path) -> tuple[str | None, str | None]:
+def _clicks(content: Content, root: str | os.PathLike) -> tuple[str | None, str | None]:
     """Return the clicked court points, and where those are to be saved that nobody has clicked."""
     clicks = content.get("court_points")
     if not clicks or clicks.startswith(f"{paths.RESULTS}/") or is_there(Path(root) / clicks):

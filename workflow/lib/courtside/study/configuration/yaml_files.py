@@ -1,5 +1,6 @@
 """YAML files without YAML's surprises: no duplicate keys, names stay text."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,7 @@ class _StrictLoader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-def read(path: str | Path) -> Content:
+def read(path: str | os.PathLike) -> Content:
     """Read a YAML file that holds a mapping.
 
     Raises
@@ -63,7 +64,7 @@ def read(path: str | Path) -> Content:
     return content
 
 
-def _check_extent(path: str | Path, content: Content) -> None:
+def _check_extent(path: str | os.PathLike, content: Content) -> None:
     """Refuse huge content, which aliases and hexadecimal numbers make of a few bytes."""
     waiting, count = [(content, 1)], 0
     while waiting:

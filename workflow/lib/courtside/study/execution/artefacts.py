@@ -1,5 +1,6 @@
 """Pinned files from outside: fetched, checked, and only their named members unpacked."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -62,7 +63,7 @@ class Artefact:
         return cls(name=name, **entry)
 
 
-def read(path: str | Path) -> dict[str, Artefact]:
+def read(path: str | os.PathLike) -> dict[str, Artefact]:
     """Return the artefacts of a file such as config/external.yaml, by name."""
     return {name: Artefact.of(name, entry) for name, entry in yaml_files.read(path).items()}
 

@@ -3,6 +3,7 @@
 import contextlib
 import hashlib
 import json
+import os
 import re
 import secrets
 import shutil
@@ -18,7 +19,7 @@ UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}(\.\w+)?")
 
 
 @contextlib.contextmanager
-def atomic(path: str | Path) -> Iterator[Path]:
+def atomic(path: str | os.PathLike) -> Iterator[Path]:
     """Give a temporary path beside `path`; rename it to `path` when the block ends well.
 
     The temporary file keeps the suffix, because some writers choose the format by it, and is
@@ -35,7 +36,7 @@ def atomic(path: str | Path) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def atomic_folder(path: str | Path) -> Iterator[Path]:
+def atomic_folder(path: str | os.PathLike) -> Iterator[Path]:
     """Give a new folder beside `path`; rename it to `path` when the block ends well.
 
     It is deleted if the block raises, and `path` stays as it was. Missing parent folders are made;
@@ -55,7 +56,7 @@ def atomic_folder(path: str | Path) -> Iterator[Path]:
             shutil.rmtree(rest, ignore_errors=True)
 
 
-def delete_unfinished(folder: str | Path) -> None:
+def delete_unfinished(folder: str | os.PathLike) -> None:
     """Delete what killed jobs left below a folder; only when no job is running there."""
     found = [path for path in Path(folder).rglob(".*") if UNFINISHED.fullmatch(path.name)]
     for path in found:
@@ -65,19 +66,19 @@ def delete_unfinished(folder: str | Path) -> None:
             path.unlink(missing_ok=True)
 
 
-def write_json(path: str | Path, content: Any) -> None:
+def write_json(path: str | os.PathLike, content: Any) -> None:
     """Write a JSON file that people can read, whole or not at all."""
     with atomic(path) as temporary:
         temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
-def read_json(path: str | Path, advice: str = "make it again") -> Any:
+def read_json(path: str | os.PathLike, advice: str = "make it again") -> Any:
     """Read a JSON file; an `InputError` with `advice` where it is missing or no JSON."""
     with reading(path, "JSON", advice):
         return json.loads(Path(path).read_text(encoding="utf-8-sig"))
 
 
-def sha256(path: str | Path) -> str:
+def sha256(path: str | os.PathLike) -> str:
     """Return the SHA-256 of a file as 64 hexadecimal digits, reading it in pieces."""
     digest = hashlib.sha256()
     with Path(path).open("rb") as stream:

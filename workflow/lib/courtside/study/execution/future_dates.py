@@ -1,5 +1,6 @@
 """Files dated in the future, as cameras with a wrong clock write them."""
 
+import os
 import time
 from collections.abc import Iterable, Iterator
 from datetime import datetime
@@ -10,7 +11,7 @@ from courtside.study.errors import InputError
 SLACK_S = 60.0  # by which the clocks of a computer and of a disk in its network may differ
 
 
-def check(folders: Iterable[str | Path]) -> None:
+def check(folders: Iterable[str | os.PathLike]) -> None:
     """Check that no file below some folders is dated in the future; missing folders are left out.
 
     Snakemake ends a job with an error if what it made is older than what it was made from.

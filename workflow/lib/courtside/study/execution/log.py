@@ -1,6 +1,7 @@
 """Where a script's messages go, and how its errors look."""
 
 import logging
+import os
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -16,7 +17,7 @@ T = TypeVar("T")
 logger = logging.getLogger("courtside")
 
 
-def to_file(path: str | Path) -> None:
+def to_file(path: str | os.PathLike) -> None:
     """Send messages, warnings and errors of this process to a job's log file.
 
     An `InputError` that nothing catches becomes one line, and so does a full disk, a file that may

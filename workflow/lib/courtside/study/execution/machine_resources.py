@@ -15,7 +15,7 @@ NO_MEMORY = ("Insufficient memory", "bad_alloc", "bad allocation")
 AGAIN = "then give the same command again"
 
 
-def check(folder: str | Path) -> None:
+def check(folder: str | os.PathLike) -> None:
     """Check, before any work, that a study can write to a folder: an `InputError` if it cannot."""
     folder = Path(folder)
     if not os.access(folder, os.W_OK | os.X_OK):

@@ -1,5 +1,6 @@
 """The words at the end of a run: what was made and how long it took, or what to do."""
 
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -116,7 +117,7 @@ def _places(paths: list[str]) -> str:
     return f"{named} and {rest} more folders" if rest > 0 else named
 
 
-def _last_fault(log: str | Path) -> str:
+def _last_fault(log: str | os.PathLike) -> str:
     """Return the last error that a job's log holds, else its last line."""
     lines = Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
     lines = [line.strip() for line in lines if line.strip()]

@@ -4,6 +4,7 @@ import csv
 import fnmatch
 import json
 import math
+import os
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -66,7 +67,7 @@ class Verdict:
     largest: float = math.nan
 
 
-def compare(here: str | Path, there: str | Path) -> list[Verdict]:
+def compare(here: str | os.PathLike, there: str | os.PathLike) -> list[Verdict]:
     """Return the verdict on every file of two results trees, in the order of their names."""
     ours, theirs = names(here), names(there)
     verdicts = []
@@ -78,7 +79,7 @@ def compare(here: str | Path, there: str | Path) -> list[Verdict]:
     return verdicts
 
 
-def names(folder: str | Path) -> set[str]:
+def names(folder: str | os.PathLike) -> set[str]:
     """Return the relative paths of all files below results that a comparison looks at."""
     paths = (path.relative_to(folder) for path in Path(folder).rglob("*") if path.is_file())
     return {

@@ -1,5 +1,6 @@
 """What a study ran with: commit, lock, interpreter, packages."""
 
+import os
 import platform
 import re
 import subprocess
@@ -13,7 +14,7 @@ LOCKED = re.compile(r"^([A-Za-z0-9._-]+)(?:\[[^]]*\])?==", re.M)
 GIT_SECONDS = 20  # ASSUME: enough for `git status` on a slow disk; a run does not wait longer
 
 
-def found(repository: str | Path) -> dict[str, Any]:
+def found(repository: str | os.PathLike) -> dict[str, Any]:
     """Return what a study of a repository would run with now.
 
     commit (40 digits, None outside a Git checkout), dirty (True if a file differs from the commit
@@ -31,14 +32,14 @@ def found(repository: str | Path) -> dict[str, Any]:
     }
 
 
-def commit(repository: str | Path) -> dict[str, Any]:
+def commit(repository: str | os.PathLike) -> dict[str, Any]:
     """Return the commit of a checkout and whether it is dirty; both None without Git."""
     head = _git(repository, "rev-parse", "HEAD")
     changes = _git(repository, "status", "--porcelain") if head else None
     return {"commit": head, "dirty": None if changes is None else bool(changes)}
 
 
-def packages(lock: str | Path) -> dict[str, str]:
+def packages(lock: str | os.PathLike) -> dict[str, str]:
     """Return {name: version} of installed packages that a lock names; of all without a lock."""
     lock = Path(lock)
     text = lock.read_text(encoding="utf-8") if lock.is_file() else None
@@ -55,7 +56,7 @@ def _plain(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def _git(repository: str | Path, *words: str) -> str | None:
+def _git(repository: str | os.PathLike, *words: str) -> str | None:
     """Return the output of Git, None where it is not installed, too slow, or fails."""
     try:
         done = subprocess.run(

@@ -7,6 +7,7 @@ done (its outputs are up to date), made (in this run).
 
 import dataclasses
 import json
+import os
 import shlex
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -22,10 +23,10 @@ Job = Mapping[str, Any]
 
 def record(
     jobs: Sequence[Job],
-    folder: str | Path,
+    folder: str | os.PathLike,
     *,
     run: dict[str, Any],
-    root: str | Path,
+    root: str | os.PathLike,
     pinned: Sequence[str] = (),
     targets: Collection[str] = (),
 ) -> list[str]:
@@ -77,14 +78,16 @@ def record(
     return written
 
 
-def sidecar(folder: str | Path, name: str, root: str | Path) -> Path:
+def sidecar(folder: str | os.PathLike, name: str, root: str | os.PathLike) -> Path:
     """Return the path of a file's sidecar below the folder of the records."""
     path = Path(name)
     inner = path.relative_to(root) if path.is_relative_to(root) else Path(path.name)
     return Path(folder) / "provenance" / inner.with_name(f"{inner.name}.json")
 
 
-def _is_final(name: str, targets: Collection[str], folder: str | Path, root: str | Path) -> bool:
+def _is_final(
+    name: str, targets: Collection[str], folder: str | os.PathLike, root: str | os.PathLike
+) -> bool:
     if Path(name).suffix in FINAL or name in targets:
         return True
     return sidecar(folder, name, root).exists()
@@ -213,7 +216,7 @@ def plain(value: Any) -> Any:
     """Return a value as JSON can hold it: paths as text, sets in order, records as dictionaries."""
     if value is None or isinstance(value, bool | int | float):
         return value
-    if isinstance(value, str | Path):
+    if isinstance(value, str | os.PathLike):
         return str(value)
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         value = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
@@ -254,7 +257,7 @@ def _of_run(run: dict[str, Any], known: checksums.Checksums) -> dict[str, Any]:
     }
 
 
-def _prune(folder: Path, root: str | Path) -> None:
+def _prune(folder: Path, root: str | os.PathLike) -> None:
     """Delete the sidecars of files that are gone."""
     for path in folder.rglob("*.json"):
         inner = path.relative_to(folder)

@@ -2,6 +2,7 @@
 
 import csv
 import fnmatch
+import os
 from pathlib import Path
 
 from courtside.study.errors import InputError
@@ -41,13 +42,13 @@ def stage_of(name: str) -> str:
     return next(stage for stage, pattern in STAGES if fnmatch.fnmatch(name, pattern))
 
 
-def measure(results: str | Path) -> Rows:
+def measure(results: str | os.PathLike) -> Rows:
     """Return size and SHA-256 of every file that `comparison` looks at, by path below results."""
     paths = {name: Path(results) / name for name in comparison.names(results)}
     return {name: (path.stat().st_size, files.sha256(path)) for name, path in paths.items()}
 
 
-def write(path: str | Path, rows: Rows) -> None:
+def write(path: str | os.PathLike, rows: Rows) -> None:
     """Write what `measure` found to a CSV file."""
     order = list(dict(STAGES))
     ranked = sorted(rows, key=lambda name: (order.index(stage_of(name)), name))
@@ -57,7 +58,7 @@ def write(path: str | Path, rows: Rows) -> None:
         writer.writerows([stage_of(name), name, *rows[name]] for name in ranked)
 
 
-def read(path: str | Path) -> Rows:
+def read(path: str | os.PathLike) -> Rows:
     """Read what `write` wrote; an `InputError` says what is wrong with another file."""
     with Path(path).open(encoding="utf-8", newline="") as stream:
         rows = list(csv.reader(stream))
