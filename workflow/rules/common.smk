@@ -10,11 +10,8 @@ import sys
 from pathlib import Path
 
 REPOSITORY = Path(str(workflow.current_basedir)).parents[1]
-CONFIG = Path(os.path.relpath(REPOSITORY / "config"))  # relative: a study may move with its results
-CAPTIONS = os.path.relpath(REPOSITORY / "workflow" / "report")
 SCRIPTS = REPOSITORY / "workflow" / "scripts"
 LIBRARY = REPOSITORY / "workflow" / "lib"
-ASSETS = Path(os.path.relpath(LIBRARY / "courtside" / "pages" / "assets"))
 LOCK = REPOSITORY / "environment.lock"
 PINS = LOCK.read_text(encoding="utf-8") if LOCK.is_file() else ""
 sys.path.insert(0, str(LIBRARY))
@@ -35,6 +32,11 @@ from courtside.study.jobs import (
     takes,
 )
 from courtside.study.jobs.job import Job
+
+# Relative: a study may move with its results.
+CONFIG = Path(files.seen_from(REPOSITORY / "config"))
+CAPTIONS = files.seen_from(REPOSITORY / "workflow" / "report")
+ASSETS = Path(files.seen_from(LIBRARY / "courtside" / "pages" / "assets"))
 
 try:
     for folder in filter(Path.exists, [Path.cwd(), Path(paths.RESULTS)]):

@@ -18,7 +18,7 @@ from courtside.study.execution.script import run
 
 def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options):
     network, images, sizes = model.read(Path(summary_json).parent)
-    summary = json.loads(Path(summary_json).read_text())
+    summary = json.loads(Path(summary_json).read_text(encoding="utf-8"))
     fixed = {camera: image_names.static(camera) for camera in cameras}
     outcome = registration.outcome(
         network, images, fixed, min_points=min_points, n_models=summary["n_models"]

@@ -1,17 +1,16 @@
 """Check that a fixed camera did not move or zoom before a take: static picture, video -> what it moved."""
 
-import cv2
 import pandas as pd
 
 from courtside.records import tables
 from courtside.study.execution import log
 from courtside.study.execution.script import run
-from courtside.video import static_picture, walk_frames
+from courtside.video import images, static_picture, walk_frames
 
 
 def main(static_png, video_path, movement_csv, *, camera, frames, **limits):
     now = static_picture.temporal_median(walk_frames.spread(video_path, frames))
-    found = static_picture.check_still(camera, cv2.imread(str(static_png)), now, **limits)
+    found = static_picture.check_still(camera, images.read(static_png), now, **limits)
     row = {"camera": camera, **found.row()}
     log.logger.info("%s", row)
     tables.write(movement_csv, pd.DataFrame([row]))

@@ -7,7 +7,7 @@ from courtside.pose import decoders, foreground, tracklets
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
-from courtside.video import reader
+from courtside.video import images, reader
 
 
 def main(
@@ -20,7 +20,7 @@ def main(
     frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)
     changed = foreground.Whole()
     if paths.background:
-        changed = foreground.Foreground(cv2.imread(paths.background), min_difference)
+        changed = foreground.Foreground(images.read(paths.background), min_difference)
     track = tracklets.track_people(
         log.progress(frames, info.n_frames if not trim_s else None, f"{camera}: frames"),
         decoders.person_detector(paths.detector),

@@ -15,7 +15,7 @@ def main(ties_npz, summary_json, court_yaml, pdf, png, csv, *, n_images):
         {count: tie_points.read(path) for count, path in zip(n_images, ties_npz, strict=True)}
     )
     registered = {
-        count: json.loads(Path(path).read_text())["n_images"]
+        count: json.loads(Path(path).read_text(encoding="utf-8"))["n_images"]
         for count, path in zip(n_images, summary_json, strict=True)
     }
     drawing = fig06.draw(rows, court.read(court_yaml), registered)

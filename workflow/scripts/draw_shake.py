@@ -27,7 +27,7 @@ def main(paths, pdf, png, csv, text_path):
     rows = camera_shake.table(calibrated, tables, player)
     style.save(camera_shake.draw(rows), rows, pdf, png, csv)
     with atomic(text_path) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

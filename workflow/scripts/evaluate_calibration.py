@@ -27,7 +27,7 @@ def main(
         session_truth.read(truth_npz),
         tie_points.read(ties_npz),
     )
-    summary = json.loads(Path(summary_json).read_text())
+    summary = json.loads(Path(summary_json).read_text(encoding="utf-8"))
     rows = []
     for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
         if record.outcome:

@@ -14,7 +14,7 @@ def main(static_png, frames_csv, features_db, table_csv, *, cameras, walks, thre
     root = Path(features_db).parents[1]
     frames = grid.read(dict(zip(walks, frames_csv, strict=True)))
     groups = [
-        features.Group(camera, (str(Path(path).relative_to(root)),))
+        features.Group(camera, (Path(path).relative_to(root).as_posix(),))
         for camera, path in zip(cameras, static_png, strict=True)
     ]
     groups += [features.Group(walk, frames.of_walk(walk)) for walk in walks]

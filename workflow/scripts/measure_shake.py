@@ -6,7 +6,7 @@ import numpy as np
 from courtside.records.cameras import shake_table
 from courtside.study.execution import log
 from courtside.study.execution.script import run
-from courtside.video import reader, shake_tracking
+from courtside.video import images, reader, shake_tracking
 
 
 def main(static_png, video_path, shake_csv, *, camera, trim_s):
@@ -16,7 +16,7 @@ def main(static_png, video_path, shake_csv, *, camera, trim_s):
     first = 0 if start_s is None else int(np.count_nonzero(times_s < start_s))
     frames = reader.frames(video_path, start_s=start_s, stop_s=stop_s)
     frames = log.progress(frames, len(times_s) - first, f"{camera}: frames")
-    table = shake_tracking.measure_take(cv2.imread(str(static_png)), frames, first)
+    table = shake_tracking.measure_take(images.read(static_png), frames, first)
     shake_table.write(shake_csv, table)
 
 

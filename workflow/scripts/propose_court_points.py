@@ -1,7 +1,5 @@
 """Propose court points: cameras, static pictures, court -> where the points are seen, to be confirmed."""
 
-import cv2
-
 from courtside.calibration.click_proposals import proposals as court_proposals
 from courtside.calibration.court import court as courts
 from courtside.geometry import camera as cameras
@@ -9,6 +7,7 @@ from courtside.records.cameras import click_proposals
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.script import run
+from courtside.video import images
 
 
 def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_share, **options):
@@ -20,7 +19,7 @@ def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_sha
             raise InputError(
                 f"{cameras_toml}: expected camera {name}, found {', '.join(known)}; calibrate it first"
             )
-        image = cv2.imread(str(path))
+        image = images.read(path)
         cameras.check_size(known[name], image.shape[1::-1], path)
         reach = {"search_px": search_share * image.shape[1]}
         found[name] = court_proposals.propose(known[name], image, court, **reach, **options)

@@ -1,7 +1,5 @@
 """Calibrate each fixed camera from known court points alone: clicked points, lenses -> cameras, quality."""
 
-import cv2
-
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, known_points, quality
 from courtside.geometry import camera as camera_models
@@ -9,6 +7,7 @@ from courtside.records.cameras import clicks
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
+from courtside.video import images
 
 
 def main(
@@ -27,7 +26,7 @@ def main(
     click_sigma_px = step["click_sigma_px"]
     marked = clicks.read(clicks_csv, cameras, list(court.points))
     pictures = dict(zip(cameras, static_png, strict=True))
-    sizes = {camera: cv2.imread(str(path)).shape[1::-1] for camera, path in pictures.items()}
+    sizes = {camera: images.read(path).shape[1::-1] for camera, path in pictures.items()}
     lens_of = dict(zip(cameras, lens_toml, strict=False))
     lenses = {camera: camera_models.read_toml(path)[0] for camera, path in lens_of.items()}
     way = known_points.method(calibration, court)

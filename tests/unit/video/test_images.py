@@ -20,6 +20,13 @@ def test_a_picture_comes_back(tmp_path):
     assert grey.shape == (6, 8)
 
 
+def test_a_path_may_have_any_letters(tmp_path):
+    (tmp_path / "Aufschläge 試合").mkdir()
+    path = tmp_path / "Aufschläge 試合" / "a.png"
+    path.write_bytes(cv2.imencode(".png", PICTURE)[1])
+    np.testing.assert_array_equal(images.read(path), PICTURE)
+
+
 def huge(width):
     """Return a PNG of a width that no memory holds."""
     head = struct.pack(">IIBBBBB", width, width, 8, 2, 0, 0, 0)

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 
 import numpy as np
 import pytest
@@ -129,3 +130,63 @@ def test_what_killed_jobs_left_is_deleted_and_nothing_else(tmp_path):
     assert len(list((tmp_path / "deep").iterdir())) == 6
     files.delete_unfinished(tmp_path)
     assert sorted((tmp_path / "deep").iterdir()) == sorted(kept)
+
+
+def refusing(monkeypatch, times):
+    """Let a rename be refused so many times, as Windows does for an open file."""
+    monkeypatch.setattr(files, "WINDOWS", True)
+    monkeypatch.setattr(files, "WAITS_S", (0.0, 0.0))
+    tries, really = [], os.replace
+
+    def replace(old, new):
+        tries.append(new)
+        if len(tries) <= times:
+            raise PermissionError(13, "The process cannot access the file")
+        really(old, new)
+
+    monkeypatch.setattr(files.os, "replace", replace)
+    return tries
+
+
+@pytest.mark.parametrize("times", [0, 2])
+def test_a_file_that_is_open_only_shortly_is_replaced_on_windows(tmp_path, monkeypatch, times):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    tries = refusing(monkeypatch, times)
+    files.write_json(path, "new")
+    assert files.read_json(path) == "new" and len(tries) == times + 1
+
+
+def test_a_file_that_stays_open_is_told_in_one_line_on_windows(tmp_path, monkeypatch):
+    path = tmp_path / "table.csv"
+    path.write_text("old")
+    tries = refusing(monkeypatch, 3)
+    with pytest.raises(
+        InputError, match=r"table\.csv: .*close the programs that have it open"
+    ) as e:
+        files.write_json(path, "new")
+    assert len(tries) == 3 and "\n" not in str(e.value)
+    assert path.read_text() == "old" and list(tmp_path.iterdir()) == [path]
+
+
+def test_elsewhere_a_refusal_stays_what_it_is(tmp_path, monkeypatch):
+    tries = refusing(monkeypatch, 3)
+    monkeypatch.setattr(files, "WINDOWS", False)
+    with pytest.raises(PermissionError):
+        files.write_json(tmp_path / "a.json", 1)
+    assert len(tries) == 1
+
+
+def test_a_path_is_seen_from_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert files.seen_from(tmp_path / "a" / "b") == "a/b"
+    assert files.seen_from(tmp_path / "a", tmp_path / "c" / "d") == "../../a"
+    assert files.seen_from(tmp_path, tmp_path) == "."
+
+
+def test_a_path_on_another_drive_stays_absolute(tmp_path, monkeypatch):
+    def between_drives(path, folder):
+        raise ValueError("path is on mount 'D:', start on mount 'C:'")
+
+    monkeypatch.setattr(files.os.path, "relpath", between_drives)
+    assert files.seen_from(tmp_path / "a") == (tmp_path / "a").resolve().as_posix()

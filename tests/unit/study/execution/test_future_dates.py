@@ -33,10 +33,20 @@ def test_the_file_furthest_ahead_is_named_and_the_advice_mends_it(tmp_path):
     ) as e:
         future_dates.check([tmp_path / "data"])
     assert "\n" not in str(e.value)
+    if os.name == "nt":
+        pytest.skip("the advice is for PowerShell, which is not the shell here")
     subprocess.run(str(e.value).rpartition(": ")[2], shell=True, check=True)
     assert future_dates.check([tmp_path / "data"]) is None
 
 
+def test_the_advice_on_windows_is_for_powershell(tmp_path, monkeypatch):
+    monkeypatch.setattr(future_dates.files, "WINDOWS", True)
+    dated(tmp_path / "data" / "far.mp4", time.time() + DAY_S)
+    with pytest.raises(InputError, match=r"today's date: Get-ChildItem -LiteralPath '.*data' -Rec"):
+        future_dates.check([tmp_path / "data"])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need a right of their own")
 def test_a_link_that_leads_nowhere_is_no_concern_of_dates(tmp_path):
     (tmp_path / "lost").symlink_to(tmp_path / "nothing")
     assert future_dates.check([tmp_path]) is None

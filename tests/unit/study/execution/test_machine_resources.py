@@ -12,6 +12,8 @@ import pytest
 from courtside.study.errors import InputError
 from courtside.study.execution import machine_resources
 
+ROOT_OR_WINDOWS = os.name == "nt" or os.geteuid() == 0
+
 
 def test_a_folder_with_room_passes(tmp_path):
     assert machine_resources.check(tmp_path) is None
@@ -23,7 +25,7 @@ def test_too_little_room_is_told(tmp_path, monkeypatch):
         machine_resources.check(tmp_path)
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write to every folder")
+@pytest.mark.skipif(ROOT_OR_WINDOWS, reason="root may write to every folder; Windows has no mode")
 def test_a_closed_folder_is_told(tmp_path):
     tmp_path.chmod(0o500)
     with pytest.raises(InputError, match="found it read-only"):
@@ -36,12 +38,26 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path, monkeypatch):
         machine_resources.check(tmp_path)
 
 
+def test_a_folder_of_windows_is_tried(tmp_path, monkeypatch):
+    monkeypatch.setattr(machine_resources.files, "WINDOWS", True)
+    assert machine_resources.check(tmp_path) is None
+    assert list(tmp_path.iterdir()) == []
+
+    def refuse(path, exist_ok):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+
+    monkeypatch.setattr(machine_resources.Path, "touch", refuse)
+    with pytest.raises(InputError, match="found it read-only"):
+        machine_resources.check(tmp_path)
+
+
 def raised(action):
     with pytest.raises((OSError, MemoryError)) as caught:
         action()
     return caught.value
 
 
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such device")
 def test_a_real_full_disk_is_one_line():
     with open("/dev/full", "w") as stream:  # noqa: PTH123 -- the device of this name is full
         stream.write("x")

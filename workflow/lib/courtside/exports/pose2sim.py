@@ -90,7 +90,7 @@ def _write_2d(folder: Path, name: str, xy: NDArray, score: NDArray) -> None:
             for person in range(len(xy))
         ]
         text = json.dumps({"version": 1.3, "people": people})
-        (folder / f"{name}_{frame:06d}.json").write_text(text, encoding="utf-8")
+        (folder / f"{name}_{frame:06d}.json").write_text(text, encoding="utf-8", newline="\n")
 
 
 def _settings(points: Keypoints3D, skeleton: str) -> dict[str, Any]:

@@ -47,7 +47,7 @@ def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
         cells = ["" if np.isnan(value) else f"{value:.6f}" for value in row]
         lines.append(f"{at + 1}\t{time_s:.6f}\t" + "\t".join(cells))
     with atomic(path) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
 def read(path: str | PathLike) -> tuple[list[str], float, NDArray, NDArray]:

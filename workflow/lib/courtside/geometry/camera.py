@@ -234,7 +234,7 @@ def write_toml(
     }
     content["metadata"] = {"adjusted": False, "error": 0.0, "unit": unit, "source": source}
     with atomic(path) as temporary:
-        temporary.write_text(tomli_w.dumps(content), encoding="utf-8")
+        temporary.write_text(tomli_w.dumps(content), encoding="utf-8", newline="\n")
 
 
 MAX_ITERATIONS = 50  # ASSUME: enough for Newton's method; pixels not solved by then become NaN

@@ -34,7 +34,10 @@ def write(
     labels = labels or {}
     rows = rows.assign(**labels)
     columns = [*labels, *(name for name in rows.columns if name not in labels)]
-    with atomic(path) as temporary, Path(temporary).open("w", encoding="utf-8") as file:
+    with (
+        atomic(path) as temporary,
+        Path(temporary).open("w", encoding="utf-8", newline="\n") as file,
+    ):
         if about:
             file.write(f"# {about}\n")
         rows[columns].to_csv(file, index=False, float_format=float_format, lineterminator="\n")

@@ -31,7 +31,8 @@ def new(path: str | os.PathLike, source: str | os.PathLike | None = None) -> Ite
 @contextlib.contextmanager
 def working_copy(source: str | os.PathLike | None = None) -> Iterator[Path]:
     """Yield a copy of a finished database that pycolmap may write to; it is deleted in the end."""
-    with tempfile.TemporaryDirectory(prefix="courtside-") as folder:
+    # Windows does not delete what pycolmap may still hold open.
+    with tempfile.TemporaryDirectory(prefix="courtside-", ignore_cleanup_errors=True) as folder:
         database = Path(folder) / "database.db"
         if source is None:
             pycolmap.Database.open(database).close()

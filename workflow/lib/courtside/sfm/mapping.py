@@ -128,7 +128,11 @@ class _Attempt(NamedTuple):
 
 
 def _map(matches_db, images, mapper, seed, options) -> _Attempt:
-    with database.working_copy(matches_db) as copy, tempfile.TemporaryDirectory() as temporary:
+    with (
+        database.working_copy(matches_db) as copy,
+        # Windows does not delete what pycolmap may still hold open.
+        tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary,
+    ):
         arguments = (copy, temporary, temporary, _options(mapper, images, seed, options))
         is_global = mapper == "global"
         run = pycolmap.global_mapping if is_global else pycolmap.incremental_mapping

@@ -41,7 +41,8 @@ def match(
     verification.ransac.random_seed = seed
     with database.new(matches_db, features_db) as temporary:
         listed = temporary.with_name("pairs.txt")
-        listed.write_text("".join(f"{a} {b}\n" for a, b in pairs))
+        lines = "".join(f"{a} {b}\n" for a, b in pairs)
+        listed.write_text(lines, encoding="utf-8", newline="\n")
         pycolmap.match_image_pairs(
             temporary,
             matching_options=matching,

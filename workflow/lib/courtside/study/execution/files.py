@@ -7,15 +7,18 @@ import os
 import re
 import secrets
 import shutil
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from courtside.study.errors import reading
+from courtside.study.errors import InputError, reading
 
 CHUNK_BYTES = 1 << 20
 # Names that `atomic` and `atomic_folder` give.
 UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}(\.\w+)?")
+WINDOWS = os.name == "nt"
+WAITS_S = (0.1, 0.2, 0.3, 0.4)  # for a program that has a file open only shortly, as scanners do
 
 
 @contextlib.contextmanager
@@ -30,7 +33,7 @@ def atomic(path: str | os.PathLike) -> Iterator[Path]:
     temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
     try:
         yield temporary
-        temporary.replace(path)
+        _rename(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -49,11 +52,41 @@ def atomic_folder(path: str | os.PathLike) -> Iterator[Path]:
     try:
         yield temporary
         if path.exists():  # a folder that is not empty cannot be renamed over
-            path.rename(old)
-        temporary.rename(path)
+            _rename(path, old)
+        _rename(temporary, path)
     finally:
         for rest in (temporary, old):
             shutil.rmtree(rest, ignore_errors=True)
+
+
+def _rename(path: Path, new: Path) -> None:
+    """Rename a file, over an older one too, or a folder.
+
+    Windows refuses it while a program has the file open, so there it is tried again for a second.
+    """
+    for wait_s in WAITS_S if WINDOWS else ():
+        try:
+            path.replace(new)
+            return
+        except PermissionError:
+            time.sleep(wait_s)
+    try:
+        path.replace(new)
+    except PermissionError as error:
+        if not WINDOWS:
+            raise
+        raise InputError(
+            f"{new}: expected the right to write it, found: {error.strerror}; close the programs "
+            "that have it open, then give the same command again"
+        ) from error
+
+
+def seen_from(path: str | os.PathLike, folder: str | os.PathLike = ".") -> str:
+    """Return a path relative to a folder, with `/`; absolute between drives of Windows."""
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:
+        return Path(path).resolve().as_posix()
 
 
 def delete_unfinished(folder: str | os.PathLike) -> None:
@@ -69,7 +102,7 @@ def delete_unfinished(folder: str | os.PathLike) -> None:
 def write_json(path: str | os.PathLike, content: Any) -> None:
     """Write a JSON file that people can read, whole or not at all."""
     with atomic(path) as temporary:
-        temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+        temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8", newline="\n")
 
 
 def read_json(path: str | os.PathLike, advice: str = "make it again") -> Any:

@@ -7,6 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from courtside.study.errors import InputError
+from courtside.study.execution import files
 
 SLACK_S = 60.0  # by which the clocks of a computer and of a disk in its network may differ
 
@@ -27,14 +28,24 @@ def check(folders: Iterable[str | os.PathLike]) -> None:
     if not late:
         return
     when_s, path = max(late)
-    where = " ".join(f"'{folder}'" for folder in there)
     raise InputError(
         f"{path}: expected a date in the past, found {_in_words(when_s)} (now: "
         f"{_in_words(time.time())}), "
         f"as in {len(late) - 1} more files; set this computer's clock if it is wrong, otherwise "
         "give them "
-        f"today's date: find {where} -newermt now -exec touch {{}} +"
+        f"today's date: {_advice(there)}"
     )
+
+
+def _advice(folders: list[Path]) -> str:
+    """Return the command that dates the files today: for PowerShell on Windows, else for a shell."""
+    named = [f"'{folder}'" for folder in folders]
+    if files.WINDOWS:
+        return (
+            f"Get-ChildItem -LiteralPath {', '.join(named)} -Recurse -File -Force | Where-Object "
+            "LastWriteTime -gt (Get-Date) | ForEach-Object { $_.LastWriteTime = Get-Date }"
+        )
+    return f"find {' '.join(named)} -newermt now -exec touch {{}} +"
 
 
 def _dated(folder: Path) -> Iterator[tuple[float, Path]]:

@@ -2,10 +2,12 @@
 
 import errno
 import os
+import secrets
 import shutil
 from pathlib import Path
 
 from courtside.study.errors import SPARE_MEMORY, InputError
+from courtside.study.execution import files
 
 LEAST_FREE_MB = 20  # below, Snakemake's own metadata and logs may not fit
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -18,7 +20,7 @@ AGAIN = "then give the same command again"
 def check(folder: str | os.PathLike) -> None:
     """Check, before any work, that a study can write to a folder: an `InputError` if it cannot."""
     folder = Path(folder)
-    if not os.access(folder, os.W_OK | os.X_OK):
+    if not _is_writable(folder):
         raise InputError(
             f"{folder}: expected a folder that can be written to, found it read-only; "
             f"allow it, or choose another with --directory, {AGAIN}"
@@ -30,6 +32,20 @@ def check(folder: str | os.PathLike) -> None:
             f"{free_mb:.1f} MB; "
             f"free some room, {AGAIN}"
         )
+
+
+def _is_writable(folder: Path) -> bool:
+    if not os.access(folder, os.W_OK | os.X_OK):
+        return False
+    if not files.WINDOWS:
+        return True
+    tried = folder / f".tried.{secrets.token_hex(4)}"  # `os.access` says yes to every folder there
+    try:
+        tried.touch(exist_ok=False)
+        tried.unlink()
+    except PermissionError:
+        return False
+    return True
 
 
 def in_words(error: BaseException | None) -> str | None:

@@ -12,7 +12,7 @@ def inside(path: str) -> list[str]:
     if not Path(path).is_dir():
         return []
     found = (file for file in Path(path).rglob("*") if file.is_file())
-    return sorted(str(file) for file in found if not file.name.startswith("."))
+    return sorted(file.as_posix() for file in found if not file.name.startswith("."))
 
 
 def video(job: Job) -> str:

@@ -99,7 +99,7 @@ def pictures(study: Study) -> list[str]:
 
 def _link(path: str) -> str:
     """Return a path as seen from the folder of the report."""
-    return str(Path(path).relative_to(Path(paths.REPORT).parent))
+    return Path(path).relative_to(Path(paths.REPORT).parent).as_posix()
 
 
 def _figure(path: str, rules: Iterable[Any], captions: str) -> dict[str, Any]:

@@ -124,7 +124,7 @@ def _of_drawing(name: str, here: Path, there: Path) -> Verdict:
     tables = [path.with_suffix(".csv") for path in (here, there)]
     if not all(path.is_file() for path in tables):
         return Verdict(name, DIFFERENT)
-    of_table = verdict(str(Path(name).with_suffix(".csv")), *tables)
+    of_table = verdict(Path(name).with_suffix(".csv").as_posix(), *tables)
     outcome = CLOSE if of_table.outcome == CLOSE else DIFFERENT
     return Verdict(name, outcome, of_table.largest)
 

@@ -1,7 +1,6 @@
 """A run of Snakemake: its jobs as plain values, the command that repeats it, its last words."""
 
 import json
-import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study
 from courtside.study.errors import InputError
-from courtside.study.execution import summary
+from courtside.study.execution import files, summary
 from courtside.study.provenance import environment, provenance
 
 
@@ -35,12 +34,13 @@ def record(
     """
     dag = workflow.dag
     jobs = [plain_job(job, dag, touched=workflow.touch) for job in dag.jobs]
-    targets = {str(name) for name in dag.derived_targetfiles}
+    targets = {Path(name).as_posix() for name in dag.derived_targetfiles}
     run = {
         "command": repeating_command(workflow.config_settings, repository),
         "surroundings": environment.found(repository),
         "config": config,
-        "config_files": [os.path.relpath(path) for path in workflow.configfiles] + list(shared),
+        "config_files": [files.seen_from(path) for path in workflow.configfiles]
+        + [Path(path).as_posix() for path in shared],
     }
     pinned = (paths.EXTERNAL, paths.NETWORKS)
     try:
@@ -62,8 +62,8 @@ def plain_job(job: Any, dag: Any, touched: bool) -> dict[str, Any]:
         "rule": job.rule.name,
         "script": Path(str(job.rule.script)).name if scripted else None,
         "code": params.pop("code", None),
-        "inputs": [str(name) for name in job.input],
-        "outputs": [str(name) for name in job.products()],
+        "inputs": [Path(name).as_posix() for name in job.input],
+        "outputs": [Path(name).as_posix() for name in job.products()],
         "params": params,
         "done": dag.noneedrun_finished(job),
         "made": dag.finished(job) and not touched,
@@ -73,9 +73,9 @@ def plain_job(job: Any, dag: Any, touched: bool) -> dict[str, Any]:
 def repeating_command(settings: Any, repository: Path) -> list[str]:
     """Return the command that makes files of this study, but for their names, as words."""
     words = ["snakemake"]
-    folder = os.path.relpath(Path.cwd(), repository)
+    folder = files.seen_from(Path.cwd(), repository)
     words += [] if folder == "." else ["--directory", folder]
-    given = [os.path.relpath(path, repository) for path in settings.configfiles]
+    given = [files.seen_from(path, repository) for path in settings.configfiles]
     words += ["--configfile", *given] if given else []
     changed = [
         f"{key}={value if isinstance(value, str) else json.dumps(value)}"

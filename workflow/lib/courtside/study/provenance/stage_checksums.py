@@ -52,7 +52,10 @@ def write(path: str | os.PathLike, rows: Rows) -> None:
     """Write what `measure` found to a CSV file."""
     order = list(dict(STAGES))
     ranked = sorted(rows, key=lambda name: (order.index(stage_of(name)), name))
-    with files.atomic(path) as temporary, temporary.open("w", newline="") as stream:
+    with (
+        files.atomic(path) as temporary,
+        temporary.open("w", encoding="utf-8", newline="") as stream,
+    ):
         writer = csv.writer(stream)
         writer.writerow(COLUMNS)
         writer.writerows([stage_of(name), name, *rows[name]] for name in ranked)

@@ -113,7 +113,7 @@ def unrecorded(root: str | os.PathLike, sidecars: Iterable[dict[str, Any]]) -> l
     """Return the files in folders named figures below `root` that have no sidecar."""
     known = {Path(sidecar["file"]).resolve() for sidecar in sidecars}
     drawn = (p for p in Path(root).glob("**/figures/*") if p.suffix in DRAWN)
-    return sorted(str(path) for path in drawn if path.resolve() not in known)
+    return sorted(path.as_posix() for path in drawn if path.resolve() not in known)
 
 
 def changed_configuration(run: dict[str, Any], now: dict[str, Any]) -> list[str]:
@@ -135,7 +135,7 @@ def planned(run: dict[str, Any], repository: str | os.PathLike) -> set[str]:
             f"{run['command']}: {said[0] if said else 'Snakemake failed'}; correct this"
         )
     rows = [line.split("\t") for line in done.stdout.splitlines() if line.count("\t") == 5]
-    return {row[0] for row in rows if row[5] == "update pending"}
+    return {Path(row[0]).as_posix() for row in rows if row[5] == "update pending"}
 
 
 def _words(run: dict[str, Any]) -> list[str]:
