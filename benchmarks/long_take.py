@@ -10,7 +10,6 @@ import argparse
 import importlib
 import json
 import multiprocessing
-import resource
 import sys
 import tempfile
 import time
@@ -20,6 +19,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import yaml
+
+try:
+    import resource
+except ImportError:  # Windows does not tell the memory
+    resource = None
 
 ROOT = Path(__file__).parents[1]
 sys.path += [str(ROOT / "workflow" / "lib"), str(ROOT / "workflow" / "scripts")]
@@ -56,6 +60,8 @@ def work(script, arguments, options):
     started = time.process_time()
     module.main(*arguments, **options)
     seconds = time.process_time() - started
+    if resource is None:
+        return seconds, float("nan")
     return seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * MIB_PER_KIB
 
 

@@ -63,7 +63,7 @@ NEWEST_PYTHON = {"mediapipe": (3, 12)}  # its wheels end there
 def interpreter(peer, folder=FOLDER):
     """Return the interpreter of a peer's environment, made if it is missing or its pins changed."""
     home = Path(folder).resolve() / peer
-    python = home / "bin" / "python"
+    python = home / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     pins = PINS[peer].split()
     digest = hashlib.sha256("\n".join(pins).encode()).hexdigest()
     mark = home / MARK
@@ -105,7 +105,7 @@ def run_method(python, script, *arguments):
     done = subprocess.run(
         [str(part) for part in command],
         env=environment,
-        preexec_fn=_one_core,
+        preexec_fn=_one_core if os.name == "posix" else None,
         capture_output=True,
         text=True,
     )

@@ -1,13 +1,17 @@
 """Snakemake against the sum of its parts: jobs that do next to nothing, by Snakemake and in a loop."""
 
 import os
-import resource
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import rows
+
+try:
+    import resource
+except ImportError:  # Windows does not tell the time of ended processes
+    resource = None
 
 NAME = "study"
 LIMIT = "the same scripts, one after the other, without Snakemake"
@@ -37,6 +41,10 @@ SNAKEMAKE = [sys.executable, "-m", "snakemake", "--cores", "1", "--quiet", "all"
 
 def compare(given):
     """Return the rows of Snakemake, the loop, and a second call that has nothing to do."""
+    if resource is None:
+        raise SystemExit(
+            f"{NAME}: Windows does not tell what ended processes took; run it elsewhere"
+        )
     found = []
     for times in rows.TIMES[: 2 if given.quick else None]:
         count = times * JOBS

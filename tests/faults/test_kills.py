@@ -1,5 +1,6 @@
 """kill -9 of every rule's job and of Snakemake, at seeded random moments of one run of the tiny study."""
 
+import os
 import random
 import time
 from contextlib import ExitStack
@@ -12,7 +13,10 @@ from faults.tally import tries
 from smoke.conftest import ASKED_FOR
 from smoke.snakemake_runs import FOLDER, planned, run
 
-pytestmark = pytest.mark.fault
+pytestmark = [
+    pytest.mark.fault,
+    pytest.mark.skipif(os.name == "nt", reason="Windows ends processes in another way"),
+]
 ALL = ("--", "all", *ASKED_FOR)
 SEED = 20250711
 N_OF_SNAKEMAKE = 24

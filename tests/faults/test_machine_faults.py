@@ -4,7 +4,6 @@ import contextlib
 import os
 import random
 import re
-import resource
 import subprocess
 import time
 
@@ -17,6 +16,7 @@ from faults.tally import tries
 from smoke.conftest import ASKED_FOR
 from smoke.snakemake_runs import FOLDER, planned, run
 
+resource = pytest.importorskip("resource", reason="needs mounts and limits of POSIX")
 pytestmark = pytest.mark.fault
 ALL = ("--", "all", *ASKED_FOR)
 YEAR_S = 365 * 86400

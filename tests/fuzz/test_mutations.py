@@ -1,10 +1,15 @@
 """All formats: each changed file gives a value or one clear line, within seconds, memory and its folder."""
 
+import os
+
 import pytest
 
 from fuzz import formats
 
-pytestmark = pytest.mark.fuzz
+pytestmark = [
+    pytest.mark.fuzz,
+    pytest.mark.skipif(os.name == "nt", reason="the memory of the reader is limited by POSIX"),
+]
 
 SEED = 1
 

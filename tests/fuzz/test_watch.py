@@ -1,12 +1,16 @@
 """The watch itself: it tells every kind of fault, and goes on after it."""
 
+import os
 import random
 
 import pytest
 
 from fuzz import binaries, containers, formats, mutations, planted, texts, trees, watch
 
-pytestmark = pytest.mark.fuzz
+pytestmark = [
+    pytest.mark.fuzz,
+    pytest.mark.skipif(os.name == "nt", reason="the memory of the reader is limited by POSIX"),
+]
 
 TOLD = {
     "unnamed": "does not name whole.bin",
