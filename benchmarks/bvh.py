@@ -1,11 +1,12 @@
-"""Read and solve a mocopi-like BVH file with this project and with bvhio: time, growth and agreement.
+"""Read and solve a mocopi-like BVH file with this project and with bvhio: time, growth, agreement.
 
     python benchmarks/bvh.py [--file FILE.bvh] [--frames 3000] [--repeats 3] [--json OUT]
 
-Both read the same file, with 27 joints of six channels each, and give the world place of every joint in every
-frame: this project by `devices.bvh.read` and `records.hierarchy.forward`, bvhio by `readAsHierarchy` and, for
-each frame, `loadPose` and `PositionWorld`. Then the same with twice and four times the frames. Without --file
-a motion is made up. This project runs before and after its peer, so that a busy moment of the machine shows.
+Both read the same file, with 27 joints of six channels each, and give the world place of every
+joint in every frame: this project by `devices.bvh.read` and `records.hierarchy.forward`, bvhio by
+`readAsHierarchy` and, for each frame, `loadPose` and `PositionWorld`. Then the same with twice and
+four times the frames. Without --file a motion is made up. This project runs before and after its
+peer, so that a busy moment of the machine shows.
 """
 
 import argparse

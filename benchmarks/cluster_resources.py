@@ -1,12 +1,13 @@
 """What each rule asks of a cluster, from the benchmark files of finished runs.
 
-    python benchmarks/cluster_resources.py results [more results] [--check profiles/slurm/config.yaml]
+    python benchmarks/cluster_resources.py results [more results]
+        [--check profiles/slurm/config.yaml]
 
-Prints, per rule, the largest memory, the longest time and the highest mean load measured, then the lines for
-`set-resources` of the profile. Memory: 1.5 times the measured, and 500 MB for the Snakemakes around the job,
-up to the next 500 MB. Time: ten times the measured, for longer takes and slower nodes, and 2 minutes to
-start, up to the next 5 minutes. `--check` ends with 1 where the profile asks for less than that, or does not
-name the rule.
+Prints, per rule, the largest memory, the longest time and the highest mean load measured, then the
+lines for `set-resources` of the profile. Memory: 1.5 times the measured, and 500 MB for the
+Snakemakes around the job, up to the next 500 MB. Time: ten times the measured, for longer takes and
+slower nodes, and 2 minutes to start, up to the next 5 minutes. `--check` ends with 1 where the
+profile asks for less than that, or does not name the rule.
 """
 
 import argparse
@@ -19,7 +20,8 @@ import yaml
 
 MEMORY_FACTOR, SNAKEMAKE_MB, MEMORY_STEP_MB = 1.5, 500, 500
 TIME_FACTOR, START_MIN, TIME_STEP_MIN = 10, 2, 5
-# Their rules bear the names of sessions and takes, which no profile can know: simulation.smk has their needs.
+# Their rules bear the names of sessions and takes, which no profile can know: simulation.smk has
+# their needs.
 NAMED_BY_SESSION = ("simulate_session", "simulate_take")
 LINE = "{:<22}{:>6}{:>10}{:>10}{:>8}{:>10}{:>10}"
 
@@ -74,7 +76,7 @@ def lines(jobs_of):
 
 
 def shortages(jobs_of, profile):
-    """Return a line for each rule that a profile gives less than what was measured, with the margins."""
+    """Return a line for each rule that a profile gives less than was measured, with the margins."""
     given = yaml.safe_load(Path(profile).read_text(encoding="utf-8")).get("set-resources", {})
     found = []
     for rule, jobs in jobs_of.items():

@@ -1,4 +1,4 @@
-"""Decode videos with OpenCV, with PyAV, and with the study's reader: frames per second, and what differs.
+"""Decode videos with OpenCV, PyAV and the study's reader: frames per second, and what differs.
 
     python benchmarks/decode_video.py VIDEO... [--repeats 5]
 
@@ -82,7 +82,8 @@ def main(paths, repeats):
         ratio = best["cv2, 1 thread"] / best["courtside"]
         print(f"{path.name:24s}{row}{ratio:8.2f}{largest_difference(path):11d}", flush=True)
     print(
-        "ratio: courtside's speed over OpenCV's on one thread; max diff: of pixel values between the two"
+        "ratio: courtside's speed over OpenCV's on one thread; "
+        "max diff: of pixel values between the two"
     )
 
 

@@ -1,11 +1,11 @@
-"""Detect the pose in the same whole frames with this project and with MediaPipe: time and agreement.
+"""Detect the pose in the same whole frames with this project and MediaPipe: time and agreement.
 
     python benchmarks/detect_pose.py VIDEO [--environments DIR] [--frames 40] [--json OUT]
 
-One core and one thread each, on the same decoded frames, with the same networks (taken from MediaPipe's
-package). Static: the person is searched in every frame. Tracking: each frame starts from the one
-before. This project runs before and after its peer so that a busier machine shows; ratios
-are to the faster of the two.
+One core and one thread each, on the same decoded frames, with the same networks (taken from
+MediaPipe's package). Static: the person is searched in every frame. Tracking: each frame starts
+from the one before. This project runs before and after its peer so that a busier machine shows;
+ratios are to the faster of the two.
 """
 
 import argparse

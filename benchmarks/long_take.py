@@ -1,9 +1,11 @@
-"""What fusing, synchronising, filtering and measuring a long take costs: ms per frame, memory by its length.
+"""Cost of fusing, synchronising, filtering and measuring a long take: ms per frame, and memory.
+
+Memory is given by the take's length.
 
     python benchmarks/long_take.py results players-b footwork [--minutes 0.5 2 10] [--json OUT]
 
-A take of a finished study is repeated until it is long; then the study's own scripts run on it, each in a
-process of its own, on one core. Reading and writing their files counts, imports do not.
+A take of a finished study is repeated until it is long; then the study's own scripts run on it,
+each in a process of its own, on one core. Reading and writing their files counts, imports do not.
 """
 
 import argparse
@@ -81,8 +83,8 @@ def steps(folder, given):
     made = {key: folder / "made" / f"{key}.npz" for key in ("people", "raw", "filtered", "last")}
     sync = folder / "made" / "sync.json"
     paths = Paths(
-        cameras=given.cameras, covariance=given.covariance, pose2d=pose2d, sync=sync, skeleton=shape,
-        people=made["people"], shake=[],
+        cameras=given.cameras, covariance=given.covariance, pose2d=pose2d, sync=sync,
+        skeleton=shape, people=made["people"], shake=[],
     )  # fmt: skip
     yield (
         "synchronise_cameras",

@@ -25,7 +25,8 @@ class Machine:
     Attributes
     ----------
     flops_32, flops_64 : float
-        Additions and multiplications per second, of numbers of so many bits, in a product of matrices.
+        Additions and multiplications per second, of numbers of so many bits, in a product of
+        matrices.
     bytes_s : float
         Read and written per second by a copy of what no cache holds.
     """

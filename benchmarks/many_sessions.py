@@ -2,11 +2,11 @@
 
     python benchmarks/many_sessions.py [--sessions 10 100 1000] [--finished DIR] [--json OUT]
 
-In a temporary copy of the repository it writes so many sessions like `walk-4cams` (4 takes by 4 fixed
-cameras, a calibration file; all files a few bytes long) and runs `snakemake -n --quiet rules` over them:
-seconds, seconds of the processor, largest resident memory, jobs. `--finished DIR` is a folder with the
-finished results of the tiny study (tests/smoke after the tests): the time of a `snakemake -n` over it that
-finds nothing to do, the median of three.
+In a temporary copy of the repository it writes so many sessions like `walk-4cams` (4 takes by 4
+fixed cameras, a calibration file; all files a few bytes long) and runs `snakemake -n --quiet rules`
+over them: seconds, seconds of the processor, largest resident memory, jobs. `--finished DIR` is a
+folder with the finished results of the tiny study (tests/smoke after the tests): the time of a
+`snakemake -n` over it that finds nothing to do, the median of three.
 """
 
 import argparse
@@ -44,7 +44,7 @@ def copied(folder):
 
 
 def write_sessions(folder, n_sessions, n_takes, n_cameras):
-    """Write sessions, their recordings and the study of them; return the name of its configuration."""
+    """Write sessions, their recordings and their study; return its configuration's name."""
     cameras = [f"cam{number:02d}" for number in range(1, n_cameras + 1)]
     names = [f"visit-{number:04d}" for number in range(n_sessions)]
     for name in names:
@@ -73,7 +73,7 @@ def write_sessions(folder, n_sessions, n_takes, n_cameras):
 
 
 def timed(folder, *options):
-    """Run a dry run; return its seconds, those of the processor, its memory in MB, and what it printed."""
+    """Run a dry run; return its seconds, processor seconds, memory in MB, and what it printed."""
     command = [sys.executable, "-m", "snakemake", "--dry-run", *options]
     with tempfile.TemporaryFile("w+") as said:
         started = time.monotonic()

@@ -1,12 +1,12 @@
-"""How much of a calibration's error is the mapper's seed: error over the playing volume, seed after seed.
+"""How much of a calibration's error is the mapper's seed: error over the playing volume, by seed.
 
     python benchmarks/mapping_seeds.py results SESSION [--images 40] [--seeds 10] [--draws 10]
 
-SESSION is a virtual session that the study has matched. Rounding in another processor changes a model as
-another seed does, so the spread over seeds is also what to expect between processors. Each seed maps the same
-matches again; each model is calibrated from the same draws of clicks. For each way, the table gives how many
-seeds gave a result, and the lowest, median and highest of their median errors (root mean square over the
-volume, cm).
+SESSION is a virtual session that the study has matched. Rounding in another processor changes a
+model as another seed does, so the spread over seeds is also what to expect between processors. Each
+seed maps the same matches again; each model is calibrated from the same draws of clicks. For each
+way, the table gives how many seeds gave a result, and the lowest, median and highest of their
+median errors (root mean square over the volume, cm).
 """
 
 import argparse

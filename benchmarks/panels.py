@@ -47,7 +47,8 @@ def _panel(panel, found, limit):
     least = found[found["ours"] & np.isfinite(found["limit_s"])]
     if len(least):
         panel.loglog(least["work"], 1e6 * least["limit_s"] / least["work"], ":", color="0.4",
-                     label="machine's least" if "over" in limit else "without Snakemake")  # fmt: skip
+                     label="machine's least" if "over" in limit else "without Snakemake",
+                     )  # fmt: skip
     low, high = panel.get_ylim()
     panel.set_ylim(low / MARGIN, high * MARGIN)
     title = found["comparison"].iloc[0].replace(", ", ",\n")

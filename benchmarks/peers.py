@@ -4,9 +4,9 @@
     python benchmarks/peers.py mediapipe            one; prints its interpreter
     python benchmarks/peers.py --folder DIR ...     elsewhere
 
-Every package is pinned and installed with --no-deps, because Pose2Sim's own list asks for OpenSim, Qt
-and more that triangulation does not touch. An environment is made once and used again until
-its pins change. No peer is ever imported into this project's own process: `run_method` starts its
+Every package is pinned and installed with --no-deps, because Pose2Sim's own list asks for OpenSim,
+Qt and more that triangulation does not touch. An environment is made once and used again until its
+pins change. No peer is ever imported into this project's own process: `run_method` starts its
 interpreter.
 """
 
@@ -72,8 +72,8 @@ def interpreter(peer, folder=FOLDER):
     newest = NEWEST_PYTHON.get(peer, sys.version_info[:2])
     if sys.version_info[:2] > newest:
         raise SystemExit(
-            f"{peer}: expected Python {newest[0]}.{newest[1]} or older, found {sys.version.split()[0]}: "
-            "run the benchmark with an older Python"
+            f"{peer}: expected Python {newest[0]}.{newest[1]} or older, "
+            f"found {sys.version.split()[0]}: run the benchmark with an older Python"
         )
     shutil.rmtree(home, ignore_errors=True)
     print(f"making {home}", file=sys.stderr)
@@ -120,7 +120,8 @@ def measured(runs, arrays, environments):
     Parameters
     ----------
     runs : list of (str or None, str, tuple of str)
-        Peer (None: this project, which runs first and last), script of methods/, its further arguments.
+        Peer (None: this project, which runs first and last), script of methods/, its further
+        arguments.
     arrays : dict of str to array-like
         What each script reads from its first file; its second file takes one result per function.
     environments : path
@@ -149,7 +150,7 @@ def measured(runs, arrays, environments):
 
 
 def on_one_thread():
-    """Start this program anew unless its libraries were told, before they load, to use one thread."""
+    """Start this program anew unless its libraries were told to use one thread before they load."""
     if any(os.environ.get(name) != "1" for name in ONE_THREAD):
         sys.stdout.flush()
         command = [sys.executable, *sys.orig_argv[1:]]

@@ -57,9 +57,10 @@ def table(rows):
     Returns
     -------
     table : pandas.DataFrame
-        The fields of `Row`, and: `us_per_unit`; `over_ours`, the method's time per unit over this project's
-        fastest in the same comparison at the nearest amount of work; `growth`, the time over the same
-        method's at its smallest work; `over_limit`, the time over the machine's least.
+        The fields of `Row`, and: `us_per_unit`; `over_ours`, the method's time per unit over this
+        project's fastest in the same comparison at the nearest amount of work; `growth`, the time
+        over the same method's at its smallest work; `over_limit`, the time over the machine's
+        least.
     """
     found = pd.DataFrame([vars(row) for row in rows])
     found["us_per_unit"] = 1e6 * found["cpu_s"] / found["work"]

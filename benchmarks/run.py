@@ -3,10 +3,11 @@
     python benchmarks/run.py [--only NAME ...] [--quick] [--images 10 20 40 75] [--video FILE]
                              [--results results] [--environments DIR] [--repeats 3]
 
-Writes results/benchmarks/speed.csv, speed.png and speed.svg, and the table as Markdown on the terminal. All
-times are processor time of one run on this machine, the least of the repeats; ratios are between those.
-Other programs are installed into environments of their own the first time. `--only` keeps what the table
-has of the other comparisons. `--images 300` takes hours with COLMAP's defaults: run it in the background.
+Writes results/benchmarks/speed.csv, speed.png and speed.svg, and the table as Markdown on the
+terminal. All times are processor time of one run on this machine, the least of the repeats; ratios
+are between those. Other programs are installed into environments of their own the first time.
+`--only` keeps what the table has of the other comparisons. `--images 300` takes hours with COLMAP's
+defaults: run it in the background.
 """
 
 import argparse
@@ -93,7 +94,7 @@ def of(comparison):
 
 
 def kept(path, names):
-    """Return the rows of the table that there is, but for those of comparisons that were run now."""
+    """Return the table's existing rows, but for those of comparisons that were run now."""
     if not path.is_file():
         return []
     old = pd.read_csv(path, keep_default_na=False, na_values=[""])
@@ -106,7 +107,8 @@ def sentences(table):
     """Return what bounds each comparison, and what its limit counts."""
     core = machine.measured()
     said = [
-        f"\nOne core: {core.flops_32 / 1e9:.0f} GFlop/s of 32 bits, {core.bytes_s / 1e9:.1f} GB/s copied. "
+        f"\nOne core: {core.flops_32 / 1e9:.0f} GFlop/s of 32 bits, "
+        f"{core.bytes_s / 1e9:.1f} GB/s copied. "
         "`over limit`: the time over the least that this core needs for"
     ]
     for each in ALL:
@@ -131,7 +133,8 @@ def report_study(root):
         print(
             f"\nLongest run: {len(jobs)} jobs in {whole_s:.0f} s on {cores} cores, which is "
             f"{cores * whole_s:.0f} s of cores; jobs took {busy_s:.0f} s from start to end.\n"
-            f"{count} jobs state their own time: {by_file_s:.0f} s; Snakemake saw {by_log_s:.0f} s of them."
+            f"{count} jobs state their own time: {by_file_s:.0f} s; "
+            f"Snakemake saw {by_log_s:.0f} s of them."
         )
 
 

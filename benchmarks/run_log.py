@@ -89,7 +89,7 @@ def stages(root):
 
 
 def seconds_in_jobs(root, found):
-    """Return the seconds by the clock that jobs with a benchmark file took: by the log, and by the file.
+    """Return the seconds by the clock of jobs with a benchmark file: by the log, and by the file.
 
     Parameters
     ----------

@@ -1,4 +1,7 @@
-"""The made-up scene of `triangulate_points.py`: cameras around a badminton court and a moving body."""
+"""The made-up scene of `triangulate_points.py`: cameras around a court and a moving body.
+
+The court is one for badminton.
+"""
 
 import numpy as np
 
@@ -24,7 +27,7 @@ def ring(count):
 
 
 def body(frames, rng):
-    """Return joints (frames * JOINTS, 3) that wander through the court with a body's spread, metres."""
+    """Return joints (frames * JOINTS, 3) that wander the court with a body's spread, metres."""
     time_s = np.arange(frames) / RATE_HZ
     path = np.stack(
         [1.5 * np.sin(time_s), 2.5 * np.cos(0.7 * time_s), 0.1 * np.sin(6 * time_s)], -1
@@ -47,7 +50,7 @@ def observe(matrices, xyz, rng):
 
 
 def spoiled(count=4, frames=1000, share=0.05, seed=0):
-    """Return the scene with `share` of outliers (up to OUTLIER_PX off per axis), and as many missing."""
+    """Return the scene with `share` of outliers (up to OUTLIER_PX per axis) and as many missing."""
     rng = np.random.default_rng(seed)
     xyz, matrices = body(frames, rng), ring(count)
     camera_matrix, exact, noise = observe(matrices, xyz, rng)
@@ -62,7 +65,7 @@ def spoiled(count=4, frames=1000, share=0.05, seed=0):
 
 
 def one_bad_view(count, frames=1000, seed=1):
-    """Return the scene with nothing missing, and one view of each point 150 px or more off per axis."""
+    """Return the scene with nothing missing, one view of each point 150 px or more off per axis."""
     rng = np.random.default_rng(seed)
     xyz, matrices = body(frames, rng), ring(count)
     camera_matrix, exact, noise = observe(matrices, xyz, rng)

@@ -1,15 +1,17 @@
 """Calibrate from the same images with this project and with COLMAP's defaults: seconds and error.
 
-    python benchmarks/structure_from_motion.py results SESSION [--images 75] [--map-minutes M] [--json OUT]
+    python benchmarks/structure_from_motion.py results SESSION
+        [--images 75] [--map-minutes M] [--json OUT]
 
-SESSION is a virtual session that the study has rendered and extracted (static pictures, frames of the walk,
-clicks, truth). Both sides get the same pictures, lens model, one lens per physical camera, and all cores;
-their processor time counts, which a busy machine changes little, and the time by the clock stands beside it;
-this project matches the pairs of its list and maps globally, COLMAP matches all pairs and maps incrementally,
-with its own default options. Errors are those of the playing volume, from the session's own clicks, after the
-alignment that each side stops at (a similarity to all court points) and after this project's adjustment of
-either model. `--map-minutes` stops COLMAP's mapper after so long (it counts what it has by then); with
-hundreds of images it takes hours otherwise.
+SESSION is a virtual session that the study has rendered and extracted (static pictures, frames of
+the walk, clicks, truth). Both sides get the same pictures, lens model, one lens per physical
+camera, and all cores; their processor time counts, which a busy machine changes little, and the
+time by the clock stands beside it; this project matches the pairs of its list and maps globally,
+COLMAP matches all pairs and maps incrementally, with its own default options. Errors are those of
+the playing volume, from the session's own clicks, after the alignment that each side stops at (a
+similarity to all court points) and after this project's adjustment of either model. `--map-minutes`
+stops COLMAP's mapper after so long (it counts what it has by then); with hundreds of images it
+takes hours otherwise.
 """
 
 import argparse
@@ -132,7 +134,7 @@ def errors(folder, real, court, marked, parameters):
 
 
 def compared_features(path, pairs=None):
-    """Return how many pairs of features are compared in some pairs of images, by default all pairs."""
+    """Return how many pairs of features are compared in some pairs of images (default all)."""
     with sqlite3.connect(path) as opened:
         query = "SELECT name, keypoints.rows FROM images JOIN keypoints USING (image_id)"
         counts = dict(opened.execute(query))
@@ -140,7 +142,7 @@ def compared_features(path, pairs=None):
 
 
 def compare(results, session, count, map_minutes=None):
-    """Return {side: seconds of each step, images registered, errors in cm} for so many bridging images."""
+    """Return {side: seconds of steps, images registered, errors in cm} for n bridging images."""
     root, virtual = results / session, results / "virtual" / session
     court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
     real = session_truth.read(virtual / "truth.npz")

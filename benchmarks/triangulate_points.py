@@ -1,11 +1,12 @@
-"""Triangulate the same keypoints with this project, Pose2Sim and aniposelib: cost and error side by side.
+"""Triangulate the same keypoints with this project, Pose2Sim and aniposelib: cost and error.
 
     python benchmarks/triangulate_points.py [--environments DIR] [--repeats 5] [--json OUT]
 
-4 cameras x 26 joints x 1000 frames, 2 px noise, 5 % outliers, 5 % missing, then 4 and 12 cameras with one
-bad view of every point. One core and one thread each; the fastest of the repeats counts, and this project
-runs before and after its peers so that a busier machine shows; ratios are to the faster of the two. Errors of
-a method that took fewer points stand beside this project's on those points.
+4 cameras x 26 joints x 1000 frames, 2 px noise, 5 % outliers, 5 % missing, then 4 and 12 cameras
+with one bad view of every point. One core and one thread each; the fastest of the repeats counts,
+and this project runs before and after its peers so that a busier machine shows; ratios are to the
+faster of the two. Errors of a method that took fewer points stand beside this project's on those
+points.
 """
 
 import argparse
@@ -65,7 +66,8 @@ def report(measured, truth):
         print(LINE.format(name, len(xyz), us, us / ours_us, *numbers, text))
         keys = ("rmse_mm", "median_mm", "p95_mm", "missing_percent")
         lines.append({"method": name, "points": len(xyz), "us_per_point": us, "ratio": us / ours_us,
-                      **dict(zip(keys, numbers, strict=True)), "ours_mm_on_these": beside[:3]})  # fmt: skip
+                      **dict(zip(keys, numbers, strict=True)),
+                      "ours_mm_on_these": beside[:3]})  # fmt: skip
     return lines
 
 

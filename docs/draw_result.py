@@ -1,6 +1,9 @@
-"""Draw the picture at the top of README.md from the results of the default study: nobody was filmed.
+"""Draw the picture at the top of README.md from the results of the default study.
 
-`snakemake`, then `python docs/draw_result.py`. Hall and player are simulated, so the truth is known.
+Nobody was filmed.
+
+`snakemake`, then `python docs/draw_result.py`. Hall and player are simulated, so the truth is
+known.
 """
 
 import sys

@@ -1,6 +1,7 @@
 """Bad recordings and clicks through the scripts of the calibration: each ends in one clear line.
 
-Single faults of videos and photos are in tests/unit/devices, of the court's shape in tests/unit/geometry.
+Single faults of videos and photos are in tests/unit/devices, of the court's shape in
+tests/unit/geometry.
 """
 
 import json

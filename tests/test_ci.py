@@ -1,4 +1,4 @@
-"""Continuous integration: its jobs run what is here, and the audit takes no silence for a success."""
+"""Continuous integration: its jobs run what is here, and the audit takes no silence for success."""
 
 import importlib.machinery
 import importlib.util

@@ -1,4 +1,4 @@
-"""What no file of the study may do: run what it reads, leave its folder, or name what a shell would run."""
+"""What no file of the study may do: run what it reads, leave its folder, name what a shell runs."""
 
 import ast
 import re
@@ -14,7 +14,8 @@ PROGRAM = ("Snakefile", "workflow", "benchmarks")
 MODULES = {"pickle", "cPickle", "marshal", "shelve", "joblib", "dill", "cloudpickle", "imp"}
 CALLS = {
     *("eval", "exec", "compile", "__import__", "input", "os.system", "os.popen"),
-    *("yaml.unsafe_load", "yaml.full_load", "yaml.load_all", "tempfile.mktemp", "pd.read_pickle", "pd.eval"),
+    *("yaml.unsafe_load", "yaml.full_load", "yaml.load_all", "tempfile.mktemp"),
+    *("pd.read_pickle", "pd.eval"),
 }  # fmt: skip
 METHODS = {"extractall", "extract", "to_pickle", "unpack_archive", "getoutput", "getstatusoutput"}
 OURS = {"features.extract", "walk_frames.extract"}  # no archives
@@ -82,8 +83,9 @@ def test_no_module_runs_what_it_reads():
     "source",
     [
         "import pickle", "from joblib import load", "eval(text)", "exec('x')", "yaml.load(text)",
-        "yaml.load(text, Loader=yaml.Loader)", "yaml.full_load(text)", "np.load(path, allow_pickle=True)",
-        "np.load(path, allow_pickle=flag)", "subprocess.run(words, shell=True)", "os.system('ls')",
+        "yaml.load(text, Loader=yaml.Loader)", "yaml.full_load(text)",
+        "np.load(path, allow_pickle=True)", "np.load(path, allow_pickle=flag)",
+        "subprocess.run(words, shell=True)", "os.system('ls')",
         "archive.extractall()", "archive.extract(name)", "shutil.unpack_archive(path)",
     ],
 )  # fmt: skip
@@ -107,14 +109,18 @@ def test_rules_quote_names_in_shells():
     [('"ls {input}"', 1), ('"ls {input:q}"', 0), ('"ls {wildcards.take}"', 1), ('"awk {{x}}"', 0)],
 )
 def test_the_check_of_shells_bites(command, count):
-    rule = f"rule a:\n    output: '{{take}}'\n    shell:\n        {command}\n\nrule b:\n    input: 'x'\n"
+    rule = (
+        f"rule a:\n    output: '{{take}}'\n    shell:\n        {command}\n\n"
+        "rule b:\n    input: 'x'\n"
+    )
     assert len(unquoted(rule)) == count
 
 
 NAMES = (
-    "../x", "..", ".", "a/b", "/a", "a\\b", "a b", "$(x)", "`x`", "-rf", "--help", "a;b", "a|b", "a&b", "a>b",
-    "~", "*", "{x}", "", " ", "A", "con", "nul", "com1", "a\n", "\na", "a\nb", "a\tb", "a\x00", "\x1b[2J",
-    "x" * 65, "x" * 100_000, "сам", "ѕide", "ａ", "side\u200b", "ﬁ", "café", "\u202eedis", "٣",
+    "../x", "..", ".", "a/b", "/a", "a\\b", "a b", "$(x)", "`x`", "-rf", "--help", "a;b", "a|b",
+    "a&b", "a>b", "~", "*", "{x}", "", " ", "A", "con", "nul", "com1", "a\n", "\na", "a\nb", "a\tb",
+    "a\x00", "\x1b[2J", "x" * 65, "x" * 100_000, "сам", "ѕide", "ａ", "side\u200b", "ﬁ", "café",
+    "\u202eedis", "٣",
 )  # fmt: skip
 SESSION = {
     "description": "a hall",

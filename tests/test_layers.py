@@ -145,7 +145,10 @@ SHOWING = ("evaluate_", "draw_", "tabulate_", "compare_", "all")
 
 
 def refused(rule, names):
-    """Return which of these names of truth a rule may not read: a simulation may its empty hall only."""
+    """Return which of these names of truth a rule may not read.
+
+    A simulation may read its empty hall only.
+    """
     if rule.startswith("evaluate_"):
         return []
     return [name for name in names if not (rule.startswith("simulate_") and "backdrops" in name)]

@@ -1,7 +1,8 @@
 """The whole method on real video of a real person: against another result, and rigid limbs.
 
-The reference is the TRC that Pose2Sim made from OpenPose keypoints of the same videos: another markerless
-result with other joint definitions, not truth. Agreement to a few centimetres is what can be asked.
+The reference is the TRC that Pose2Sim made from OpenPose keypoints of the same videos: another
+markerless result with other joint definitions, not truth. Agreement to a few centimetres is what
+can be asked.
 """
 
 import json

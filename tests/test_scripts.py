@@ -1,4 +1,4 @@
-"""Rules and scripts agree: what a rule names, its script's `main` takes, and the other way round."""
+"""Rules and scripts agree: what a rule names, its script's `main` takes, and vice versa."""
 
 import ast
 import re

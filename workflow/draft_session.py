@@ -1,8 +1,10 @@
-"""Draft a session's file from a folder of recordings: `python workflow/draft_session.py data/north`.
+"""Draft a session's file from a folder of recordings.
 
-A plain program, for Snakemake checks sessions before it runs. It writes config/sessions/<session>.yaml with
-every guess marked and config/<session>.yaml, the study of this session alone, never over a file that is
-there, and says what to look at next.
+Example: `python workflow/draft_session.py data/north`.
+
+A plain program, for Snakemake checks sessions before it runs. It writes
+config/sessions/<session>.yaml with every guess marked and config/<session>.yaml, the study of this
+session alone, never over a file that is there, and says what to look at next.
 """
 
 import argparse

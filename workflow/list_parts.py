@@ -1,6 +1,9 @@
-"""List what the study is made of from outside: `python workflow/list_parts.py > sbom.json` (CycloneDX).
+"""List what the study is made of from outside, as CycloneDX.
 
-Packages of environment.lock and artefacts of config/external.yaml, with versions, checksums and licences.
+Usage: `python workflow/list_parts.py > sbom.json`.
+
+Packages of environment.lock and artefacts of config/external.yaml, with versions, checksums and
+licences.
 """
 
 import argparse

@@ -1,13 +1,16 @@
-"""Say which files of a study would come out otherwise now, and why: `python workflow/verify_study.py`.
+"""Say which files of a study would come out otherwise now, and why.
 
-It computes again the checksums of raw inputs, artefacts, networks, lock and code, and compares them with what
-the sidecars in results/run say. With `--against OTHER/results` it compares two results trees file by file
-instead: bit-equal, equal within the tolerances of courtside/study/provenance/comparison.py, or different. The
-exit status is 1 if anything is otherwise.
+Usage: `python workflow/verify_study.py`.
 
-Two machines that cannot reach each other's files compare checksums: `--write-checksums TABLE.csv` on one of
-them, `--against TABLE.csv` on the other. It counts the files of each stage that are bit-equal and names the
-first stage that is not.
+It computes again the checksums of raw inputs, artefacts, networks, lock and code, and compares them
+with what the sidecars in results/run say. With `--against OTHER/results` it compares two results
+trees file by file instead: bit-equal, equal within the tolerances of
+courtside/study/provenance/comparison.py, or different. The exit status is 1 if anything is
+otherwise.
+
+Two machines that cannot reach each other's files compare checksums: `--write-checksums TABLE.csv`
+on one of them, `--against TABLE.csv` on the other. It counts the files of each stage that are
+bit-equal and names the first stage that is not.
 """
 
 import argparse
@@ -52,7 +55,7 @@ def check_results():
 
 
 def write_checksums(table):
-    """Write the table that another machine's results are compared with; return (lines to print, 0)."""
+    """Write the table to compare another machine's results with; return (lines to print, 0)."""
     check_results()
     rows = stage_checksums.measure(RESULTS)
     stage_checksums.write(table, rows)

@@ -14,9 +14,9 @@ import rows
 NAME = "decoding"
 LIMIT = "bytes of the pictures written once, over the memory's"
 BOUNDS = (
-    "the H.264 decoder itself, which all of them share, and turning YUV into BGR; this project checks "
-    "the whole file's packets first, so that one cut short is found before anything is computed from "
-    "it"
+    "the H.264 decoder itself, which all of them share, and turning YUV into BGR; this project "
+    "checks the whole file's packets first, so that one cut short is found before anything is "
+    "computed from it"
 )
 SHARES = {1: 1 / 8, 2: 1 / 4, 4: 1 / 2, 8: 1.0}  # of the video
 METHODS = {

@@ -10,9 +10,9 @@ import scene
 NAME = "filtering"
 LIMIT = "bytes of the coordinates read and written, over the memory's"
 BOUNDS = (
-    "the recursion of the filter, one number after another in each coordinate, which SciPy does in C "
-    "for all joints at once; Pose2Sim calls it once for each of 78 columns, and its outlier filter "
-    "once for each frame of each"
+    "the recursion of the filter, one number after another in each coordinate, which SciPy does "
+    "in C for all joints at once; Pose2Sim calls it once for each of 78 columns, and its outlier "
+    "filter once for each frame of each"
 )
 FRAMES = 1000
 SETTINGS = {"rate_hz": scene.RATE_HZ, "cutoff_hz": 6.0, "order": 4}

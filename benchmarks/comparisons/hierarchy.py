@@ -12,9 +12,9 @@ import rows
 NAME = "bvh"
 LIMIT = "bytes of the text read and of the places written, over the memory's"
 BOUNDS = (
-    "turning text into numbers, which takes most of the time; the products of rotations that follow "
-    "are one call a joint for all frames, where bvhio walks the tree of joints in Python in every "
-    "frame"
+    "turning text into numbers, which takes most of the time; the products of rotations that "
+    "follow are one call a joint for all frames, where bvhio walks the tree of joints in Python "
+    "in every frame"
 )
 FRAMES = 750
 

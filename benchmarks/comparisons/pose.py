@@ -15,9 +15,9 @@ from courtside.pose.conversion import tflite_onnx
 NAME = "pose"
 LIMIT = "additions and multiplications of the networks, over the core's"
 BOUNDS = (
-    "the landmark network, and on single pictures the person network before it; what surrounds them "
-    "(cutting out, reading the heat maps) takes a tenth. Depthwise convolutions move more bytes than "
-    "they compute, so that the core's peak is out of reach"
+    "the landmark network, and on single pictures the person network before it; what surrounds "
+    "them (cutting out, reading the heat maps) takes a tenth. Depthwise convolutions move more "
+    "bytes than they compute, so that the core's peak is out of reach"
 )
 FRAMES = 10  # of the smallest run
 OPERATIONS = {"static": (0, 1), "tracking": (1,)}  # networks that each frame needs, at least

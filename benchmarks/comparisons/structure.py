@@ -1,4 +1,7 @@
-"""Structure from motion of two fixed cameras and a walk between them, by number of bridging images."""
+"""Structure from motion of two fixed cameras and a walk, by number of bridging images.
+
+The walk goes between the cameras.
+"""
 
 import itertools
 
@@ -11,8 +14,8 @@ LIMIT = (
     "additions and multiplications of comparing all descriptors of matched pairs, over the core's"
 )
 BOUNDS = (
-    "features, the same for both and growing with images; then matching, which grows with pairs: this "
-    "project's list of near frames grows with images, COLMAP's default with their square"
+    "features, the same for both and growing with images; then matching, which grows with pairs: "
+    "this project's list of near frames grows with images, COLMAP's default with their square"
 )
 SESSION = "plain-a"
 DESCRIPTOR = 128
@@ -35,7 +38,8 @@ def compare(given):
             found.append(
                 rows.Row(name, method, side == "courtside", "image", count, count / counts[0],
                          structure_from_motion.total(row, steps), least_s(row),
-                         error_median=row["adjusted_cm"], error_ours_p95=sides["courtside"]["adjusted_cm"],
+                         error_median=row["adjusted_cm"],
+                         error_ours_p95=sides["courtside"]["adjusted_cm"],
                          error_unit="cm over the volume")
             )  # fmt: skip
     return found

@@ -1,4 +1,4 @@
-"""Snakemake against the sum of its parts: jobs that do next to nothing, by Snakemake and in a loop."""
+"""Snakemake against the sum of its parts: jobs that do next to nothing, by it and in a loop."""
 
 import os
 import subprocess

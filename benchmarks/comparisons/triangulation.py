@@ -10,9 +10,9 @@ import scene
 NAME = "triangulation"
 LIMIT = "bytes of the keypoints read and the points written, over the memory's"
 BOUNDS = (
-    "passes of NumPy over arrays that hold every subset of views: each point is solved once for each "
-    "view that may be wrong, so the machine's least is far away, and the time grows with points and "
-    "subsets alone"
+    "passes of NumPy over arrays that hold every subset of views: each point is solved once for "
+    "each view that may be wrong, so the machine's least is far away, and the time grows with "
+    "points and subsets alone"
 )
 FRAMES = 250  # of the smallest scene
 RANSAC_POINTS = 65  # of the smallest scene: 20 ms each

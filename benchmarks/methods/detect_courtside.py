@@ -29,7 +29,7 @@ def networks(detector_tflite, landmarks_tflite):
 
 
 def ours(frames, detector, landmarks, follow):
-    """Yield the joints (33, 2) px of each frame, NaN without anyone; `follow` starts from the last one."""
+    """Yield each frame's joints (33, 2) px, NaN without anyone; `follow` starts from the last."""
     region = None
     for frame in frames:
         pose = landmarks.estimate(frame, region) if region is not None else None

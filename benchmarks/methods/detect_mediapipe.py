@@ -1,6 +1,7 @@
 """MediaPipe Pose's own Python solution on whole frames, timed. Arguments: frames.npy result.npz.
 
-Its smoothing is off, so that joints can be compared. The conversion to RGB that it asks for is not timed.
+Its smoothing is off, so that joints can be compared. The conversion to RGB that it asks for is not
+timed.
 """
 
 import json

@@ -1,7 +1,7 @@
 """Pose2Sim's filters on columns of coordinates, timed. Arguments: noisy.npz result.npz repeats.
 
-`butterworth` is its usual filter; `default` is what its settings ask for: outliers taken out by a Hampel
-filter first. Both go through `DataFrame.apply`, as its own stage does.
+`butterworth` is its usual filter; `default` is what its settings ask for: outliers taken out by a
+Hampel filter first. Both go through `DataFrame.apply`, as its own stage does.
 """
 
 import json

@@ -2,9 +2,9 @@
 
 Arguments: scene.npz result.npz repeats joints [ransac optim].
 
-`triangulate` is warm: its first call compiles. `triangulate_ransac` (a Python loop) and `optim_points` (a
-non-linear fit over time, which may smooth) run once on fewer points, the latter on whole frames: `ransac`
-points and `optim` frames, 0 for not at all.
+`triangulate` is warm: its first call compiles. `triangulate_ransac` (a Python loop) and
+`optim_points` (a non-linear fit over time, which may smooth) run once on fewer points, the latter
+on whole frames: `ransac` points and `optim` frames, 0 for not at all.
 """
 
 import json

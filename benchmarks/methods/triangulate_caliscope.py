@@ -1,6 +1,7 @@
 """Caliscope's `triangulate_image_points`, timed. Arguments: scene.npz result.npz repeats joints.
 
-It takes points on the undistorted, normalised picture, each camera's own; what is missing is left out.
+It takes points on the undistorted, normalised picture, each camera's own; what is missing is left
+out.
 """
 
 import json

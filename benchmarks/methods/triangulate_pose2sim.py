@@ -1,7 +1,9 @@
-"""Pose2Sim's `triangulation_from_best_cameras`, timed. Arguments: scene.npz result.npz repeats points.
+"""Pose2Sim's `triangulation_from_best_cameras`, timed.
 
-It takes one point a call, with its defaults of 15 px and two cameras. The lens has no distortion here, so its
-faster way without undistortion is used.
+Arguments: scene.npz result.npz repeats points.
+
+It takes one point a call, with its defaults of 15 px and two cameras. The lens has no distortion
+here, so its faster way without undistortion is used.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Opens pages in headless Chromium; a console error or a request that leaves the page fails the test."""
+"""Opens pages in headless Chromium; a console error or a request off the page fails the test."""
 
 import shutil
 from pathlib import Path
@@ -23,7 +23,7 @@ def browser():
 
 @pytest.fixture
 def open_page(browser):
-    """Return `open(path, width=1280, height=900, **context)`: a playwright page, opened from its file.
+    """Return `open(path, width=1280, height=900, **context)`: a playwright page of a file.
 
     Faults are collected until the test ends; `page.faults` holds them so far.
     """

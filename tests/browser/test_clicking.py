@@ -1,4 +1,4 @@
-"""The clicking page by a robot that sees only what is on the screen: it looks for dots, clicks, and saves."""
+"""The clicking page by a robot that sees only the screen: it looks for dots, clicks, and saves."""
 
 import base64
 import json
@@ -40,7 +40,10 @@ def pictures(court, views):
 
 @pytest.fixture
 def make(court, views, pictures, tmp_path):
-    """Return `make(clicks=..., proposals=...)`: the path of a page, each a dictionary by camera and point."""
+    """Return `make(clicks=..., proposals=...)`: the path of a page.
+
+    Each argument is a dictionary by camera and point.
+    """
 
     def made(name="page", session="hall", more=(), **given):
         frames = [
@@ -96,7 +99,7 @@ def move(page, at):
 
 
 def click_dot(page, near, zoom):
-    """Click the dot that is nearest to a place of the whole picture on the screen, after zooming in on it."""
+    """Zoom in on a place of the whole picture on the screen and click the dot nearest to it."""
     page.click("#whole")
     at = dots(screen(page))
     at = at[np.argmin(np.linalg.norm(at - near, axis=1))]
@@ -151,7 +154,8 @@ def test_clicks_come_back_to_half_a_pixel(open_page, make, court, views, tmp_pat
     error = np.linalg.norm(found - exact, axis=-1)
     again = np.linalg.norm(found[1] - found[0], axis=-1)
     print(
-        f"error px: {error.max(axis=1)}, repeated: {np.median(again):.2f}, at most {again.max():.2f}"
+        f"error px: {error.max(axis=1)}, "
+        f"repeated: {np.median(again):.2f}, at most {again.max():.2f}"
     )
     assert error.max() <= 0.5
     assert again.max() <= 0.5
@@ -235,10 +239,12 @@ def test_a_table_of_the_workflow_is_loaded_and_saved_as_it_was(open_page, make, 
     [
         ("a,b\n1,2\n", "expected the columns camera,point,frame_idx,x_px,y_px, found a,b"),
         ("camera,point,frame_idx,x_px,y_px\nfront,p01,0,1,2\n", 'no picture of camera "front"'),
-        ("camera,point,frame_idx,x_px,y_px\nback,p99,0,1,2\n", 'line 2: the court has no point "p99"'),
+        ("camera,point,frame_idx,x_px,y_px\nback,p99,0,1,2\n",
+         'line 2: the court has no point "p99"'),
         ("camera,point,frame_idx,x_px,y_px\nback,p01,0,one,2\n", 'x_px as a number, found "one"'),
         ("camera,point,frame_idx,x_px,y_px\n\nback,p01,0,1\n", "line 3: expected 5 cells, found 4"),
-        ("camera,point,frame_idx,x_px,y_px\nback,p01,0,1,2\nback,p01,0,1,2\n", "line 3: p01 is there twice"),
+        ("camera,point,frame_idx,x_px,y_px\nback,p01,0,1,2\nback,p01,0,1,2\n",
+         "line 3: p01 is there twice"),
     ],
 )  # fmt: skip
 def test_a_table_that_is_none_changes_nothing(open_page, make, tmp_path, text, words):
@@ -279,7 +285,8 @@ def test_good_clicks_are_not_blamed_and_the_rest_is_foretold(open_page, make, co
     assert "9 points fit a camera with a lens to 0." in page.inner_text("#fit")
     size = json.dumps(views[0].size)
     points = json.dumps(
-        [{"name": p, "xyz": court.xyz[court.points.index(p)].tolist(), "xy": given["back"][p]} for p in known]
+        [{"name": p, "xyz": court.xyz[court.points.index(p)].tolist(), "xy": given["back"][p]}
+         for p in known]
     )  # fmt: skip
     wanted = json.dumps(court.xyz.tolist())
     found = page.evaluate(

@@ -1,4 +1,4 @@
-"""The report in a browser: nothing is asked for, contents lead on, nothing is wider than the window."""
+"""The report in a browser: it asks for nothing, contents lead on, nothing overflows the window."""
 
 import pytest
 
@@ -24,7 +24,8 @@ def test_nothing_is_wider_than_the_window(open_page, path, width):
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     wide = page.evaluate(
         "[...document.querySelectorAll('main *')].filter((one) => !one.closest('.scroll')"
-        " && one.getBoundingClientRect().right > innerWidth + 1).map((one) => one.outerHTML.slice(0, 80))"
+        " && one.getBoundingClientRect().right > innerWidth + 1)"
+        ".map((one) => one.outerHTML.slice(0, 80))"
     )
     assert wide == []
 
@@ -50,7 +51,8 @@ def test_contents_lead_to_their_places(open_page, path, width):
         link.click()
         page.wait_for_function(
             "(id) => { const top = document.getElementById(id).getBoundingClientRect().top;"
-            " return top > -5 && (top < 60 || scrollY + innerHeight > document.body.scrollHeight - 5); }",
+            " return top > -5"
+            " && (top < 60 || scrollY + innerHeight > document.body.scrollHeight - 5); }",
             arg=name,
         )
 

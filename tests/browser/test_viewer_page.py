@@ -1,4 +1,4 @@
-"""The viewer in a real browser: it opens fast, plays, and what it draws is where the numbers say."""
+"""The viewer in a real browser: it opens fast, plays, and draws where the numbers say."""
 
 import time
 from dataclasses import replace

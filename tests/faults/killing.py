@@ -18,7 +18,7 @@ PER_NAME = {"fetch_artefact", "simulate_session", "simulate_take"}
 
 @dataclass
 class Job:
-    """A job that runs: its rule, its log (one for each job of a study), its process, when it was seen."""
+    """A running job: its rule, its log (one per job of a study), its process, when it was seen."""
 
     rule: str
     log: str

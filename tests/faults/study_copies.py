@@ -17,7 +17,8 @@ WRITTEN = {"results", ".snakemake", "__pycache__"}  # folders that a run may wri
 TAKE = "results/walk-4cams-tiny/takes/balancing"
 METHOD = "file/all-robust/blazepose-full"
 SAME = {comparison.EQUAL, comparison.CLOSE, comparison.TIMES}
-# A few jobs, one after the other and side by side, to which the smaller faults are done: rule to product.
+# A few jobs, one after the other and side by side, to which the smaller faults are done: rule to
+# product.
 JOBS = {
     "triangulate": f"{TAKE}/pose3d/{METHOD}.npz",
     "filter_motion": f"{TAKE}/pose3d_filtered/{METHOD}.npz",
@@ -29,7 +30,7 @@ CUT = [JOBS[rule] for rule in ("export_take", "draw_skeletons", "draw_overlay")]
 
 
 def prepare_copy(root):
-    """Copy what a study is made by; pinned artefacts that are here are packed into a mirror folder."""
+    """Copy what a study is made by; present pinned artefacts are packed into a mirror folder."""
     copy_repository(root)
     (root / FOLDER).mkdir(parents=True)
     pack_mirror(root)
@@ -99,6 +100,6 @@ def raw(root):
 
 
 def differences(here, there):
-    """Return the verdicts on files that differ beyond the stated tolerance, are missing, or are left over."""
+    """Return verdicts on files that differ beyond stated tolerance, are missing or left over."""
     verdicts = comparison.compare(here / FOLDER / "results", there / FOLDER / "results")
     return [each for each in verdicts if each.outcome not in SAME]

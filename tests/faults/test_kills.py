@@ -1,4 +1,7 @@
-"""kill -9 of every rule's job and of Snakemake, at seeded random moments of one run of the tiny study."""
+"""kill -9 of every rule's job and of Snakemake, at seeded random moments of a run.
+
+The run is one of the tiny study.
+"""
 
 import os
 import random
@@ -28,7 +31,7 @@ AGAIN = ("--keep-going", "--retries", "3")
 
 
 class Killer:
-    """Kills a job of every rule, and Snakemake, until nothing is left to kill; then the run may end.
+    """Kills a job of every rule, and Snakemake, until none is left to kill; then the run may end.
 
     Attributes
     ----------
@@ -45,7 +48,8 @@ class Killer:
         self.killed, self.missed, self.latest = {}, {}, LATEST
         self.of_snakemake = {"all": 0, "alone": 0}
         self.done, self.orphans = set(), []
-        # After so many jobs of the study; two of one number: the second hits a start, or soon after.
+        # After so many jobs of the study; two of one number: the second hits a start, or soon
+        # after.
         self.moments = sorted(self.draw.choices(range(len(seconds) - 2), k=N_OF_SNAKEMAKE))
 
     def run_through(self, root, *options):
@@ -57,7 +61,7 @@ class Killer:
             run("--unlock", root=root)
 
     def again(self, root, rules, latest):
-        """Run rules again whose jobs had ended before their moments came, and kill each, now earlier."""
+        """Rerun rules whose jobs had ended before their moments came; kill each, now earlier."""
         self.latest, self.moments = latest, []
         names = sorted(map(killing.name_in_snakemake, rules))
         main = study_copies.start(root, *AGAIN, "--forcerun", *names, "--until", *names, *ALL)
@@ -110,7 +114,7 @@ class Killer:
 
 @pytest.fixture(scope="module")
 def killed(untouched, tmp_path_factory):
-    """Return (repository whose study was killed and restarted until it ended, killer, raw files before)."""
+    """Return (repository of a study killed and restarted to its end, killer, raw files before)."""
     root = tmp_path_factory.mktemp("killed")
     study_copies.prepare_copy(root)
     before = study_copies.raw(root)

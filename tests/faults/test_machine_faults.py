@@ -1,4 +1,4 @@
-"""What a machine does to a study: full and closed disks, too little memory, odd clocks, two runs at once."""
+"""Machine faults of a study: full and closed disks, little memory, odd clocks, two runs at once."""
 
 import contextlib
 import os
@@ -45,7 +45,7 @@ def closed(folder):
 
 @pytest.fixture
 def on_small_disk(cut, tmp_path):
-    """Return a copy of the study, with a few jobs due, on a disk of its own that has little room left."""
+    """Return a copy of the study, with a few jobs due, on a disk of its own with little room."""
     disk = tmp_path / "disk"
     disk.mkdir()
     with mounted(disk, "-t", "tmpfs", "tmpfs"):
@@ -188,7 +188,7 @@ def test_a_clock_that_jumped_reruns_nothing(copy):
 
 
 def known_by_content(path):
-    """Return whether Snakemake looks into a file of a new date: not inside a folder that is an output.
+    """Return whether Snakemake looks into a file of a new date: not inside an output folder.
 
     What is fetched from outside has a test of its own above.
     """

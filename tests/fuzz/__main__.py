@@ -1,4 +1,6 @@
-"""Read changed files again, or all: `python tests/fuzz FORMAT SEED CASE`, `python tests/fuzz [FORMAT ...]`.
+"""Read changed files again, or all.
+
+Usage: `python tests/fuzz FORMAT SEED CASE`, `python tests/fuzz [FORMAT ...]`.
 
 With a case, the changed file is kept in the folder named, and what its reader says is printed.
 """

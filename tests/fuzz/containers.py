@@ -1,4 +1,7 @@
-"""Changes of files made of parts: zip, npz, PNG, JPEG, MP4, SQLite; lengths and checksums kept right."""
+"""Changes of files made of parts, lengths and checksums kept right.
+
+The formats are zip, npz, PNG, JPEG, MP4 and SQLite.
+"""
 
 import io
 import pickle

@@ -16,7 +16,8 @@ class Format:
     make : callable
         Writes the files, or folders, to start from into an empty folder; all of them can be read.
     read : callable
-        Reads a file or folder as the study does, holds the value against what it must be, and returns it.
+        Reads a file or folder as the study does, holds the value against what it must be, and
+        returns it.
     only : str
         Pattern of the names, within a folder, of the files that are changed.
     refuses : bool

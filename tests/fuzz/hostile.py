@@ -3,18 +3,19 @@
 NUMBERS = (
     "nan", "NaN", "inf", "-inf", "Infinity", "1e999", "1e308", "-1e308", "1e-320", "-0", "0", "-1",
     "1", "255", "65536", "2147483648", "-2147483649", "9223372036854775808", "18446744073709551616",
-    "9" * 40, "9" * 400, "9" * 5000, "0x" + "f" * 6000, "0x1F", "1_000", "٣", "", "1,5", "1.2.3", "--1",
-    "true", "null", "1:30:00", "2026-02-30", "1e", "+", ".", "½",
+    "9" * 40, "9" * 400, "9" * 5000, "0x" + "f" * 6000, "0x1F", "1_000", "٣", "", "1,5", "1.2.3",
+    "--1", "true", "null", "1:30:00", "2026-02-30", "1e", "+", ".", "½",
 )  # fmt: skip
 NAMES = (
-    "", " ", ".", "..", "../x", "../../x", "/etc/x", "a/b", "a b", "$(x)", "`x`", "-rf", "a;b", "con",
-    "a\nb", "a\tb", "a\u2028b", "a\x00b", "a\x1b[2Jb", "x" * 300, "x" * 100_000, "{x}", "{0.__class__}",
-    "%s%n", "'", '"', "\\", "~", "*", "сам", "ﬁ", "camera\u200b", "A", "é", "\U0001f3f8", "\ud800",
+    "", " ", ".", "..", "../x", "../../x", "/etc/x", "a/b", "a b", "$(x)", "`x`", "-rf", "a;b",
+    "con", "a\nb", "a\tb", "a\u2028b", "a\x00b", "a\x1b[2Jb", "x" * 300, "x" * 100_000, "{x}",
+    "{0.__class__}", "%s%n", "'", '"', "\\", "~", "*", "сам", "ﬁ", "camera\u200b", "A", "é",
+    "\U0001f3f8", "\ud800",
 )  # fmt: skip
 BVH = (
-    "HIERARCHY", "ROOT a", "JOINT b {", "End Site", "End Site { OFFSET 0 0 0 }", "OFFSET", "CHANNELS 0",
-    "CHANNELS 3", "Zrotation", "Wrotation", "MOTION", "Frames: 1000000", "Frames: -1", "Frame Time: 0",
-    "Frame Time: -1", "Frame Time: nan",
+    "HIERARCHY", "ROOT a", "JOINT b {", "End Site", "End Site { OFFSET 0 0 0 }", "OFFSET",
+    "CHANNELS 0", "CHANNELS 3", "Zrotation", "Wrotation", "MOTION", "Frames: 1000000", "Frames: -1",
+    "Frame Time: 0", "Frame Time: -1", "Frame Time: nan",
 )  # fmt: skip
 SIGNS = ("{", "}", "[", "]", "<", ">", "#", "&", ",", "\t", "\r", "=", ":", "---", "\x1c")
 WORDS = (*NUMBERS, *NAMES[:20], *SIGNS, *BVH)
@@ -25,9 +26,10 @@ def value(rng):
     return rng.choice(
         (
             None, True, False, 0, -1, 1, 2**31, 2**63, 2**64, 10**400, 0.5, 1e308, -1e308, 1e-320,
-            float("nan"), float("inf"), float("-inf"), "", [], {}, [[]], [None], {"": None}, [[1], [2, 3]],
-            ["x"] * 2000, list(range(3000)), deep(60), deep(400), deep(2000), {"a": deep(30)},
-            {name: 1 for name in NAMES[:12]}, rng.choice(NAMES), rng.choice(NAMES), rng.choice(NUMBERS),
+            float("nan"), float("inf"), float("-inf"), "", [], {}, [[]], [None], {"": None},
+            [[1], [2, 3]], ["x"] * 2000, list(range(3000)), deep(60), deep(400), deep(2000),
+            {"a": deep(30)}, {name: 1 for name in NAMES[:12]}, rng.choice(NAMES), rng.choice(NAMES),
+            rng.choice(NUMBERS),
         )
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""One change or a few of a file, by what it is: chosen by a seeded generator, the same ever after."""
+"""One change or a few of a file, by what it is: chosen by a seeded generator, always the same."""
 
 from fuzz import binaries, containers, texts, trees
 

@@ -34,7 +34,8 @@ QUALISYS_CAMERA = """<camera active="1" calibrated="true" serial="{}" viewrotati
 <fov_video left="8" top="4" right="1919" bottom="1087"/>
 <transform x="4000.0" y="2000.0" z="1500.0" r11="0.000000" r12="1.000000" r13="0.000000"
  r21="0.000000" r22="0.000000" r23="1.000000" r31="1.000000" r32="0.000000" r33="0.000000"/>
-<intrinsic focalLengthU="96000.0" focalLengthV="96064.0" centerPointU="61440.0" centerPointV="34816.0"
+<intrinsic focalLengthU="96000.0" focalLengthV="96064.0" \
+centerPointU="61440.0" centerPointV="34816.0"
  skew="0.0" radialDistortion1="-0.05" radialDistortion2="0.14" radialDistortion3="0.003"
  tangentalDistortion1="0.0006" tangentalDistortion2="-0.0004"/>
 </camera>"""

@@ -1,4 +1,4 @@
-"""Formats of pictures, videos, networks and COLMAP's files, and folders of recordings that are surveyed."""
+"""Formats of pictures, videos, networks, COLMAP's files, and folders of recordings surveyed."""
 
 import contextlib
 import shutil

@@ -93,7 +93,8 @@ def of_take(folder):
     made = take_truth.TakeTruth(
         time_s=np.arange(5) / 30, joints=np.array(["left_wrist", "head"]),
         person_id=np.array(["p1"]), xyz=np.zeros((1, 5, 2, 3)), racket=np.ones((1, 5, 2, 3)),
-        offset_s={"a": 0.0, "b": 0.4}, drift_ppm={"a": 0.0, "b": -35.0}, events={"p1": {"hit": 1.2}},
+        offset_s={"a": 0.0, "b": 0.4}, drift_ppm={"a": 0.0, "b": -35.0},
+        events={"p1": {"hit": 1.2}},
         shaken={"b": np.zeros((7, 3, 4))}, devices={"d": device},
     )  # fmt: skip
     take_truth.write(folder / "truth.npz", made)

@@ -1,4 +1,4 @@
-"""Formats of the study itself: configuration, sessions, plans, courts, skeletons, records of a run."""
+"""Formats of the study itself: configuration, sessions, plans, courts, skeletons, run records."""
 
 import json
 import re

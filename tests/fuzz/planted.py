@@ -1,4 +1,7 @@
-"""Readers that each do one thing that none may, and one that does none: the watch must tell them apart."""
+"""Readers that each do one thing that none may, and one that does none.
+
+The watch must tell them apart.
+"""
 
 import ctypes
 import os

@@ -1,4 +1,7 @@
-"""All formats: each changed file gives a value or one clear line, within seconds, memory and its folder."""
+"""All formats: each changed file gives a value or one clear line.
+
+It does so within seconds, memory and its folder.
+"""
 
 import os
 

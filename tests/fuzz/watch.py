@@ -45,7 +45,10 @@ class Result:
         )
 
 
-HEAD = f"{'format':<18} {'cases':>6} {'values':>7} {'clear errors':>12} {'failures':>8} {'slowest s':>9}"
+HEAD = (
+    f"{'format':<18} {'cases':>6} {'values':>7} {'clear errors':>12} "
+    f"{'failures':>8} {'slowest s':>9}"
+)
 
 
 def table(results):
@@ -196,7 +199,7 @@ class Watched:
         return " | ".join(text.split("\n")[-6:])
 
     def _answer(self, seconds):
-        """Return the next line; None where none comes in time, empty where the process has ended."""
+        """Return the next line: None where none comes in time, empty where the process ended."""
         until = time.monotonic() + seconds
         while b"\n" not in self.rest:
             ready, _, _ = select.select(
@@ -212,7 +215,7 @@ class Watched:
         return line.decode()
 
     def _own_s(self):
-        """Return the seconds that the process has computed in all its threads, and whether it sleeps."""
+        """Return the seconds the process has computed in all its threads, and whether it sleeps."""
         try:
             stat = Path(f"/proc/{self.process.pid}/stat").read_text()
         except OSError:

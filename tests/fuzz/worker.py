@@ -1,7 +1,8 @@
 """The process that reads the changed files: it says what came of each, and what it wrote outside.
 
-Started by `watch.Watched` with the module whose `FORMATS` are read, the folder of whole files, the folder it
-may write in and how much memory it may take; then, for each case, `format path` on a line.
+Started by `watch.Watched` with the module whose `FORMATS` are read, the folder of whole files, the
+folder it may write in and how much memory it may take; then, for each case, `format path` on a
+line.
 """
 
 import importlib
@@ -22,7 +23,7 @@ FORBIDDEN += ("subprocess.Popen", "marshal.loads", "webbrowser.open")
 
 
 class Guard:
-    """Notes what a reader does that none may: writing outside its folder, unpickling, starting programs.
+    """Notes what a reader does that none may: write outside its folder, unpickle, start programs.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ class Guard:
 
 
 def unclear(error, path):
-    """Return what is wrong with a message; empty where it is one readable line that names the file."""
+    """Return what is wrong with a message; empty where it is one readable line naming the file."""
     lines = error.lines  # of a configuration one for each fault
     for line in lines:
         if line.splitlines() != [line] or not line.isprintable():

@@ -1,4 +1,7 @@
-"""The Slurm profile: which rules it names, and the tiny study on a real Slurm (`.ci/slurm` starts one)."""
+"""The Slurm profile: which rules it names, and the tiny study on a real Slurm.
+
+`.ci/slurm` starts one.
+"""
 
 import importlib.util
 import random

@@ -13,7 +13,7 @@ MADE_BY = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 
 
 def copy_repository(root, *further, copy_file=shutil.copy2):
-    """Copy what a study is made by, and further files or folders of the repository, into a folder."""
+    """Copy what a study is made by, and further files or folders of the repository, to a folder."""
     left_out = shutil.ignore_patterns("__pycache__", "locks")
     for name in (*MADE_BY, *map(str, further)):
         source, target = ROOT / name, root / name

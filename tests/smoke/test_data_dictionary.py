@@ -1,4 +1,4 @@
-"""Every CSV of the study has a place in the data dictionary, and every column of it is described there."""
+"""Every CSV of the study has a place in the data dictionary, which describes its every column."""
 
 import csv
 import re
@@ -8,8 +8,8 @@ import pytest
 
 from smoke.snakemake_runs import ROOT
 
-# Parts of config/README.md: a heading (all below it), `heading | first cell` (rows of a table below it), or
-# `: words` (the paragraph that holds these words).
+# Parts of config/README.md: a heading (all below it), `heading | first cell` (rows of a table below
+# it), or `: words` (the paragraph that holds these words).
 FRAMES, OF_CALIBRATION = "Columns of the frame table", "Columns of the evaluation"
 MOVEMENT, TIDY = "Columns of the movement table", "Columns of the 3D CSV"
 KINEMATICS, DEVICES = "Columns of the kinematics", "Columns of the devices' tables"
@@ -97,7 +97,10 @@ PLACES = {
     },
 }
 POINTS = "(neck|centre|mass)"
-ANGLES = "((left|right)_(knee_flexion|elbow_flexion|hip_flexion|shoulder_elevation)|trunk_lean(_forward)?)"
+ANGLES = (
+    "((left|right)_(knee_flexion|elbow_flexion|hip_flexion|shoulder_elevation)"
+    "|trunk_lean(_forward)?)"
+)
 
 
 class Dictionary:
@@ -151,7 +154,7 @@ def pattern(name):
 
 
 def faults(results, dictionary):
-    """Return what the dictionary lacks of all CSVs below a folder, and how many it was asked for."""
+    """Return what the dictionary lacks of CSVs below a folder, and how many it was asked for."""
     found, n_tables = set(), 0
     for path in sorted(results.rglob("*.csv")):
         name = path.relative_to(results).as_posix()

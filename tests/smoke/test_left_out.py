@@ -15,7 +15,7 @@ PICTURED = {"draw_overlay": 1, "export_overlay_video": 4}
 
 @pytest.fixture
 def gym(tmp_path):
-    """Return a function that gives a copy of the repository where the real person's consent is as said."""
+    """Return a function: it copies the repository with the real person's consent as said."""
     for name in ("Snakefile", "workflow", "config", "profiles", "environment.lock"):
         source, target = ROOT / name, tmp_path / name
         ignored = shutil.ignore_patterns("__pycache__")

@@ -142,8 +142,8 @@ def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_stu
     ours = side.cam_from_world[:, :3] @ back.cam_from_world[:, :3].T
     true = real[0].cam_from_world[:, :3] @ real[1].cam_from_world[:, :3].T
     between = np.degrees(np.arccos((np.trace(ours @ true.T) - 1) / 2))
-    # At 480 px, of 14 pictures: nothing but the court tells focal lengths well. Over 20 plain and 20 rich
-    # halls the largest was 2.6 degrees, and twice the stated standard deviation.
+    # At 480 px, of 14 pictures: nothing but the court tells focal lengths well. Over 20 plain and
+    # 20 rich halls the largest was 2.6 degrees, and twice the stated standard deviation.
     assert between < 4
     stated = covariance.read(results / "calibration/sfm-n12/covariance.npz")
     turn = np.concatenate([np.eye(3), np.zeros((3, 11)), -ours, np.zeros((3, 11))], axis=1)

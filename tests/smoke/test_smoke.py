@@ -18,7 +18,8 @@ TAKE = "walk-4cams-tiny/takes/balancing"
 METHOD = "file/all-robust/blazepose-full"
 
 
-# Conditions need a session for each setting, clocks a longer take, offsets and networks several bodies.
+# Conditions need a session for each setting, clocks a longer take, offsets and networks several
+# bodies.
 LARGER_STUDY = {
     "draw_capture",
     "evaluate_clocks",
@@ -27,7 +28,8 @@ LARGER_STUDY = {
     "evaluate_skin_depths",
 }
 LARGER_STUDY |= {"compare_networks", "draw_agreement"}
-# Devices beside fixed cameras need a take of both; keypoints of other programs are in test_other_sessions.py.
+# Devices beside fixed cameras need a take of both; keypoints of other programs are in
+# test_other_sessions.py.
 LARGER_STUDY |= {"select_person", "import_pose2d", "import_pose3d"}
 
 

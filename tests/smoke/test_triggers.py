@@ -1,10 +1,12 @@
-"""What reruns when something changes: for each cause, the rules and how many of their jobs, counted by hand.
+"""What reruns when something changes: for each cause, the rules and how many of their jobs.
 
-Beside test_workflow.py, which has the parameters, the modules of the library and one more N of the sweep. The
-counts follow from the rules and from the tiny study, which has `walk-4cams-tiny` (real, four cameras, three
-with a static recording, one take fused in two ways), `plain-tiny` (calibration, two mappers, one N),
-`players-tiny` (two takes of three cameras, fused in five ways, one of them drawn) and `single-view-tiny` (a
-depth camera and an inertial suit).
+The jobs are counted by hand.
+
+Beside test_workflow.py, which has the parameters, the modules of the library and one more N of the
+sweep. The counts follow from the rules and from the tiny study, which has `walk-4cams-tiny` (real,
+four cameras, three with a static recording, one take fused in two ways), `plain-tiny` (calibration,
+two mappers, one N), `players-tiny` (two takes of three cameras, fused in five ways, one of them
+drawn) and `single-view-tiny` (a depth camera and an inertial suit).
 """
 
 import os
@@ -39,8 +41,9 @@ def together(*parts):
     return {rule: sum(part.get(rule, 0) for part in parts) for rule in rules}
 
 
-# The real take once a camera's keypoints are new. Every way to fuse views reads the keypoints of all cameras,
-# and so does whatever shows them; the static pictures, and what was measured in them, do not.
+# The real take once a camera's keypoints are new. Every way to fuse views reads the keypoints of
+# all cameras, and so does whatever shows them; the static pictures, and what was measured in them,
+# do not.
 REAL_FUSED = {
     "synchronise_cameras": 1,
     "associate_people": 1,
@@ -57,7 +60,8 @@ REAL_FUSED = {
         for name in ("overlay", "skeletons", "reprojection", "visibility", "kinematics")
     },
 }
-# The virtual players once keypoints are new: two takes, and the way `two-robust` of table 1 in one of them.
+# The virtual players once keypoints are new: two takes, and the way `two-robust` of table 1 in one
+# of them.
 PLAYERS_FUSED = {
     "synchronise_cameras": 2,
     "associate_people": 2,
@@ -77,7 +81,8 @@ PLAYERS_FUSED = {
     "draw_shake": 1,  # of the take that is steadied, over its skeleton
     **{f"draw_badminton_{name}": 1 for name in ("fig05", "fig09", "fig10", "fig11", "tab01")},
 }
-# The take of devices once any of its sources is new: clocks come from all of them, all else from the clocks.
+# The take of devices once any of its sources is new: clocks come from all of them, all else from
+# the clocks.
 DEVICES_ALIGNED = {
     "synchronise_devices": 1,
     "list_events": 1,
@@ -108,7 +113,7 @@ TIES = {
 
 @pytest.fixture(scope="module")
 def kept(tiny_study, tmp_path_factory):
-    """Return a copy of the repository with the tiny study's results, for tests that leave it as it was."""
+    """Return a repository copy with the tiny study's results, for tests that leave it unchanged."""
     root = tmp_path_factory.mktemp("kept")
     copy_repository(root, FOLDER)
     return root
@@ -152,7 +157,8 @@ def test_a_suit_recorded_anew_spares_the_depth_camera(kept):
 def test_points_clicked_anew_spare_pictures_features_and_models(kept):
     with changed(kept / CLICKS, (kept / CLICKS).read_bytes() + b"\n"):
         jobs = planned(root=kept)
-    # known18, known8, known18-board, dlt8; the errors of known points are of clicks drawn anew, not of these
+    # known18, known8, known18-board, dlt8; the errors of known points are of clicks drawn anew, not
+    # of these
     assert jobs == together({"adjust_network": 2, "resect_cameras": 4}, TIES)
 
 
@@ -341,7 +347,7 @@ def test_photos_in_a_folder_are_compared_one_by_one(tmp_path):
 
 @pytest.mark.slow
 def test_results_without_their_dates_or_records_are_repaired_by_touch(tiny_study, tmp_path):
-    """Copied with new dates in the order of copying, and without Snakemake's records of what it did."""
+    """Copied with new dates in copying order, and without Snakemake's records of what it did."""
     copy_repository(tmp_path, FOLDER, copy_file=shutil.copy)
     shutil.rmtree(tmp_path / FOLDER / ".snakemake")
     assert planned(root=tmp_path) != {}
@@ -357,7 +363,7 @@ def figures(root):
 
 @pytest.mark.slow
 def test_every_script_is_known_to_reach_what_python_imports():
-    """What the digest of a script covers, against the modules that Python has loaded after importing it."""
+    """What a script's digest covers, against the modules Python has loaded after importing it."""
     library = ROOT / "workflow" / "lib"
     words = (
         "import runpy, sys; runpy.run_path(sys.argv[1]);"

@@ -1,4 +1,4 @@
-"""What reruns when something changes, what a kill leaves behind, and what a bad configuration says."""
+"""What reruns after a change, what a kill leaves behind, and what a bad configuration says."""
 
 import hashlib
 import os
@@ -26,8 +26,8 @@ def edit(path, old, new):
     path.write_text(text.replace(old, new, 1))
 
 
-# The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one of them
-# with two cameras for table 1.
+# The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one
+# of them with two cameras for table 1.
 FUSED, FILTERED = 2 + 2 * 5 + 1, 1 + 2 * 5
 TAKE_FIGURES = ("overlay", "skeletons", "reprojection", "visibility", "kinematics", "shake")
 PAPER_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11", "badminton_tab01")

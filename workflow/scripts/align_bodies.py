@@ -1,4 +1,4 @@
-"""Put a source of a take into the body frame of all: motion, clock, T-pose -> body motion, its frame."""
+"""Put a take's source into the common body frame: motion, clock, T-pose -> body motion, frame."""
 
 import json
 from pathlib import Path

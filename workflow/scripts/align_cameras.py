@@ -1,4 +1,7 @@
-"""Align a model with the court by a similarity: ties, clicks -> cameras as paper or all points say."""
+"""Align a model with the court by a similarity: ties, clicks -> cameras.
+
+The similarity is the paper's or that of all points.
+"""
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import quality, sfm_alignment
@@ -40,7 +43,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
 
 
 def warnings_of(court, record, marked, **options):
-    """Return what is wrong with clicks or court; the bend of this model, which stays in it, is not."""
+    """Return what is wrong with clicks or court; the bend that stays in this model is not."""
     try:
         if record.fault:
             raise InputError(record.fault)

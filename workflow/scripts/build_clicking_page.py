@@ -1,4 +1,4 @@
-"""Build the page for clicking: static pictures, court, earlier clicks and proposals -> one HTML file."""
+"""Build the clicking page: static pictures, court, earlier clicks, proposals -> one HTML file."""
 
 from courtside.calibration.court import court as courts
 from courtside.pages import page

@@ -1,4 +1,4 @@
-"""Put what the study has made into one HTML file: measures, warnings, figures, quality, methods -> page."""
+"""Put what the study has made into one HTML page: measures, warnings, figures, quality, methods."""
 
 from courtside.pages import page
 from courtside.pages.report import report

@@ -1,8 +1,8 @@
-"""Put a take into one HTML file to look around in: skeletons of several methods, cameras, court -> page.
+"""Put a take into one HTML page to look around in: skeletons of several methods, cameras, court.
 
-`layers` says, for each file of `paths.layers`, its `name`, the index of its skeleton in `paths.skeletons`,
-and whether it is `shown` at first; of a device also the `person`, its `source` in `paths.clocks`, and
-whether it is to be `placed` onto the first layer.
+`layers` says, for each file of `paths.layers`, its `name`, the index of its skeleton in
+`paths.skeletons`, and whether it is `shown` at first; of a device also the `person`, its `source`
+in `paths.clocks`, and whether it is to be `placed` onto the first layer.
 """
 
 from courtside.calibration.court import court as courts

@@ -1,4 +1,4 @@
-"""Calibrate the fixed cameras in the court's frame: ties, clicks -> cameras, covariance, quality."""
+"""Calibrate fixed cameras in the court's frame: ties, clicks -> cameras, covariance, quality."""
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, quality

@@ -1,4 +1,4 @@
-"""Calibrate the lens of one fixed camera from pictures of a chessboard: images -> K and distortion."""
+"""Calibrate a fixed camera's lens from pictures of a chessboard: images -> K and distortion."""
 
 import cv2
 import numpy as np

@@ -1,4 +1,7 @@
-"""Check that a fixed camera did not move or zoom before a take: static picture, video -> what it moved."""
+"""Check that a fixed camera did not move or zoom before a take.
+
+Reads its static picture and its video; writes what it moved.
+"""
 
 import pandas as pd
 

@@ -1,4 +1,4 @@
-"""Choose the T-pose that all sources of a take show best: motions, clocks -> their spells of it, claps."""
+"""Choose the T-pose that all sources of a take show best: motions, clocks -> its spells, claps."""
 
 from courtside.body_frame import common
 from courtside.events import detect

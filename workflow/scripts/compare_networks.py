@@ -1,4 +1,7 @@
-"""Compare two networks on the same takes: measures, 3D keypoints -> pairs, limits of agreement, verdicts."""
+"""Compare two networks on the same takes.
+
+Reads measures and 3D keypoints; writes pairs, limits of agreement and verdicts.
+"""
 
 import pandas as pd
 

@@ -1,4 +1,7 @@
-"""Compare skeletons from fewer cameras with those from all: 3D keypoints of a take -> distances per joint."""
+"""Compare skeletons from fewer cameras with those from all.
+
+Reads 3D keypoints of a take; writes distances per joint.
+"""
 
 from courtside.evaluation import camera_sets
 from courtside.records import tables

@@ -1,4 +1,4 @@
-"""Convert the network's own metric body in one camera: 2D keypoints -> the motion of one more source."""
+"""Convert the network's own metric body in one camera: 2D keypoints -> one more source's motion."""
 
 from courtside.depth import single_view
 from courtside.records.cameras import frame_times

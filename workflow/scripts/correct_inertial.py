@@ -1,4 +1,7 @@
-"""Correct a mocopi recording by vision: BVH, a camera's skeleton, clocks -> corrected BVH, joints, report."""
+"""Correct a mocopi recording by vision.
+
+Reads BVH, a camera's skeleton and clocks; writes corrected BVH, joints and report.
+"""
 
 from dataclasses import replace
 from math import hypot

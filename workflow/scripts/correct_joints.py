@@ -1,4 +1,4 @@
-"""Take joint offsets off, keep limbs at their length: filtered 3D keypoints, offsets -> corrected ones."""
+"""Take joint offsets off, keep limb lengths: filtered 3D keypoints, offsets -> corrected ones."""
 
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import keypoints

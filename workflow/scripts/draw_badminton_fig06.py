@@ -1,4 +1,7 @@
-"""Draw the walked camera's estimated path by number of bridging images: ties, court -> figure, CSV."""
+"""Draw the walked camera's estimated path by number of bridging images.
+
+Reads ties and court; writes figure and CSV.
+"""
 
 import json
 from pathlib import Path

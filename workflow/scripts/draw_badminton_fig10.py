@@ -1,4 +1,7 @@
-"""Draw skeletons with trajectories beside the detections: 2D, 3D keypoints, videos -> figure, CSV."""
+"""Draw skeletons with trajectories beside the detections.
+
+Reads 2D keypoints, 3D keypoints and videos; writes figure and CSV.
+"""
 
 import numpy as np
 

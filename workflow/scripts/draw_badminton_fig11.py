@@ -1,4 +1,4 @@
-"""Draw detections and the reprojected skeleton of one frame: 2D, 3D keypoints, videos -> figure, CSV."""
+"""Draw one frame's detections and reprojected skeleton: 2D, 3D keypoints, videos -> figure, CSV."""
 
 import numpy as np
 

@@ -1,4 +1,7 @@
-"""Draw detections and reprojected skeletons on pictures: 2D, people, clocks, 3D, videos -> figure, CSV."""
+"""Draw detections and reprojected skeletons on pictures of the videos.
+
+Reads 2D keypoints, people, clocks, 3D keypoints and videos; writes figure and CSV.
+"""
 
 import numpy as np
 

@@ -1,4 +1,7 @@
-"""Draw the skeletons of all sources in the T-pose: body motions, skeletons, derived joints -> figure, CSV."""
+"""Draw the skeletons of all sources in the T-pose.
+
+Reads body motions, skeletons and derived joints; writes figure and CSV.
+"""
 
 from courtside.figures.devices import skeleton_plates
 from courtside.figures.style import joint_map, style

@@ -1,4 +1,7 @@
-"""Draw smoothness against accuracy: distortion of takes, errors where a truth is known -> figure, CSV."""
+"""Draw smoothness against accuracy.
+
+Reads distortion of takes, and errors where a truth is known; writes figure and CSV.
+"""
 
 from courtside.figures.devices import smoothness_accuracy
 from courtside.figures.style import style

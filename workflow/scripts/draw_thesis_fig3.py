@@ -1,4 +1,4 @@
-"""Draw figure 3.1 or 3.2 of the thesis: the paths of one source's wrists, their distortion -> figure, CSV."""
+"""Draw figure 3.1 or 3.2 of the thesis: one source's wrist paths, distortion -> figure, CSV."""
 
 import pandas as pd
 

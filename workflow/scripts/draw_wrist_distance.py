@@ -1,4 +1,4 @@
-"""Draw the distance of the wrists with T-poses and claps: tables of wrists and events -> figure, CSV."""
+"""Draw the wrists' distance with T-poses and claps: tables of wrists and events -> figure, CSV."""
 
 from courtside.figures.devices import wrist_distance
 from courtside.figures.style import style

@@ -1,4 +1,7 @@
-"""Compare the body frames of one take's sources with the true ones: body motions, frames, truth -> errors."""
+"""Compare the body frames of one take's sources with the true ones.
+
+Reads body motions, frames and truth; writes errors.
+"""
 
 import numpy as np
 import pandas as pd

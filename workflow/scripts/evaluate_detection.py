@@ -1,4 +1,7 @@
-"""Evaluate the keypoints of a take in each picture: 2D keypoints, true joints and cameras -> errors in px."""
+"""Evaluate the keypoints of a take in each picture.
+
+Reads 2D keypoints, true joints and true cameras; writes errors in px.
+"""
 
 import pandas as pd
 

@@ -1,4 +1,7 @@
-"""Evaluate what the robust rule gains over others: 3D keypoints of one take, truth -> paired differences."""
+"""Evaluate what the robust rule gains over others.
+
+Reads 3D keypoints of one take and the truth; writes paired differences.
+"""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Estimate joint offsets on development bodies: filtered 3D keypoints, truth of takes -> offsets."""
+"""Estimate joint offsets on development bodies: filtered 3D keypoints, truths -> offsets."""
 
 import numpy as np
 

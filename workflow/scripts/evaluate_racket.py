@@ -1,4 +1,7 @@
-"""Measure a racket by cameras calibrated in several ways: ties, truth -> lengths and errors of every run."""
+"""Measure a racket by cameras calibrated in several ways.
+
+Reads ties and truth; writes lengths and errors of every run.
+"""
 
 from itertools import product
 

@@ -1,4 +1,4 @@
-"""Evaluate the round trip of table 1: 3D keypoints of several sets of cameras, truth -> rows per joint."""
+"""Evaluate the round trip of table 1: 3D keypoints by set of cameras, truth -> rows per joint."""
 
 import pandas as pd
 

@@ -1,4 +1,4 @@
-"""Measure how deep joints lie behind the skin of development bodies: lifted joints, truth -> depths."""
+"""Measure how deep joints lie behind development bodies' skin: lifted joints, truth -> depths."""
 
 from courtside.evaluation import skin_depths
 from courtside.records import tables

@@ -1,4 +1,4 @@
-"""Evaluate the sources of one take against its truth: body motions, truth -> errors and their parts."""
+"""Evaluate one take's sources against its truth: body motions, truth -> errors and their parts."""
 
 from dataclasses import replace
 

@@ -1,4 +1,7 @@
-"""Evaluate the skeletons of a take against its truth: 3D keypoints of every stage and fusion -> errors."""
+"""Evaluate the skeletons of a take against its truth.
+
+Reads 3D keypoints of every stage and fusion; writes errors.
+"""
 
 import pandas as pd
 

@@ -1,4 +1,7 @@
-"""Burn detections, 3D skeleton and time into a camera's video: video, 2D, people, clocks, 3D -> MP4."""
+"""Burn detections, 3D skeleton and time into a camera's video.
+
+Reads video, 2D keypoints, people, clocks and 3D keypoints; writes MP4.
+"""
 
 from courtside.exports import overlay_video
 from courtside.figures.style import style

@@ -1,4 +1,4 @@
-"""Extract the colour of a depth camera's recording: recording -> video, its frames' times, colour camera."""
+"""Extract a depth camera's colour: recording -> video, its frames' times, colour camera."""
 
 from courtside.devices import open_depth
 from courtside.geometry import camera

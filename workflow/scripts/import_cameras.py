@@ -1,4 +1,4 @@
-"""Import a calibration made elsewhere: its file -> cameras of the session, as their videos show them."""
+"""Import a calibration made elsewhere: its file -> the session's cameras, as their videos show."""
 
 from courtside.calibration import file_formats
 from courtside.geometry import camera

@@ -1,4 +1,7 @@
-"""Import the skeleton that a device gives by itself: mocopi's BVH, Nuitrack's JSON or CSV -> its motion."""
+"""Import the skeleton that a device gives by itself.
+
+Reads mocopi's BVH, Nuitrack's JSON or CSV; writes its motion.
+"""
 
 from courtside.devices import mocopi, nuitrack
 from courtside.records.devices import device_motion

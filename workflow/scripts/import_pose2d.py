@@ -1,4 +1,7 @@
-"""Import one camera's 2D keypoints of another program: folder of OpenPose's JSON, video -> 2D keypoints."""
+"""Import one camera's 2D keypoints of another program.
+
+Reads a folder of OpenPose's JSON and the video; writes 2D keypoints.
+"""
 
 from courtside.devices import openpose
 from courtside.records.keypoints import keypoints, skeleton

@@ -1,4 +1,4 @@
-"""List what each device shows, by its own clock: device motions -> wrist distance, T-poses, claps."""
+"""List what each device shows, by its own clock: motions -> wrist distance, T-poses, claps."""
 
 from courtside.events import detect
 from courtside.records import tables

@@ -1,4 +1,7 @@
-"""Match the images of a session, each pair once: features -> COLMAP database with two-view geometries."""
+"""Match a session's images, each pair once.
+
+Reads features; writes a COLMAP database with two-view geometries.
+"""
 
 import pandas as pd
 

@@ -1,4 +1,7 @@
-"""Measure one take: raw 3D keypoints -> speeds, distances, accelerations and angles with uncertainty."""
+"""Measure one take.
+
+Reads raw 3D keypoints; writes speeds, distances, accelerations and angles with uncertainty.
+"""
 
 from courtside.exports import measures
 from courtside.kinematics import cutoffs, filtering

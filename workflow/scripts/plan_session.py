@@ -1,4 +1,7 @@
-"""Predict the errors of a planned session: plan, court -> expected error against N, and over the court."""
+"""Predict the errors of a planned session.
+
+Reads plan and court; writes the expected error against N, and over the court.
+"""
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.planning import cameras, tie_points

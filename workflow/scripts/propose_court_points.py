@@ -1,4 +1,4 @@
-"""Propose court points: cameras, static pictures, court -> where the points are seen, to be confirmed."""
+"""Propose court points: cameras, static pictures, court -> where they are seen, to be confirmed."""
 
 from courtside.calibration.click_proposals import proposals as court_proposals
 from courtside.calibration.court import court as courts
@@ -17,7 +17,8 @@ def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_sha
     for name, path in log.progress(given, len(names), "court points: cameras"):
         if name not in known:
             raise InputError(
-                f"{cameras_toml}: expected camera {name}, found {', '.join(known)}; calibrate it first"
+                f"{cameras_toml}: expected camera {name}, found {', '.join(known)}; "
+                "calibrate it first"
             )
         image = images.read(path)
         cameras.check_size(known[name], image.shape[1::-1], path)

@@ -1,4 +1,7 @@
-"""Calibrate each fixed camera from known court points alone: clicked points, lenses -> cameras, quality."""
+"""Calibrate each fixed camera from known court points alone.
+
+Reads clicked points and lenses; writes cameras and quality.
+"""
 
 from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, known_points, quality

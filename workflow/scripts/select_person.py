@@ -1,4 +1,7 @@
-"""Select the person who wears devices among those of the fixed cameras: 3D keypoints -> one more source."""
+"""Select the person who wears devices among those of the fixed cameras.
+
+Reads 3D keypoints, writes them as one more source.
+"""
 
 from courtside.records.devices import device_motion
 from courtside.records.keypoints import keypoints

@@ -15,8 +15,8 @@ def main(court_yaml, truth_npz, backdrops_npz=(), *, settings, names, threads):
     expected = [*layouts.LAYOUTS[settings["layout"]], *walks]
     if sorted(names) != sorted(expected):
         raise InputError(
-            f"session {folder.name}: expected the cameras (and walk) of layout {settings['layout']}, "
-            f"{expected}, found {names}; rename them"
+            f"session {folder.name}: expected the cameras (and walk) of layout "
+            f"{settings['layout']}, {expected}, found {names}; rename them"
         )
     session.simulate(
         session.Settings(**settings),

@@ -1,4 +1,7 @@
-"""Film one take of a virtual session: settings, a court and the virtual body -> recordings, clicks, truth."""
+"""Film one take of a virtual session.
+
+Reads settings, a court and the virtual body; writes recordings, clicks and truth.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Find the cameras' clocks of one take: 2D keypoints of every camera -> offset and drift of each."""
+"""Find one take's camera clocks: 2D keypoints of every camera -> offset and drift of each."""
 
 from courtside.geometry import camera as cameras
 from courtside.records.devices import clocks as sync
@@ -29,7 +29,8 @@ def main(cameras_toml, pose2d_npz, sync_json, *, synchronised, stated, **options
 def report(clocks):
     for camera, clock in clocks.items():
         log.logger.info(
-            "%s: %s, offset %.1f ms, drift %.0f ppm, uncertain by %.1f ms = %.0f mm of a %.0f m/s wrist; %s",
+            "%s: %s, offset %.1f ms, drift %.0f ppm, uncertain by %.1f ms = %.0f mm of a %.0f m/s "
+            "wrist; %s",
             camera,
             clock.status,
             1e3 * clock.offset_s,

@@ -1,4 +1,4 @@
-"""Find the devices' clocks of one take: device motions -> clocks, wrist distance, T-poses and claps."""
+"""Find the devices' clocks of one take: motions -> clocks, wrist distance, T-poses, claps."""
 
 from courtside.events import detect
 from courtside.records import tables

@@ -1,4 +1,4 @@
-"""BVH: its text, its rows, and poses against bvhio, SciPy and forward kinematics by another tool."""
+"""BVH: its text, its rows, and poses against bvhio, SciPy and another tool's forward kinematics."""
 
 import csv
 import json
@@ -27,7 +27,7 @@ VALID = [
 
 
 def by_bvhio(path, frames):
-    """Return the world places of all joints by bvhio's own hierarchy, (T, J, 3) in the file's unit."""
+    """Return all joints' world places by bvhio's own hierarchy, (T, J, 3) in the file's unit."""
     root = bvhio.readAsHierarchy(str(path))
     joints = [joint for joint, _, _ in root.layout()]
     places = []

@@ -1,4 +1,4 @@
-"""mocopi's files: the study's names, metres, the row that nobody performed, the app's frame rates."""
+"""mocopi's files: the study's names, metres, the row nobody performed, the app's frame rates."""
 
 import runpy
 from pathlib import Path

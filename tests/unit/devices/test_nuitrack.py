@@ -81,7 +81,7 @@ def check(motion):
 
 
 def test_joint_numbers_are_those_of_the_interface():
-    """Nuitrack's enumeration: head is 1, the left hand 9, the right shoulder 12, the right ankle 23."""
+    """Nuitrack's enumeration: head is 1, left hand 9, right shoulder 12, right ankle 23."""
     wanted = {1: "head", 4: "waist", 9: "left_hand", 12: "right_shoulder", 17: "left_hip"}
     assert {k: nuitrack.NUMBERS[k] for k in wanted} == wanted
     assert nuitrack.NUMBERS[23] == "right_ankle"

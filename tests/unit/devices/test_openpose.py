@@ -1,4 +1,4 @@
-"""2D keypoints of OpenPose's JSON against another program's result, every fault, and tracks of people."""
+"""OpenPose's 2D keypoints (JSON) against another program's result, every fault, people's tracks."""
 
 import json
 from dataclasses import replace
@@ -147,7 +147,7 @@ def test_25_points_in_the_other_order_are_recognised(tmp_path, name):
 @needs_real
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_real_keypoints_lie_where_another_program_puts_the_joints(number):
-    """The markers of Pose2Sim's TRC file, projected into the picture, are near the person's keypoints."""
+    """Pose2Sim's TRC markers, projected into the picture, are near the person's keypoints."""
     real = REAL / "walk-4cams"
     joints = skeleton.read(SKELETONS / "body25b.yaml")
     folder = real / "openpose_body25b" / f"cam{number}_json"

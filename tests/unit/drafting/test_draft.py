@@ -1,4 +1,4 @@
-"""Drafted sessions: what they say, that their schema takes them, and what a user is told to check."""
+"""Drafted sessions: what they say, that their schema takes them, what users are told to check."""
 
 import pytest
 import yaml

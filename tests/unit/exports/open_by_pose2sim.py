@@ -1,6 +1,7 @@
-"""Open a project of `exports/pose2sim.py` with Pose2Sim, triangulate it, and compare with our own TRC file.
+"""Open a project of `exports/pose2sim.py` with Pose2Sim, triangulate it, compare with our TRC file.
 
-Run by hand, never by pytest, in the environment that `python benchmarks/peers.py pose2sim` makes and prints:
+Run by hand, never by pytest, in the environment that `python benchmarks/peers.py pose2sim` makes
+and prints:
 
     PYTHON tests/unit/exports/open_by_pose2sim.py PROJECT
 

@@ -73,7 +73,8 @@ def test_the_text_is_what_the_format_wants(tmp_path):
     bvh.write(tmp_path / "a.bvh", posed)
     words = (tmp_path / "a.bvh").read_text().split()
     channels = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
-    expected = f"""HIERARCHY ROOT root {{ OFFSET 0 90 0 {channels} JOINT tail {{ OFFSET 0 0 -20 {channels}
+    expected = f"""HIERARCHY ROOT root {{ OFFSET 0 90 0 {channels}
+        JOINT tail {{ OFFSET 0 0 -20 {channels}
         End Site {{ OFFSET 0 0 0 }} }} }} MOTION Frames: 1 Frame Time: 0
         50 100 0 10 20 30 0 0 -20 0 0 -45"""
     for found, wanted in zip(words, expected.split(), strict=True):

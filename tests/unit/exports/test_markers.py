@@ -10,12 +10,12 @@ from courtside.records.keypoints import skeleton
 FILES = sorted((Path(__file__).parents[3] / "config" / "skeletons").glob("*.yaml"))
 # Of Pose2Sim 0.10.49: the points of HALPE_26 that it triangulates, as skeletons.py lists them.
 HALPE = (
-    "Hip RHip RKnee RAnkle RBigToe RSmallToe RHeel LHip LKnee LAnkle LBigToe LSmallToe LHeel Neck Head Nose "
-    "RShoulder RElbow RWrist LShoulder LElbow LWrist"
+    "Hip RHip RKnee RAnkle RBigToe RSmallToe RHeel LHip LKnee LAnkle LBigToe LSmallToe LHeel Neck "
+    "Head Nose RShoulder RElbow RWrist LShoulder LElbow LWrist"
 )
 BLAZE = (
-    "RHip RKnee RAnkle RHeel RBigToe LHip LKnee LAnkle LHeel LBigToe Nose REye LEye RShoulder RElbow RWrist "
-    "RPinky RIndex RThumb LShoulder LElbow LWrist LPinky LIndex LThumb"
+    "RHip RKnee RAnkle RHeel RBigToe LHip LKnee LAnkle LHeel LBigToe Nose REye LEye RShoulder "
+    "RElbow RWrist RPinky RIndex RThumb LShoulder LElbow LWrist LPinky LIndex LThumb"
 )
 
 

@@ -1,4 +1,4 @@
-"""The marker set: well-formed, one marker for each of the TRC file's, on bodies that the models have."""
+"""The marker set: well-formed, a marker for each of the TRC file's, on bodies the models have."""
 
 from pathlib import Path
 from xml.etree import ElementTree

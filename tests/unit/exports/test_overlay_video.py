@@ -1,4 +1,4 @@
-"""A video with skeletons burnt in: long, fast and large as its source, colours at joints, no faces."""
+"""A video with skeletons burnt in: long, fast, large as its source, colours at joints, no faces."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ WRIST = walker.SKELETON.index("left_wrist")
 
 @pytest.fixture(scope="module")
 def take():
-    """Return camera, 2D, 3D of a walker whom each camera sees 20 px to the right of where she is."""
+    """Return camera, 2D, 3D of a walker whom each camera sees 20 px to the right of her place."""
     points = walker.points(n_frames=N)
     camera = scene.ring(3)[1]
     view = walker.views(points, [camera], offset_px=(20.0, 0.0))[0]

@@ -1,4 +1,4 @@
-"""A Pose2Sim project holds what was measured, in the form that Pose2Sim reads; its TRC files come back.
+"""A Pose2Sim project holds what was measured, in a form Pose2Sim reads; its TRC files come back.
 
 `open_by_pose2sim.py` beside this file opens such a project with Pose2Sim itself.
 """
@@ -39,7 +39,10 @@ def project(tmp_path):
 
 
 def test_cameras_and_their_folders_come_in_one_order(project):
-    """Pose2Sim pairs the calibration's tables with the folders, sorted by the last number in their names."""
+    """Pose2Sim pairs the calibration's tables with the folders.
+
+    The folders are sorted by the last number in their names.
+    """
     folder, found, *_ = project
     assert [p.name for p in folder.glob("*calib*/*.toml")] == ["Calib.toml"]
     tables = tomllib.loads((folder / "calibration" / "Calib.toml").read_text())
@@ -126,7 +129,7 @@ def test_files_that_do_not_fit_are_named(project, tmp_path):
 
 @needs_real
 def test_a_file_of_pose2sim_itself_is_read():
-    """Its markers are the joints by name; columns as stated in the real data's own table of axes."""
+    """Its markers are the joints by name; columns as the real data's own table of axes states."""
     path = REAL / "walk-4cams" / "trc" / "Balancing_for_IK.trc"
     body = skeleton.read(SKELETONS / "halpe26.yaml")
     found = pose2sim.read_takes({"p1": path}, body, model="pose2sim")

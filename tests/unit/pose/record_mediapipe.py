@@ -1,20 +1,22 @@
 """Record what MediaPipe Pose's own Python solution finds, for tests of this project's network code.
 
-Run by hand, never by pytest, in an environment that has MediaPipe 0.10.21 and not this project's packages
-(`python benchmarks/peers.py mediapipe` makes it and prints its interpreter):
+Run by hand, never by pytest, in an environment that has MediaPipe 0.10.21 and not this project's
+packages (`python benchmarks/peers.py mediapipe` makes it and prints its interpreter):
 
     PYTHON tests/unit/pose/record_mediapipe.py VIDEOS PHOTO OUTPUT
 
-VIDEOS is the folder with cam01.mp4 .. cam04.mp4 of `walk-4cams`, PHOTO the file of `people`, OUTPUT the
-folder of this script. It writes there
+VIDEOS is the folder with cam01.mp4 .. cam04.mp4 of `walk-4cams`, PHOTO the file of `people`, OUTPUT
+the folder of this script. It writes there
 
-- `mediapipe_landmarks.csv`: each picture on its own (static_image_mode=True), seven frames of each video and
-  the photo (frame 0);
-- `mediapipe_tracking.csv`: cam03 from frame 0 on as one clip (static_image_mode=False), every fifth kept;
+- `mediapipe_landmarks.csv`: each picture on its own (static_image_mode=True), seven frames of each
+  video and the photo (frame 0);
+- `mediapipe_tracking.csv`: cam03 from frame 0 on as one clip (static_image_mode=False), every fifth
+  kept;
 - `mediapipe_tracking_unsmoothed.csv`: the same with smooth_landmarks=False.
 
-All with model_complexity=1, min_detection_confidence=0.5 and the solution's other defaults. Frames are
-decoded in order by cv2.VideoCapture and counted from 0: nothing depends on how well a file seeks.
+All with model_complexity=1, min_detection_confidence=0.5 and the solution's other defaults. Frames
+are decoded in order by cv2.VideoCapture and counted from 0: nothing depends on how well a file
+seeks.
 """
 
 import argparse
@@ -28,7 +30,8 @@ VIDEOS = ("cam01", "cam02", "cam03", "cam04")
 STATIC_FRAMES = (0, 12, 25, 37, 50, 62, 75)
 TRACKED, TRACKED_FRAMES, KEEP_EVERY = "cam03", 100, 5
 COLUMNS = (
-    "video", "frame_idx", "joint_idx", "x_px", "y_px", "visibility", "world_x_m", "world_y_m", "world_z_m",
+    "video", "frame_idx", "joint_idx", "x_px", "y_px", "visibility",
+    "world_x_m", "world_y_m", "world_z_m",
 )  # fmt: skip
 HEADER = """\
 # MediaPipe Pose {version} (Python solution), {mode}, model_complexity=1, min_detection_confidence=0.5.

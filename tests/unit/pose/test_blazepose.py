@@ -1,4 +1,4 @@
-"""BlazePose as run here against MediaPipe's own Python solution, and its geometry against mathematics."""
+"""BlazePose run here against MediaPipe's own Python solution; its geometry against mathematics."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Following several people: a stand-in network that sees squares, and two skiers in one real picture."""
+"""Following several people: a stand-in network that sees squares, two skiers in a real picture."""
 
 import itertools
 import json
@@ -50,7 +50,7 @@ class Finder:
 
 
 class Placer:
-    """Sees whichever square is nearest to the region's middle, as a real network takes what is there."""
+    """Sees the square nearest to the region's middle, as a real network takes what is there."""
 
     n_joints = 5
 

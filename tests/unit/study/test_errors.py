@@ -1,4 +1,4 @@
-"""The message of an error is one line whatever is put into it; damage of any kind becomes such an error."""
+"""An error's message is one line whatever is put in; damage of any kind becomes such an error."""
 
 import json
 import lzma

@@ -1,4 +1,4 @@
-"""Names of calibrations, structures from motion and fusions are parsed as the configuration means them."""
+"""Names of calibrations, structures from motion, fusions parse as the configuration means them."""
 
 import pytest
 

@@ -1,1 +1,1 @@
-"""The virtual gymnasium: halls, players and recordings with exact truth, made from a YAML file and a seed."""
+"""The virtual gymnasium: halls, players, recordings with exact truth, from a YAML file and seed."""

@@ -115,7 +115,7 @@ def test_frames_out_of_order_are_left_out(tmp_path):
 
 
 def changed_db3(path, change):
-    """Write a db3 whose messages a function changes: (topic, values) -> values, or None to leave out."""
+    """Write a db3 with messages changed by a function: (topic, values) -> values, None to omit."""
     rows = []
     for topic, kind, time_ns, values in messages_of_db3(frames(2), plain):
         values = change(topic, dict(values))

@@ -78,7 +78,7 @@ def test_what_is_no_frame_is_refused(tmp_path, made):
 
 
 def played(rs, path):
-    """Return (pictures of depth, of colour, aligned depth) as the camera's own software plays them."""
+    """Return (pictures of depth, of colour, aligned depth) as the camera's software plays them."""
     settings, pipeline, found = rs.config(), rs.pipeline(), []
     settings.enable_device_from_file(str(path), repeat_playback=False)
     pipeline.start(settings).get_device().as_playback().set_real_time(False)

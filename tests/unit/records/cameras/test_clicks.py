@@ -31,7 +31,10 @@ def test_a_written_file_is_read_exactly(tmp_path):
 
 
 def test_a_table_from_a_spreadsheet_is_read(tmp_path):
-    text = "﻿point, camera,x_px,y_px,frame_idx\r\np02,left, 12.5,-3e-1,0\r\n,,,,\r\n\r\np01,centre,7,8,0\r\n"
+    text = (
+        "﻿point, camera,x_px,y_px,frame_idx\r\np02,left, 12.5,-3e-1,0\r\n"
+        ",,,,\r\n\r\np01,centre,7,8,0\r\n"
+    )
     found = clicks.read(saved(tmp_path, text), CAMERAS, POINTS)
     np.testing.assert_array_equal(found["left"], [[np.nan] * 2, [12.5, -0.3], [np.nan] * 2])
     np.testing.assert_array_equal(found["centre"], [[7, 8], [np.nan] * 2, [np.nan] * 2])

@@ -17,7 +17,7 @@ CAMERAS = scene.ring(3)
 
 
 def written(folder, offset_s=0.25):
-    """Write a take whose second camera has a clock of its own, and return the arguments of `read`."""
+    """Write a take whose second camera has its own clock, and return the arguments of `read`."""
     record = walker.points(n_frames=12, n_persons=2)
     views = walker.views(record, CAMERAS)
     views[1] = replace(views[1], time_s=views[1].time_s + offset_s)

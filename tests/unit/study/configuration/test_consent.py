@@ -83,8 +83,8 @@ def test_what_is_left_out_is_said_once_for_the_same_persons():
     lines = consent.left_out(found)
     assert len(lines) == 4  # export and pictures, of p1 and p2 together and of p1 alone
     assert lines[0] == (
-        "no files of how they moved for other programs in takes both, again: p1, p2 have not agreed to "
-        "export (consent)"
+        "no files of how they moved for other programs in takes both, again: p1, p2 have not "
+        "agreed to export (consent)"
     )
     assert lines[3].startswith("no pictures and videos")
     assert lines[3].endswith("in take alone: p1 has not agreed to pictures (consent)")

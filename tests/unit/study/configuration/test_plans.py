@@ -44,11 +44,20 @@ def test_what_is_left_out_has_a_default(tmp_path, content):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda c: c["cameras"]["side"].pop("focal_px"), "cameras.side: expected .*focal_px or fov_deg"),
+        (
+            lambda c: c["cameras"]["side"].pop("focal_px"),
+            "cameras.side: expected .*focal_px or fov_deg",
+        ),
         (lambda c: c["walk"].update(fov_deg=60), "walk: expected .*focal_px or fov_deg"),
         (lambda c: c["cameras"].pop("side"), "cameras: expected at least 2 entries"),
-        (lambda c: c["cameras"]["side"].update(place_m=[-60, 6, 2]), "cameras.side.place_m: .*within hall_m"),
-        (lambda c: c["walk"].update(height_m=9.9, via_m=[[0, 60]]), "walk: place 1: .*within hall_m"),
+        (
+            lambda c: c["cameras"]["side"].update(place_m=[-60, 6, 2]),
+            "cameras.side.place_m: .*within hall_m",
+        ),
+        (
+            lambda c: c["walk"].update(height_m=9.9, via_m=[[0, 60]]),
+            "walk: place 1: .*within hall_m",
+        ),
         (lambda c: c["walk"].update(via_m=[c["walk"]["to_m"]]), "twice in a row"),
         (lambda c: c.update(hall_m=[[0, 0, 0], [9, 9, 0.5]]), "hall_m: expected corners"),
         (lambda c: c.update(texture="bare"), "texture: expected one of"),

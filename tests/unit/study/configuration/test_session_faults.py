@@ -176,7 +176,8 @@ def test_good_sessions_have_no_fault(root, content):
         (
             RECORDED | {"subjects": {"p1": None}, "takes": {"t": FILMED}},
             [
-                "takes.t: expected the key 'videos' or 'devices' and not 'virtual' in a recorded session"
+                "takes.t: expected the key 'videos' or 'devices' and not 'virtual' "
+                "in a recorded session"
             ],
         ),
         (

@@ -72,7 +72,8 @@ def test_what_is_gone_has_none_and_is_forgotten(tmp_path, video):
 @pytest.mark.parametrize(
     "text",
     [
-        "", "[]", "{", '{"format": 0}', '{"format": 1}', '{"format": 1, "files": []}', "[" * 100_000,
+        "", "[]", "{", '{"format": 0}', '{"format": 1}', '{"format": 1, "files": []}',
+        "[" * 100_000,
         '{"format": 1, "files": {"a": [1]}}', '{"format": 1, "files": {"a": [1, "x", 2]}}',
     ],
 )  # fmt: skip

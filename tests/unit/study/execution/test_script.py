@@ -80,8 +80,10 @@ def test_a_parameter_goes_before_a_wildcard_of_its_name():
     ("parts", "message"),
     [
         ({}, "rule count_frames: expected video for its script, found none"),
-        ({"input": {"video": "a"}, "output": {"video": "b"}}, "rule count_frames: video is given twice"),
-        ({"input": {"video": "a"}, "params": {"fps": 2}}, "rule count_frames: its script does not take fps"),
+        ({"input": {"video": "a"}, "output": {"video": "b"}},
+         "rule count_frames: video is given twice"),
+        ({"input": {"video": "a"}, "params": {"fps": 2}},
+         "rule count_frames: its script does not take fps"),
     ],
 )  # fmt: skip
 def test_a_rule_and_a_script_that_disagree_are_named(parts, message):

@@ -75,7 +75,8 @@ def test_a_failure_gives_the_fault_the_log_and_what_to_do(tmp_path):
         ("", f"its log is empty: it was killed, or disk or memory are full; {SPARE_MEMORY}"),
         (
             "2026-01-01 10:00:00,000 INFO 3 of 9\n",
-            "it was killed, or ran out of memory; its last words: 2026-01-01 10:00:00,000 INFO 3 of 9",
+            "it was killed, or ran out of memory; "
+            "its last words: 2026-01-01 10:00:00,000 INFO 3 of 9",
         ),
     ],
 )

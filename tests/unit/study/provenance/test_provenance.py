@@ -32,7 +32,7 @@ def job(rule, inputs, outputs, made=True, done=True, **params):
 
 
 def study(**change):
-    """Return jobs of two cameras, a network, and a figure; and a figure that rests on one video alone."""
+    """Return jobs of two cameras, a network, a figure; and a figure from one video alone."""
     jobs = [
         job(
             "fetch", [], ["results/external/net.tflite", "results/external/other"], step={"seed": 9}
@@ -222,7 +222,8 @@ def test_parameters_become_json():
     value = {1: Path("a"), "b": {"y", "x"}, "c": Camera("left", (2, 3)), "d": object(), "e": None}
     found = provenance.plain(value)
     assert found == {
-        "1": "a", "b": ["x", "y"], "c": {"name": "left", "size": [2, 3]}, "d": "a object", "e": None,
+        "1": "a", "b": ["x", "y"], "c": {"name": "left", "size": [2, 3]}, "d": "a object",
+        "e": None,
     }  # fmt: skip
     assert json.loads(json.dumps(found)) == found
 

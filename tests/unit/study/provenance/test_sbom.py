@@ -1,4 +1,4 @@
-"""The list of parts holds what the lock and the pins hold, read here in another way, in CycloneDX form."""
+"""The list of parts holds what lock and pins hold, read here in another way, in CycloneDX form."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Files of devices and of other programs, read into records: BVH, mocopi, Nuitrack, OpenPose, depth.
+"""Files of devices and other programs, read into records: BVH, mocopi, Nuitrack, OpenPose, depth.
 
 bvh
     `read`: any BVH file as a posed hierarchy; `read_text`: its checked content.

@@ -26,15 +26,15 @@ def run(main: Callable[..., None], job: Any) -> None:
 def arguments(main: Callable[..., None], job: Any) -> dict[str, Any]:
     """Return the arguments of `main`.
 
-    An input that is left empty keeps the default of `main` where there is one. Files that `main` does not
-    name are only for Snakemake. The parameter `step` is spread: each of its entries is an argument, unless
-    `main` takes `step` itself.
+    An input that is left empty keeps the default of `main` where there is one. Files that `main`
+    does not name are only for Snakemake. The parameter `step` is spread: each of its entries is an
+    argument, unless `main` takes `step` itself.
 
     Raises
     ------
     TypeError
-        A name that two parts of the rule give, a parameter that `main` does not take, or an argument
-        that nothing gives.
+        A name that two parts of the rule give, a parameter that `main` does not take, or an
+        argument that nothing gives.
     """
     every = inspect.signature(main).parameters
     taken = {name: one for name, one in every.items() if one.kind is not one.VAR_KEYWORD}
