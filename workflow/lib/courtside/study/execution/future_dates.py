@@ -38,7 +38,7 @@ def check(folders: Iterable[str | os.PathLike]) -> None:
 
 
 def _advice(folders: list[Path]) -> str:
-    """Return the command that dates the files today: for PowerShell on Windows, else for a shell."""
+    """Return the command that dates the files today, for PowerShell on Windows."""
     named = [f"'{folder}'" for folder in folders]
     if files.WINDOWS:
         return (
