@@ -40,7 +40,7 @@ def shown(path):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=" ".join(__doc__.split("\n\n")[:2]))
     parser.add_argument("folder", type=Path, help="folder of recordings, such as data/north")
     parser.add_argument("--name", help="of the session; the folder's without it")
     parser.add_argument("--court", default="badminton", help="a file of config/courts, or none")

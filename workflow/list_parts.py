@@ -33,7 +33,7 @@ def main(repository):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=" ".join(__doc__.split("\n\n")[:2]))
     parser.add_argument("--output", type=Path, help="a file, such as results/sbom.json")
     given = parser.parse_args()
     try:

@@ -1,4 +1,4 @@
-"""Say which files of a study would come out otherwise now, and why.
+"""List the files of a study that are out of date, and why.
 
 Usage: `python workflow/verify_study.py`.
 
@@ -63,7 +63,7 @@ def write_checksums(table):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=" ".join(__doc__.split("\n\n")[:2]))
     parser.add_argument("--directory", type=Path, default=Path(), help="where the study ran")
     parser.add_argument(
         "--against", type=Path, help="another results folder, or a table of its checksums"
