@@ -178,7 +178,7 @@ def sidecars(folder):
 
 
 def read_sidecars(path):
-    """Read sidecars and ask what of them would come out otherwise now."""
+    """Read sidecars and ask which files are out of date."""
     now = {"sha256": lambda path: None, "code": lambda script: None, "lock_sha256": None}
     now |= {"packages": {"numpy": "2.4"}, "python": "3.11", "platform": "Linux"}
     return [verification.changes(sidecar, now) for sidecar in verification.read(path)]

@@ -181,9 +181,5 @@ def report(
     n_faults = len(lines)
     lines += [f"since the last run, {line}" for line in changed]
     lines += [f"{n} files: {cause}" for cause, n in causes.most_common() if n > 1]
-    verdict = (
-        f"{n_faults} would come out otherwise or have none"
-        if n_faults
-        else "none would come out otherwise"
-    )
+    verdict = f"{n_faults} are out of date or have none" if n_faults else "all are up to date"
     return [*lines, f"{len(sidecars)} files have a record: {verdict}"], n_faults
