@@ -40,7 +40,8 @@ def gym(tmp_path):
 def study(gym, name, session, **settings):
     """Run a study of one session; return the folder of its results."""
     (gym / "config" / "sessions" / f"{name}.yaml").write_text(yaml.safe_dump(session))
-    mine = {"sessions": [name], "variations": [], "calibrations": ["sfm-n12", "known8"]} | settings
+    mine = {"sessions": [name], "variations": [], "plans": []}
+    mine |= {"calibrations": ["sfm-n12", "known8"]} | settings
     (gym / "config" / "mine.yaml").write_text(yaml.safe_dump(mine))
     command = [sys.executable, "-m", "snakemake", "--configfile", "config/mine.yaml"]
     done = subprocess.run(command, cwd=gym, capture_output=True, text=True, check=False)
@@ -100,7 +101,7 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
         },
         "override": {"models": ["body25b"], "take_figures": [], "export_stages": ["pose3d"]},
     }
-    results = study(gym, "walk", session, calibrations=["file"], plans=[]) / "takes/balancing"
+    results = study(gym, "walk", session, calibrations=["file"]) / "takes/balancing"
     ours = keypoints.read_3d(results / "pose3d/file/all-robust/body25b.npz")
     theirs = keypoints.read_3d(results / "pose3d/imported/trc/body25b.npz")
     joints = [name for name in skeleton.JOINTS if name in ours.joints and name in theirs.joints]
