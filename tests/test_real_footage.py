@@ -120,25 +120,22 @@ def test_the_person_is_found_in_the_camera_frames(detected):
 
 
 def test_four_views_agree_with_another_program(fused, reference):
-    points, _ = fused
-    error_mm = 1e3 * np.linalg.norm(points.xyz[0][:, limbs(points)] - reference, axis=-1)
+    error_mm = 1e3 * np.linalg.norm(fused.xyz[0][:, limbs(fused)] - reference, axis=-1)
     assert np.isnan(error_mm).mean() <= 0.02
     assert np.nanmedian(error_mm) <= 40
     assert np.nanpercentile(error_mm, 90) <= 80
 
 
 def test_accepted_views_reproject_closely(fused):
-    points, _ = fused
-    error_px = points.reproj_error_px[0][:, limbs(points)]
-    assert np.median(error_px[points.accepted[0][:, limbs(points)]]) <= 6
+    error_px = fused.reproj_error_px[0][:, limbs(fused)]
+    assert np.median(error_px[fused.accepted[0][:, limbs(fused)]]) <= 6
 
 
 def test_limbs_keep_their_length(fused):
-    points, _ = fused
     variation = []
     for ends in skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml").segments.values():
-        a, b = (points.joints.tolist().index(joint) for joint in ends)
-        length = np.linalg.norm(points.xyz[0, :, a] - points.xyz[0, :, b], axis=-1)
+        a, b = (fused.joints.tolist().index(joint) for joint in ends)
+        length = np.linalg.norm(fused.xyz[0, :, a] - fused.xyz[0, :, b], axis=-1)
         variation.append(np.nanstd(length) / np.nanmean(length))
     assert len(variation) == 8
     assert np.median(variation) <= 0.06
@@ -148,7 +145,6 @@ def test_limbs_keep_their_length(fused):
 def test_left_and_right_are_exchanged_where_the_reference_says_so(
     fused, views, detected, reference
 ):
-    points, swapped = fused
     other = [LIMBS.index(("right_", "left_")[n[0] == "r"] + n.split("_")[1]) for n in LIMBS]
     for part in (("elbow", "wrist"), ("knee", "ankle")):
         joints = [at for at, name in enumerate(LIMBS) if name.endswith(part)]
@@ -160,7 +156,7 @@ def test_left_and_right_are_exchanged_where_the_reference_says_so(
                 for xy in (seen, seen[:, other])
             )
             wrong.append(exchanged < 0.8 * as_named)
-            found.append(swapped[at, 0][:, limbs(points)][:, joints[0]])
+            found.append(fused.swapped[0, ..., at][:, limbs(fused)][:, joints[0]])
         wrong, found = np.array(wrong), np.array(found)
         assert wrong[1].sum() >= 20
         assert found[wrong].mean() >= 0.85

@@ -37,10 +37,10 @@ def main(paths, pose3d_npz, *, persons, fusion, **options):
     def fuse(names, rule):
         own = [known[name] for name in names], [views[name] for name in names]
         clock = [clocks[name] for name in names]
-        found, swapped = camera_error.triangulate_take(
+        found = camera_error.triangulate_take(
             *own, joints, persons, clocks=clock, time_s=time_s, rule=rule, **options
         )
-        report(found, swapped)
+        report(found)
         if shared:
             found = camera_error.with_cameras(found, own[0], shared.of(names).of_columns())
         return found
@@ -51,11 +51,12 @@ def main(paths, pose3d_npz, *, persons, fusion, **options):
     )
 
 
-def report(points, swapped):
+def report(points):
     log.logger.info("missing points: %.1f %%", 100 * np.isnan(points.xyz[..., 0]).mean())
     for at, camera in enumerate(points.cameras):
         error_px, accepted = points.reproj_error_px[..., at], points.accepted[..., at].mean()
-        values = camera, np.nanmedian(error_px), 100 * accepted, swapped[at].any(axis=(0, 2)).sum()
+        swaps = points.swapped[..., at].any(axis=(0, 2)).sum()
+        values = camera, np.nanmedian(error_px), 100 * accepted, swaps
         log.logger.info(
             "%s: reprojected to %.1f px, accepted %.0f %%, sides exchanged %d times", *values
         )

@@ -29,6 +29,7 @@ def record(xyz):
         n_views=np.full(shape, 2),
         reproj_error_px=np.zeros((*shape, 2)),
         accepted=np.ones((*shape, 2), dtype=bool),
+        swapped=np.zeros((*shape, 2), dtype=bool),
         reason=np.where(
             np.isnan(xyz[None, ..., 0]), missing_reason.REJECTED, missing_reason.OK
         ).astype(np.uint8),

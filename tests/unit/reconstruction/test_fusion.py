@@ -52,7 +52,7 @@ def test_cameras_of_other_rates_meet_on_common_times():
     cameras = scene.ring(3)
     times = [np.arange(120) / 60, np.arange(100) / 50, np.arange(60) / 30 + 0.004]
     views = [view(c, t) for c, t in zip(cameras, times, strict=True)]
-    points, _ = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], **OPTIONS)
+    points = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], **OPTIONS)
     assert points.rate_hz == pytest.approx(60)
     seen = np.isfinite(points.xyz[0, :, 0, 0])
     assert seen.mean() > 0.95
@@ -75,10 +75,30 @@ def test_clocks_of_their_own_are_brought_together():
     views = [
         view(c, clock.to_reference(own), own) for c, clock in zip(cameras, clocks, strict=True)
     ]
-    points, _ = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], **OPTIONS, clocks=clocks)
+    points = fusion.triangulate_take(cameras, views, SKELETON, ["p1"], **OPTIONS, clocks=clocks)
     seen = np.isfinite(points.xyz[0, :, 0, 0])
     assert seen.mean() > 0.95
     np.testing.assert_allclose(points.xyz[0, seen], body(points.time_s[seen]), atol=2e-3)
+
+
+def test_sides_swapped_in_one_camera_are_recorded_there_and_nowhere_else():
+    cameras, made = scene.ring(4), walker.points(n_frames=40)
+    views, n_persons = walker.views(replace(made, xyz=walker.body(40)[None]), cameras), 1
+    legs = [walker.SKELETON.index(joint) for joint in walker.SKELETON.side_groups()[1]]
+    mirror = np.array(walker.SKELETON.mirror())
+    planted = np.zeros((n_persons, 40, walker.N_JOINTS, 4), bool)
+    planted[:, 12:25, legs, 2] = True
+    views[2].xy[:, 12:25] = np.where(
+        planted[:, 12:25, :, 2, None], views[2].xy[:, 12:25][:, :, mirror], views[2].xy[:, 12:25]
+    )
+    found = fusion.triangulate_take(cameras, views, walker.SKELETON, ["p1"], **OPTIONS)
+    np.testing.assert_array_equal(found.swapped, planted)
+    assert np.nanmax(found.reproj_error_px) < 0.1  # the fusion took each joint's own keypoint
+    for change in ({"fix_sides": False}, {"rule": "dlt"}):
+        left = fusion.triangulate_take(
+            cameras, views, walker.SKELETON, ["p1"], **(OPTIONS | change)
+        )
+        assert not left.swapped.any()
 
 
 def test_every_missing_point_says_why():
@@ -104,7 +124,7 @@ def test_the_measured_noise_gives_honest_ellipsoids():
     sigma_px = np.linspace(1, 4, 14)  # each joint has its own noise, unknown to the method
     for keypoints in views:
         keypoints.xy[...] += rng.normal(0, 1, keypoints.xy.shape) * sigma_px[:, None]
-    points, _ = fusion.triangulate_take(
+    points = fusion.triangulate_take(
         cameras, views, SKELETON, ["p1"], **{**OPTIONS, "max_error_px": 30, "fade_px": 40}
     )
     error = points.xyz[0] - body(points.time_s)
@@ -223,6 +243,16 @@ def test_views_are_those_of_the_half():
     error = merged.reproj_error_px[0, 0, at["left_knee"]]
     np.testing.assert_array_equal(error[:2], left.reproj_error_px[0, 0, at["left_knee"]])
     assert np.isnan(error[2]) and np.isfinite(merged.reproj_error_px[0, 0, at["nose"]]).all()
+
+
+def test_swaps_are_those_of_the_half():
+    left, right = halves()
+    knees = [list(left.joints).index(name) for name in ("left_knee", "right_knee")]
+    swapped = left.swapped.copy()
+    swapped[0, 2, knees] = [False, True]  # in the half's second camera
+    left, right = (replace(half, swapped=swapped) for half in (left, right))
+    merged = fusion.merge(left, right, CAMERAS_HALFBODY)
+    assert np.argwhere(merged.swapped).tolist() == [[0, 2, knees[0], 1], [0, 2, knees[1], 2]]
 
 
 def test_a_joint_of_the_middle_that_one_half_lacks_is_that_of_the_other():

@@ -202,6 +202,7 @@ def record_limb_lengths(xyz, sigma_m=(0.01, 0.05, 0.01)):
         n_views=np.full(shape, 2),
         reproj_error_px=np.zeros((*shape, 2)),
         accepted=np.ones((*shape, 2), dtype=bool),
+        swapped=np.zeros((*shape, 2), dtype=bool),
         reason=np.zeros(shape, dtype=np.uint8),
     )
 

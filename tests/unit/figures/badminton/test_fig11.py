@@ -8,6 +8,7 @@ import pytest
 from courtside.evaluation import detection
 from courtside.figures.badminton import fig11
 from courtside.figures.style import picture_crops
+from courtside.reconstruction import fusion
 from fixtures.people import takes_made, walker
 
 LIMIT = 0.1
@@ -106,13 +107,52 @@ def test_sides_that_the_fusion_exchanged_are_taken_as_it_took_them():
     xy = seen[0].view.xy.copy()
     xy[:, :, pair] = xy[:, :, pair[::-1]]
     seen[0] = replace(seen[0], view=replace(seen[0].view, xy=xy))
-    rows = table(record, seen)  # its errors stay 0: the fusion exchanged them back
+    record.swapped[:, FRAME, pair, 0] = True  # and its errors stay 0
+    rows = table(record, seen)
     changed = rows.sides_exchanged
     assert set(zip(rows[changed].camera, rows[changed].joint, strict=True)) == {
         ("c0", "left_knee"),
         ("c0", "right_knee"),
     }
     np.testing.assert_allclose(rows.detected_x_px, rows.reprojected_x_px, atol=1e-6)
+
+
+def test_a_keypoint_near_the_other_sides_joint_is_no_exchange_unless_the_fusion_says_so():
+    record, seen = takes_made.take()
+    pair = [AT("left_knee"), AT("right_knee")]
+    xy = seen[0].view.xy.copy()
+    xy[:, :, pair] = xy[:, :, pair[::-1]]
+    seen[0] = replace(seen[0], view=replace(seen[0].view, xy=xy))
+    assert not table(record, seen).sides_exchanged.any()
+
+
+def test_a_planted_swap_reaches_the_table_through_the_fusion():
+    _, seen = takes_made.take(n_frames=40)
+    legs = [AT(joint) for joint in walker.SKELETON.side_groups()[1]]
+    mirror = np.array(walker.SKELETON.mirror())
+    at = slice(FRAME - 3, FRAME + 4)
+    seen[1].view.xy[:, at, legs] = seen[1].view.xy[:, at, mirror[legs]]
+    options = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20}
+    made = fusion.triangulate_take(
+        takes_made.CAMERAS,
+        [one.view for one in seen],
+        walker.SKELETON,
+        ["p1"],
+        clocks=[one.clock for one in seen],
+        fix_sides=True,
+        **options,
+    )
+    limit = limits(made)
+    tables = [
+        fig11.table(made, seen, takes_made.LIMBS, mirror, frame, limit)
+        for frame in (FRAME, FRAME + 8)
+    ]
+    changed = tables[0][tables[0].sides_exchanged]
+    assert set(changed.camera) == {"c1"}
+    of_legs = {j for j in takes_made.LIMBS if j.endswith(("hip", "knee", "ankle"))}
+    assert set(changed.joint) == of_legs
+    np.testing.assert_allclose(changed.detected_x_px, changed.reprojected_x_px, atol=0.1)
+    assert not tables[1].sides_exchanged.any()
 
 
 def test_rings_are_drawn_where_the_moved_joints_were_detected():

@@ -59,6 +59,7 @@ def test_one_person_of_the_cameras_is_a_source():
         n_views=np.full(shape, 2),
         reproj_error_px=np.zeros((*shape, 2)),
         accepted=np.ones((*shape, 2), dtype=bool),
+        swapped=np.zeros((*shape, 2), dtype=bool),
         reason=np.full(shape, missing_reason.OK, dtype=np.uint8),
     )
     found = device_motion.of_person(points, "p2")

@@ -85,7 +85,14 @@ def test_appending_keeps_what_was_there():
     np.testing.assert_array_equal(
         longer.n_views[..., 33], record.n_views[..., shoulder].min(axis=-1)
     )
-    for key in ("covariance_2d", "covariance_camera", "reproj_error_px", "accepted", "reason"):
+    for key in (
+        "covariance_2d",
+        "covariance_camera",
+        "reproj_error_px",
+        "accepted",
+        "swapped",
+        "reason",
+    ):
         assert getattr(longer, key).shape[2] == 35
 
 

@@ -184,5 +184,6 @@ def _points(
         n_views=np.where(there, LEAST_VIEWS, 0),
         reproj_error_px=np.empty((*there.shape, 0)),
         accepted=np.empty((*there.shape, 0), dtype=bool),
+        swapped=np.empty((*there.shape, 0), dtype=bool),
         reason=np.where(there, missing_reason.OK, missing_reason.UNSEEN).astype(np.uint8),
     )

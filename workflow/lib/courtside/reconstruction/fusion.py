@@ -32,7 +32,7 @@ def triangulate_take(
     clocks: Sequence[Clock] | None = None,
     time_s: NDArray | None = None,
     rule: str = "robust",
-) -> tuple[Keypoints3D, NDArray]:
+) -> Keypoints3D:
     """Triangulate the persons of one take.
 
     Parameters
@@ -53,8 +53,7 @@ def triangulate_take(
     Returns
     -------
     points : Keypoints3D
-    swapped : (C, P, T, J) bool
-        Where left and right were exchanged.
+        Its `swapped` tells where left and right were exchanged.
 
     Notes
     -----
@@ -78,11 +77,11 @@ def triangulate_take(
         solve = triangulation.triangulate_robust
         options |= {"max_error_px": max_error_px, "fade_px": fade_px}
     found = solve(cameras, xy.reshape(len(cameras), -1, 2), flat, **options)
-    points = _record(cameras, views[0], person_id, time_s, found, score.shape[1:])
+    points = _record(cameras, views[0], person_id, time_s, found, swapped)
     reason = why_missing(flat, found.xyz, min_score, min_views).reshape(points.xyz.shape[:-1])
     variance = keypoint_variance(points, score)
     covariance = points.covariance_2d * variance[:, None, None]
-    return replace(points, reason=reason, covariance_2d=covariance), swapped
+    return replace(points, reason=reason, covariance_2d=covariance)
 
 
 def _fix_sides(cameras, xy, score, skeleton, max_error_px) -> tuple[NDArray, NDArray, NDArray]:
@@ -98,8 +97,8 @@ def _fix_sides(cameras, xy, score, skeleton, max_error_px) -> tuple[NDArray, NDA
     return xy, score, swapped
 
 
-def _record(cameras, view, person_id, time_s, found, shape) -> Keypoints3D:
-    per_view = (len(cameras), *shape)
+def _record(cameras, view, person_id, time_s, found, swapped) -> Keypoints3D:
+    per_view, shape = swapped.shape, swapped.shape[1:]
     accepted = np.moveaxis(found.accepted.reshape(per_view), 0, -1)
     covariance = found.covariance.reshape(*shape, 3, 3)
     return Keypoints3D(
@@ -114,6 +113,7 @@ def _record(cameras, view, person_id, time_s, found, shape) -> Keypoints3D:
         n_views=accepted.sum(axis=-1),
         reproj_error_px=np.moveaxis(found.error_px.reshape(per_view), 0, -1),
         accepted=accepted,
+        swapped=np.moveaxis(swapped, 0, -1),
         reason=np.zeros(shape, dtype=np.uint8),
     )
 
@@ -188,21 +188,25 @@ def merge(left: Keypoints3D, right: Keypoints3D, cameras: Sequence[str]) -> Keyp
     }
     # The mean of two dependent points (they share a camera): its covariance is at most their mean.
     either = ~(of_left | of_right)
-    views = np.where(of_right[:, None], parts[1].accepted, parts[0].accepted)
-    views[:, :, either] = (parts[0].accepted | parts[1].accepted)[:, :, either]
+    for key in ("accepted", "swapped"):
+        halves = [getattr(part, key) for part in parts]
+        chosen[key] = np.where(of_right[:, None], halves[1], halves[0])
+        chosen[key][:, :, either] = (halves[0] | halves[1])[:, :, either]
     reason = np.where(of_right, right.reason, left.reason)
     reason[:, :, either] = np.minimum(left.reason, right.reason)[:, :, either]
-    n_views = views.sum(axis=-1) * np.isfinite(chosen["xyz"][..., 0])
-    return replace(left, cameras=names, accepted=views, n_views=n_views, reason=reason, **chosen)
+    n_views = chosen["accepted"].sum(axis=-1) * np.isfinite(chosen["xyz"][..., 0])
+    return replace(left, cameras=names, n_views=n_views, reason=reason, **chosen)
 
 
 def _with_columns(points: Keypoints3D, cameras: NDArray) -> Keypoints3D:
     """Return a record with a column for each of more cameras."""
     at = [cameras.tolist().index(name) for name in points.cameras.tolist()]
     shape = (*points.reproj_error_px.shape[:-1], len(cameras))
-    error, accepted = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
-    error[..., at], accepted[..., at] = points.reproj_error_px, points.accepted
-    return replace(points, cameras=cameras, reproj_error_px=error, accepted=accepted)
+    filled: dict[str, Any] = {"reproj_error_px": np.full(shape, np.nan)}
+    filled |= {key: np.zeros(shape, dtype=bool) for key in ("accepted", "swapped")}
+    for key, values in filled.items():
+        values[..., at] = getattr(points, key)
+    return replace(points, cameras=cameras, **filled)
 
 
 def _choose(left: NDArray, right: NDArray, of_left: NDArray, of_right: NDArray) -> NDArray:

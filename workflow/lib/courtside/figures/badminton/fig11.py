@@ -100,8 +100,7 @@ def table(
         reprojected = one.reprojected(points, own)
         for person, name in enumerate(points.person_id):
             seen = one.view.xy[person, own]
-            error = points.reproj_error_px[person, frame, :, camera]
-            exchanged = _exchanged(seen, reprojected[person], mirror, error)
+            exchanged = points.swapped[person, frame, :, camera]
             seen = np.where(exchanged[:, None], seen[mirror], seen)
             drawn = np.column_stack([seen, reprojected[person]])[at]
             columns = {
@@ -111,7 +110,7 @@ def table(
                 "joint": list(joints),
                 **dict(zip(PIXELS, drawn.T, strict=True)),
                 "sides_exchanged": exchanged[at],
-                "error_px": error[at],
+                "error_px": points.reproj_error_px[person, frame, at, camera],
                 "limit_px": limit_px[person, camera],
                 "accepted": points.accepted[person, frame, at, camera],
                 "disagrees": disagrees[person, frame, :, camera],
@@ -121,16 +120,6 @@ def table(
             }
             parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)
-
-
-def _exchanged(
-    seen: NDArray, reprojected: NDArray, mirror: Sequence[int], error: NDArray
-) -> NDArray:
-    """Return for which joints the fusion's error is that of the other side's keypoint, (J,)."""
-    own = np.linalg.norm(seen - reprojected, axis=1)
-    other = np.linalg.norm(seen[mirror] - reprojected, axis=1)
-    with np.errstate(invalid="ignore"):
-        return np.abs(other - error) < np.abs(own - error)
 
 
 def _percent(disagrees: NDArray, known: NDArray, person: int, camera: int) -> NDArray:

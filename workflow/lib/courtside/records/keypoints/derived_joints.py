@@ -195,7 +195,7 @@ def append(
     """Return a record with derived joints behind its own; names that it already has are left.
 
     A derived joint has the fewest views of its parts, is accepted in a camera where all parts are,
-    and has the mean of their reprojection errors.
+    swapped where one is, and has the mean of their reprojection errors.
     """
     for name in names:
         if name not in points.joints:
@@ -213,6 +213,7 @@ def _append_one(points: Keypoints3D, table: DerivedJoints, skeleton: str, name: 
         "reason": reason,
         "n_views": points.n_views[:, :, used].min(axis=2),
         "accepted": points.accepted[:, :, used].all(axis=2),
+        "swapped": points.swapped[:, :, used].any(axis=2),
         "reproj_error_px": points.reproj_error_px[:, :, used].mean(axis=2),
     }
     longer: dict[str, Any] = {

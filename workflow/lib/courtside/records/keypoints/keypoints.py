@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from courtside.records import npz
 
 FORM_2D = "courtside keypoints2d 1"
-FORM_3D = "courtside keypoints3d 1"
+FORM_3D = "courtside keypoints3d 2"
 SPEC_2D = {
     "camera": ("str", ()),
     "model": ("str", ()),
@@ -32,6 +32,7 @@ SPEC_3D = {
     "n_views": ("int", ("P", "T", "J")),
     "reproj_error_px": ("float", ("P", "T", "J", "C")),
     "accepted": ("bool", ("P", "T", "J", "C")),
+    "swapped": ("bool", ("P", "T", "J", "C")),
     "reason": ("int", ("P", "T", "J")),
 }
 
@@ -80,7 +81,7 @@ class Keypoints3D:
     Attributes
     ----------
     cameras : (C,) str
-        The views, in the order of the last axis of `reproj_error_px`.
+        The views, in the order of the last axis of `reproj_error_px`, `accepted` and `swapped`.
     model : str
         Network that saw the keypoints.
     joints, person_id : (J,) str, (P,) str
@@ -98,6 +99,9 @@ class Keypoints3D:
         either.
     accepted : (P, T, J, C) bool
         Whether that camera's keypoint was used for the point.
+    swapped : (P, T, J, C) bool
+        Whether the fusion took that camera's keypoint of the other side, because its network
+        confused left and right.
     reason : (P, T, J) uint8
         `courtside.records.keypoints.missing_reason`.
     """
@@ -113,6 +117,7 @@ class Keypoints3D:
     n_views: NDArray
     reproj_error_px: NDArray
     accepted: NDArray
+    swapped: NDArray
     reason: NDArray
 
     @property
