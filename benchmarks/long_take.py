@@ -84,7 +84,7 @@ def steps(folder, given):
     sync = folder / "made" / "sync.json"
     paths = Paths(
         cameras=given.cameras, covariance=given.covariance, pose2d=pose2d, sync=sync,
-        skeleton=shape, people=made["people"], shake=[],
+        skeleton=shape, people=made["people"],
     )  # fmt: skip
     yield (
         "synchronise_cameras",

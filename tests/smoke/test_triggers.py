@@ -63,6 +63,7 @@ REAL_FUSED = {
 # The virtual players once keypoints are new: two takes, and the way `two-robust` of table 1 in one
 # of them.
 PLAYERS_FUSED = {
+    "steady_keypoints": 3,  # cameras of the take that is steadied
     "synchronise_cameras": 2,
     "associate_people": 2,
     "triangulate": 2 * 5 + 1,

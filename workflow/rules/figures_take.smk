@@ -10,6 +10,7 @@ rule draw_overlay:
     input:
         pose3d=paths.POSE3D,
         pose2d=of_job(takes.each_camera, paths.POSE2D),
+        shake=of_job(takes.shake),
         people=paths.PEOPLE,
         sync=paths.CAMERA_CLOCKS,
         cameras=paths.CAMERAS,

@@ -30,6 +30,7 @@ rule export_overlay_video:
     input:
         pose3d=paths.POSE3D,
         pose2d=paths.POSE2D,
+        shake=of_job(takes.shake),
         people=paths.PEOPLE,
         sync=paths.CAMERA_CLOCKS,
         cameras=paths.CAMERAS,
@@ -53,7 +54,7 @@ rule export_overlay_video:
 rule export_pose2sim:
     input:
         pose3d=of_job(takes.exported),
-        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        pose2d=of_job(takes.keypoints_2d),
         people=paths.PEOPLE,
         sync=paths.CAMERA_CLOCKS,
         cameras=paths.CAMERAS,

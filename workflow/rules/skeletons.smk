@@ -1,16 +1,31 @@
 """Metric skeletons and the files that other programs open.
 
-Inputs: 2D keypoints, cameras. Outputs: results/{session}/takes/{take}/ sync, people, pose3d,
-pose3d_filtered, pose3d_corrected, kinematics.
-Steps: synchronise_cameras, associate_people, triangulate (raw, always kept), filter_motion,
-correct_joints, export_take, measure_kinematics.
+Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
+people, pose3d, pose3d_filtered, pose3d_corrected, kinematics.
+Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people,
+triangulate (raw, always kept), filter_motion, correct_joints, export_take, measure_kinematics.
 """
+
+
+rule steady_keypoints:
+    input:
+        pose2d_npz=paths.POSE2D,
+        cameras_toml=paths.CAMERAS,
+        shake_csv=paths.SHAKE,
+    output:
+        steadied_npz=paths.POSE2D_STEADIED,
+    log:
+        "results/{session}/logs/steady_keypoints/{take}.{calibration}.{model}.{camera}.log",
+    params:
+        code=code("steady_keypoints.py"),
+    script:
+        "../scripts/steady_keypoints.py"
 
 
 rule synchronise_cameras:
     input:
         cameras_toml=paths.CAMERAS,
-        pose2d_npz=of_job(takes.each_camera, paths.POSE2D),
+        pose2d_npz=of_job(takes.keypoints_2d),
     output:
         sync_json=paths.CAMERA_CLOCKS,
     log:
@@ -29,7 +44,7 @@ rule synchronise_cameras:
 rule associate_people:
     input:
         cameras=paths.CAMERAS,
-        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        pose2d=of_job(takes.keypoints_2d),
         sync=paths.CAMERA_CLOCKS,
         skeleton=of_job(Job.skeleton_file),
         court=of_job(Job.court_file),
@@ -50,10 +65,9 @@ rule triangulate:
     input:
         cameras=paths.CAMERAS,
         covariance=of_job(calibration.covariance),
-        pose2d=of_job(takes.each_camera, paths.POSE2D),
+        pose2d=of_job(takes.keypoints_2d),
         sync=paths.CAMERA_CLOCKS,
         people=paths.PEOPLE,
-        shake=of_job(takes.shake),
         skeleton=of_job(Job.skeleton_file),
     output:
         pose3d_npz=paths.POSE3D,

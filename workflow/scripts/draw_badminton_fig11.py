@@ -6,7 +6,8 @@ from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig11
 from courtside.figures.style import stick_figure, style
 from courtside.pose import privacy
-from courtside.records.cameras import footage
+from courtside.reconstruction import camera_shake
+from courtside.records.cameras import footage, shake_table
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
 from courtside.video import reader
@@ -22,6 +23,7 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
         paths.videos,
         wanted=points.cameras,
     )
+    seen = camera_shake.put_back(seen, shake_table.read_all(paths.shake))
     limbs, figure = (
         joints.groups["limbs"],
         stick_figure.stick(joints, derived_joints.read(paths.derived)),

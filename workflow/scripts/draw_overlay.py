@@ -9,7 +9,8 @@ from courtside.figures.style import style
 from courtside.figures.take import overlay
 from courtside.geometry import camera as cameras
 from courtside.pose import privacy
-from courtside.reconstruction import resampling
+from courtside.reconstruction import camera_shake, resampling
+from courtside.records.cameras import shake_table
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.execution.script import run
@@ -27,13 +28,26 @@ def main(paths, pdf, png, csv, *, n_frames, blur_faces):
         seen[view.camera] = at_times, own_s, film
     used = [name for name in points.cameras.tolist() if name in seen]
     times_s = overlay.chosen_times(points, n_frames)
+    tables = shake_table.read_all(paths.shake)
+    shaken = {
+        name: standing(known[name], *seen[name][:2], tables.get(name), times_s) for name in used
+    }
+    stood = [[shaken[name][at] for name in used] for at in range(len(times_s))]
     panels = [
-        [panel(points, known[name], *seen[name], time_s, joints, blur_faces) for name in used]
-        for time_s in times_s
+        [panel(points, camera, *seen[camera.name], time_s, joints, blur_faces) for camera in row]
+        for time_s, row in zip(times_s, stood, strict=True)
     ]
     views = [seen[name][0] for name in used]
-    table = overlay.table([known[name] for name in used], views, points, times_s)
+    table = overlay.table(stood, views, points, times_s)
     style.save(overlay.draw(panels, times_s, used), table, pdf, png, csv)
+
+
+def standing(camera, view, own_s, table, times_s):
+    """Return the camera as it stood in the frames nearest to times."""
+    if table is None:
+        return [camera] * len(times_s)
+    at = [overlay.nearest(view, time_s) for time_s in times_s]
+    return [cameras.turned(camera, v) for v in camera_shake.frame_turns(camera, table, own_s[at])]
 
 
 def panel(points, camera, view, own_s, film, time_s, joints, blur_faces):

@@ -1,7 +1,5 @@
 """Draw how the fixed cameras shook in a take: shake, cameras, skeletons -> figure, CSV, lines."""
 
-from pathlib import Path
-
 import numpy as np
 
 from courtside.figures.style import style
@@ -17,7 +15,7 @@ from courtside.study.execution.script import run
 
 def main(paths, pdf, png, csv, text_path):
     calibrated = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
-    tables = {Path(path).stem: shake_table.read(path) for path in paths.shake}
+    tables = shake_table.read_all(paths.shake)
     seen = keypoints.read_3d(paths.pose3d).xyz.reshape(-1, 3)
     seen = seen[np.isfinite(seen).all(axis=1)]
     player = np.median(seen, axis=0) if len(seen) else np.full(3, np.nan)

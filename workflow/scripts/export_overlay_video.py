@@ -6,6 +6,8 @@ Reads video, 2D keypoints, people, clocks and 3D keypoints; writes MP4.
 from courtside.exports import overlay_video
 from courtside.figures.style import style
 from courtside.geometry import camera as cameras
+from courtside.reconstruction import camera_shake
+from courtside.records.cameras import shake_table
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.execution import log
@@ -18,6 +20,10 @@ COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
 def main(paths, mp4, *, camera, blur_faces, trim_s, crf, effort, keep_background):
     known = {one.name: one for one in cameras.read_toml(paths.cameras)}
     view, (_, clocks) = keypoints.read_2d(paths.pose2d), sync.read(paths.sync)
+    turns = None
+    if paths.shake:
+        table = shake_table.read_all(paths.shake)[camera]
+        turns = camera_shake.frame_turns(known[camera], table, view.time_s)
     track = overlay_video.track(
         known[camera],
         view,
@@ -25,6 +31,7 @@ def main(paths, mp4, *, camera, blur_faces, trim_s, crf, effort, keep_background
         clocks[camera],
         keypoints.read_3d(paths.pose3d),
         skeleton.read(paths.skeleton),
+        turns,
     )
     start_s, stop_s = trim_s or (None, None)
     rate_hz = reader.probe(paths.video, stop_s=stop_s).rate_hz

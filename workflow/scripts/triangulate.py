@@ -1,14 +1,11 @@
 """Triangulate one take: 2D keypoints of every camera -> 3D keypoints in the world."""
 
-from itertools import zip_longest
-
 import numpy as np
 
 from courtside.calibration.records import covariance
 from courtside.geometry import camera as cameras
-from courtside.reconstruction import camera_shake, resampling
 from courtside.reconstruction import fusion as camera_error
-from courtside.records.cameras import shake_table
+from courtside.reconstruction import resampling
 from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.errors import InputError
@@ -24,11 +21,9 @@ def main(paths, pose3d_npz, *, persons, fusion, **options):
     if fault := sync.fault_line(paths.sync, clocks):
         raise InputError(fault)
     who = people.read(paths.people)
-    for path, shake in zip_longest(paths.pose2d, paths.shake):
+    for path in paths.pose2d:
         view = keypoints.read_2d(path)
         cameras.check_size(known[view.camera], tuple(map(int, view.size)), path)
-        if shake:
-            view = camera_shake.steady(view, known[view.camera], shake_table.read(shake))
         views[view.camera] = who.assigned(view)
     time_s = resampling.common_times(list(views.values()), [clocks[name] for name in views])
 

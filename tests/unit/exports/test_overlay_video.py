@@ -10,7 +10,7 @@ from courtside.figures.style import style
 from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 from courtside.video import reader, writer
-from fixtures.cameras import scene
+from fixtures.cameras import scene, shaken
 from fixtures.people import walker
 
 COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
@@ -51,6 +51,16 @@ def test_colours_stand_at_the_joints(take):
     for xy, colour in ((view.xy[0, 7, WRIST], COLOURS[0]), (true, COLOURS[1])):
         x, y = np.round(xy).astype(int)
         assert image[y, x].tolist() == list(colour)
+
+
+def test_in_shaken_pictures_the_skeleton_lies_on_the_person(take):
+    camera, view, points = take
+    vectors = shaken.knock(camera, N, 5, 14.0, tremor_px=2)
+    moved = shaken.view(replace(view, xy=view.xy - [20.0, 0.0]), camera, vectors)
+    track = overlay_video.track(camera, moved, moved, Clock(), points, walker.SKELETON, vectors)
+    assert np.nanmax(np.abs(track.reprojected - moved.xy)) < 0.01
+    still = overlay_video.track(camera, moved, moved, Clock(), points, walker.SKELETON)
+    assert np.nanmin(np.abs(still.reprojected - moved.xy)[:, 5:, :, 0]) > 5
 
 
 def test_a_view_that_was_not_used_is_joined_by_a_red_line(take):

@@ -48,6 +48,15 @@ def test_projection_is_opencvs():
     np.testing.assert_allclose(cameras.project(make(), points()), expected, atol=1e-9)
 
 
+def test_a_turned_camera_is_opencvs_with_both_rotations():
+    turn = np.array([0.02, -0.03, 0.05])
+    vector, translation = cv2.composeRT(ROTATION_VECTOR, TRANSLATION, turn, np.zeros(3))[:2]
+    expected = cv2.projectPoints(points(), vector, translation, K, DIST)[0][:, 0]
+    found = cameras.turned(make(), turn)
+    np.testing.assert_allclose(cameras.project(found, points()), expected, atol=1e-9)
+    np.testing.assert_allclose(found.centre_in_world, make().centre_in_world, atol=1e-9)
+
+
 def test_projection_is_colmaps_half_a_pixel_apart():
     parameters = [*np.diag(K)[:2], *(K[:2, 2] + 0.5), *DIST[:4]]
     theirs = pycolmap.Camera(model="OPENCV", width=1920, height=1080, params=parameters)

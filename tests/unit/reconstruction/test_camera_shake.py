@@ -1,8 +1,8 @@
 """Steadied keypoints: OpenCV's projection of a known camera rotation is undone."""
 
 import logging
+from dataclasses import replace
 
-import cv2
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,9 +10,15 @@ from scipy.spatial.transform import Rotation
 
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import camera_shake
+from courtside.reconstruction.association import associate
+from courtside.records.cameras.footage import Footage
+from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
+from courtside.synchronisation import cameras as camera_sync
+from fixtures.cameras import scene, shaken, sync_takes
+from fixtures.people import stick_figures, walker
 
 SIZE = np.array([1920, 1080])
 K = np.array([[1450.0, 0, 985.0], [0, 1440.0, 515.0], [0, 0, 1]])
@@ -23,32 +29,19 @@ CENTRE = (SIZE - 1) / 2
 RATE_HZ = 30.0
 
 
-def projected(xyz_in_cam):
-    """Project points (N, 3) in the camera's axes by OpenCV."""
-    return cv2.projectPoints(xyz_in_cam[:, None], np.zeros(3), np.zeros(3), K, DIST)[0][:, 0]
-
-
 def turns(n, seed=0):
     """Return turns of some ten pixels about any axis, (n, 3) radians."""
     return np.random.default_rng(seed).normal(0, 0.006, (n, 3))
 
 
+def projected(xyz_in_cam):
+    """Project points (N, 3) in the camera's axes by OpenCV."""
+    return shaken.projected(CAMERA, xyz_in_cam)
+
+
 def shake(vectors):
     """Return the table of a perfect measurement of rotations, at the picture's centre."""
-    arms = np.array([[0, 0], [0.5, 0], [-0.5, 0], [0, 0.5], [0, -0.5]])
-    seen = cv2.undistortPoints(
-        (CENTRE + arms)[:, None], K, DIST, criteria=(cv2.TERM_CRITERIA_COUNT, 100, 0)
-    )[:, 0]
-    directions = np.column_stack([seen, np.ones(5)])
-    rows = []
-    for vector in vectors:
-        moved = projected(directions @ Rotation.from_rotvec(vector).as_matrix().T)
-        across, down = moved[1] - moved[2], moved[3] - moved[4]
-        turn = np.arctan2(across[1] - down[0], across[0] + down[1])
-        rows.append([*(moved[0] - CENTRE), np.degrees(turn), 0.0, 0.03])
-    names = ["shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_px"]
-    table = pd.DataFrame(rows, columns=names)
-    return table.assign(frame_idx=table.index, time_s=table.index / RATE_HZ, n_matches=150)
+    return shaken.table(CAMERA, vectors, np.arange(len(vectors)) / RATE_HZ)
 
 
 def view(vectors, seed=1, joints=12):
@@ -59,17 +52,17 @@ def view(vectors, seed=1, joints=12):
     xyz[..., :2] *= xyz[..., 2:] / 14
     rotation = Rotation.from_rotvec(vectors).as_matrix()
     still = projected(xyz.reshape(-1, 3)).reshape(*shape, 2)
-    shaken = np.einsum("tij,ptkj->ptki", rotation, xyz)
+    turned = np.einsum("tij,ptkj->ptki", rotation, xyz)
     made = Keypoints2D(
         camera="mirror",
         model="m",
         joints=np.array([f"j{at}" for at in range(joints)]),
         size=SIZE,
         time_s=np.arange(len(vectors)) / RATE_HZ,
-        xy=projected(shaken.reshape(-1, 3)).reshape(*shape, 2),
+        xy=projected(turned.reshape(-1, 3)).reshape(*shape, 2),
         score=np.ones(shape),
         reason=np.full(shape, missing_reason.OK, np.uint8),
-        xyz_in_body=shaken,
+        xyz_in_body=turned,
     )
     return made, still, xyz
 
@@ -104,6 +97,102 @@ def test_keypoints_return_to_the_still_picture():
     np.testing.assert_allclose(found.xyz_in_body, xyz, atol=1e-4)
     np.testing.assert_array_equal(found.reason, made.reason)
     np.testing.assert_array_equal(found.score, made.score)
+
+
+KNOCK_PX = 14.0
+
+
+def test_synchronisation_gets_the_clock_of_the_still_cameras():
+    rng = np.random.default_rng(0)
+    cameras, clocks = sync_takes.rig(3), [Clock(), Clock(2.31, -120.0), Clock(-3.07, 90.0)]
+    people, own_s = [sync_takes.athlete(rng, 15.0)], np.arange(450) / 30
+    still, moved, steadied = [], [], []
+    for seed, (camera, clock) in enumerate(zip(cameras, clocks, strict=True)):
+        still.append(sync_takes.seen(rng, camera, people, own_s, clock))
+        vectors = shaken.knock(camera, 450, 200, KNOCK_PX, tremor_px=2, seed=seed)
+        moved.append(shaken.view(still[-1], camera, vectors))
+        table = shaken.table(camera, vectors, own_s)
+        steadied.append(camera_shake.steady(moved[-1], camera, table))
+    found = [camera_sync.synchronise(views, cameras) for views in (still, moved, steadied)]
+    of = {
+        name: [clock[name].from_reference(np.array([0, 15])) for clock in found]
+        for name in ("c1", "c2")
+    }
+    for exact, shaky, steady in of.values():
+        assert np.abs(steady - exact).max() < 1e-5
+        assert np.abs(shaky - exact).max() > 2e-4
+
+
+def test_association_gets_the_people_of_the_still_cameras():
+    rng = np.random.default_rng(1000)
+    time_s = np.arange(120) / 30
+    places = np.stack([np.linspace(-2, 2, 120), np.zeros(120)], axis=1)
+    people = np.stack([stick_figures.body(way, time_s) for way in (places, -places + [0.0, 0.6])])
+    cameras = scene.ring(3, radius_m=20)
+    xy, _ = stick_figures.seen(cameras, people, rng)
+    found = []
+    for shift_px in (0.0, 60.0):
+        views = []
+        for camera, seen in zip(cameras, xy, strict=True):
+            vectors = shaken.knock(camera, 120, 40, shift_px, tremor_px=shift_px / 10)
+            still = keypoints_of(camera, time_s, seen)
+            table = shaken.table(camera, vectors, time_s)
+            moved = shaken.view(still, camera, vectors)
+            views.append((moved, camera_shake.steady(moved, camera, table)))
+        found += [
+            associate.associate(
+                cameras, [view[which].xy for view in views], time_s, 2, trunk=stick_figures.TRUNK
+            )
+            for which in (0, 1)
+        ]
+    still, _, moved, steadied = found
+    np.testing.assert_array_equal(np.array(steadied.index), np.array(still.index))
+    np.testing.assert_allclose(steadied.path, still.path, atol=1e-4)
+    assert (np.array(moved.index) != np.array(still.index)).any()
+
+
+def keypoints_of(camera, time_s, xy):
+    shape = xy.shape[:-1]
+    return Keypoints2D(
+        camera=camera.name,
+        model="m",
+        joints=np.arange(shape[-1]).astype(str),
+        size=np.array(camera.size),
+        time_s=time_s,
+        xy=xy,
+        score=np.ones(shape),
+        reason=np.zeros(shape, np.uint8),
+        xyz_in_body=np.full((*shape, 3), np.nan),
+    )
+
+
+def test_skeletons_reproject_onto_the_persons_in_the_shaken_pictures():
+    cameras, record = scene.ring(2, dist=(-0.1, 0.02, 1e-3, 0, 0)), walker.points(12, n_cameras=2)
+    record = replace(record, xyz=walker.body(12)[None])
+    views = walker.views(record, cameras)
+    vectors = shaken.knock(cameras[1], 12, 6, KNOCK_PX, tremor_px=2)
+    moved = shaken.view(views[1], cameras[1], vectors)
+    seen = [
+        Footage(camera, view, Clock(), "")
+        for camera, view in zip(cameras, [views[0], moved], strict=True)
+    ]
+    table = shaken.table(cameras[1], vectors, moved.time_s)
+    found = camera_shake.put_back(seen, {cameras[1].name: table})
+    assert found[0] is seen[0]
+    for frame in range(12):
+        drawn = found[1].reprojected(record, frame)
+        assert np.abs(drawn - moved.xy[:, frame]).max() < 0.05
+    assert np.abs(seen[1].reprojected(record, 9) - moved.xy[:, 9]).max() > 10
+
+
+def test_an_unknown_turn_is_put_back_as_it_was_taken_out_not_at_all():
+    vectors = turns(40)
+    table = without(shake(vectors), [0, *range(10, 14), *range(20, 32)])
+    found = camera_shake.frame_turns(CAMERA, table, table.time_s.to_numpy())
+    left = np.isin(np.arange(40), [0, *range(20, 32)])
+    assert not found[left].any()
+    measured = ~left & ~np.isin(np.arange(40), range(10, 14))
+    np.testing.assert_allclose(found[measured], vectors[measured], atol=1e-5)
 
 
 def test_a_camera_that_stands_still_changes_nothing():

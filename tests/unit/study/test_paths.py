@@ -33,6 +33,10 @@ KNOWN = {
         (paths.TIES, "results/gym/sfm/global-n40-o0/ties.npz"),
         (paths.SFM_ERRORS, "results/gym/evaluation/global-n40-o0.csv"),
         (paths.POSE2D, "results/gym/takes/rally/pose2d/net/left.npz"),
+        (
+            paths.POSE2D_STEADIED,
+            "results/gym/takes/rally/pose2d_steadied/sfm-n40/net/left.npz",
+        ),
         (paths.POSE3D, "results/gym/takes/rally/pose3d/sfm-n40/all-robust/net.npz"),
         (
             paths.SKELETONS,

@@ -8,7 +8,8 @@ import pytest
 from courtside.evaluation import detection
 from courtside.figures.badminton import fig11
 from courtside.figures.style import picture_crops
-from courtside.reconstruction import fusion
+from courtside.reconstruction import camera_shake, fusion
+from fixtures.cameras import shaken
 from fixtures.people import takes_made, walker
 
 LIMIT = 0.1
@@ -132,16 +133,7 @@ def test_a_planted_swap_reaches_the_table_through_the_fusion():
     mirror = np.array(walker.SKELETON.mirror())
     at = slice(FRAME - 3, FRAME + 4)
     seen[1].view.xy[:, at, legs] = seen[1].view.xy[:, at, mirror[legs]]
-    options = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20}
-    made = fusion.triangulate_take(
-        takes_made.CAMERAS,
-        [one.view for one in seen],
-        walker.SKELETON,
-        ["p1"],
-        clocks=[one.clock for one in seen],
-        fix_sides=True,
-        **options,
-    )
+    made = fused(seen, [one.view for one in seen])
     limit = limits(made)
     tables = [
         fig11.table(made, seen, takes_made.LIMBS, mirror, frame, limit)
@@ -153,6 +145,46 @@ def test_a_planted_swap_reaches_the_table_through_the_fusion():
     assert set(changed.joint) == of_legs
     np.testing.assert_allclose(changed.detected_x_px, changed.reprojected_x_px, atol=0.1)
     assert not tables[1].sides_exchanged.any()
+
+
+def fused(seen, views):
+    options = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20}
+    clocks = [one.clock for one in seen]
+    return fusion.triangulate_take(
+        takes_made.CAMERAS,
+        views,
+        walker.SKELETON,
+        ["p1"],
+        clocks=clocks,
+        fix_sides=True,
+        **options,
+    )
+
+
+def test_a_knock_of_14_px_is_no_swap_and_no_disagreement():
+    record, seen = takes_made.take(n_frames=40)
+    camera = seen[1].camera
+    vectors = shaken.knock(camera, 40, 5, 14.0, tremor_px=2)
+    seen[1] = replace(seen[1], view=shaken.view(seen[1].view, camera, vectors))
+    tables = {camera.name: shaken.table(camera, vectors, seen[1].view.time_s)}
+    views = [one.view for one in seen]
+    views[1] = camera_shake.steady(views[1], camera, tables[camera.name])
+    made = fused(seen, views)
+    assert not made.swapped.any()
+    np.testing.assert_allclose(made.xyz, record.xyz, atol=1e-4)
+    limit = fig11.disagreements(made, takes_made.CAMERAS, takes_made.LIMBS, LIMIT / 10)
+    seen = camera_shake.put_back(seen, tables)
+    rows = fig11.table(made, seen, takes_made.LIMBS, walker.SKELETON.mirror(), FRAME, limit)
+    assert not rows.sides_exchanged.any() and not rows.disagrees.any()
+    # In px of the shaken picture: those of the network, and a skeleton that lies on them.
+    of = rows[rows.camera == "c1"]
+    drawn = seen[1].view.xy[0, FRAME, [AT(joint) for joint in takes_made.LIMBS]]
+    np.testing.assert_array_equal(of[["detected_x_px", "detected_y_px"]], drawn)
+    np.testing.assert_allclose(of[["reprojected_x_px", "reprojected_y_px"]], drawn, atol=0.1)
+    left = fig11.disagreements(
+        fused(seen, [one.view for one in seen]), takes_made.CAMERAS, takes_made.LIMBS, LIMIT / 10
+    )
+    assert left[0].any()
 
 
 def test_rings_are_drawn_where_the_moved_joints_were_detected():

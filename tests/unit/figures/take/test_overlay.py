@@ -5,6 +5,7 @@ import pytest
 
 from courtside.figures.style import style
 from courtside.figures.take import overlay
+from courtside.geometry import camera as camera_models
 from fixtures.cameras import scene
 from fixtures.people import walker
 
@@ -18,13 +19,24 @@ def inputs(n_persons=1, offset_px=(3.0, 4.0)):
 
 def test_the_table_holds_the_distances():
     record, views = inputs(n_persons=2)
-    rows = overlay.table(CAMERAS, views, record, overlay.chosen_times(record, 2))
+    times_s = overlay.chosen_times(record, 2)
+    rows = overlay.table([CAMERAS] * 2, views, record, times_s)
     assert len(rows) == 2 * 3 * 2 * 33
     np.testing.assert_allclose(rows.distance_px.dropna(), 5.0, atol=1e-6)
     truth = scene.opencv_projection(CAMERAS[1], record.xyz[0, 6, :1])[0]
     at = rows[(rows.camera == "c1") & (rows.person == "p1") & (rows.joint == "nose")].iloc[0]
     assert at.time_s == pytest.approx(record.time_s[6])
     np.testing.assert_allclose([at.reprojected_x_px, at.reprojected_y_px], truth, atol=1e-6)
+
+
+def test_each_time_has_its_own_cameras():
+    record, views = inputs(offset_px=(0.0, 0.0))
+    times_s = overlay.chosen_times(record, 2)
+    turned = [camera_models.turned(camera, [0, 14 / 1400, 0]) for camera in CAMERAS]
+    rows = overlay.table([CAMERAS, turned], views, record, times_s)
+    still, moved = (rows[rows.time_s == time_s].distance_px.dropna() for time_s in times_s)
+    assert still.max() < 1e-6
+    assert moved.between(13.9, 17).all()  # 14 px in the middle of the picture
 
 
 def test_times_are_evenly_spread_without_the_ends():

@@ -28,6 +28,15 @@ def test_what_is_written_is_read(tmp_path, table):
     assert found.frame_idx.dtype == found.n_matches.dtype == int
 
 
+def test_tables_of_a_take_are_named_by_their_cameras(tmp_path, table):
+    for name, shift_px in (("back", 1.0), ("mirror", 2.0)):
+        known = table[:2].assign(shift_x_px=shift_px)
+        shake_table.write(tmp_path / f"{name}.csv", known)
+    found = shake_table.read_all([tmp_path / "mirror.csv", tmp_path / "back.csv"])
+    assert {name: t.shift_x_px[0] for name, t in found.items()} == {"mirror": 2.0, "back": 1.0}
+    assert shake_table.read_all([]) == {}
+
+
 def test_a_take_of_which_nothing_is_known_is_read(tmp_path, table):
     table[list(shake_table.MEASURED)] = np.nan
     shake_table.write(tmp_path / "t.csv", table)

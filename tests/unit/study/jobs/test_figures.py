@@ -59,6 +59,7 @@ def test_detections_beside_the_skeleton_need_all_that_was_found(job, study):
         "pose3d": f"{folder}/pose3d/known18/all-robust/blazepose-full.npz",
         "cameras": "results/players-tiny/calibration/known18/cameras.toml",
         "pose2d": [f"{folder}/pose2d/blazepose-full/{camera}.npz" for camera in cameras],
+        "shake": [],
         "people": f"{folder}/people/known18/blazepose-full.npz",
         "sync": f"{folder}/sync/known18/cameras.blazepose-full.json",
         "videos": [f"results/virtual/players-tiny/takes/shot/{name}.mp4" for name in cameras],

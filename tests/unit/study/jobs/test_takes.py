@@ -38,6 +38,19 @@ def test_shake_is_taken_out_of_steady_takes_but_for_comparison(job):
     assert takes.shake(job(**RALLY, fusion="all-robust")) == shake
     assert takes.shake(job(**RALLY, fusion="all-unsteady")) == []
     assert takes.shake(job(**SHOT, fusion="all-robust")) == []
+    assert takes.shake(job(**RALLY, fusion="all-robust", camera="back")) == [shake[1]]
+
+
+def test_steady_takes_are_measured_from_steadied_keypoints_but_for_comparison(job):
+    way, names = {"calibration": "known18", "model": "net"}, ("oblique", "back", "mirror")
+    folder = "results/players-tiny/takes"
+    steadied = [f"{folder}/rally/pose2d_steadied/known18/net/{name}.npz" for name in names]
+    seen = [f"{folder}/rally/pose2d/net/{name}.npz" for name in names]
+    assert takes.keypoints_2d(job(**RALLY, **way)) == steadied  # of clocks and people
+    assert takes.keypoints_2d(job(**RALLY, **way, fusion="two-robust")) == steadied
+    assert takes.keypoints_2d(job(**RALLY, **way, fusion="all-unsteady")) == seen
+    still = [f"{folder}/shot/pose2d/net/{name}.npz" for name in names]
+    assert takes.keypoints_2d(job(**SHOT, **way)) == still
 
 
 @pytest.mark.parametrize(

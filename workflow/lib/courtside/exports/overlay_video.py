@@ -57,6 +57,7 @@ def track(
     clock: Clock,
     points: Keypoints3D,
     skeleton: Skeleton,
+    turns: NDArray | None = None,
 ) -> Track:
     """Gather what is drawn on one camera's pictures.
 
@@ -66,6 +67,8 @@ def track(
         All tracklets: faces of bystanders are hidden as well.
     assigned : Keypoints2D
         The same frames by person, in the order of `points.person_id`.
+    turns : (T, 3) float, optional
+        Rotation vectors, radians, from the camera as calibrated to the camera in each frame.
 
     Returns
     -------
@@ -83,7 +86,11 @@ def track(
     if not np.array_equal(view.time_s, assigned.time_s):
         raise ValueError(f"{camera.name}: persons at other frames than tracklets")
     reference_s = clock.to_reference(view.time_s)
-    reprojected = camera_models.project(camera, between(points.time_s, points.xyz, reference_s))
+    xyz = between(points.time_s, points.xyz, reference_s)
+    reprojected = camera_models.project(camera, xyz)
+    for frame, turn in enumerate([] if turns is None else turns):
+        turned = camera_models.turned(camera, turn)
+        reprojected[:, frame] = camera_models.project(turned, xyz[:, frame])
     at = np.interp(reference_s, points.time_s, np.arange(len(points.time_s))).round().astype(int)
     column = points.cameras.tolist().index(camera.name)
     face = [skeleton.index(joint) for joint in skeleton.groups["face"]]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera_fields, rotations
 from courtside.study.errors import InputError, reading
@@ -83,6 +84,15 @@ def project(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
     """
     normalised, _ = _normalise(camera, xyz_in_world)
     return distort(camera.dist, normalised) * _focal(camera) + camera.K[:2, 2]
+
+
+def turned(camera: Camera, vector: ArrayLike) -> Camera:
+    """Return a camera turned in place by a rotation vector (3,), radians, in its own axes.
+
+    The vector leads from the axes before to those after: a direction d of the camera becomes R d.
+    """
+    rotation = Rotation.from_rotvec(np.asarray(vector, dtype=float)).as_matrix()
+    return replace(camera, cam_from_world=rotation @ camera.cam_from_world)
 
 
 def in_picture(camera: Camera, xy: NDArray) -> NDArray:

@@ -1,10 +1,10 @@
-"""Camera shake and knocks: measured per frame, and removed from the keypoints.
+"""Camera shake and knocks: removed from keypoints, put back for pictures, found and described.
 
 Tables are those of `courtside.records.cameras.shake_table`; cameras are as calibrated, standing as
 in their static picture.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
+from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from courtside.study.execution import log
@@ -72,8 +73,7 @@ def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
     camera_models.check_size(
         camera, (int(view.size[0]), int(view.size[1])), f"keypoints of camera {view.camera}"
     )
-    turned = _bridged(table.time_s.to_numpy(float), camera_turns(camera, table))
-    turned = turned[_rows(view, table)]
+    turned = _of_frames(camera, table, view.time_s)
     unknown = np.isnan(turned).any(axis=1)
     if unknown.any():
         log.logger.warning(
@@ -90,6 +90,36 @@ def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
         xy=np.where(kept, view.xy, xy),
         xyz_in_body=view.xyz_in_body @ still_from_shaken.mT,
     )
+
+
+def frame_turns(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
+    """Return how a camera was turned in frames at times (T,) of its own clock: what `steady` undid.
+
+    Rotation vectors (T, 3), radians, from the camera as calibrated; 0 where the shake is unknown
+    for longer than 0.2 s. Raises `InputError` if a frame is not in the table.
+    """
+    turned = _of_frames(camera, table, time_s)
+    return np.where(np.isnan(turned).any(axis=1, keepdims=True), 0.0, turned)
+
+
+def put_back(footage: Sequence[Footage], tables: Mapping[str, DataFrame]) -> list[Footage]:
+    """Return footage with cameras turned as in their pictures, by the `tables` of their names.
+
+    Skeletons then reproject onto the persons in the shaken pictures. A camera without a table
+    stood still.
+    """
+    return [
+        replace(one, turns=frame_turns(one.camera, tables[one.camera.name], one.view.time_s))
+        if one.camera.name in tables
+        else one
+        for one in footage
+    ]
+
+
+def _of_frames(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
+    """Return the rotation vectors (T, 3) of frames at times (T,), NaN where unknown."""
+    turned = _bridged(table.time_s.to_numpy(float), camera_turns(camera, table))
+    return turned[_rows(camera.name, time_s, table)]
 
 
 def _solve(camera: Camera, measured: NDArray) -> NDArray:
@@ -127,17 +157,17 @@ def _bridged(time_s: NDArray, vectors: NDArray) -> NDArray:
     return filled
 
 
-def _rows(view: Keypoints2D, table: DataFrame) -> NDArray:
-    """Return the row of the table of each frame of a view, (T,) int."""
+def _rows(camera: str, wanted_s: NDArray, table: DataFrame) -> NDArray:
+    """Return the row of the table of each frame of a camera, (T,) int."""
     time_s = table.time_s.to_numpy(float)
-    wanted = np.asarray(view.time_s, float)
+    wanted = np.asarray(wanted_s, float)
     rows = np.searchsorted((time_s[:-1] + time_s[1:]) / 2, wanted)
     step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else 0.01
     off_s = np.abs(time_s[rows] - wanted)
     if len(wanted) and off_s.max() > SAME_FRAME * step_s:
         at = wanted[off_s.argmax()]
         raise InputError(
-            f"camera {view.camera}: expected the shake of every frame, found none at {at:.3f} s: "
+            f"camera {camera}: expected the shake of every frame, found none at {at:.3f} s: "
             "measure the shake of the same recording, trimmed alike"
         )
     return rows

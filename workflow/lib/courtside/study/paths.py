@@ -70,6 +70,7 @@ CLICKING_PAGE = SESSION + "/pages/clicking.html"
 
 # Keypoints, clocks and skeletons of a take.
 POSE2D = TAKE + "/pose2d/{model}/{camera}.npz"
+POSE2D_STEADIED = TAKE + "/pose2d_steadied/{calibration}/{model}/{camera}.npz"  # without shake
 CAMERA_CLOCKS = TAKE + "/sync/{calibration}/cameras.{model}.json"
 PEOPLE = TAKE + "/people/{calibration}/{model}.npz"
 SKELETONS = TAKE + "/{stage}/" + FUSED + ".npz"

@@ -37,16 +37,19 @@ def reproject(camera: Camera, points: Keypoints3D, time_s: float) -> NDArray:
 
 
 def table(
-    cameras: list[Camera], views: list[Keypoints2D], points: Keypoints3D, times_s: Sequence[float]
+    cameras: list[list[Camera]],
+    views: list[Keypoints2D],
+    points: Keypoints3D,
+    times_s: Sequence[float],
 ) -> pd.DataFrame:
     """Return detected and reprojected joints, one row per time, camera, person and joint.
 
-    `views` are in the order of `cameras`.
+    `cameras[time]` are the cameras as they stood then, `views` are in their order.
     """
     parts = []
-    for time_s in times_s:
+    for time_s, standing in zip(times_s, cameras, strict=True):
         frame = int(np.abs(points.time_s - time_s).argmin())
-        for at, (camera, view) in enumerate(zip(cameras, views, strict=True)):
+        for at, (camera, view) in enumerate(zip(standing, views, strict=True)):
             detected = view.xy[:, nearest(view, time_s)].reshape(-1, 2)
             reprojected = reproject(camera, points, time_s).reshape(-1, 2)
             columns = {

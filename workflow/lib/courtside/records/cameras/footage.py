@@ -17,12 +17,17 @@ from courtside.study.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Footage:
-    """One camera of a take; `view` holds its keypoints by person."""
+    """One camera of a take; `view` holds its keypoints by person, as its pictures show them.
+
+    `turns` (T, 3) are rotation vectors, radians, from the camera as calibrated to the camera in
+    each frame of `view`; None if it stood still.
+    """
 
     camera: camera_models.Camera
     view: Keypoints2D
     clock: Clock
     video: str | PathLike
+    turns: NDArray | None = None
 
     def frame_at(self, time_s: float) -> int:
         """Return the index of the frame nearest to a time of the reference clock."""
@@ -33,14 +38,17 @@ class Footage:
         return float(self.clock.to_reference(self.view.time_s[frame]))
 
     def reprojected(self, points: Keypoints3D, frame: int) -> NDArray:
-        """Project the skeletons of a take into one frame of this camera.
+        """Project the skeletons of a take into one frame of this camera, turned as it was then.
 
         Returns
         -------
         xy : (P, J, 2) float
             Px, linearly between the two neighbouring times of `points`; NaN beyond its ends.
         """
-        return camera_models.project(self.camera, between(points, self.reference_s(frame)))
+        camera = self.camera
+        if self.turns is not None:
+            camera = camera_models.turned(camera, self.turns[frame])
+        return camera_models.project(camera, between(points, self.reference_s(frame)))
 
 
 def between(points: Keypoints3D, time_s: float) -> NDArray:

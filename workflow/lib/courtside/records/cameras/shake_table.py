@@ -1,6 +1,8 @@
 """The table of a fixed camera's shake: where its static picture lies in every frame of a take."""
 
+from collections.abc import Iterable
 from os import PathLike
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -51,6 +53,11 @@ def read(path: str | PathLike) -> pd.DataFrame:
     """Read a table as `write` describes it; raise `InputError` if the file is no such table."""
     table = tables.read(path, "a table of shake", _fault)
     return table.loc[:, list(DECIMALS)].astype(dict.fromkeys(("time_s", *MEASURED), float))
+
+
+def read_all(paths: Iterable[str | PathLike]) -> dict[str, pd.DataFrame]:
+    """Read the tables of cameras, by their names: those of the files."""
+    return {Path(path).stem: read(path) for path in paths}
 
 
 def _fault(table: pd.DataFrame) -> str:

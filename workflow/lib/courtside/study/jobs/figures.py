@@ -62,6 +62,7 @@ def seen_and_made(job: Job) -> dict[str, Any]:
         "pose3d": job.fill(paths.POSE3D),
         "cameras": job.fill(paths.CAMERAS),
         "pose2d": takes.each_camera(job, paths.POSE2D),
+        "shake": takes.shake(job),
         "people": job.fill(paths.PEOPLE),
         "sync": job.fill(paths.CAMERA_CLOCKS),
         "videos": list(job.take.videos.values()),

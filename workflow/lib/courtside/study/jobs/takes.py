@@ -22,11 +22,22 @@ def clocks(job: Job, names: Any) -> dict[str, dict]:
     return {name: clock for name, clock in job.take.clocks.items() if name in names}
 
 
+def keypoints_2d(job: Job) -> list[str]:
+    """Return the 2D keypoints of each camera of a take, steadied where shake is taken out."""
+    return each_camera(job, paths.POSE2D_STEADIED if _steadied(job) else paths.POSE2D)
+
+
 def shake(job: Job) -> list[str]:
-    """Return the shake of each camera of a take, where it is taken out."""
-    if not job.take.steady or not Fusion.parse(job["fusion"]).steadied:
+    """Return the shake of the job's camera or each camera of a take, where it is taken out."""
+    if not _steadied(job):
         return []
-    return each_camera(job, paths.SHAKE)
+    return [job.fill(paths.SHAKE)] if "camera" in job.wildcards else each_camera(job, paths.SHAKE)
+
+
+def _steadied(job: Job) -> bool:
+    """Return whether shake is taken out; fusions that leave it in share clocks and people."""
+    way = job.wildcards.get("fusion")
+    return job.take.steady and (way is None or Fusion.parse(way).steadied)
 
 
 def fusion(job: Job) -> dict[str, Any]:

@@ -25,7 +25,7 @@ STAGES = (
     ("mapping", "*/sfm/*/summary.json"),
     ("adjustment", "*/sfm/*"),
     ("calibration", "*/calibration/*"),
-    ("2D keypoints", "*/pose2d/*"),
+    ("2D keypoints", "*/pose2d*/*"),
     ("device recordings", "*/devices/*"),
     ("clocks", "*/sync/*"),
     ("people", "*/people/*"),
