@@ -25,46 +25,26 @@ HOW = "film the board again: sharp, whole in the picture, in ten places, tilted 
 
 @dataclass(frozen=True, eq=False)
 class Boards:
-    """Chessboards found in pictures of one camera.
+    """Chessboards found in pictures of one camera."""
 
-    Attributes
-    ----------
-    paths : length B
-    xy : (B, columns * rows, 2) float; inner corners, px, row by row
-    size : width and height of the pictures, px; (0, 0) without any
-    inner_corners : columns and rows
-    dropped : the other pictures, and why: unseen, misread or blurred
-    """
-
-    paths: tuple[Path, ...]
-    xy: NDArray
-    size: tuple[int, int]
-    inner_corners: tuple[int, int]
-    dropped: dict[Path, str]
+    paths: tuple[Path, ...]  # length B
+    xy: NDArray  # (B, columns * rows, 2): inner corners, px, row by row
+    size: tuple[int, int]  # width and height of the pictures, px; (0, 0) without any
+    inner_corners: tuple[int, int]  # columns and rows
+    dropped: dict[Path, str]  # the other pictures, and why: unseen, misread or blurred
 
 
 @dataclass(frozen=True, eq=False)
 class Lens:
-    """A calibrated lens.
+    """A calibrated lens."""
 
-    Attributes
-    ----------
-    size : of the pictures, px
-    K : (3, 3) float; one focal length along both axes, px
-    dist : (5,) float; k1 k2 and zeros
-    rms_px : per axis, over all corners of the boards used
-    f_sigma_px : standard deviation of the focal length, from the corners' scatter
-    n_used : boards
-    dropped : the other pictures, and why: unseen, misread, blurred or off
-    """
-
-    size: tuple[int, int]
-    K: NDArray
-    dist: NDArray
-    rms_px: float
-    f_sigma_px: float
-    n_used: int
-    dropped: dict[Path, str]
+    size: tuple[int, int]  # of the pictures, px
+    K: NDArray  # (3, 3): one focal length along both axes, px
+    dist: NDArray  # (5,): k1 k2 and zeros
+    rms_px: float  # per axis, over all corners of the boards used
+    f_sigma_px: float  # standard deviation of the focal length, from the corners' scatter
+    n_used: int  # boards
+    dropped: dict[Path, str]  # the other pictures, and why: unseen, misread, blurred or off
 
 
 def find(
@@ -76,10 +56,8 @@ def find(
     takes other corners for the board's: those do not form a plane grid. Raises `InputError` if
     there are no pictures, one is unreadable, or their sizes differ.
 
-    Parameters
-    ----------
-    pictures : a folder, or files
-    inner_corners : corners where four squares meet, along both sides of the board, in either order
+    `pictures`: a folder, or files; `inner_corners`: corners where four squares meet, along both
+    sides of the board, in either order.
     """
     columns, rows = (int(count) for count in inner_corners)
     if min(columns, rows) < 3 or columns == rows:

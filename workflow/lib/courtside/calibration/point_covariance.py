@@ -16,10 +16,8 @@ MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1
 def sensitivity(network: Network, xyz: ArrayLike) -> NDArray:
     """Find how triangulated points move when image and lens parameters do, while pixels stay.
 
-    Parameters
-    ----------
-    network : of the fixed cameras; its own points do not matter
-    xyz : (N, 3) float; places, m, that every image sees
+    `network`: of the fixed cameras; its own points do not matter; `xyz`: (N, 3) float; places, m,
+    that every image sees.
 
     Returns
     -------

@@ -26,14 +26,9 @@ MOST_FRAMES = 65535  # the header counts frames in 16 bits
 def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
     """Write one person, by index.
 
-    Raises
-    ------
-    InputError
-        If the take is longer than C3D's frame counter allows, or one frame, which has no rate; if
-        the disk refuses the file.
+    Raises `InputError` if the take is longer than C3D's frame counter allows, or one frame, which
+    has no rate; if the disk refuses the file.
 
-    Notes
-    -----
     A point's residual is its root-mean-square standard deviation from the keypoints, mm, 127 where
     it is larger; -1 marks a missing point, 0 one without a known uncertainty (interpolated, for
     one).

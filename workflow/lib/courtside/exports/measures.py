@@ -176,9 +176,8 @@ def cutoffs(choices: Mapping[str, Choice]) -> pd.DataFrame:
 
     Returns
     -------
-    rows : pandas.DataFrame
-        group, cutoff_hz, noise_mm (found by the analysis, per axis), candidate_hz, residual_mm;
-        one row with the last three empty if the cut-off was stated.
+    rows : pandas.DataFrame; group, cutoff_hz, noise_mm (found by the analysis, per axis),
+        candidate_hz, residual_mm; one row with the last three empty if the cut-off was stated
     """
     rows = []
     for group, choice in choices.items():

@@ -45,11 +45,7 @@ def write_markers(path: str | PathLike, joints: Sequence[str]) -> None:
     """Write the marker set (`.xml`) of joints, named as in `pose2sim.write_project`'s TRC files.
 
     For models with the bodies `head`, `torso`, `pelvis` and those of the limbs, as Pose2Sim's has.
-
-    Raises
-    ------
-    InputError
-        If the position of a joint on a body is unknown.
+    Raises `InputError` if the position of a joint on a body is unknown.
     """
     root = ElementTree.Element("OpenSimDocument", Version=VERSION)
     group = ElementTree.SubElement(root, "MarkerSet", name="markerset")

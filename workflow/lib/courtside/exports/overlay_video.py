@@ -24,30 +24,19 @@ DETECTED, REPROJECTED, NOT_USED = "detected", "3D skeleton", "view not used"
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """What is drawn on the pictures of one camera, frame by frame.
-
-    Attributes
-    ----------
-    camera : str
-    own_s, reference_s : (T,) float
-        Time of each frame on the camera's own and on the reference clock, seconds.
-    detected, reprojected : (P, T, J, 2) float
-        Px; NaN where missing.
-    used : (P, T, J) bool
-        Whether the 3D point rests on this camera's keypoint.
-    faces : (F, T, K, 2) float
-        Joints of all faces that may be in the picture, px, gaps bridged.
-    bones : tuple of (int, int)
-    """
+    """What is drawn on the pictures of one camera, frame by frame."""
 
     camera: str
+    # own_s, reference_s: (T,): time of each frame on the camera's own and on the reference clock,
+    # seconds
     own_s: NDArray
     reference_s: NDArray
+    # detected, reprojected: (P, T, J, 2): px; NaN where missing
     detected: NDArray
     reprojected: NDArray
-    used: NDArray
-    faces: NDArray
-    bones: tuple[tuple[int, int], ...]
+    used: NDArray  # (P, T, J) bool; whether the 3D point rests on this camera's keypoint
+    faces: NDArray  # (F, T, K, 2): joints of all faces that may be in the picture, px, gaps bridged
+    bones: tuple[tuple[int, int], ...]  # tuple of (int, int)
 
 
 def track(
@@ -61,25 +50,15 @@ def track(
 ) -> Track:
     """Gather what is drawn on one camera's pictures.
 
-    Parameters
-    ----------
-    view : Keypoints2D
-        All tracklets: faces of bystanders are hidden as well.
-    assigned : Keypoints2D
-        The same frames by person, in the order of `points.person_id`.
-    turns : (T, 3) float, optional
-        Rotation vectors, radians, from the camera as calibrated to the camera in each frame.
+    Raises `ValueError` if `points` do not rest on this camera, or persons or frames do not fit.
+
+    `view`: all tracklets: faces of bystanders are hidden as well; `assigned`: the same frames by
+    person, in the order of `points.person_id`.
 
     Returns
     -------
-    track : Track
-        The 3D skeleton at each frame's own time, between neighbouring points; none beyond their
-        ends.
-
-    Raises
-    ------
-    ValueError
-        If `points` do not rest on this camera, or persons or frames do not fit.
+    track : the 3D skeleton at each frame's own time, between neighbouring points; none beyond their
+        ends
     """
     if camera.name not in points.cameras or assigned.xy.shape[0] != len(points.person_id):
         raise ValueError(f"{camera.name}: points and 2D keypoints of other cameras or persons")
@@ -112,8 +91,8 @@ def between(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
 
     Returns
     -------
-    xyz : (P, W, J, 3) float
-        NaN where a neighbour is missing, and more than half a frame outside the times.
+    xyz : (P, W, J, 3) float; NaN where a neighbour is missing, and more than half a frame outside
+        the times
     """
     step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else 0.0
     inside = (wanted_s >= time_s[0] - step_s / 2) & (wanted_s <= time_s[-1] + step_s / 2)
@@ -130,9 +109,8 @@ def bridged(time_s: NDArray, xy: NDArray) -> NDArray:
 
     Returns
     -------
-    xy : (T, K, 2) float
-        Straight lines over gaps, and the nearest known position beyond the ends; NaN where no frame
-        within 1 s has the joint.
+    xy : (T, K, 2) float; straight lines over gaps, and the nearest known position beyond the ends;
+        NaN where no frame within 1 s has the joint
     """
     result = np.array(xy, dtype=float)
     for joint in range(xy.shape[1]):
@@ -160,25 +138,20 @@ def pictures(
 ) -> Iterator[NDArray]:
     """Draw on pictures as they come; only one is in memory.
 
+    Raises `InputError` if `track` has no frame at a frame's time: a face might show.
+
     Parameters
     ----------
-    frames : iterable of (float, (H, W, 3) uint8)
-        Time on the camera's own clock and picture, BGR.
-    colours : (3,) of (int, int, int)
-        BGR of detected joints, of the 3D skeleton, and of views that were not used.
-    hide_faces : bool
-    keep_background : bool
-        Whether surroundings stay sharp where faces are hidden: for videos that show nobody else.
+    frames : iterable of (float, (H, W, 3) uint8); time on the camera's own clock and picture, BGR
+    colours : (3,) of (int, int, int); BGR of detected joints, of the 3D skeleton, and of views that
+        were not used
+    keep_background : whether surroundings stay sharp where faces are hidden: for videos that show
+        nobody else
 
     Yields
     ------
-    image : (H, W, 3) uint8
-        BGR, as many as `frames`; an odd height or width grows by a pixel, as H.264 requires.
-
-    Raises
-    ------
-    InputError
-        If `track` has no frame at a frame's time: a face might show.
+    image : (H, W, 3) uint8; BGR, as many as `frames`; an odd height or width grows by a pixel, as
+        H.264 requires
     """
     step_s = np.median(np.diff(track.own_s)) if len(track.own_s) > 1 else 1.0
     for time_s, image in frames:

@@ -48,19 +48,15 @@ def write_project(
 ) -> None:
     """Write a project of one take.
 
+    Raises `ValueError` if a camera has no view, or a view other frames, persons or joints than the
+    points.
+
     Parameters
     ----------
-    folder : str or Path
-        Replaced as a whole; its name begins the names of Pose2Sim's own results.
-    views : dict of str to (xy, score)
-        By camera, at the times of `points`: (P, T, J, 2) px and (P, T, J); persons as in `points`.
-    skeleton : str
-        Name of the joints' skeleton.
-
-    Raises
-    ------
-    ValueError
-        If a camera has no view, or a view other frames, persons or joints than the points.
+    folder : replaced as a whole; its name begins the names of Pose2Sim's own results
+    views : dict of str to (xy, score); by camera, at the times of `points`: (P, T, J, 2) px and (P,
+        T, J); persons as in `points`
+    skeleton : name of the joints' skeleton
     """
     shape = points.xyz.shape[:3]
     for camera in cameras:
@@ -131,24 +127,18 @@ def read_takes(
 ) -> Keypoints3D:
     """Read 3D keypoints of another program, one TRC file for each person.
 
+    Raises `InputError` if a file is no TRC file, has none of the joints, or other times than the
+    first one.
+
     Parameters
     ----------
-    files : dict of str to path
-        By person.
-    skeleton : Skeleton
-        Its joints are looked for among the markers, under Pose2Sim's names or their own.
-    model : str
-        Name for the keypoints.
+    files : by person
+    skeleton : its joints are looked for among the markers, under Pose2Sim's names or their own
+    model : name for the keypoints
 
     Returns
     -------
-    points : Keypoints3D
-        In the file's frame with z up; covariances unknown, without views.
-
-    Raises
-    ------
-    InputError
-        If a file is no TRC file, has none of the joints, or other times than the first one.
+    points : in the file's frame with z up; covariances unknown, without views
     """
     found: list[list[NDArray]] = []
     for path in files.values():

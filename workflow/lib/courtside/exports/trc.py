@@ -53,19 +53,15 @@ def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
 def read(path: str | PathLike) -> tuple[list[str], float, NDArray, NDArray]:
     """Read a TRC file, ours or another program's.
 
+    Raises `InputError` if the file is not a TRC file in m, cm or mm, a line has another number of
+    values, or the header counts other markers or frames than there are.
+
     Returns
     -------
     joints : list of str
-    rate_hz : float
+    rate_hz
     time_s : (T,) float
-    xyz_in_world : (T, J, 3) float
-        Metres, world axes, NaN where blank.
-
-    Raises
-    ------
-    InputError
-        If the file is not a TRC file in m, cm or mm, a line has another number of values, or the
-        header counts other markers or frames than there are.
+    xyz_in_world : (T, J, 3) float; metres, world axes, NaN where blank
     """
     with reading(path, "a TRC file", "export it again"):
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()

@@ -24,10 +24,8 @@ TOLERANCE_PX = 1e-10  # of `undistort`: far below the noise of any keypoint, abo
 class Camera:
     """A calibrated camera with OpenCV's five distortion coefficients.
 
-    Raises
-    ------
-    ValueError
-        If a shape or value is impossible, or the rotation matrix is not orthonormal to 1e-6.
+    Raises `ValueError` if a shape or value is impossible, or the rotation matrix is not orthonormal
+    to 1e-6.
     """
 
     name: str
@@ -142,12 +140,7 @@ def crop(camera: Camera, crop_px: Sequence[int]) -> Camera:
     """Return the camera of a video that shows only a part of the calibrated picture.
 
     `crop_px` is x, y, width, height in px of that picture. The principal point shifts; nothing is
-    scaled.
-
-    Raises
-    ------
-    InputError
-        If the part is not inside the calibrated picture.
+    scaled. Raises `InputError` if the part is not inside the calibrated picture.
     """
     x, y, width, height = crop_px
     outside = x + width > camera.size[0] or y + height > camera.size[1]
@@ -179,12 +172,8 @@ def read_toml(path: str | os.PathLike[str]) -> list[Camera]:
     """Read cameras, in metres, from a TOML file as this study, Pose2Sim and aniposelib write it.
 
     The file holds one table per camera with `name size matrix distortions rotation translation`, in
-    the order of the result; `[metadata]` may hold `unit`: m (where absent), cm or mm.
-
-    Raises
-    ------
-    InputError
-        If the file is not TOML or a camera is incomplete, impossible or named twice.
+    the order of the result; `[metadata]` may hold `unit`: m (where absent), cm or mm. Raises
+    `InputError` if the file is not TOML or a camera is incomplete, impossible or named twice.
     """
     with reading(path, "TOML", camera_fields.EXPORT_AGAIN):
         tables = camera_fields.toml(Path(path).read_text(encoding="utf-8-sig"))
@@ -322,8 +311,6 @@ def undistort_below_fold(
     `tolerance` (...) is the accepted error of `distort` at the result. NaN where missing, and where
     no point below the fold maps to that pixel.
 
-    Notes
-    -----
     Newton's method from the inverse of the radial part, tabulated up to the fold: it neither
     diverges under strong distortion nor ends at a direction beyond the fold.
     """

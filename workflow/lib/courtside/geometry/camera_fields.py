@@ -27,11 +27,8 @@ EXPORT_AGAIN = "export the calibration again or mend the file"
 def numbers(where: str | os.PathLike, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
     """Return a field's `value`, None where missing, as a finite float array of one of `shapes`.
 
-    Raises
-    ------
-    InputError
-        If it is anything else; the message begins with `where` (file and camera) and names the
-        `key`.
+    Raises `InputError` if it is anything else; the message begins with `where` (file and camera)
+    and names the `key`.
     """
     array: NDArray | None
     try:
@@ -64,13 +61,8 @@ def five_coefficients(where: str, value: object) -> NDArray:
 def pose(where: str, rotation: object, translation: object, metres: float) -> NDArray:
     """Return `cam_from_world` (3, 4); `metres` is the unit of the translation (3,).
 
-    The rotation is a Rodrigues vector (3,), radians, or a matrix (3, 3).
-
-    Raises
-    ------
-    InputError
-        If a shape is wrong or the matrix is not a rotation; `where` (file and camera) begins
-        messages.
+    The rotation is a Rodrigues vector (3,), radians, or a matrix (3, 3). Raises `InputError` if a
+    shape is wrong or the matrix is not a rotation; `where` (file and camera) begins messages.
     """
     rotation = numbers(where, "rotation", rotation, (3,), (3, 1), (1, 3), (3, 3))
     translation = numbers(where, "translation", translation, (3,), (3, 1), (1, 3))

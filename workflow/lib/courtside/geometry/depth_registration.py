@@ -108,8 +108,6 @@ def sample(
     that of the first depth pixel on the ray; NaN where there is none, as for a ray that passes
     behind what the depth camera sees, or where xy is. `colour_from_depth` is (3, 4).
 
-    Notes
-    -----
     The ray is divided evenly in 1 / z, which gives steps of half a pixel in the depth image. A
     depth pixel lies on the ray if its distance from it is at most one step: the cameras stand close
     together, and smaller depth differences cause no parallax.

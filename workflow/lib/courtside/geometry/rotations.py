@@ -27,10 +27,8 @@ def rodrigues_from_rotation(rotations: ArrayLike) -> NDArray:
 def nearest_rotation(matrix: NDArray) -> NDArray:
     """Return the rotation (3, 3) nearest to a printed one: its polar factor.
 
-    Raises
-    ------
-    ValueError
-        If `matrix` is a reflection, or differs from a rotation by more than 1e-4 in an entry.
+    Raises `ValueError` if `matrix` is a reflection, or differs from a rotation by more than 1e-4 in
+    an entry.
     """
     left, _, right = np.linalg.svd(matrix)
     rotation = left @ right

@@ -48,15 +48,9 @@ class Sim3:
 def umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, weight: ArrayLike | None = None) -> Sim3:
     """Fit `b_from_a` to the same points (N, 3) in both frames, by least squares.
 
-    `weight` (N,) is that of the squared distances.
+    `weight` (N,) is that of the squared distances. Raises `ValueError` if fewer than three points,
+    or only collinear ones, have weight, or a number is not finite.
 
-    Raises
-    ------
-    ValueError
-        If fewer than three points, or only collinear ones, have weight, or a number is not finite.
-
-    Notes
-    -----
     Umeyama 1991, eq. 40-42. Never a reflection: mirrored points get the best rotation. See
     `robust`.
     """
@@ -101,29 +95,22 @@ def flatness(xyz: NDArray) -> NDArray:
 def robust(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3, NDArray]:
     """Fit `b_from_a` to most of the same points (P, 3) in both frames, NaN where missing in one.
 
-    Parameters
-    ----------
-    sigma : float or (P,) float
-        Standard deviation of a point per axis, in units of b. If the points scatter more, all
-        sigmas are scaled up by one factor.
+    Raises `InputError` if the points are fewer than three, collinear, or mirrored.
 
-    Returns
-    -------
-    b_from_a : Sim3
-    accepted : (P,) bool
-        Inliers: points within the 99 % limit.
-
-    Raises
-    ------
-    InputError
-        If the points are fewer than three, collinear, or mirrored.
-
-    Notes
-    -----
     Least median of squares (Rousseeuw & Leroy 1987) over all subsets of three points: no random
     numbers. Then weighted least squares on the inliers until they stay the same. Mirrored points
     that all lie in one plane fit a rotation as well: only the cameras' positions tell them apart,
     which are not known here.
+
+    Parameters
+    ----------
+    sigma : float or (P,) float; standard deviation of a point per axis, in units of b. If the
+        points scatter more, all sigmas are scaled up by one factor.
+
+    Returns
+    -------
+    b_from_a
+    accepted : (P,) bool; inliers: points within the 99 % limit
     """
     x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
     sigma = np.broadcast_to(np.asarray(sigma, float), len(x_in_a))

@@ -41,8 +41,6 @@ def triangulate(xy: NDArray, weight: NDArray, cam_from_world: NDArray) -> NDArra
     is that of a camera's two rows; points with fewer than two positive weights become NaN.
     `cam_from_world` is (C, 3, 4).
 
-    Notes
-    -----
     Hartley & Zisserman 2004, sec. 12.2, inhomogeneous form: points lie at finite distance.
     Minimises an algebraic error: report the reprojection error beside it.
     """
@@ -87,29 +85,9 @@ def triangulate_robust(
 ) -> Triangulated:
     """Triangulate points, leaving out views that disagree.
 
-    Parameters
-    ----------
-    score : (C, N) float
-        Its square root scales the weight of a view.
-    sigma_px : float or (N,) float
-        Standard deviation per axis of a keypoint with score 1: scales the covariance only.
-    max_error_px : float
-        The limit: a view is accepted if its keypoint lies this close to the projected point.
-    min_views : int
-        Fewest accepted views of a point, at least 2.
-    min_score : float
-        Keypoints below it are not used.
-    fade_px : float, optional
-        A view with this reprojection error has a quarter of its weight; 4/3 of the limit by
-        default.
+    Raises `ValueError` if the inputs disagree on the number of cameras or points, or `min_views` is
+    below 2.
 
-    Raises
-    ------
-    ValueError
-        If the inputs disagree on the number of cameras or points, or `min_views` is below 2.
-
-    Notes
-    -----
     The start is a weighted DLT. Points with a view beyond the limit are solved again by graduated
     non-convexity (Blake & Zisserman 1987; Yang et al. 2020): Gauss-Newton with Geman-McClure
     weights whose scale shrinks from 12 times its last value, so that an outlier loses its weight
@@ -118,6 +96,18 @@ def triangulate_robust(
     between frames when a view is near the limit (a slightly wrong calibration causes this). Views
     beyond twice the limit have no weight. Accepted are the views within the limit, and where these
     are fewer than `min_views`, the closest ones within twice the limit.
+
+    Parameters
+    ----------
+    score : (C, N) float; its square root scales the weight of a view
+    sigma_px : float or (N,) float; standard deviation per axis of a keypoint with score 1: scales
+        the covariance only
+    max_error_px : the limit: a view is accepted if its keypoint lies this close to the projected
+        point
+    min_views : fewest accepted views of a point, at least 2
+    min_score : keypoints below it are not used
+    fade_px : a view with this reprojection error has a quarter of its weight; 4/3 of the limit by
+        default
     """
     check(cameras, xy, score, min_views)
     sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
@@ -324,8 +314,6 @@ def triangulate_plain(
     The parameters are those of `triangulate_robust`, but `score` selects views and does not weigh
     them: `accepted` are all views used, and `sigma_px` is that of every keypoint.
 
-    Notes
-    -----
     [Shishido2020, section 2]; Hartley & Zisserman 2004, sec. 12.2. The covariance is that of the
     least-squares point in the pictures, to which a DLT is close if the cameras are about equally
     far.

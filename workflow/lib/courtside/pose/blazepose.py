@@ -44,15 +44,12 @@ def anchors() -> NDArray:
 def region_from_points(centre: NDArray, rim: NDArray) -> Region:
     """Return the region of a person from the two points that BlazePose gives for it.
 
-    Parameters
-    ----------
-    centre, rim : (2,) float
-        Hip centre, and a point of the circle around the whole person above it, px.
+    `centre`, `rim`: (2,) float; hip centre, and a point of the circle around the whole person above
+    it, px.
 
     Returns
     -------
-    region : Region
-        Rotated so that the person stands upright in it, with a margin of a quarter.
+    region : rotated so that the person stands upright in it, with a margin of a quarter
     """
     toward = np.asarray(rim) - centre
     angle_rad = math.pi / 2 - math.atan2(-toward[1], toward[0])
@@ -93,12 +90,8 @@ class BlazePoseDetector:
 def merge_overlapping(box: NDArray, score: NDArray) -> list[NDArray]:
     """Join overlapping detections into their score-weighted mean, best first.
 
-    Parameters
-    ----------
-    box : (N, 4 + K) float
-        Centre x, y, width, height, then anything else to average.
-    score : (N,) float
-        Weights.
+    `box`: (N, 4 + K) float; centre x, y, width, height, then anything else to average; `score`:
+    (N,) float; weights.
     """
     merged = []
     remaining = np.argsort(-score, kind="stable")
@@ -156,17 +149,13 @@ class BlazePoseLandmarks:
 def refine(fraction: NDArray, heat_maps: NDArray) -> NDArray:
     """Move each landmark to the centre of mass of its heat map around it.
 
-    Parameters
-    ----------
-    fraction : (J, 2) float
-        Landmarks as fractions of the region.
-    heat_maps : (H, W, J) float
-        Logits.
+    `fraction`: (J, 2) float; landmarks as fractions of the region; `heat_maps`: (H, W, J) float;
+    logits.
 
     Returns
     -------
-    refined : (J, 2) float
-        Unchanged if the landmark lies outside, or no cell nearby reaches a probability of one half.
+    refined : (J, 2) float; unchanged if the landmark lies outside, or no cell nearby reaches a
+        probability of one half
     """
     height, width, _ = heat_maps.shape
     refined = fraction.copy()

@@ -24,18 +24,13 @@ def landmark_network(
 ) -> LandmarkNetwork:
     """Open a landmark network.
 
+    Raises `InputError` if the network has another number of joints than its skeleton.
+
     Parameters
     ----------
-    joints : sequence of str
-        The skeleton's joints.
+    joints : the skeleton's joints
     decoder : {"blazepose", "heatmaps"}
-    input_range, channels
-        Of a heat-map network, see `courtside.pose.heatmaps.HeatmapLandmarks`.
-
-    Raises
-    ------
-    InputError
-        If the network has another number of joints than its skeleton.
+    input_range, channels : of a heat-map network, see `courtside.pose.heatmaps.HeatmapLandmarks`
     """
     network: LandmarkNetwork
     if decoder == "blazepose":

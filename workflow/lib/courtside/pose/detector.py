@@ -17,48 +17,27 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Region:
-    """A rotated square in a picture.
+    """A rotated square in a picture."""
 
-    Attributes
-    ----------
-    x, y : float
-        Centre, px.
-    side : float
-        Length of a side, px.
-    angle_rad : float
-        Rotation of the square; positive turns the x axis towards the y axis (clockwise as seen).
-    """
-
+    # x, y: centre, px
     x: float
     y: float
-    side: float
+    side: float  # length of a side, px
+    # rotation of the square; positive turns the x axis towards the y axis (clockwise as seen)
     angle_rad: float = 0.0
 
 
 @dataclass(frozen=True)
 class Pose:
-    """One person in one picture.
+    """One person in one picture."""
 
-    Attributes
-    ----------
-    xy : (J, 2) float
-        Joints, px of the picture.
-    score : (J,) float
-        Confidence of each joint, 0 to 1.
-    xyz_in_body : (J, 3) float
-        The network's own metric guess relative to the hip centre, metres, axes as in cam; NaN
-        without one.
-    presence : float
-        Confidence that the region shows a person at all, 0 to 1.
-    region : Region
-        Where to look for the same person in the next frame.
-    """
-
-    xy: NDArray
-    score: NDArray
+    xy: NDArray  # (J, 2): joints, px of the picture
+    score: NDArray  # (J,): confidence of each joint, 0 to 1
+    # (J, 3): the network's own metric guess relative to the hip centre, metres, axes as in cam; NaN
+    # without one
     xyz_in_body: NDArray
-    presence: float
-    region: Region
+    presence: float  # confidence that the region shows a person at all, 0 to 1
+    region: Region  # where to look for the same person in the next frame
 
 
 class PersonDetector(Protocol):
@@ -97,25 +76,19 @@ def cut_out(
 ) -> NDArray:
     """Cut a rotated square out of a picture and scale it to a network's input.
 
+    Bilinear without half-pixel shift and without smoothing when it shrinks, as MediaPipe's OpenCV
+    image-to-tensor calculator does: its networks were trained on such input.
+
     Parameters
     ----------
-    image : (H, W, 3) uint8
-        Any channel order.
-    region : Region
-        Parts outside the picture are filled as `border` says.
-    side_px : int
-        Side of the result.
-    border : int
-        OpenCV border mode.
+    image : (H, W, 3) uint8; any channel order
+    region : parts outside the picture are filled as `border` says
+    side_px : side of the result
+    border : OpenCV border mode
 
     Returns
     -------
     patch : (side_px, side_px, 3) uint8
-
-    Notes
-    -----
-    Bilinear without half-pixel shift and without smoothing when it shrinks, as MediaPipe's OpenCV
-    image-to-tensor calculator does: its networks were trained on such input.
     """
     scale = region.side / side_px
     cosine, sine = math.cos(region.angle_rad) * scale, math.sin(region.angle_rad) * scale
@@ -135,15 +108,11 @@ def cut_out(
 def to_picture(fraction: NDArray, region: Region) -> NDArray:
     """Map positions in a region, as fractions of its side, to the picture.
 
-    Parameters
-    ----------
-    fraction : (..., 2) float
-        (0, 0) is the region's first corner, (1, 1) the opposite one.
+    `fraction`: (..., 2) float; (0, 0) is the region's first corner, (1, 1) the opposite one.
 
     Returns
     -------
-    xy : (..., 2) float
-        Pixels of the picture.
+    xy : (..., 2) float; pixels of the picture
     """
     centre = np.array([region.x, region.y])
     return centre + rotate((fraction - 0.5) * region.side, region.angle_rad)

@@ -23,12 +23,9 @@ class HeatmapLandmarks:
 
     Parameters
     ----------
-    input_range : (float, float)
-        Values that black and white pixels become.
-    channels : {"rgb", "bgr"}
-        Channel order of its input.
-    presence_joints : list of int
-        Joints whose mean peak is taken as the confidence that a person is there.
+    input_range : values that black and white pixels become
+    channels : {"rgb", "bgr"}; channel order of its input
+    presence_joints : joints whose mean peak is taken as the confidence that a person is there
     """
 
     def __init__(
@@ -70,21 +67,14 @@ class HeatmapLandmarks:
 def peaks(maps: NDArray) -> tuple[NDArray, NDArray]:
     """Find the peak of each heat map to a fraction of a cell.
 
-    Parameters
-    ----------
-    maps : (H, W, J) float
-        Confidence, about 0 to 1.
+    The offset within a cell is the vertex of the parabola through the peak and its neighbours.
+
+    `maps`: (H, W, J) float; confidence, about 0 to 1.
 
     Returns
     -------
-    fraction : (J, 2) float
-        x, y as fractions of the region; a cell's centre lies half a cell in.
-    score : (J,) float
-        Peak value, clipped to 0 to 1.
-
-    Notes
-    -----
-    The offset within a cell is the vertex of the parabola through the peak and its neighbours.
+    fraction : (J, 2) float; x, y as fractions of the region; a cell's centre lies half a cell in
+    score : (J,) float; peak value, clipped to 0 to 1
     """
     height, width, n_joints = maps.shape
     fraction = np.empty((n_joints, 2))

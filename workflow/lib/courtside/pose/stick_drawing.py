@@ -33,13 +33,10 @@ def draw(
     Parameters
     ----------
     image : (H, W) or (H, W, 3) uint8
-    persons : sequence of (J, 2) float
-        Px; NaN where missing.
+    persons : sequence of (J, 2) float; px; NaN where missing
     bones : sequence of (int, int)
-    colour : int or (int, int, int)
-        BGR.
-    thick, radius : int
-        Of bones and of joints, px.
+    colour : int or (int, int, int); BGR
+    thick, radius : of bones and of joints, px
     """
     for xy in persons:
         inside = drawable(xy)

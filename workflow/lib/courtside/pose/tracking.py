@@ -17,25 +17,13 @@ STRAY = 0.25  # a track whose middle leaves every foreground box by this share o
 
 @dataclass(frozen=True)
 class Track:
-    """The joints of one person in every frame of one camera.
+    """The joints of one person in every frame of one camera."""
 
-    Attributes
-    ----------
-    time_s : (T,) float
-    xy : (T, J, 2) float
-        Pixels; NaN where nobody was found.
-    score : (T, J) float
-    reason : (T, J) uint8
-        `courtside.records.keypoints.missing_reason`.
-    xyz_in_body : (T, J, 3) float
-        Metres, see `courtside.pose.detector.Pose`.
-    """
-
-    time_s: NDArray
-    xy: NDArray
-    score: NDArray
-    reason: NDArray
-    xyz_in_body: NDArray
+    time_s: NDArray  # (T,)
+    xy: NDArray  # (T, J, 2): pixels; NaN where nobody was found
+    score: NDArray  # (T, J)
+    reason: NDArray  # (T, J) uint8; `courtside.records.keypoints.missing_reason`
+    xyz_in_body: NDArray  # (T, J, 3): metres, see `courtside.pose.detector.Pose`
 
 
 def track_person(
@@ -51,20 +39,14 @@ def track_person(
 
     Parameters
     ----------
-    frames : iterable of (float, (H, W, 3) uint8)
-        Time in seconds and picture, BGR.
-    detector : PersonDetector
-        Used when there is no track; it sees only the surroundings of the foreground, so that a
-        person who is small in the picture is large in its input.
-    landmarks : LandmarkNetwork
-        Used in every frame.
-    foreground : Foreground
-        Where the camera sees something new.
-    min_presence : float
-        Below this confidence, 0 to 1, the network's answer is dropped and the person searched
-        again.
-    redetect : bool
-        Search in every frame instead of following: slower, and without memory.
+    frames : iterable of (float, (H, W, 3) uint8); time in seconds and picture, BGR
+    detector : used when there is no track; it sees only the surroundings of the foreground, so that
+        a person who is small in the picture is large in its input
+    landmarks : used in every frame
+    foreground : where the camera sees something new
+    min_presence : below this confidence, 0 to 1, the network's answer is dropped and the person
+        searched again
+    redetect : search in every frame instead of following: slower, and without memory
     """
     times: list[float] = []
     rows: list[tuple[NDArray, ...]] = []
@@ -89,10 +71,9 @@ def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:
 
     Parameters
     ----------
-    xy : (J, 2) float
-        Joints, px.
-    boxes : list of (x, y, width, height)
-        Foreground, px. Without any it returns False: a person may stand still for long.
+    xy : (J, 2) float; joints, px
+    boxes : list of (x, y, width, height); foreground, px. Without any it returns False: a person
+        may stand still for long.
     """
     middle = np.median(xy, axis=0)
     for x, y, width, height in boxes:
@@ -133,17 +114,13 @@ def as_row(
 ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Return one frame of a `Track`.
 
-    Parameters
-    ----------
-    pose : Pose or None
-        None where nobody was found.
-    shape : (height, width, ...) of int
-        Of the picture, px; not used without a pose.
+    `pose`: none where nobody was found; `shape`: (height, width, ...) of int; of the picture, px;
+    not used without a pose.
 
     Returns
     -------
-    xy, score, reason, xyz_in_body : (J, 2), (J,), (J,), (J, 3)
-        Joints outside the picture are NaN with that reason.
+    xy, score, reason, xyz_in_body : (J, 2), (J,), (J,), (J, 3); joints outside the picture are NaN
+        with that reason
     """
     if pose is None or shape is None:
         xy, xyz = np.full((n_joints, 2), np.nan), np.full((n_joints, 3), np.nan)

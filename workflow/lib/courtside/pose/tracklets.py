@@ -65,25 +65,20 @@ def track_people(
 ) -> Track:
     """Follow several people through a video.
 
-    Parameters
-    ----------
-    frames, detector, landmarks, foreground, min_presence, redetect
-        As for `tracking.track_person`.
-    max_people : int
-        People followed at once, 1 or more. With 1, the result is that of `track_person`.
-
-    Returns
-    -------
-    track : Track
-        Arrays have a leading axis of P rows. A row holds tracklets one after another, at least 0.1
-        s apart: P stays a few more than `max_people`, however often tracklets end; a gap may
-        change the person.
-
-    Notes
-    -----
     A body is lost where the network doubts it, where it leaves the foreground or jumps off its
     course. Of two tracks on one body, the one further off its course is dropped. Where two bodies
     come close and where they part, both tracklets end: the other views decide who is who.
+
+    Parameters
+    ----------
+    frames, detector, landmarks, foreground, min_presence, redetect : as for `tracking.track_person`
+    max_people : people followed at once, 1 or more. With 1, the result is that of `track_person`.
+
+    Returns
+    -------
+    track : arrays have a leading axis of P rows. A row holds tracklets one after another, at least
+        0.1 s apart: P stays a few more than `max_people`, however often tracklets end; a gap may
+        change the person.
     """
     if max_people == 1:
         track = tracking.track_person(

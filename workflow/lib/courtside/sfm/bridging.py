@@ -35,7 +35,8 @@ def choose(
     nearest usable multiple; one within q of it wins that is the sharpest and clearly (1.25 times)
     sharper. Places are then settled together: none twice, where another choice exists no gap above
     8 q and both ends less than a spacing from the grid's, and otherwise as near to the preferred as
-    can be. "interval" ignores q: ask `courtside.sfm.pairs.missing_pairs`.
+    can be. "interval" ignores q: ask `courtside.sfm.pairs.missing_pairs`. Raises `InputError` if
+    there are fewer than n usable frames, `ValueError` if an argument is out of its range.
 
     Parameters
     ----------
@@ -51,13 +52,6 @@ def choose(
     Returns
     -------
     place_idx : (n,) int; places in the grid, strictly increasing
-
-    Raises
-    ------
-    InputError
-        If there are fewer than n usable frames.
-    ValueError
-        If an argument is out of its range.
     """
     kept_idx = np.asarray(kept_idx, dtype=int)
     if n < 2 or not 0 <= offset_idx < OFFSETS or rule not in ("even", "interval"):

@@ -17,16 +17,10 @@ MODEL = "OPENCV"  # fx fy cx cy k1 k2 p1 p2
 
 @dataclass(frozen=True)
 class Group:
-    """Images of one physical camera: they share a lens.
+    """Images of one physical camera: they share a lens."""
 
-    Attributes
-    ----------
-    name : of the camera or the walk
-    images : paths from the image root, in the order of their names
-    """
-
-    name: str
-    images: tuple[str, ...]
+    name: str  # of the camera or the walk
+    images: tuple[str, ...]  # paths from the image root, in the order of their names
 
 
 def extract(
@@ -40,6 +34,9 @@ def extract(
     threads: int = 1,
 ) -> tuple[dict[str, int], list[str]]:
     """Extract SIFT features and write them to a new COLMAP database.
+
+    Raises `InputError` if an image cannot be read, or has another size than the others of its
+    camera, `ValueError` if a group has no images.
 
     Parameters
     ----------
@@ -57,13 +54,6 @@ def extract(
     -------
     n_features : by image
     guessed : groups whose images do not state a focal length
-
-    Raises
-    ------
-    InputError
-        If an image cannot be read, or has another size than the others of its camera.
-    ValueError
-        If a group has no images.
     """
     empty = [group.name for group in groups if not group.images]
     if empty:

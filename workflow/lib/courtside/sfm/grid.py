@@ -14,20 +14,12 @@ from courtside.sfm import bridging, pairs
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Frames of all walks, one walk after the other.
+    """Frames of all walks, one walk after the other."""
 
-    Attributes
-    ----------
-    walks : (G,) str
-    names : (G,) str; of the images, from the image root
-    kept : (G,) bool; whether a frame may become a bridging image
-    sharpness : (G,) float
-    """
-
-    walks: NDArray
-    names: NDArray
-    kept: NDArray
-    sharpness: NDArray
+    walks: NDArray  # (G,) str
+    names: NDArray  # (G,) str; of the images, from the image root
+    kept: NDArray  # (G,) bool; whether a frame may become a bridging image
+    sharpness: NDArray  # (G,)
 
     def of_walk(self, walk: str) -> tuple[str, ...]:
         """Return the names of a walk's usable frames, in order."""

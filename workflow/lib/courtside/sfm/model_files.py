@@ -77,14 +77,8 @@ RECORDS = {
 def check(folder: str | os.PathLike) -> None:
     """Walk through the binary files of a model (`RECORDS`), each to its end.
 
-    colmap/scene/reconstruction_io_binary.cc of COLMAP 4.
-
-    Raises
-    ------
-    ValueError
-        If a file is longer or shorter than its counts say.
-    OSError
-        If one is missing.
+    colmap/scene/reconstruction_io_binary.cc of COLMAP 4. Raises `ValueError` if a file is longer or
+    shorter than its counts say, `OSError` if one is missing.
     """
     for name, record in RECORDS.items():
         walk = _Walk(Path(folder) / f"{name}.bin")

@@ -35,10 +35,8 @@ def missing_pairs(place_idx: ArrayLike, n_grid: int, *, reach: int = 1) -> NDArr
     They must be matched besides. There are none for the rule "even" and reach 1 unless a long
     stretch is unusable.
 
-    Parameters
-    ----------
-    place_idx : (n,) int; chosen places in the grid, ascending
-    reach : 1 for next neighbours only, 2 for second neighbours too, and so on
+    `place_idx`: (n,) int; chosen places in the grid, ascending; `reach`: 1 for next neighbours
+    only, 2 for second neighbours too, and so on.
     """
     place_idx = np.asarray(place_idx, dtype=int)
     listed = set(map(tuple, pair_list(n_grid).tolist()))

@@ -21,24 +21,13 @@ MIN_SPREAD = 0.1  # least standard deviation of the inliers' places, of the shor
 
 @dataclass(frozen=True)
 class Movement:
-    """Similarity about the picture's centre between two pictures of a fixed camera.
+    """Similarity about the picture's centre between two pictures of a fixed camera."""
 
-    Attributes
-    ----------
-    shift_px : (2,) float
-        Movement of the content at the picture's centre: right, down; pixels.
-    zoom : float
-        Scale of the other picture relative to the reference; 1 for none.
-    rotation_deg : float
-        Clockwise rotation of the content, as seen on the picture.
-    n_matches : int
-        Background points that agree. If they are fewer than required, or do not spread over the
-        picture, the rest is NaN.
-    """
-
-    shift_px: NDArray
-    zoom: float
-    rotation_deg: float
+    shift_px: NDArray  # (2,): movement of the content at the picture's centre: right, down; pixels
+    zoom: float  # scale of the other picture relative to the reference; 1 for none
+    rotation_deg: float  # clockwise rotation of the content, as seen on the picture
+    # background points that agree. If they are fewer than required, or do not spread over the
+    # picture, the rest is NaN.
     n_matches: int
 
     @property
@@ -65,20 +54,17 @@ def unknown(n_matches: int = 0) -> Movement:
 def movement(reference: NDArray, other: NDArray, *, min_matches: int = MIN_MATCHES) -> Movement:
     """Measure how a fixed camera's picture moved, from its background.
 
-    Parameters
-    ----------
-    reference, other : (H, W, 3) uint8
-        BGR, such as a camera's static picture and a frame of a take; ValueError if sizes differ.
-    min_matches : int
-        With fewer agreeing background points the result is NaN.
-
-    Notes
-    -----
     Corners are tracked forth and back (Lucas & Kanade 1981, pyramidal) on pictures of normalised
     contrast, once from their old places and once from where ORB features predict them; the start
     with more agreeing corners counts. People and shadows are the outliers of a similarity fitted by
     RANSAC. For a camera that panned or tilted this holds near the centre only: towards the edges
     its picture moves a little more.
+
+    Parameters
+    ----------
+    reference, other : (H, W, 3) uint8; BGR, such as a camera's static picture and a frame of a
+        take; ValueError if sizes differ
+    min_matches : with fewer agreeing background points the result is NaN
     """
     if reference.shape != other.shape:
         raise ValueError(f"pictures of two sizes: {reference.shape} and {other.shape}")
@@ -177,13 +163,11 @@ def moved(places: NDArray, model: NDArray) -> NDArray:
 
     Parameters
     ----------
-    places : (N, 2) float
-        From the picture's centre.
-    model : (6,) float
-        Shift of the centre x, y; linear change a - 1 and b of the similarity [[a, -b], [b, a]];
-        and, for the lens, k and p: the centre's shift t is (1 + k r^2) t + p x (x . t) at x. A
-        pinhole has k = 0 and p = (that half / focal length)^2 = p0; distortion k1 adds k1 p0 to k
-        and 2 k1 p0 to p, to third order.
+    places : (N, 2) float; from the picture's centre
+    model : (6,) float; shift of the centre x, y; linear change a - 1 and b of the similarity [[a,
+        -b], [b, a]]; and, for the lens, k and p: the centre's shift t is (1 + k r^2) t + p x (x .
+        t) at x. A pinhole has k = 0 and p = (that half / focal length)^2 = p0; distortion k1 adds
+        k1 p0 to k and 2 k1 p0 to p, to third order.
     """
     shift, (scale, turn, k, p) = model[:2], model[2:]
     x, y = places.T
@@ -213,21 +197,12 @@ def _jacobian(places: NDArray, model: NDArray) -> NDArray:
 
 @dataclass(frozen=True)
 class Fit:
-    """A movement that tracked points agree on.
+    """A movement that tracked points agree on."""
 
-    Attributes
-    ----------
-    model : (6,) float
-        For `moved`; NaN where too few agree.
-    sigma : float
-        Standard deviation of the shift per axis, unit: half of the longer side; NaN as `model`.
-    n_matches : int
-        Points that agree.
-    """
-
-    model: NDArray
+    model: NDArray  # (6,): for `moved`; NaN where too few agree
+    # standard deviation of the shift per axis, unit: half of the longer side; NaN as `model`
     sigma: float
-    n_matches: int
+    n_matches: int  # points that agree
 
     @property
     def known(self) -> bool:

@@ -34,22 +34,14 @@ class _DamageError(Exception):
 def decode_checked(listing: Listing, first: int, stop: int) -> Iterator[tuple[int, av.VideoFrame]]:
     """Decode the frames `first` to `stop - 1` on one thread, each checked against the packets.
 
-    Parameters
-    ----------
-    first, stop : int
-        Indices into `listing.pts`, `first < stop`.
+    Raises `InputError` at the first missing or damaged frame, after those before it.
+
+    `first`, `stop`: indices into `listing.pts`, `first < stop`.
 
     Yields
     ------
-    index : int
-        Every index of the range, in order.
-    frame : av.VideoFrame
-        As stored: not turned upright, in its own pixel format.
-
-    Raises
-    ------
-    InputError
-        At the first missing or damaged frame, after those before it.
+    index : every index of the range, in order
+    frame : av.VideoFrame; as stored: not turned upright, in its own pixel format
     """
     keys = listing.key_pts[listing.key_pts <= listing.pts[first]].tolist()
     key = int(np.searchsorted(listing.pts, keys[-1])) if keys else 0
@@ -127,24 +119,15 @@ def pictures(
 ) -> Iterator[tuple[int, NDArray]]:
     """Decode wanted frames into upright pictures; those between are decoded but not converted.
 
-    Parameters
-    ----------
-    wanted : sequence of int
-        Indices into `listing.pts`, increasing, at least one.
-    crop_px : (4,) int or None
-        Left, top, width and height in pixels of the upright picture.
+    Raises `InputError` as `decode_checked`; also if the size changes or the crop lies outside.
+
+    `wanted`: indices into `listing.pts`, increasing, at least one; `crop_px`: (4,) int or None;
+    left, top, width and height in pixels of the upright picture.
 
     Yields
     ------
-    index : int
-        Each of `wanted`.
-    image : (H, W, 3) uint8
-        BGR.
-
-    Raises
-    ------
-    InputError
-        As `decode_checked`; also if the size changes or the crop lies outside.
+    index : each of `wanted`
+    image : (H, W, 3) uint8; BGR
     """
     reformatter, matrix = VideoReformatter(), None
     shape, rest = None, iter(wanted)

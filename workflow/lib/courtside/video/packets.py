@@ -31,41 +31,20 @@ Packet = tuple[int | None, int | None, int | None, bool]  # pts, dts, duration, 
 
 @dataclass(frozen=True)
 class Listing:
-    """The whole packets of a video file; times in ticks of its clock.
-
-    Attributes
-    ----------
-    path : Path
-    pts : (T,) int
-        When each frame is shown, increasing.
-    leans_on : (T,) int
-        For each frame, the last shown of those decoded up to it: its picture may depend on that
-        one.
-    key_pts : (K,) int
-        Those where decoding can begin.
-    tick_s : Fraction
-        One tick, in seconds.
-    end : int
-        When the last frame's time is over.
-    n_declared : int or None
-        Frames as the container declares them.
-    problem : str
-        Why the file is shorter than it should be; empty if it is not.
-    last_dts : int
-        Decoding time of the last whole packet: no frame up to this time is missing.
-    by_order : bool
-        The container stores no presentation order: frames are identified by counting only.
-    """
+    """The whole packets of a video file; times in ticks of its clock."""
 
     path: Path
-    pts: NDArray
+    pts: NDArray  # (T,) int; when each frame is shown, increasing
+    # (T,) int; for each frame, the last shown of those decoded up to it: its picture may depend on
+    # that one
     leans_on: NDArray
-    key_pts: NDArray
-    tick_s: Fraction
-    end: int
-    n_declared: int | None
-    problem: str
-    last_dts: int
+    key_pts: NDArray  # (K,) int; those where decoding can begin
+    tick_s: Fraction  # one tick, in seconds
+    end: int  # when the last frame's time is over
+    n_declared: int | None  # int or None; frames as the container declares them
+    problem: str  # why the file is shorter than it should be; empty if it is not
+    last_dts: int  # decoding time of the last whole packet: no frame up to this time is missing
+    # the container stores no presentation order: frames are identified by counting only
     by_order: bool
 
     @property

@@ -22,33 +22,18 @@ from courtside.video.packets import Listing, list_packets
 
 @dataclass(frozen=True)
 class VideoInfo:
-    """Properties of a video file.
-
-    Attributes
-    ----------
-    path : Path
-    size : (int, int)
-        Width and height of the upright picture, in pixels.
-    n_frames : int or None
-        Frames as the container declares them, if it does.
-    rate_hz : float
-        Frames per second, averaged over the file; NaN for a single frame. Its error is at most the
-        container's tick over its length: Matroska keeps milliseconds.
-    rotation_deg : int
-        Clockwise rotation that makes the stored picture upright: 0, 90, 180 or 270.
-    duration_s : float
-        From the start of the first frame to the end of the last.
-    variable_rate : bool
-        Whether some frame interval differs from the average by more than 1 % and one tick of the
-        container's clock.
-    """
+    """Properties of a video file."""
 
     path: Path
-    size: tuple[int, int]
-    n_frames: int | None
+    size: tuple[int, int]  # (int, int); width and height of the upright picture, in pixels
+    n_frames: int | None  # int or None; frames as the container declares them, if it does
+    # frames per second, averaged over the file; NaN for a single frame. Its error is at most the
+    # container's tick over its length: Matroska keeps milliseconds.
     rate_hz: float
-    rotation_deg: int
-    duration_s: float
+    rotation_deg: int  # clockwise rotation that makes the stored picture upright: 0, 90, 180 or 270
+    duration_s: float  # from the start of the first frame to the end of the last
+    # whether some frame interval differs from the average by more than 1 % and one tick of the
+    # container's clock
     variable_rate: bool
 
 
@@ -94,25 +79,20 @@ def frames(
 ) -> Iterator[tuple[float, NDArray]]:
     """Decode a video one frame at a time.
 
+    Raises `InputError` if the file is missing, no video, damaged or cut short within the range,
+    holds no frame in it, or is smaller than the crop.
+
     Parameters
     ----------
-    start_s, stop_s : float or None
-        Only frames with `start_s <= time_s < stop_s`; None for the start or end of the file.
-    crop_px : (4,) int or None
-        Left, top, width and height of the part wanted, in pixels of the upright picture.
+    start_s, stop_s : only frames with `start_s <= time_s < stop_s`; None for the start or end of
+        the file
+    crop_px : (4,) int or None; left, top, width and height of the part wanted, in pixels of the
+        upright picture
 
     Yields
     ------
-    time_s : float
-        Seconds since the first frame of the file.
-    image : (H, W, 3) uint8
-        BGR, upright.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, no video, damaged or cut short within the range, holds no frame in
-        it, or is smaller than the crop.
+    time_s : seconds since the first frame of the file
+    image : (H, W, 3) uint8; BGR, upright
     """
     listing, first, stop = _range(path, start_s, stop_s)
     times_s = listing.times_s
@@ -132,19 +112,15 @@ def extract_frames(
 
     Parameters
     ----------
-    every_s : float
-        Spacing of the grid, which begins at `start_s` (or 0) and ends with the last frame.
+    every_s : spacing of the grid, which begins at `start_s` (or 0) and ends with the last frame.
         ValueError if it is not positive.
-    start_s, stop_s, crop_px
-        As for `frames`, which also tells the errors.
+    start_s, stop_s, crop_px : as for `frames`, which also tells the errors
 
     Yields
     ------
-    frame_idx : int
-        Index of the frame in the file. A frame nearest to several grid times comes once; of two
-        equally near, the earlier is taken.
-    time_s, image
-        As for `frames`.
+    frame_idx : index of the frame in the file. A frame nearest to several grid times comes once; of
+        two equally near, the earlier is taken.
+    time_s, image : as for `frames`
     """
     if not every_s > 0:
         raise ValueError(f"every_s must be positive, not {every_s}")

@@ -26,27 +26,13 @@ NAMES = ("shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "n_matches"
 
 @dataclass(frozen=True)
 class Shift:
-    """Place of the static picture's content in a frame.
+    """Place of the static picture's content in a frame."""
 
-    Attributes
-    ----------
-    shift_px : (2,) float
-        Of the content at the picture's centre: right, down.
-    zoom : float
-        Scale at the centre; 1 for none.
-    rotation_deg : float
-        Clockwise rotation about the centre, as seen on the picture.
-    n_matches : int
-        Corners that agree; with too few, the rest is NaN.
-    sigma_px : float
-        Standard deviation of `shift_px`, per axis.
-    """
-
-    shift_px: NDArray
-    zoom: float
-    rotation_deg: float
-    n_matches: int
-    sigma_px: float
+    shift_px: NDArray  # (2,): of the content at the picture's centre: right, down
+    zoom: float  # scale at the centre; 1 for none
+    rotation_deg: float  # clockwise rotation about the centre, as seen on the picture
+    n_matches: int  # corners that agree; with too few, the rest is NaN
+    sigma_px: float  # standard deviation of `shift_px`, per axis
 
     @property
     def known(self) -> bool:
@@ -59,8 +45,6 @@ class Tracker:
 
     The static picture should be as free of people as possible.
 
-    Notes
-    -----
     Corners of the static picture are tracked in each frame (Lucas & Kanade 1981, pyramidal),
     starting from the last frame's places but always against the static picture, so that no error
     accumulates. The rotation of a camera moves its picture's edges more than its centre, by an

@@ -47,28 +47,21 @@ def check_still(
 ) -> Movement:
     """Check that a fixed camera neither moved nor zoomed between two pictures.
 
+    Raises `InputError` if the sizes differ, the camera moved, or too few background points agree to
+    tell.
+
     Parameters
     ----------
-    camera : str
-        Its name, for the message.
-    reference, other : (H, W, 3) uint8
-        Its static picture and a later picture, BGR.
-    max_shift_px : float
-        Largest shift of the picture's centre; also of the middle of its sides by rotation, pixels.
-    max_zoom_percent : float
-        Largest change of scale.
-    where, mend : str
-        Where the pictures are from and what to do, for the message.
+    camera : its name, for the message
+    reference, other : (H, W, 3) uint8; its static picture and a later picture, BGR
+    max_shift_px : largest shift of the picture's centre; also of the middle of its sides by
+        rotation, pixels
+    max_zoom_percent : largest change of scale
+    where, mend : where the pictures are from and what to do, for the message
 
     Returns
     -------
-    movement : Movement
-        The measured movement, within the limits.
-
-    Raises
-    ------
-    InputError
-        If the sizes differ, the camera moved, or too few background points agree to tell.
+    movement : the measured movement, within the limits
     """
     start = f"camera {camera}: expected the same view in {where}"
     if reference.shape != other.shape:
@@ -106,25 +99,19 @@ def static_picture(
 ) -> tuple[NDArray, Movement]:
     """Make the static picture of a fixed camera, after checking that it stood still meanwhile.
 
+    Raises `InputError` if the camera moved, that cannot be told, or the median is mostly black.
+
     Parameters
     ----------
-    camera, source
-        Name and recording, for messages.
-    images : list of (H, W, 3) uint8
-        Spread over the recording, in order, BGR.
-    max_shift_px, max_zoom_percent : float
-        As for `check_still`, between the medians of the first and of the last third.
+    camera, source : name and recording, for messages
+    images : list of (H, W, 3) uint8; spread over the recording, in order, BGR
+    max_shift_px, max_zoom_percent : as for `check_still`, between the medians of the first and of
+        the last third
 
     Returns
     -------
-    image, movement : (H, W, 3) uint8, Movement
-        The temporal median; the movement from the first to the last third, unknown for fewer than
-        three pictures, which are not checked.
-
-    Raises
-    ------
-    InputError
-        If the camera moved, that cannot be told, or the median is mostly black.
+    image, movement : (H, W, 3) uint8, Movement; the temporal median; the movement from the first to
+        the last third, unknown for fewer than three pictures, which are not checked
     """
     image, third, found = temporal_median(images), len(images) // 3, unknown()
     check_light(source, image)

@@ -29,29 +29,21 @@ def frames(
 ) -> Iterator[tuple[int, float, NDArray]]:
     """Decode the frames of a walk on a fixed grid, or all its photos.
 
+    Raises `InputError` if the source is missing, damaged, holds no picture or pictures of several
+    sizes, or a photo is mostly black.
+
     Parameters
     ----------
-    source : path or list of paths
-        A video; a photo, photos, or a folder of photos. All photos are used, in name order, numbers
-        by value.
-    every_s, every_frame : float, int
-        For a video, exactly one of them, positive (ValueError if not): spacing of the grid in
-        seconds, as for `reader.extract_frames`, or in frames, from the first.
+    source : path or list of paths; a video; a photo, photos, or a folder of photos. All photos are
+        used, in name order, numbers by value.
+    every_s, every_frame : for a video, exactly one of them, positive (ValueError if not): spacing
+        of the grid in seconds, as for `reader.extract_frames`, or in frames, from the first
 
     Yields
     ------
-    frame_idx : int
-        Of the video; of photos, the place in name order.
-    time_s : float
-        Since the video's first frame; NaN for photos.
-    image : (H, W, 3) uint8
-        BGR, upright, all of one size.
-
-    Raises
-    ------
-    InputError
-        If the source is missing, damaged, holds no picture or pictures of several sizes, or a photo
-        is mostly black.
+    frame_idx : of the video; of photos, the place in name order
+    time_s : since the video's first frame; NaN for photos
+    image : (H, W, 3) uint8; BGR, upright, all of one size
     """
     paths = photo_paths(source)
     if paths:

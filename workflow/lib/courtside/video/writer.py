@@ -30,32 +30,22 @@ def write_video(
 ) -> int:
     """Write pictures as H.264 in yuv420p, at a constant rate; return how many.
 
-    Parameters
-    ----------
-    path : path
-        Its suffix chooses the container (`.mp4`). The file appears under its name only when whole.
-    frames : iterable of (H, W, 3) uint8
-        BGR, all of one even size.
-    rate_hz : float
-        Frames per second; frame k is shown at k / rate_hz.
-    crf : float
-        Constant rate factor of x264: 0 loses only what yuv420p loses, 18 looks lossless, 28 is
-        poor.
-    effort : str
-        Preset of x264: "veryfast" takes a third of the time of "medium".
+    Raises `ValueError` if there is no frame, a frame is not such a picture, or the rate is not
+    positive, `InputError` if the disk refuses the file.
 
-    Raises
-    ------
-    ValueError
-        If there is no frame, a frame is not such a picture, or the rate is not positive.
-    InputError
-        If the disk refuses the file.
-
-    Notes
-    -----
     One thread: with more, x264 divides the bits among the frames differently from run to run. No
     macroblock tree: with AVX-512, x264's reads memory that is not its own, and no two runs are
     alike.
+
+    Parameters
+    ----------
+    path : its suffix chooses the container (`.mp4`). The file appears under its name only when
+        whole.
+    frames : iterable of (H, W, 3) uint8; BGR, all of one even size
+    rate_hz : frames per second; frame k is shown at k / rate_hz
+    crf : constant rate factor of x264: 0 loses only what yuv420p loses, 18 looks lossless, 28 is
+        poor
+    effort : preset of x264: "veryfast" takes a third of the time of "medium"
     """
     if not 0 < rate_hz < np.inf:
         raise ValueError(f"expected a positive rate_hz, found {rate_hz}")

@@ -24,39 +24,25 @@ _Seen = tuple[NDArray, NDArray, NDArray, NDArray]
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """State, observations and prior knowledge of images, lenses and points.
+    """State, observations and prior knowledge of images, lenses and points."""
 
-    Attributes
-    ----------
-    cam_from_world : (V, 3, 4) float
-    flex : (V, 5) float
-    lens : (L, 8) float; in the order of `LENS`; focal length f along y, f times aspect along x
-    xyz : (N, 3) float
-    lens_of_image : (V,) int
-    height_px : (V,) float; of the picture: a row is read at (row + 0.5) / height - 0.5
-    image_idx, point_idx : (M,) int; of each observation
-    xy : (M, 2) float; observed px
-    sigma_px : (M,) float; standard deviation of an observation per axis
-    loss_scale : (M,) float; scale of the Cauchy loss, in the observation's sigmas; inf: no loss
-    flex_sigma : (V, 5) float; prior about 0; 0 keeps a number at 0
-    lens_mean, lens_sigma : (L, 8) float; prior; sigma inf: unknown; 0: known exactly
-    xyz_mean, xyz_sigma : (N, 3), (N,) float; prior of points; sigma inf: unknown
-    """
-
-    cam_from_world: NDArray
-    flex: NDArray
-    lens: NDArray
-    xyz: NDArray
-    lens_of_image: NDArray
-    height_px: NDArray
+    cam_from_world: NDArray  # (V, 3, 4)
+    flex: NDArray  # (V, 5)
+    lens: NDArray  # (L, 8): in the order of `LENS`; focal length f along y, f times aspect along x
+    xyz: NDArray  # (N, 3)
+    lens_of_image: NDArray  # (V,) int
+    height_px: NDArray  # (V,): of the picture: a row is read at (row + 0.5) / height - 0.5
+    # image_idx, point_idx: (M,) int; of each observation
     image_idx: NDArray
     point_idx: NDArray
-    xy: NDArray
-    sigma_px: NDArray
-    loss_scale: NDArray
-    flex_sigma: NDArray
+    xy: NDArray  # (M, 2): observed px
+    sigma_px: NDArray  # (M,): standard deviation of an observation per axis
+    loss_scale: NDArray  # (M,): scale of the Cauchy loss, in the observation's sigmas; inf: no loss
+    flex_sigma: NDArray  # (V, 5): prior about 0; 0 keeps a number at 0
+    # lens_mean, lens_sigma: (L, 8): prior; sigma inf: unknown; 0: known exactly
     lens_mean: NDArray
     lens_sigma: NDArray
+    # xyz_mean, xyz_sigma: (N, 3), (N,) float; prior of points; sigma inf: unknown
     xyz_mean: NDArray
     xyz_sigma: NDArray
 

@@ -20,17 +20,11 @@ MAX_DAMPING = 1e6  # a step of the images is negligible then
 
 @dataclass(frozen=True, eq=False)
 class Quadratic:
-    """A quadratic prior of image and lens parameters about a reference network.
-
-    Attributes
-    ----------
-    information : (K, K) float; second derivative, over all columns
-    gradient : (K,) float; first derivative at the reference
-    """
+    """A quadratic prior of image and lens parameters about a reference network."""
 
     reference: Network
-    information: NDArray
-    gradient: NDArray
+    information: NDArray  # (K, K): second derivative, over all columns
+    gradient: NDArray  # (K,): first derivative at the reference
 
 
 def mean(knowledge: Sequence[Quadratic]) -> Quadratic:
@@ -46,23 +40,14 @@ def mean(knowledge: Sequence[Quadratic]) -> Quadratic:
 
 @dataclass(frozen=True, eq=False)
 class Normal:
-    """Normal equations of a network with its points eliminated.
+    """Normal equations of a network with its points eliminated."""
 
-    Attributes
-    ----------
-    active : (K,) bool; parameters that are free and observed
-    information : (A, A) float; of the active ones
-    gradient : (A,) float
-    cost : half the sum of squared, robustly weighted residuals
-    point_information : (N, 3, 3) float
-    back : from a step of the active parameters (A,) to the step of the points (N, 3)
-    """
-
-    active: NDArray
-    information: NDArray
-    gradient: NDArray
-    cost: float
-    point_information: NDArray
+    active: NDArray  # (K,) bool; parameters that are free and observed
+    information: NDArray  # (A, A): of the active ones
+    gradient: NDArray  # (A,)
+    cost: float  # half the sum of squared, robustly weighted residuals
+    point_information: NDArray  # (N, 3, 3)
+    # from a step of the active parameters (A,) to the step of the points (N, 3)
     back: Callable[[NDArray], NDArray]
 
 

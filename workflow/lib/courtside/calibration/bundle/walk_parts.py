@@ -19,27 +19,18 @@ PER_IMAGE = ("cam_from_world", "flex", "lens_of_image", "height_px", "flex_sigma
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Some images of a network.
+    """Some images of a network."""
 
-    Attributes
-    ----------
-    images : (W,) int; their indices in the whole network, ascending
-    fixed : (C,) int; indices of the fixed cameras' images within the part
-    network : of these images; has all points and lenses of the whole until it is thinned
-    """
-
-    images: NDArray
-    fixed: NDArray
-    network: Network
+    images: NDArray  # (W,) int; their indices in the whole network, ascending
+    fixed: NDArray  # (C,) int; indices of the fixed cameras' images within the part
+    network: Network  # of these images; has all points and lenses of the whole until it is thinned
 
 
 def split(network: Network, fixed: Sequence[int], images_per_part: int) -> list[Part]:
     """Share the images of a walk out among one or more parts, in turn.
 
-    Parameters
-    ----------
-    fixed : images of the fixed cameras; every part has them all
-    images_per_part : images of the walk; the number of parts that comes nearest to it is taken
+    `fixed`: images of the fixed cameras; every part has them all; `images_per_part`: images of the
+    walk; the number of parts that comes nearest to it is taken.
     """
     walked = np.setdiff1d(np.arange(len(network.cam_from_world)), fixed)
     n_parts = max(1, round(len(walked) / images_per_part))

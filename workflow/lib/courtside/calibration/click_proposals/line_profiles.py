@@ -18,25 +18,16 @@ LEAST_SAMPLES = 6  # ASSUME: fewer do not separate a shift from a slope
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """What is seen across a stretch of a line, and what was expected.
+    """What is seen across a stretch of a line, and what was expected."""
 
-    Attributes
-    ----------
-    xy : (N, 2) float; where the line's middle is expected, px
-    normal : (N, 2) float; across the line in the picture, unit length, towards its edge of the
-        higher coordinate
-    along_px : (N,) float; along the line in the picture, 0 at the origin asked for
-    width_px : of the line, expected
-    seen : (N, S) float; brightness at steps of `STEP_PX` across, the middle one where the line is
-        expected
-    paint : (N, T) float; share of paint expected there, 0..1, at the T middle ones of these steps
-    """
-
-    xy: NDArray
+    xy: NDArray  # (N, 2): where the line's middle is expected, px
+    # (N, 2): across the line in the picture, unit length, towards its edge of the higher coordinate
     normal: NDArray
-    along_px: NDArray
-    width_px: float
+    along_px: NDArray  # (N,): along the line in the picture, 0 at the origin asked for
+    width_px: float  # of the line, expected
+    # (N, S): brightness at steps of `STEP_PX` across, the middle one where the line is expected
     seen: NDArray
+    # (N, T): share of paint expected there, 0..1, at the T middle ones of these steps
     paint: NDArray
 
 
@@ -100,10 +91,8 @@ def tangent_and_normal(
 ) -> tuple[NDArray, NDArray]:
     """Return unit vectors (N, 2) in the picture along a line at points on it, and normal to it.
 
-    Parameters
-    ----------
-    xyz : (N, 3) float; on the line, m
-    along_m, across_m : (3,) float; along the line, and to the side to which the normals point
+    `xyz`: (N, 3) float; on the line, m; `along_m`, `across_m`: (3,) float; along the line, and to
+    the side to which the normals point.
     """
     small = 1e-3 / np.linalg.norm(along_m, axis=-1, keepdims=True)
     middle = project(camera, xyz)

@@ -17,30 +17,20 @@ HUBER = 1.5  # standard deviations; 95 % efficiency for normal errors is at 1.34
 
 @dataclass(frozen=True)
 class Shift:
-    """How far a line is from where it was expected.
+    """How far a line is from where it was expected."""
 
-    Attributes
-    ----------
-    low_px, high_px : of its two edges, along the normal, at the origin; the same where the line is
-        too thin to separate them
-    slope : rotation of the line: px across per px along
-    sigma_px : standard deviation of the shift at the origin
-    contrast : paint against floor, levels
-    share : of the samples in which the line is seen, 0..1
-    near_share : the same of those near the origin
-    score : mean correlation of what is seen with what is expected there
-    rival : the best score farther than two widths away, relative to it: near 1 where the place is
-        ambiguous
-    """
-
+    # low_px, high_px: of its two edges, along the normal, at the origin; the same where the line is
+    # too thin to separate them
     low_px: float
     high_px: float
-    slope: float
-    sigma_px: float
-    contrast: float
-    share: float
-    near_share: float
-    score: float
+    slope: float  # rotation of the line: px across per px along
+    sigma_px: float  # standard deviation of the shift at the origin
+    contrast: float  # paint against floor, levels
+    share: float  # of the samples in which the line is seen, 0..1
+    near_share: float  # the same of those near the origin
+    score: float  # mean correlation of what is seen with what is expected there
+    # the best score farther than two widths away, relative to it: near 1 where the place is
+    # ambiguous
     rival: float
 
 
@@ -54,11 +44,8 @@ def shift(
     paint, and that paint's derivative, which gives the shift. The two edges are shifted separately
     where the line is 3 px wide.
 
-    Parameters
-    ----------
-    polarity : 1 where paint is brighter than floor, -1 where darker, 0 where that may change along
-        the line
-    near_px : distance from the nearest sample that counts as near the origin
+    `polarity`: 1 where paint is brighter than floor, -1 where darker, 0 where that may change along
+    the line; `near_px`: distance from the nearest sample that counts as near the origin.
     """
     match = _correlations(stretch, polarity)
     offset, slope, score, rival = _best_line(match, stretch.along_px, stretch.width_px)

@@ -32,24 +32,16 @@ _Found = tuple[NDArray, NDArray, float, str]
 
 @dataclass(frozen=True, eq=False)
 class Proposals:
-    """Proposed points of one camera.
+    """Proposed points of one camera."""
 
-    Attributes
-    ----------
-    xy : (P, 2) float; px; NaN where nothing is proposed
-    sigma_px : (P,) float; expected standard deviation, the larger of both axes; NaN where nothing
-        is proposed
-    confidence : (P,) float; 0..1: share of what is expected near the point that is seen, less where
-        the place is uncertain
-    reason : length P; why nothing is proposed; empty where something is
-    camera : the given one, moved so that the lines fit
-    """
-
-    xy: NDArray
+    xy: NDArray  # (P, 2): px; NaN where nothing is proposed
+    # (P,): expected standard deviation, the larger of both axes; NaN where nothing is proposed
     sigma_px: NDArray
+    # (P,): 0..1: share of what is expected near the point that is seen, less where the place is
+    # uncertain
     confidence: NDArray
-    reason: tuple[str, ...]
-    camera: Camera
+    reason: tuple[str, ...]  # length P; why nothing is proposed; empty where something is
+    camera: Camera  # the given one, moved so that the lines fit
 
 
 def propose(

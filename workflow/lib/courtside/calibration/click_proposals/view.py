@@ -12,20 +12,13 @@ from courtside.geometry.camera import Camera
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A picture and its camera, with what all measurements in it have in common.
+    """A picture and its camera, with what all measurements in it have in common."""
 
-    Attributes
-    ----------
-    grey : (H, W) float32
-    blur_px : of the picture, standard deviation
-    polarity : 1 where lines are lighter than the floor, -1 where darker
-    """
-
-    grey: NDArray
+    grey: NDArray  # (H, W) float32
     camera: Camera
     court: Court
-    blur_px: float
-    polarity: int
+    blur_px: float  # of the picture, standard deviation
+    polarity: int  # 1 where lines are lighter than the floor, -1 where darker
 
     def shift(
         self, line: int, ends_m: NDArray, origin_m: NDArray, reach_px: float
@@ -51,17 +44,9 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Ray:
-    """A straight edge or axis as it was seen in the picture.
+    """A straight edge or axis as it was seen in the picture."""
 
-    Attributes
-    ----------
-    start : (2,) float; on it, px, where it is needed
-    direction : (2,) float; unit length
-    sigma_px : standard deviation across it at `start`
-    share : of what was expected near `start` that is seen, 0..1
-    """
-
-    start: NDArray
-    direction: NDArray
-    sigma_px: float
-    share: float
+    start: NDArray  # (2,): on it, px, where it is needed
+    direction: NDArray  # (2,): unit length
+    sigma_px: float  # standard deviation across it at `start`
+    share: float  # of what was expected near `start` that is seen, 0..1

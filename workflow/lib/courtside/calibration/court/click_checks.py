@@ -24,21 +24,15 @@ SHIFTS = (0.0, 0.5, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class LeaveOneOut:
-    """Every clicked point against an alignment to all the other points.
-
-    Attributes
-    ----------
-    residual_m : (P, 3) float; reconstructed minus true place, in the world; NaN where fewer than
-        two cameras have a click
-    projected_px : (C, P, 2) float; where the court's point should be in the picture
-    clicked_px : (C, P, 2) float; NaN where not clicked
-    """
+    """Every clicked point against an alignment to all the other points."""
 
     points: tuple[str, ...]
     cameras: tuple[str, ...]
+    # (P, 3): reconstructed minus true place, in the world; NaN where fewer than two cameras have a
+    # click
     residual_m: NDArray
-    projected_px: NDArray
-    clicked_px: NDArray
+    projected_px: NDArray  # (C, P, 2): where the court's point should be in the picture
+    clicked_px: NDArray  # (C, P, 2): NaN where not clicked
 
     @property
     def error_cm(self) -> NDArray:
@@ -53,19 +47,13 @@ class LeaveOneOut:
 
 @dataclass(frozen=True)
 class WrongClick:
-    """One click that the others contradict.
-
-    Attributes
-    ----------
-    error_cm : of the point in the world; NaN where one camera alone has it
-    looks_like : another point of the court that lies where this one was clicked
-    """
+    """One click that the others contradict."""
 
     camera: str
     point: str
     error_px: float
-    error_cm: float
-    looks_like: str | None
+    error_cm: float  # of the point in the world; NaN where one camera alone has it
+    looks_like: str | None  # another point of the court that lies where this one was clicked
 
     def __str__(self) -> str:
         other = f", where {self.looks_like} should be" if self.looks_like else ""
@@ -105,10 +93,9 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
 def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[WrongClick]:
     """Return the clicks that the others contradict, the worst first.
 
-    Parameters
-    ----------
-    table : of six points or more: with fewer, one wrong click spoils what the others say
-    sigma_px : of a good click per axis, at least; where a camera's clicks scatter more, that counts
+    `table`: of six points or more: with fewer, one wrong click spoils what the others say;
+    `sigma_px`: of a good click per axis, at least; where a camera's clicks scatter more, that
+    counts.
     """
     error = table.error_px
     wrong = []
@@ -133,9 +120,7 @@ def inward_shift_of_points(court: Court, xyz_in_sfm: NDArray) -> tuple[float, fl
     similarity together. The scale absorbs most of the shrinking; lines within the court determine
     the rest.
 
-    Parameters
-    ----------
-    xyz_in_sfm : (P, 3) float; reconstructed court points, in any frame; NaN where missing
+    `xyz_in_sfm`: (P, 3) float; reconstructed court points, in any frame; NaN where missing.
 
     Returns
     -------
@@ -221,9 +206,7 @@ def inward_shift(
     `inward_shift_of_points` finds a third of the shift, because adjusted cameras have absorbed the
     rest.
 
-    Parameters
-    ----------
-    **weights : of the clicks, as for `joint_adjustment.solve`
+    `**weights`: of the clicks, as for `joint_adjustment.solve`.
 
     Returns
     -------

@@ -30,30 +30,19 @@ SEE = "see config/courts/badminton.yaml"
 
 @dataclass(frozen=True, eq=False)
 class Court:
-    """A court: origin in its outer corner, x along its short side, y along its long side, z up.
+    """A court: origin in its outer corner, x along its short side, y along its long side, z up."""
 
-    Attributes
-    ----------
-    name : as in the file name
-    size_m : (2,) float; along x and y, to the outer edges of the lines
-    xyz : (P, 3) float; m
-    edges : length P; which edges meet at the point, in words
-    sigma_m : (P,) float; how far a real court is from `xyz`, standard deviation per axis
-    sets : named subsets of `points`; "all" is always there
-    lines_m : (L, 4) float; painted rectangles: x0 y0 x1 y1
-    net : `y_m`, `x_m` [left, right], `post_height_m`, `mid_height_m`; None without a net
-    """
-
-    name: str
+    name: str  # as in the file name
     description: str
-    size_m: NDArray
+    size_m: NDArray  # (2,): along x and y, to the outer edges of the lines
     line_width_m: float
     points: tuple[str, ...]
-    xyz: NDArray
-    edges: tuple[str, ...]
-    sigma_m: NDArray
-    sets: dict[str, tuple[str, ...]]
-    lines_m: NDArray
+    xyz: NDArray  # (P, 3): m
+    edges: tuple[str, ...]  # length P; which edges meet at the point, in words
+    sigma_m: NDArray  # (P,): how far a real court is from `xyz`, standard deviation per axis
+    sets: dict[str, tuple[str, ...]]  # named subsets of `points`; "all" is always there
+    lines_m: NDArray  # (L, 4): painted rectangles: x0 y0 x1 y1
+    # `y_m`, `x_m` [left, right], `post_height_m`, `mid_height_m`; None without a net
     net: dict | None
 
     def line_corners(self) -> tuple[NDArray, NDArray]:

@@ -16,18 +16,12 @@ NAME = re.compile(r"(dlt|known)(\d+)(-board)?")
 
 @dataclass(frozen=True, eq=False)
 class Method:
-    """One way to calibrate from known points.
+    """One way to calibrate from known points."""
 
-    Attributes
-    ----------
-    linear : by DLT; otherwise by least squares
-    board : with the lens known from a chessboard; otherwise focal length and k1 are found too
-    points : (n,) int; indices of the court points used
-    """
-
-    linear: bool
+    linear: bool  # by DLT; otherwise by least squares
+    # with the lens known from a chessboard; otherwise focal length and k1 are found too
     board: bool
-    points: NDArray
+    points: NDArray  # (n,) int; indices of the court points used
 
 
 def method(name: str, court: Court) -> Method:

@@ -12,19 +12,12 @@ from courtside.geometry.camera import Camera, undistort
 
 @dataclass(frozen=True)
 class Edge:
-    """An edge, or the middle, of one painted line, on which a named point lies.
+    """An edge, or the middle, of one painted line, on which a named point lies."""
 
-    Attributes
-    ----------
-    line : row of `Court.lines_m`
-    axis : 0 where the edge runs along y at a fixed x, 1 where it runs along x at a fixed y
-    at_m : that fixed coordinate
-    side : -1 for the edge of the lower coordinate, 0 for the line's middle, 1 for the other edge
-    """
-
-    line: int
-    axis: int
-    at_m: float
+    line: int  # row of `Court.lines_m`
+    axis: int  # 0 where the edge runs along y at a fixed x, 1 where it runs along x at a fixed y
+    at_m: float  # that fixed coordinate
+    # -1 for the edge of the lower coordinate, 0 for the line's middle, 1 for the other edge
     side: int
 
 
@@ -100,15 +93,10 @@ def stretches(court: Court, length_m: float) -> tuple[NDArray, NDArray]:
 
 @dataclass(frozen=True)
 class Paint:
-    """What a camera expects to be painted where.
+    """What a camera expects to be painted where."""
 
-    Attributes
-    ----------
-    place : from px (..., 2) to places (..., 2), smooth
-    shows : from places (..., 2) to (...) bool: whether there is paint
-    """
-
-    place: Callable[[NDArray], NDArray]
+    place: Callable[[NDArray], NDArray]  # from px (..., 2) to places (..., 2), smooth
+    # from places (..., 2) to (...) bool: whether there is paint
     shows: Callable[[NDArray], NDArray]
 
 

@@ -50,22 +50,13 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Clicks:
-    """What the camera is fitted to.
+    """What the camera is fitted to."""
 
-    Attributes
-    ----------
-    xyz : (P, 3) float; m
-    xy : (P, 2) float; px
-    sigma_px : of a click per axis
-    xyz_sigma : (P,) float; of a point per axis, m; None: exact
-    free_lens : whether f and k1 are found, too
-    """
-
-    xyz: NDArray
-    xy: NDArray
-    sigma_px: float
-    xyz_sigma: NDArray | None
-    free_lens: bool
+    xyz: NDArray  # (P, 3): m
+    xy: NDArray  # (P, 2): px
+    sigma_px: float  # of a click per axis
+    xyz_sigma: NDArray | None  # (P,): of a point per axis, m; None: exact
+    free_lens: bool  # whether f and k1 are found, too
 
     def of(self, which: NDArray) -> "Clicks":
         """Return the clicks of some points, `which` (P,) bool."""

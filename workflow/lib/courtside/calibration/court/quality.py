@@ -188,10 +188,7 @@ def over_volume(error_m: NDArray) -> dict[str, float]:
 def coverage(error_m: NDArray, covariance: NDArray) -> dict[str, float]:
     """Return how often errors lie within the ellipsoids of their covariance, and the size expected.
 
-    Parameters
-    ----------
-    error_m : (N, 3) float
-    covariance : (N, 3, 3) float; m2
+    `error_m`: (N, 3) float; `covariance`: (N, 3, 3) float; m2.
 
     Returns
     -------

@@ -30,52 +30,36 @@ MIN_EXTENT = 1e-9  # relative singular value below which rounding errors leave n
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """A camera found by DLT.
+    """A camera found by DLT."""
 
-    Attributes
-    ----------
-    matrix : (3, 4) float; from homogeneous world points (m) to homogeneous pixels, all eleven
-        numbers free; positive before the camera. For `triangulation.triangulate` with pixels in
-        place of normalised points
-    camera : the same but for skew, which `Camera` does not have; None where the matrix holds no
-        camera
-    rms_px : per axis, of the points it was found from
-    magnification : how many times larger than a click's error a projected point's error is, at
-        worst, in the box around the points up to half its short side (the playing volume); inf for
-        points in one plane
-    degenerate : whether the points do not determine the camera
-    reason : one sentence if so, else empty
-    """
-
+    # (3, 4): from homogeneous world points (m) to homogeneous pixels, all eleven numbers free;
+    # positive before the camera. For `triangulation.triangulate` with pixels in place of normalised
+    # points
     matrix: NDArray
+    # the same but for skew, which `Camera` does not have; None where the matrix holds no camera
     camera: Camera | None
-    rms_px: float
+    rms_px: float  # per axis, of the points it was found from
+    # how many times larger than a click's error a projected point's error is, at worst, in the box
+    # around the points up to half its short side (the playing volume); inf for points in one plane
     magnification: float
-    degenerate: bool
-    reason: str
+    degenerate: bool  # whether the points do not determine the camera
+    reason: str  # one sentence if so, else empty
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A camera found by least squares.
-
-    Attributes
-    ----------
-    covariance : (n, n) float; of `parameters`. The pose changes from the left: a step r, t takes
-        x_in_cam to exp(r) x_in_cam + t
-    parameters : `problem.POSE`, then f_px and k1 where the lens was unknown
-    accepted : (P,) bool; the clicks used: present, and within four sigmas of the fit to the others
-    error_px : (P,) float; distance of each click, accepted or not, to its projected point; NaN
-        where not clicked
-    rms_px : per axis, of the accepted clicks
-    """
+    """A camera found by least squares."""
 
     camera: Camera
+    # (n, n): of `parameters`. The pose changes from the left: a step r, t takes x_in_cam to exp(r)
+    # x_in_cam + t
     covariance: NDArray
-    parameters: tuple[str, ...]
+    parameters: tuple[str, ...]  # `problem.POSE`, then f_px and k1 where the lens was unknown
+    # (P,) bool; the clicks used: present, and within four sigmas of the fit to the others
     accepted: NDArray
+    # (P,): distance of each click, accepted or not, to its projected point; NaN where not clicked
     error_px: NDArray
-    rms_px: float
+    rms_px: float  # per axis, of the accepted clicks
 
 
 def dlt(

@@ -32,19 +32,15 @@ def camera(
 ) -> Camera:
     """Return a planned camera: no distortion, principal point in the middle.
 
+    Raises `ValueError` if none or both of focal length and field of view are given, `InputError` if
+    it looks straight up or down, or nowhere.
+
     Parameters
     ----------
     place_m, aim_m : (3,) float; world, m
     size_px : width and height
     focal_px, fov_deg : one of them: focal length, or field of view across the width
     roll : rotation about its own axis, rad
-
-    Raises
-    ------
-    ValueError
-        If none or both of focal length and field of view are given.
-    InputError
-        If it looks straight up or down, or nowhere.
     """
     if (focal_px is None) == (fov_deg is None):
         raise ValueError("expected one of focal_px and fov_deg")

@@ -26,27 +26,17 @@ NEARLY_LEAST = 1.1  # ASSUME: an error within 10 % of the least is as good
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """What to expect with one number of bridging images.
-
-    Attributes
-    ----------
-    neighbour_deg : widest angle between neighbouring views, seen from the court's centre; NaN
-        without a walk
-    n_ties : points that tie images
-    least_ties : points that the fixed camera with the fewest sees
-    error_cm : 5 %, 50 % and 95 % quantile of the root mean square error over the volume; NaN where
-        `fault`
-    solution : cameras as planned, with their covariance
-    fault : why nothing can be predicted, or empty
-    """
+    """What to expect with one number of bridging images."""
 
     n_images: int
+    # widest angle between neighbouring views, seen from the court's centre; NaN without a walk
     neighbour_deg: float
-    n_ties: int
-    least_ties: int
+    n_ties: int  # points that tie images
+    least_ties: int  # points that the fixed camera with the fewest sees
+    # 5 %, 50 % and 95 % quantile of the root mean square error over the volume; NaN where `fault`
     error_cm: tuple[float, ...]
-    solution: joint_adjustment.Solution | None = None
-    fault: str = ""
+    solution: joint_adjustment.Solution | None = None  # cameras as planned, with their covariance
+    fault: str = ""  # why nothing can be predicted, or empty
 
 
 def predict(

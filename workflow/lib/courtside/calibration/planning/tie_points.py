@@ -26,23 +26,16 @@ NEAREST_M = 1.0
 
 @dataclass(frozen=True)
 class Texture:
-    """How much there is to see in a hall.
+    """How much there is to see in a hall."""
 
-    Attributes
-    ----------
-    n_alive : features in a picture 1280 px wide that are found again from exactly the same place;
-        in proportion to the width
-    lives_deg : mean length of the lives of two kinds of features, exponentially distributed
-    shares : of the kinds among the features of one picture
-    noise_px : standard deviation of a tie per axis, whatever the picture's size
-    floor : share of the features that are on the floor
-    """
-
+    # features in a picture 1280 px wide that are found again from exactly the same place; in
+    # proportion to the width
     n_alive: float
+    # mean length of the lives of two kinds of features, exponentially distributed
     lives_deg: tuple[float, ...]
-    shares: tuple[float, ...]
-    noise_px: float
-    floor: float
+    shares: tuple[float, ...]  # of the kinds among the features of one picture
+    noise_px: float  # standard deviation of a tie per axis, whatever the picture's size
+    floor: float  # share of the features that are on the floor
 
 
 # ASSUME: chosen by trial so that the ties per image, and the images per tie, come near those of the

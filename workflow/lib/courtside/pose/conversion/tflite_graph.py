@@ -85,16 +85,10 @@ def read(path: str | PathLike) -> Graph:
     """Read a TFLite file.
 
     Its first and only subgraph is read. Sparse constants become dense; float16 ones stay float16.
-    All indices are within range; operators of any kind are listed.
+    All indices are within range; operators of any kind are listed. Raises `InputError` if the file
+    is missing, is no TFLite file, is damaged, or holds a tensor type or sparse layout that is not
+    supported.
 
-    Raises
-    ------
-    InputError
-        If the file is missing, is no TFLite file, is damaged, or holds a tensor type or sparse
-        layout that is not supported.
-
-    Notes
-    -----
     Schema: tensorflow/compiler/mlir/lite/schema/schema.fbs.
     """
     path = Path(path)
@@ -112,15 +106,10 @@ def read(path: str | PathLike) -> Graph:
 def keep_outputs(graph: Graph, names: Iterable[str]) -> Graph:
     """Remove all outputs but some, with the operators that only the removed ones need.
 
-    Parameters
-    ----------
-    names : iterable of str
-        Names of the outputs to keep. They stay in the file's order, and tensors keep their indices.
+    Raises `InputError` if a name is no output of the network, or there is none.
 
-    Raises
-    ------
-    InputError
-        If a name is no output of the network, or there is none.
+    `names`: names of the outputs to keep. They stay in the file's order, and tensors keep their
+    indices.
     """
     wanted = set(names)
     there = {graph.tensors[index].name: index for index in graph.outputs}

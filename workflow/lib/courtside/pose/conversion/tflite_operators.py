@@ -33,10 +33,8 @@ def same_padding(length: int, window: int, stride: int, dilation: int) -> tuple[
 def convert_operator(writer: Writer, operator: Operator) -> None:
     """Add one operator to the ONNX graph, which holds all its inputs.
 
-    Raises
-    ------
-    ValueError
-        If there is no converter for its kind, or it, its inputs or its options are not as needed.
+    Raises `ValueError` if there is no converter for its kind, or it, its inputs or its options are
+    not as needed.
     """
     if operator.kind not in CONVERTERS:
         raise ValueError(f"not one of {', '.join(sorted(CONVERTERS))}")

@@ -68,13 +68,9 @@ def integers(table: Any, name: str, most: int) -> tuple[int, ...]:
 def read_tensor(entry: Any, buffers: Sequence[Any]) -> Tensor:
     """Read one tensor of a file with these buffers.
 
-    Values stored dense are a view into the file's bytes; float16 stays float16.
-
-    Raises
-    ------
-    ValueError
-        If the tensor's type or sparse layout is not supported, or its parts do not belong together;
-        any of `DAMAGED` if they lie outside the file.
+    Values stored dense are a view into the file's bytes; float16 stays float16. Raises `ValueError`
+    if the tensor's type or sparse layout is not supported, or its parts do not belong together; any
+    of `DAMAGED` if they lie outside the file.
     """
     stored = entry.Name() or b""
     if len(stored) > MAX_NAME_BYTES:
@@ -95,26 +91,19 @@ def densify(
 ) -> NDArray:
     """Make a tensor dense whose last dimension is stored as compressed sparse rows.
 
+    Raises `ValueError` if the parts do not belong together.
+
     Parameters
     ----------
-    values : (N,) array
-        The stored entries, row by row.
-    shape : tuple of int
-        The dense shape; all dimensions but the last, flattened, are the rows.
-    segments : (rows + 1,) int
-        Row r's entries are `segments[r]` to `segments[r + 1]`, the latter not included.
-    indices : (N,) int
-        The place of each entry in the last dimension.
+    values : (N,) array; the stored entries, row by row
+    shape : the dense shape; all dimensions but the last, flattened, are the rows
+    segments : (rows + 1,) int; row r's entries are `segments[r]` to `segments[r + 1]`, the latter
+        not included
+    indices : (N,) int; the place of each entry in the last dimension
 
     Returns
     -------
-    dense : array of that shape
-        Zero where nothing is stored.
-
-    Raises
-    ------
-    ValueError
-        If the parts do not belong together.
+    dense : array of that shape; zero where nothing is stored
     """
     rows, columns = math.prod(shape[:-1]), shape[-1]
     counts = np.diff(segments)
