@@ -21,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "scripts"))
 import adjust_network
 import map_images
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration
 from courtside.records.truth import session_truth
@@ -39,7 +39,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
     session = yaml_files.read(ROOT / "config" / "sessions" / f"{name}.yaml")
     court_yaml = ROOT / "config" / "courts" / f"{session['court']}.yaml"
     folder, film = results / name, results / "virtual" / name
-    court, real = courts.read(court_yaml), session_truth.read(film / "truth.npz")
+    court, real = court_files.read(court_yaml), session_truth.read(film / "truth.npz")
     step = config["map_images"]
     with tempfile.TemporaryDirectory() as temporary:
         model = Path(temporary)
@@ -72,7 +72,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
     drawn = {"n_draws": n_draws, "seed": 0, "preset": session["virtual"]["preset"], "session": name}
     weights = {key: config["adjust_network"][key] for key in CLICKS}
     found = {}
-    for marked in clicks.draws(real.cameras, real.court_xyz, **drawn):
+    for marked in clicks.clicks_of_persons(real.cameras, real.court_xyz, **drawn):
         for row in calibration.of_ties(
             record, real.cameras, court, marked, sets=["all"], **weights
         ):

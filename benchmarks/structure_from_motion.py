@@ -29,7 +29,7 @@ import pycolmap
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "workflow" / "lib"))
 from courtside.calibration.bundle import selection
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, quality, sfm_alignment
 from courtside.records.cameras import clicks, image_names
 from courtside.records.truth import session_truth
@@ -144,7 +144,7 @@ def compared_features(path, pairs=None):
 def compare(results, session, count, map_minutes=None):
     """Return {side: seconds of steps, images registered, errors in cm} for n bridging images."""
     root, virtual = results / session, results / "virtual" / session
-    court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
+    court = court_files.read(ROOT / "config" / "courts" / "badminton.yaml")
     real = session_truth.read(virtual / "truth.npz")
     names = [camera.name for camera in real.cameras]
     marked = clicks.read(virtual / "court_points.csv", names, list(court.points))

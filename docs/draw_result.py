@@ -16,7 +16,7 @@ from matplotlib.patches import Ellipse
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.evaluation import joints as pose_errors
 from courtside.figures.style import oblique_view, picture_crops, stick_figure, style
 from courtside.records.cameras import footage
@@ -97,7 +97,7 @@ def stand(axis, points, frame, drawn):
         axis.add_patch(Ellipse(SIGHT.seen(xyz[at]), width, height, angle=angle, **look, zorder=2))
     oblique_view.figures(axis, SIGHT, drawn.of(xyz)[None], drawn, width=1.8)
     low, high = oblique_view.limits(xyz)
-    court = courts.read(ROOT / "config" / "courts" / "badminton.yaml")
+    court = court_files.read(ROOT / "config" / "courts" / "badminton.yaml")
     oblique_view.floor(axis, SIGHT, low, high, court)
     oblique_view.finish(axis, SIGHT, low)
 

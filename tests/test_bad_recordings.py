@@ -18,7 +18,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.records import tie_points
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
@@ -33,7 +33,7 @@ SCRIPTS = ROOT / "workflow" / "scripts"
 CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text())
 COURTS = ROOT / "config" / "courts"
 BADMINTON = COURTS / "badminton.yaml"
-COURT = courts.read(BADMINTON)
+COURT = court_files.read(BADMINTON)
 CAMERAS = ["side", "back"]
 SETTINGS = capture.Settings(
     preset="plain", layout="a", seed=11, walk_seed=11, size_px=(480, 270), walk_frames=24
@@ -143,7 +143,7 @@ def written(tmp_path, marked, court=COURT):
 
 def calibrated(good, tmp_path, marked, court=BADMINTON):
     """Return what the default calibration says: its warnings, or the message of its error."""
-    points = written(tmp_path, marked, courts.read(court))
+    points = written(tmp_path, marked, court_files.read(court))
     good.adjust(points, court, tmp_path / "ties.npz")
     out = [tmp_path / name for name in ("cameras.toml", "covariance.npz", "quality.json")]
     files = tmp_path / "ties.npz", points, court, *out
@@ -165,7 +165,7 @@ def aligned(good, tmp_path, marked, name):
 
 
 def resected(good, tmp_path, marked, name="known18", court=BADMINTON):
-    points = written(tmp_path, marked, courts.read(court))
+    points = written(tmp_path, marked, court_files.read(court))
     out = tmp_path / "known.toml", tmp_path / "known.json"
     sigma = {"click_sigma_px": CLICKING["click_sigma_px"]}
     files = points, court, list(good.static.values()), []
@@ -246,7 +246,7 @@ def test_points_on_the_floor_alone_leave_heights_weak(good, clicked, tmp_path, p
 @pytest.mark.parametrize("name", ["tennis", "rectangle-10x5"])
 def test_clicks_of_another_court_are_refused(good, clicked, tmp_path, name):
     path = COURTS / f"{name}.yaml"
-    other = courts.read(path)
+    other = court_files.read(path)
     marked = {
         camera: np.stack([xy[COURT.points.index(p)] for p in other.points])
         for camera, xy in clicked.items()
@@ -262,11 +262,15 @@ def test_clicks_of_another_court_are_refused(good, clicked, tmp_path, name):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_line_centres_are_recognised(good, real, tmp_path, seed):
     drawn = {"n_draws": 1, "seed": seed, "preset": "plain", "session": "centres"}
-    centres = real.court_xyz + courts.to_line_centres(COURT)
-    found = calibrated(good, tmp_path, next(clicking.draws(real.cameras, centres, **drawn)))
+    centres = real.court_xyz + court_files.to_line_centres(COURT)
+    found = calibrated(
+        good, tmp_path, next(clicking.clicks_of_persons(real.cameras, centres, **drawn))
+    )
     (warning,) = found.warnings
     assert "line centres seem to be clicked; click the edges" in warning and found.error == ""
-    found = calibrated(good, tmp_path, next(clicking.draws(real.cameras, real.court_xyz, **drawn)))
+    found = calibrated(
+        good, tmp_path, next(clicking.clicks_of_persons(real.cameras, real.court_xyz, **drawn))
+    )
     assert found.warnings == []
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from courtside.calibration.bundle import selection, walk_parts
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
 from courtside.records.cameras import clicks, image_names
@@ -51,7 +51,7 @@ def adjust(
     if not court_yaml:
         options = {k: v for k, v in options.items() if not k.startswith("click_")}
         return joint_adjustment.condense_free(network, placed, size_of, **options)
-    court = courts.read(court_yaml)
+    court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, list(placed), list(court.points))
     options["click_sigma_px"] = np.hypot(options["click_sigma_px"], click_bias_px)
     return joint_adjustment.condense(network, placed, size_of, marked, court, **options)

@@ -3,7 +3,7 @@
 The similarity is the paper's or that of all points.
 """
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality, sfm_alignment
 from courtside.calibration.records import tie_points
 from courtside.geometry import camera as camera_models
@@ -19,7 +19,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
     record = tie_points.read(ties_npz)
     if record.outcome:
         raise InputError(record.outcome)
-    court = courts.read(court_yaml)
+    court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, [c.name for c in record.sfm_cameras], list(court.points))
     xyz_in_sfm = sfm_alignment.reconstruct(record.sfm_cameras, marked)
     if Calibration.parse(calibration).kind == "paper":
@@ -35,7 +35,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
         **how,
         "misfit_cm": round(100 * sfm_alignment.misfit_m(court, world_from_sfm, xyz_in_sfm), 2),
         "warnings": warnings_of(court, record, marked, **options),
-        "left_out": quality.left_out(court, found, marked),
+        "left_out": quality.leave_one_out_errors(court, found, marked)[1],
     }
     log.logger.info("warnings: %s", report["warnings"] or "none")
     camera_models.write_toml(cameras_toml, found, source=calibration)
@@ -47,7 +47,7 @@ def warnings_of(court, record, marked, **options):
     try:
         if record.fault:
             raise InputError(record.fault)
-        return quality.of_ties(court, record.ties, marked, **options)[1]["warnings"]
+        return quality.adjust_and_check(court, record.ties, marked, **options)[1]["warnings"]
     except InputError as error:
         return [str(error)]
 

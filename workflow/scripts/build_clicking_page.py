@@ -1,6 +1,6 @@
 """Build the clicking page: static pictures, court, earlier clicks, proposals -> one HTML file."""
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.pages import page
 from courtside.pages.clicking import page as clicking_page
 from courtside.records.cameras import click_proposals, clicks
@@ -12,7 +12,7 @@ def main(
     pictures, court_yaml, page_html, *, session, names, targets, jpeg_quality, clicks_csv=None,
     proposals_csv=None, take_pictures=(), take_frames=(),
 ):  # fmt: skip
-    court = courts.read(court_yaml)
+    court = court_files.read(court_yaml)
     clicked = clicks.read(clicks_csv, names, court.points) if clicks_csv else {}
     proposed = click_proposals.read(proposals_csv, names, court.points) if proposals_csv else {}
     frames = [

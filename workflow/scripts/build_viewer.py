@@ -5,7 +5,7 @@
 in `paths.clocks`, and whether it is to be `placed` onto the first layer.
 """
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.geometry import camera
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
@@ -30,7 +30,7 @@ def main(paths, html, *, title, layers, notes=()):
             shown=said["shown"],
         )
         made.append(viewer_layers.placed(layer, made[0]) if said.get("placed") else layer)
-    court = courts.read(paths.court) if paths.court else None
+    court = court_files.read(paths.court) if paths.court else None
     seen = camera.read_toml(paths.cameras) if paths.cameras else ()
     content = viewer.build(title, made, seen, court, notes)
     page.write(html, content)

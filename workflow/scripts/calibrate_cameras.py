@@ -1,6 +1,6 @@
 """Calibrate fixed cameras in the court's frame: ties, clicks -> cameras, covariance, quality."""
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, quality
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
@@ -48,10 +48,10 @@ def main(
 
 def solve(record, clicks_csv, court_yaml, **options):
     if not court_yaml:
-        return joint_adjustment.free(record.ties), quality.without_court(*record.n_maps)
-    court = courts.read(court_yaml)
+        return joint_adjustment.free(record.ties), quality.check_maps(*record.n_maps)
+    court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, list(record.ties.cameras), list(court.points))
-    return quality.of_ties(court, record.ties, marked, **options)
+    return quality.adjust_and_check(court, record.ties, marked, **options)
 
 
 if __name__ == "__main__":

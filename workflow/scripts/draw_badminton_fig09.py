@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig09
 from courtside.figures.style import stick_figure, style
@@ -38,7 +38,7 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
             everyone = np.concatenate(both)
             image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
         images[one.camera.name] = image
-    court = courts.read(paths.court) if paths.get("court") else None
+    court = court_files.read(paths.court) if paths.get("court") else None
     rows, cameras = fig09.table(points, seen, frame, figure), [one.camera for one in seen]
     measured = pd.read_csv(paths.measures)
     drawing = fig09.draw(rows, images, points, cameras, figure, measured, court)

@@ -5,7 +5,7 @@ Reads 2D keypoints, 3D keypoints and videos; writes figure and CSV.
 
 import numpy as np
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig10
 from courtside.figures.style import stick_figure, style
@@ -44,7 +44,7 @@ def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
     pictures = [
         {one.camera.name: picture(one, points.time_s[frame]) for one in seen} for frame in shown
     ]
-    court = courts.read(paths.court) if paths.get("court") else None
+    court = court_files.read(paths.court) if paths.get("court") else None
     drawing = fig10.draw(points, figure, frames, shown, pictures, court)
     style.save(drawing, fig10.table(points, figure, frames, shown), pdf, png, csv)
 

@@ -1,6 +1,6 @@
 """Draw the error to expect over the court: cameras, covariance, court -> figure, CSV."""
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.figures.calibration import error_map
 from courtside.figures.style import style
@@ -11,7 +11,7 @@ from courtside.study.execution.script import run
 def main(
     cameras_toml, covariance_npz, court_yaml, pdf, png, csv, *, session, calibration, heights_m
 ):
-    found, court = camera.read_toml(cameras_toml), courts.read(court_yaml)
+    found, court = camera.read_toml(cameras_toml), court_files.read(court_yaml)
     covariance = camera_covariance.read(covariance_npz)
     rows = error_map.table(found, covariance, court, heights_m)
     title = f"{session}, calibration {calibration}"

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.figures.style import style
 from courtside.figures.take import kinematics
 from courtside.study.execution.script import run
@@ -10,7 +10,7 @@ from courtside.study.execution.script import run
 
 def main(frames_csv, summary_csv, court_yaml, pdf, png, csv):
     frames, summary = pd.read_csv(frames_csv), pd.read_csv(summary_csv)
-    court = courts.read(court_yaml) if court_yaml else None
+    court = court_files.read(court_yaml) if court_yaml else None
     drawing = kinematics.draw(frames, summary, court)
     style.save(drawing, kinematics.table(frames), pdf, png, csv)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.planning import cameras
 from courtside.calibration.records import tie_points
 from courtside.evaluation import calibration
@@ -23,13 +23,15 @@ def main(
     ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, clicks, sets, **options
 ):
     court, real, record = (
-        courts.read(court_yaml),
+        court_files.read(court_yaml),
         session_truth.read(truth_npz),
         tie_points.read(ties_npz),
     )
     summary = json.loads(Path(summary_json).read_text(encoding="utf-8"))
     rows = []
-    for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
+    for draw, marked in enumerate(
+        clicking.clicks_of_persons(real.cameras, real.court_xyz, **clicks)
+    ):
         if record.outcome:
             rows.append({"draw": draw, "outcome": record.outcome})
             continue

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.evaluation import calibration
 from courtside.geometry import camera as camera_models
 from courtside.records import tables
@@ -14,11 +14,13 @@ from virtualgym.session import clicks as clicking
 def main(
     truth_npz, court_yaml, lens_toml, errors_csv, *, cameras, labels, clicks, sets, click_sigma_px
 ):
-    court, real = courts.read(court_yaml), session_truth.read(truth_npz)
+    court, real = court_files.read(court_yaml), session_truth.read(truth_npz)
     lens_of = dict(zip(cameras, lens_toml, strict=False))
     lenses = {camera: camera_models.read_toml(path)[0] for camera, path in lens_of.items()}
     rows = []
-    for draw, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
+    for draw, marked in enumerate(
+        clicking.clicks_of_persons(real.cameras, real.court_xyz, **clicks)
+    ):
         found = calibration.of_known(
             real.cameras, court, marked, lenses, sets=sets, click_sigma_px=click_sigma_px
         )

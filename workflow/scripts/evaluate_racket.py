@@ -7,7 +7,7 @@ from itertools import product
 
 import pandas as pd
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.records import tie_points
 from courtside.evaluation import racket
 from courtside.records import tables
@@ -21,18 +21,20 @@ VIEWS = 2  # the paper's: the first two fixed cameras of a layout
 def main(
     ties_npz, truth_npz, court_yaml, lengths_csv, *, labels, clicks, length_m, tips_px, **options
 ):
-    court, real = courts.read(court_yaml), session_truth.read(truth_npz)
+    court, real = court_files.read(court_yaml), session_truth.read(truth_npz)
     views, records = real.cameras[:VIEWS], [tie_points.read(path) for path in ties_npz]
     rows = []
-    for repeat, marked in enumerate(clicking.draws(real.cameras, real.court_xyz, **clicks)):
+    for repeat, marked in enumerate(
+        clicking.clicks_of_persons(real.cameras, real.court_xyz, **clicks)
+    ):
         offset = repeat % len(records)
         ways = racket.calibrate(records[offset], views, court, marked, **options)
         of_run = {"seed": clicks["seed"], "run": repeat}
-        ends = clicking.draw(court, length_m, **of_run)
+        ends = clicking.swing_of_run(court, length_m, **of_run)
         below = ends[..., 2].mean(axis=1) < court.net["mid_height_m"]
         for sigma_px, again in product(tips_px, (False, True)):
             tip = {"sigma_px_at_3840": sigma_px, "again": again}
-            seen = clicking.click(views, ends, **tip, **of_run)
+            seen = clicking.click_racket(views, ends, **tip, **of_run)
             about = {"offset": offset, "draw": repeat, "tip_sigma_px": sigma_px, "again": again}
             found = racket.rows(ways, seen, length_m, below)
             rows += [{**about, **row} for row in found]

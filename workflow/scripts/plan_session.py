@@ -3,7 +3,7 @@
 Reads plan and court; writes the expected error against N, and over the court.
 """
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.planning import cameras, tie_points
 from courtside.calibration.planning import prediction as planning
 from courtside.calibration.records import covariance as camera_covariance
@@ -32,7 +32,7 @@ def main(
     heights_m,
     adjust,
 ):
-    planned, court = plans.read(plan_yaml), courts.read(court_yaml)
+    planned, court = plans.read(plan_yaml), court_files.read(court_yaml)
     fixed = [cameras.camera(name, **vars(c)) for name, c in planned.cameras.items()]
     found = predict_all(planned, fixed, court, adjust)
     limits = {"min_points": adjust["min_points"], "target_cm": planned.target_cm}

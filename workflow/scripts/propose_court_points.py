@@ -1,7 +1,7 @@
 """Propose court points: cameras, static pictures, court -> where they are seen, to be confirmed."""
 
 from courtside.calibration.click_proposals import proposals as court_proposals
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.geometry import camera as cameras
 from courtside.records.cameras import click_proposals
 from courtside.study.errors import InputError
@@ -12,7 +12,7 @@ from courtside.video import images
 
 def main(cameras_toml, pictures, court_yaml, proposals_csv, *, names, search_share, **options):
     known = {camera.name: camera for camera in cameras.read_toml(cameras_toml)}
-    court, found = courts.read(court_yaml), {}
+    court, found = court_files.read(court_yaml), {}
     given = zip(names, pictures, strict=True)
     for name, path in log.progress(given, len(names), "court points: cameras"):
         if name not in known:

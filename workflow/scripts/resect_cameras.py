@@ -3,7 +3,7 @@
 Reads clicked points and lenses; writes cameras and quality.
 """
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, known_points, quality
 from courtside.geometry import camera as camera_models
 from courtside.records.cameras import clicks
@@ -25,7 +25,7 @@ def main(
     calibration,
     step,
 ):
-    court = courts.read(court_yaml)
+    court = court_files.read(court_yaml)
     click_sigma_px = step["click_sigma_px"]
     marked = clicks.read(clicks_csv, cameras, list(court.points))
     pictures = dict(zip(cameras, static_png, strict=True))
@@ -45,7 +45,9 @@ def main(
         "calibration": calibration,
         "rms_px": {camera: round(result.rms_px, 4) for camera, result in results.items()},
         "degenerate": {c: r.reason for c, r in results.items() if way.linear and r.degenerate},
-        **quality.of_court(court, found, marked, click_sigma_px=sigma_px, strict=not way.linear),
+        **quality.check_cameras(
+            court, found, marked, click_sigma_px=sigma_px, strict=not way.linear
+        ),
     }
     camera_models.write_toml(cameras_toml, found, source=calibration)
     write_json(quality_json, report)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.study.errors import InputError
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
@@ -14,7 +14,7 @@ NAMES = ["badminton", "tennis", "rectangle-10x5"]
 
 
 def court(name="badminton"):
-    return courts.read(FOLDER / f"{name}.yaml")
+    return court_files.read(FOLDER / f"{name}.yaml")
 
 
 def distance(where, first, second):
@@ -61,7 +61,7 @@ def test_lines_have_the_width_and_points_lie_on_paint(name):
     np.testing.assert_allclose(width, found.line_width_m, atol=1e-9)
     assert len(found.edges) == len(found.points) == len(set(found.points))
     for point, edge, shift in zip(
-        found.xyz, found.edges, courts.to_line_centres(found), strict=True
+        found.xyz, found.edges, court_files.to_line_centres(found), strict=True
     ):
         if point[2] > 0 or "post: its middle" in edge:
             assert not shift.any()
@@ -81,7 +81,7 @@ def test_the_badminton_court_is_the_papers():
     )
     assert found.sigma_m[found.indices(["p01", "p17", "p18"])].tolist() == [0.005, 0.015, 0.015]
     # Line centres of a court that is 40 mm smaller in both directions.
-    moved = (found.xyz + courts.to_line_centres(found))[found.indices(["p01", "p16"])]
+    moved = (found.xyz + court_files.to_line_centres(found))[found.indices(["p01", "p16"])]
     np.testing.assert_allclose(moved, [[0.02, 0.02, 0], [6.08, 13.38, 0]], atol=1e-12)
 
 
@@ -127,7 +127,7 @@ def test_a_fault_is_one_line_that_names_it(tmp_path, keys, value, named):
     path = tmp_path / "wrong.yaml"
     path.write_text(yaml.safe_dump(content))
     with pytest.raises(InputError) as caught:
-        courts.read(path)
+        court_files.read(path)
     message = str(caught.value)
     assert "\n" not in message
     assert [word for word in [str(path), *named] if word not in message] == []

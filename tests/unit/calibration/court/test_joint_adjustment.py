@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from courtside.calibration.bundle import selection, solver, walk_parts
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment, sfm_alignment
 from courtside.study.errors import InputError
 from fixtures.cameras import networks_made
 from fixtures.cameras.scene import opencv_projection
 
-COURT = courts.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+COURT = court_files.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 FIXED = {"side": 0, "back": 1}
 SIZES = dict.fromkeys(FIXED, networks_made.SIZE)
 EVERYTHING = {

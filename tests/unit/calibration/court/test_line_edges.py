@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.calibration.court import line_edges
 from courtside.geometry import camera as cameras
 from fixtures.cameras import court_pictures
@@ -17,7 +17,7 @@ COURTS = sorted(FOLDER.glob("*.yaml"))
 @pytest.mark.parametrize("path", COURTS, ids=lambda path: path.stem)
 def test_sides_are_as_the_words_say(path):
     """ "outer", "nearest the net", "nearest the back" and "middle" each name one side."""
-    court = courts.read(path)
+    court = court_files.read(path)
     named = line_edges.named(court)
     middle = court.size_m / 2
     for at, edges in enumerate(named):
@@ -55,7 +55,7 @@ def test_points_on_posts():
     assert {name: post for name, post in found.items() if post is not None} == {
         "p10": 0, "p17": 0, "p11": 1, "p18": 1,
     }  # fmt: skip
-    rectangle = courts.read(FOLDER / "rectangle-10x5.yaml")
+    rectangle = court_files.read(FOLDER / "rectangle-10x5.yaml")
     assert line_edges.post(rectangle, 0) is None
 
 

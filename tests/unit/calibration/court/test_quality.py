@@ -32,7 +32,7 @@ def clicks_of(xyz=COURT.xyz):
 
 
 def of_court(clicks, **options):
-    found = quality.of_court(COURT, fixed(), clicks, click_sigma_px=0.3, **options)
+    found = quality.check_cameras(COURT, fixed(), clicks, click_sigma_px=0.3, **options)
     json.dumps(found, allow_nan=False)  # as it is written
     return found
 
@@ -103,9 +103,9 @@ def test_line_centres_are_said_where_the_shift_is_certain(inwards, n_warnings):
 
 
 def test_without_a_court_maps_that_disagree_are_a_warning():
-    assert len(quality.without_court(2, 3)["warnings"]) == 1
-    assert len(quality.without_court(1, 1)["warnings"]) == 1
-    _, warning = quality.without_court(1, 6)["warnings"]
+    assert len(quality.check_maps(2, 3)["warnings"]) == 1
+    assert len(quality.check_maps(1, 1)["warnings"]) == 1
+    _, warning = quality.check_maps(1, 6)["warnings"]
     assert "found 6 that all differ" in warning and "\n" not in warning
 
 

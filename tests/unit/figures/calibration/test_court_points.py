@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.figures.calibration import court_points
 
 COURTS = Path(__file__).parents[4] / "config" / "courts"
@@ -13,7 +13,7 @@ COURTS = Path(__file__).parents[4] / "config" / "courts"
 
 @pytest.fixture(params=["badminton", "tennis", "rectangle-10x5"])
 def court(request):
-    return courts.read(COURTS / f"{request.param}.yaml")
+    return court_files.read(COURTS / f"{request.param}.yaml")
 
 
 def test_the_table_holds_the_courts_points(court):
@@ -42,7 +42,7 @@ def test_the_list_holds_every_point_and_all_edges(court):
 
 
 def test_details_are_centred_on_points_where_lines_meet():
-    court = courts.read(COURTS / "badminton.yaml")
+    court = court_files.read(COURTS / "badminton.yaml")
     details = {axis.get_title(): axis for axis in court_points.draw(court).axes[2:]}
     for name in ("p01", "p04", "p08", "p12", "p14"):
         middle = [np.mean(details[name].get_xlim()), np.mean(details[name].get_ylim())]
@@ -50,7 +50,7 @@ def test_details_are_centred_on_points_where_lines_meet():
 
 
 def test_the_net_is_drawn_where_there_is_one():
-    with_net = court_points.draw(courts.read(COURTS / "badminton.yaml")).axes[-1]
+    with_net = court_points.draw(court_files.read(COURTS / "badminton.yaml")).axes[-1]
     assert {text.get_text() for text in with_net.texts} >= {"p10", "p11", "p17", "p18"}
-    without = court_points.draw(courts.read(COURTS / "rectangle-10x5.yaml")).axes
+    without = court_points.draw(court_files.read(COURTS / "rectangle-10x5.yaml")).axes
     assert not any("Net" in axis.get_title() for axis in without)

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.pages.clicking import page
 from courtside.study.errors import InputError
 
@@ -17,7 +17,7 @@ COURT = Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml"
 
 @pytest.fixture(scope="module")
 def court():
-    return courts.read(COURT)
+    return court_files.read(COURT)
 
 
 @pytest.fixture

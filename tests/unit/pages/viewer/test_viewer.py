@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.figures.style import style
 from courtside.pages import page
 from courtside.pages.viewer import layers as viewer_layers
@@ -75,7 +75,7 @@ def test_cameras_are_pyramids_that_project_onto_their_pictures_corners():
 
 
 def test_the_court_is_drawn_as_in_its_file():
-    court = courts.read(CONFIG / "courts" / "badminton.yaml")
+    court = court_files.read(CONFIG / "courts" / "badminton.yaml")
     drawn = viewer.drawn_court(court)
     areas = [
         cv2.contourArea(np.array([place[:2] for place in line], np.float32))

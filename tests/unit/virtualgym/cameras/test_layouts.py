@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from fixtures.cameras import scene
 from virtualgym import presets
 from virtualgym.cameras import layouts
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
-COURT = courts.read(FOLDER / "badminton.yaml")
+COURT = court_files.read(FOLDER / "badminton.yaml")
 CENTRE = np.array([3.05, 6.7, 0.0])
 PLAIN = presets.PRESETS["plain"]
 
@@ -65,7 +65,7 @@ def test_layout_b_stands_on_one_line_and_has_a_mirror_image():
 @pytest.mark.parametrize("layout", layouts.LAYOUTS)
 @pytest.mark.parametrize("size", [(480, 270), (3840, 2160)])
 def test_every_camera_sees_the_whole_court(layout, court, size):
-    known = courts.read(FOLDER / f"{court}.yaml")
+    known = court_files.read(FOLDER / f"{court}.yaml")
     for seed in range(3):
         for camera in cameras(layout, known, size, seed):
             xy = scene.opencv_projection(camera, known.xyz)

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from virtualgym.hall import bystanders
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
-COURT = courts.read(FOLDER / "badminton.yaml")
+COURT = court_files.read(FOLDER / "badminton.yaml")
 
 
 def crowd(count=4, seed=0, court=COURT):
@@ -23,7 +23,7 @@ def corners(quads):
 
 @pytest.mark.parametrize("court", ["badminton", "tennis"])
 def test_people_stay_near_the_court_and_out_of_the_net(court):
-    known = courts.read(FOLDER / f"{court}.yaml")
+    known = court_files.read(FOLDER / f"{court}.yaml")
     short, long = known.size_m
     crossed = []
     for seed in range(5):

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.geometry.camera import Camera
 from fixtures.cameras import scene as projection
 from virtualgym.cameras import layouts
@@ -16,7 +16,7 @@ from virtualgym.presets import PLAIN, RICH
 from virtualgym.rendering.hall_renderer import Renderer
 
 COURTS = Path(__file__).parents[4] / "config" / "courts"
-BADMINTON = courts.read(COURTS / "badminton.yaml")
+BADMINTON = court_files.read(COURTS / "badminton.yaml")
 # Errors of paint that no reading of a picture could miss.
 ROUGH = dataclasses.replace(PLAIN, line_sigma_m=0.012, post_tip_sigma_m=0.03, n_gear=0)
 
@@ -89,7 +89,7 @@ def test_the_same_seed_builds_the_same_hall():
 @pytest.mark.parametrize("path", sorted(COURTS.glob("*.yaml")), ids=lambda path: path.stem)
 @pytest.mark.parametrize("layout", sorted(layouts.LAYOUTS))
 def test_every_camera_stands_inside_the_hall_and_before_its_furniture(path, layout):
-    court = courts.read(path)
+    court = court_files.read(path)
     low, high = hall.room(court)
     rng = np.random.default_rng(0)
     for camera in layouts.fixed_cameras(layout, court, (1280, 720), RICH, rng):

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from virtualgym.hall import painted_lines
 from virtualgym.presets import PLAIN
 
 COURTS = Path(__file__).parents[4] / "config" / "courts"
-BADMINTON = courts.read(COURTS / "badminton.yaml")
+BADMINTON = court_files.read(COURTS / "badminton.yaml")
 EXACT = dataclasses.replace(PLAIN, line_sigma_m=0.0, post_foot_sigma_m=0.0, post_tip_sigma_m=0.0)
 ROUGH = dataclasses.replace(PLAIN, line_sigma_m=0.002)
 
@@ -22,7 +22,7 @@ def paint_court(preset=ROUGH, seed=0, court=BADMINTON):
 
 @pytest.mark.parametrize("path", sorted(COURTS.glob("*.yaml")), ids=lambda path: path.stem)
 def test_without_errors_everything_is_in_its_place(path):
-    court = courts.read(path)
+    court = court_files.read(path)
     made = paint_court(EXACT, court=court)
     np.testing.assert_allclose(made.court_xyz, court.xyz, atol=1e-12)
     x0, y0, x1, y1 = court.lines_m.T

@@ -19,7 +19,7 @@ CAMERAS = scene.ring(3, dist=(-0.1, 0.02, 1e-3, 1e-3, 0))
 
 
 def click(seed=0, cameras=CAMERAS, points=POINTS, sigma=0.7, bias=0.5):
-    return clicks.simulate(
+    return clicks.click_points(
         cameras,
         points,
         sigma_px_at_3840=sigma,
@@ -66,7 +66,7 @@ def test_a_click_does_not_depend_on_what_else_is_seen():
 
 def draws(n_draws=4, seed=1, session="plain-a", preset="plain", cameras=CAMERAS):
     options = {"n_draws": n_draws, "seed": seed, "session": session, "preset": preset}
-    return list(clicks.draws(cameras, POINTS, **options))
+    return list(clicks.clicks_of_persons(cameras, POINTS, **options))
 
 
 def test_draws_are_the_same_whatever_their_number_and_the_cameras_after():
@@ -190,7 +190,7 @@ RUNS = range(200)
 
 
 def swings():
-    return np.array([clicks.draw(COURT, LENGTH_M, seed=3, run=run) for run in RUNS])
+    return np.array([clicks.swing_of_run(COURT, LENGTH_M, seed=3, run=run) for run in RUNS])
 
 
 def fixed(layout="a", size=(1280, 720)):
@@ -199,7 +199,7 @@ def fixed(layout="a", size=(1280, 720)):
 
 
 def click_swing(views, ends, *, sigma=0.7, again=False, seed=3, run=0):
-    return clicks.click(views, ends, sigma_px_at_3840=sigma, again=again, seed=seed, run=run)
+    return clicks.click_racket(views, ends, sigma_px_at_3840=sigma, again=again, seed=seed, run=run)
 
 
 def test_the_racket_is_as_long_as_asked_in_every_frame():
@@ -234,9 +234,9 @@ def test_swings_point_in_all_directions_of_the_compass():
 
 
 def test_runs_and_seeds_differ_and_the_same_run_is_the_same():
-    one = clicks.draw(COURT, LENGTH_M, seed=3, run=5)
+    one = clicks.swing_of_run(COURT, LENGTH_M, seed=3, run=5)
     np.testing.assert_array_equal(one, swings()[5])
-    for other in (swings()[6], clicks.draw(COURT, LENGTH_M, seed=4, run=5)):
+    for other in (swings()[6], clicks.swing_of_run(COURT, LENGTH_M, seed=4, run=5)):
         assert np.abs(one - other).max() > 0.05
 
 

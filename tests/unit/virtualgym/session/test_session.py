@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
@@ -16,7 +16,7 @@ from fixtures.cameras import scene
 from virtualgym.cameras import layouts
 from virtualgym.session import session
 
-COURT = courts.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+COURT = court_files.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SETTINGS = session.Settings(
     preset="rich", layout="a", seed=3, size_px=[480, 270], walk_frames=4, static_frames=3,
     boards=True, people=2, stabiliser=True,

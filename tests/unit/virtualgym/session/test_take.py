@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.calibration.court import court as courts
+from courtside.calibration.court import court as court_files
 from courtside.records.truth import take_truth
 from courtside.video import reader
 from fixtures.cameras import balls, scene
@@ -16,7 +16,7 @@ from virtualgym.body import skinned_body
 from virtualgym.session import session
 from virtualgym.session import take as takes
 
-COURT = courts.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+COURT = court_files.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SESSION = session.Settings(preset="rich", layout="a", seed=3, size_px=[320, 180], walk_frames=0)
 LARGE = replace(SESSION, size_px=[640, 360])
 HALLS = []

@@ -20,7 +20,7 @@ from virtualgym.rendering import rolling_shutter
 FULL_WIDTH_PX = 3840  # clicking errors are stated for pictures of this width
 
 
-def simulate(
+def click_points(
     cameras: Iterable[Camera],
     points_xyz: NDArray,
     *,
@@ -59,7 +59,7 @@ def simulate(
     return clicks
 
 
-def draws(
+def clicks_of_persons(
     cameras: Iterable[Camera],
     points_xyz: NDArray,
     *,
@@ -84,7 +84,7 @@ def draws(
     made = presets.PRESETS[preset]
     for draw in range(n_draws):
         rng = np.random.default_rng([seed, zlib.crc32(session.encode()), draw])
-        yield simulate(
+        yield click_points(
             cameras,
             points_xyz,
             sigma_px_at_3840=made.click_sigma_px_at_3840,
@@ -168,12 +168,12 @@ TURN_DEG = (30.0, 120.0)  # about the player's axis, to either side, from first 
 RISE_DEG = ((-60.0, 0.0), (20.0, 100.0))  # of the racket above the horizontal, first and last frame
 
 
-def draw(court: Court, length_m: float, *, seed: int, run: int) -> NDArray:
+def swing_of_run(court: Court, length_m: float, *, seed: int, run: int) -> NDArray:
     """Return the `swing` of one run, the same for every session."""
     return swing(court, length_m, _generator(seed, run, "swing"))
 
 
-def click(
+def click_racket(
     cameras: Iterable[Camera],
     ends: NDArray,
     *,
@@ -202,7 +202,7 @@ def click(
         Top and butt, frame after frame, px; NaN outside the picture.
     """
     rng = _generator(seed, run, "tips again" if again else "tips")
-    return simulate(
+    return click_points(
         cameras,
         np.reshape(ends, (-1, 3)),
         sigma_px_at_3840=sigma_px_at_3840,

@@ -188,7 +188,7 @@ def simulate(
             frames = call("walk_picture", [(at,) for at in range(settings.walk_frames)])
             _film_walk(settings, folder, walked, frames)
     preset = presets.PRESETS[settings.preset]
-    marked = clicks.simulate(
+    marked = clicks.click_points(
         fixed,
         court_xyz,
         sigma_px_at_3840=preset.click_sigma_px_at_3840,

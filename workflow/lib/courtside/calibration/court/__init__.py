@@ -15,5 +15,5 @@ known_points
 click_checks
     leave_one_out, find_wrong_clicks, inward_shift, inward_shift_of_points, check
 quality
-    of_court, of_ties, without_court, left_out; errors against the truth and their coverage
+    check_cameras, adjust_and_check, check_maps, leave_one_out_errors; errors against the truth
 """

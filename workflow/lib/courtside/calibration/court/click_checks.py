@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.bundle import solver
-from courtside.calibration.court import court as courts
 from courtside.calibration.court import joint_adjustment, sfm_alignment
-from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.point_covariance import MEDIAN_2D
 from courtside.geometry.camera import Camera, project
 from courtside.study.errors import InputError
@@ -28,8 +27,7 @@ class LeaveOneOut:
 
     points: tuple[str, ...]
     cameras: tuple[str, ...]
-    # (P, 3): reconstructed minus true place, in the world; NaN where fewer than two cameras have a
-    # click
+    # (P, 3): reconstructed minus true place in the world; NaN without clicks of two cameras.
     residual_m: NDArray
     projected_px: NDArray  # (C, P, 2): where the court's point should be in the picture
     clicked_px: NDArray  # (C, P, 2): NaN where not clicked
@@ -93,9 +91,8 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
 def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[WrongClick]:
     """Return the clicks that the others contradict, the worst first.
 
-    `table`: of six points or more: with fewer, one wrong click spoils what the others say;
-    `sigma_px`: of a good click per axis, at least; where a camera's clicks scatter more, that
-    counts.
+    The `table` needs six points or more: with fewer, one wrong click spoils what the others say.
+    `sigma_px` is that of a good click per axis; where a camera's clicks scatter more, that counts.
     """
     error = table.error_px
     wrong = []
@@ -120,15 +117,12 @@ def inward_shift_of_points(court: Court, xyz_in_sfm: NDArray) -> tuple[float, fl
     similarity together. The scale absorbs most of the shrinking; lines within the court determine
     the rest.
 
-    `xyz_in_sfm`: (P, 3) float; reconstructed court points, in any frame; NaN where missing.
-
-    Returns
-    -------
-    shift : 0 where edges were clicked, 1 where line centres were
-    sigma : its standard deviation, from how far the points fit; inf where too few do
+    The reconstructed court points (P, 3) may be in any frame, NaN where missing. The shift is 0
+    where edges were clicked, 1 where line centres were. Its standard deviation, the second number,
+    comes from how far the points fit; it is inf where too few do.
     """
     world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
-    inwards = courts.to_line_centres(court)
+    inwards = to_line_centres(court)
     if accepted.sum() < 5 or not inwards[accepted].any():
         return 0.0, np.inf
     residual = (world_from_sfm.points(xyz_in_sfm) - court.xyz)[accepted]
@@ -204,16 +198,9 @@ def inward_shift(
     The cameras are solved for the court as it is, half way, and with all points at line centres.
     The cost is a parabola of the shift: its minimum is the shift and its curvature gives sigma.
     `inward_shift_of_points` finds a third of the shift, because adjusted cameras have absorbed the
-    rest.
-
-    `**weights`: of the clicks, as for `joint_adjustment.solve`.
-
-    Returns
-    -------
-    shift : 0 where edges were clicked, 1 where line centres were
-    sigma : its standard deviation; inf where the clicks do not tell
+    rest. Both numbers mean what they mean there; `**weights` are those of `joint_adjustment.solve`.
     """
-    inwards, costs = courts.to_line_centres(court), []
+    inwards, costs = to_line_centres(court), []
     for share in SHIFTS:
         moved = replace(court, xyz=court.xyz + share * inwards)
         solved = joint_adjustment.solve(ties, clicks, moved, max_iterations=30, **weights)

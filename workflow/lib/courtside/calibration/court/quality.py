@@ -23,7 +23,7 @@ COLUMNS, ROWS = 5, 7  # of the grid, along the short and the long side
 LIMITS = {level: 2 * special.gammaincinv(3 / 2, level) for level in (0.5, 0.9, 0.95)}
 
 
-def of_court(
+def check_cameras(
     court: Court,
     cameras: Sequence[Camera],
     clicks: ClickedPoints,
@@ -51,7 +51,7 @@ def of_court(
         and from each click (px) in a similarity fitted to the other points;
         `expected_volume_rms_cm` where the covariance is known
     """
-    table, each = _leave_one_out(court, cameras, clicks)
+    table, each = leave_one_out_errors(court, cameras, clicks)
     known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
     try:
         warnings = click_checks.check(court, cameras, clicks, **known)
@@ -66,10 +66,10 @@ def of_court(
     return quality
 
 
-def of_ties(
+def adjust_and_check(
     court: Court, ties: joint_adjustment.Ties, clicks: ClickedPoints, **weights: Any
 ) -> tuple[joint_adjustment.Solution, dict[str, Any]]:
-    """Adjust the fixed cameras with the clicked court points, and check these as `of_court` does.
+    """Adjust the fixed cameras with the clicked court points, and check them, as `check_cameras`.
 
     `**weights` are those of the clicks, as for `joint_adjustment.solve`. Raises `InputError` if the
     points cannot be this court.
@@ -81,7 +81,7 @@ def of_ties(
     """
     solved = joint_adjustment.solve(ties, clicks, court, max_iterations=30, **weights)
     sigma_px = joint_adjustment.largest_click_sigma(weights["click_sigma_px"], solved.cameras)
-    quality = of_court(
+    quality = check_cameras(
         court,
         solved.cameras,
         clicks,
@@ -92,7 +92,7 @@ def of_ties(
     return solved, quality
 
 
-def without_court(n_agreeing: int, n_maps: int) -> dict[str, Any]:
+def check_maps(n_agreeing: int, n_maps: int) -> dict[str, Any]:
     """Return the quality of cameras without a court: how many maps of the same images agree."""
     warnings = ["no court: scale and frame are arbitrary"]
     if n_agreeing == 1 < n_maps:
@@ -104,24 +104,18 @@ def without_court(n_agreeing: int, n_maps: int) -> dict[str, Any]:
     return {"warnings": warnings}
 
 
-def left_out(
+def leave_one_out_errors(
     court: Court, cameras: Sequence[Camera], clicks: ClickedPoints
-) -> str | dict[str, dict]:
-    """Return the error of each court point left out, as `of_court`, or why there is none."""
-    return _leave_one_out(court, cameras, clicks)[1]
+) -> tuple[click_checks.LeaveOneOut | None, str | dict[str, dict]]:
+    """Leave each court point out; return the table, and for JSON its errors by point.
 
-
-def _leave_one_out(court, cameras, clicks):
-    """Return the table and its errors by point, for JSON, or None and the reason."""
+    Where there is no table, the reason stands in place of the errors.
+    """
     try:
         table = click_checks.leave_one_out(cameras, clicks, court)
     except InputError as error:
         return None, str(error)
-    return table, _by_point(table)
-
-
-def _by_point(table: click_checks.LeaveOneOut) -> dict[str, dict]:
-    return {
+    return table, {
         point: {
             "error_cm": _number(table.error_cm[at]),
             "error_px": {c: _number(table.error_px[v, at]) for v, c in enumerate(table.cameras)},
@@ -188,12 +182,8 @@ def over_volume(error_m: NDArray) -> dict[str, float]:
 def coverage(error_m: NDArray, covariance: NDArray) -> dict[str, float]:
     """Return how often errors lie within the ellipsoids of their covariance, and the size expected.
 
-    `error_m`: (N, 3) float; `covariance`: (N, 3, 3) float; m2.
-
-    Returns
-    -------
-    shares : `coverage50`, `coverage90`, `coverage95` in 0..1 and `predicted_volume_cm`, the
-        expected root mean square
+    Errors (N, 3) are in m, covariances (N, 3, 3) in m2. The result holds `coverage50`, `coverage90`
+    and `coverage95`, 0..1, and `predicted_volume_cm`, the expected root mean square.
     """
     square = mahalanobis(error_m, covariance)
     shares = {
