@@ -5,6 +5,7 @@ from scipy.spatial.transform import Rotation
 from courtside.geometry import camera as cameras
 from courtside.geometry import depth_registration
 from courtside.geometry.camera import Camera
+from fixtures.recordings import aligned_depth
 
 REST = np.eye(3, 4)
 DEPTH = Camera("d", (160, 120), [[100, 0, 79.2], [0, 101, 59.6], [0, 0, 1]], np.zeros(5), REST)
@@ -60,7 +61,7 @@ def test_pixels_without_depth_have_no_place():
 
 
 def test_a_plane_is_seen_by_every_colour_pixel_inside():
-    aligned = depth_registration.align(plane_depth(), DEPTH, COLOUR, APART)
+    aligned = aligned_depth.align(plane_depth(), DEPTH, COLOUR, APART)
     seen = aligned[20:-20, 20:-20]
     assert np.isfinite(seen).mean() > 0.99
     # A depth pixel is half a pixel wide either way: the plane's slope over that is the error
@@ -74,7 +75,7 @@ def test_the_nearest_of_overlapping_depth_pixels_is_seen():
     """A square before a wall: the wall behind it must not show through."""
     depth_m = np.full((120, 160), 4.0)
     depth_m[40:80, 60:100] = 1.0
-    aligned = depth_registration.align(
+    aligned = aligned_depth.align(
         depth_m, DEPTH, COLOUR, np.column_stack([np.eye(3), [0.05, 0, 0]])
     )
     corners = np.array([[60, 40], [99, 79]]) - DEPTH.K[:2, 2]
@@ -89,29 +90,9 @@ def test_the_nearest_of_overlapping_depth_pixels_is_seen():
     assert hidden == pytest.approx(shadow_px, abs=4)
 
 
-def test_sampling_inverts_the_alignment():
-    rng = np.random.default_rng(0)
-    xy = rng.uniform((30, 30), (210, 150), (300, 2))
-    found = depth_registration.sample(plane_depth(), DEPTH, COLOUR, APART, xy)
-    u, v = np.rint(xy).astype(int).T
-    slope = np.abs(np.gradient(plane_in_colour())).max()
-    assert np.isfinite(found).all()
-    assert np.abs(found - plane_in_colour()[v, u]).max() < 4 * slope
-
-
-def test_sampling_passes_over_holes_and_missing_points():
-    depth_m = plane_depth()
-    depth_m[:, :80] = 0
-    xy = np.array([[30.0, 90.0], [200.0, 90.0], [np.nan, np.nan]])
-    found = depth_registration.sample(depth_m, DEPTH, COLOUR, APART, xy)
-    assert np.isfinite(found).tolist() == [False, True, False]
-
-
 def test_where_the_cameras_stand_in_the_world_does_not_matter():
     placed = np.column_stack([TURNED, [1.0, 2.0, 3.0]])
     there = Camera("c", COLOUR.size, COLOUR.K, COLOUR.dist, placed)
     depth_m = plane_depth()
-    ours = depth_registration.align(depth_m, DEPTH, COLOUR, APART)
-    assert np.array_equal(
-        ours, depth_registration.align(depth_m, DEPTH, there, APART), equal_nan=True
-    )
+    ours = aligned_depth.align(depth_m, DEPTH, COLOUR, APART)
+    assert np.array_equal(ours, aligned_depth.align(depth_m, DEPTH, there, APART), equal_nan=True)

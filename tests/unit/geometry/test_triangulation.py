@@ -279,7 +279,9 @@ def test_residuals_are_those_of_opencv():
 def test_normal_equations_are_those_of_differences():
     weight = np.random.default_rng(2).uniform(0.2, 1, (3, 20))
     residual, in_cam = SEEN.residuals(NEAR)
-    square, right = SEEN.normal(in_cam, weight, residual)
+    rows, weighted = SEEN.jacobians(in_cam, weight)
+    square = weighted @ rows
+    right = (weighted @ residual.transpose(1, 0, 2).reshape(20, -1, 1))[..., 0]
     steps = 1e-6 * np.eye(3)
     slope = [(SEEN.residuals(NEAR + d)[0] - SEEN.residuals(NEAR - d)[0]) / 2e-6 for d in steps]
     expected = np.einsum("icnr,cn,jcnr->nij", slope, weight, slope)

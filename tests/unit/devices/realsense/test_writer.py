@@ -4,8 +4,8 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag1 import Reader
 
 from courtside.devices.realsense import recording, writer
-from courtside.geometry import depth_registration
 from courtside.geometry.camera import Camera
+from fixtures.recordings import aligned_depth
 from fixtures.recordings.depth_recordings_made import (
     BASELINE_M,
     COLOUR,
@@ -145,7 +145,7 @@ def test_the_camera_s_own_software_aligns_alike(sdk, tmp_path):
     path = tmp_path / "a.bag"
     writer.write(path, colour, depth, apart, 0.001, made)
     theirs = played(sdk, path)[0][3]
-    ours = depth_registration.align(steps * 0.001, depth, colour, apart)
+    ours = aligned_depth.align(steps * 0.001, depth, colour, apart)
     both = (theirs > 0) & np.isfinite(ours)
     # They let a depth pixel cover whole pixels at its rim, we those whose centre it covers.
     assert both.sum() > 0.97 * np.isfinite(ours).sum()

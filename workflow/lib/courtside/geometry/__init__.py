@@ -3,9 +3,9 @@
 camera: `Camera`, `project`, `undistort`, `crop`, `check_size`, `read_toml`, `write_toml`
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `swing`, `twist`
-similarity: `Sim3`, `umeyama`, `kabsch`, `robust`
+similarity: `Sim3`, `umeyama`, `robust_umeyama`, `kabsch`
 interpolation: `linear`, `shares`
 epipolar: `straight_px`, `fundamental`, `lines`, `distance_px`
 triangulation: `triangulate_robust`, `triangulate_plain`, `triangulate_all`, `triangulate`
-depth_registration: `rays`, `points_in_colour`, `align`, `sample`
+depth_registration: `rays`, `points_in_colour`
 """

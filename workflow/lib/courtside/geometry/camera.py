@@ -18,6 +18,9 @@ from courtside.study.execution.files import atomic
 
 OTHER_TABLES = ("metadata", "capture_volume", "charuco", "checkerboard")  # as Pose2Sim has it
 TOLERANCE_PX = 1e-10  # of `undistort`: far below the noise of any keypoint, above rounding errors
+MAX_ITERATIONS = 50  # ASSUME: enough for Newton's method; pixels not solved by then become NaN
+ENTRIES = 2048  # radii tabulated for its start, which so lies within about 1 %
+NEGLIGIBLE = 1e-30  # dividing by a coefficient this much smaller than the others overflows
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +65,16 @@ class Camera:
 
     @cached_property
     def fold_radius(self) -> float:
-        """Radius on the z = 1 plane where the lens model folds back; inf if it never does."""
-        return fold_radius(self.dist)
+        """Radius on the z = 1 plane where the lens model folds back; inf if it never does.
+
+        Beyond it the lens model maps several directions to one pixel.
+        """
+        k1, k2, _, _, k3 = self.dist
+        coefficients = np.array([7 * k3, 5 * k2, 3 * k1, 1.0])
+        coefficients[np.abs(coefficients) < NEGLIGIBLE * np.abs(coefficients).max()] = 0.0
+        squares = np.roots(coefficients)
+        real = squares.real[(np.abs(squares.imag) < 1e-9 * np.abs(squares)) & (squares.real > 0)]
+        return float(np.sqrt(real.min(initial=np.inf)))
 
 
 def _whole(size: Sequence[float]) -> tuple[int, ...]:
@@ -80,7 +91,11 @@ def project(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
 
     NaN where the point is missing, behind the camera, or outside the fold radius of the lens model.
     """
-    normalised, _ = _normalise(camera, xyz_in_world)
+    in_cam = np.asarray(xyz_in_world, dtype=float) @ camera.cam_from_world[:, :3].T
+    in_cam = in_cam + camera.cam_from_world[:, 3]
+    normalised = in_cam[..., :2] / np.where(in_cam[..., 2:] > 0, in_cam[..., 2:], np.nan)
+    radius = np.hypot(normalised[..., :1], normalised[..., 1:])
+    normalised = np.where(radius < camera.fold_radius, normalised, np.nan)
     return distort(camera.dist, normalised) * _focal(camera) + camera.K[:2, 2]
 
 
@@ -99,41 +114,38 @@ def in_picture(camera: Camera, xy: NDArray) -> NDArray:
         return np.all((xy >= -0.5) & (xy <= np.array(camera.size) - 0.5), axis=-1)
 
 
-def projection_jacobian(camera: Camera, xyz_in_world: ArrayLike) -> NDArray:
-    """Return the derivative (..., 2, 3) of `project` at points (..., 3) m, distortion included.
-
-    d(x, y) / d(x, y, z), px per metre; NaN where `project` gives NaN.
-    """
-    normalised, depth = _normalise(camera, xyz_in_world)
-    in_cam = jacobian_by_place(camera.dist, normalised, depth)
-    return _focal(camera)[:, np.newaxis] * (in_cam @ camera.cam_from_world[:, :3])
-
-
 def undistort(camera: Camera, xy: ArrayLike) -> NDArray:
     """Return the viewing directions of distorted px (..., 2): the inverse of `project`.
 
     They lie on the z = 1 plane in front of the camera (..., 2), no unit. NaN where a pixel is
-    missing, and where the lens model has no direction for it.
+    missing, and where no direction below the fold maps to it.
+
+    Newton's method from the inverse of the radial part, tabulated up to the fold: it neither
+    diverges under strong distortion nor ends at a direction beyond the fold.
     """
     xy = np.asarray(xy, dtype=float)
     distorted = (np.where(np.isfinite(xy), xy, np.nan) - camera.K[:2, 2]) / _focal(camera)
     # Far from the centre, rounding errors exceed the tolerance that holds near the centre.
     tolerance = TOLERANCE_PX / _focal(camera).max() * (1 + np.abs(distorted).sum(axis=-1))
-    return undistort_below_fold(camera.dist, camera.fold_radius, distorted, tolerance)
+    dist, fold = camera.dist, camera.fold_radius
+    normalised = _undistort_radially(dist, fold, distorted)
+    for _ in range(MAX_ITERATIONS):
+        error = distorted - distort(dist, normalised)
+        solved = np.abs(error).max(axis=-1) <= tolerance
+        a, b, d = _slopes(dist, normalised)
+        determinant = a * d - b * b
+        rising = determinant > 0
+        if (solved | ~rising).all():
+            break
+        step = [d * error[..., 0] - b * error[..., 1], a * error[..., 1] - b * error[..., 0]]
+        divisor = np.where(rising, determinant, np.nan)[..., np.newaxis]
+        normalised = normalised + np.stack(step, axis=-1) / divisor
+    found = solved & rising & (np.hypot(normalised[..., 0], normalised[..., 1]) < fold)
+    return np.where(found[..., np.newaxis], normalised, np.nan)
 
 
 def _focal(camera: Camera) -> NDArray:
     return np.diag(camera.K)[:2]
-
-
-def _normalise(camera: Camera, xyz_in_world: ArrayLike) -> tuple[NDArray, NDArray]:
-    """Return points on the z = 1 plane (..., 2) and depths (..., 1), NaN where not visible."""
-    in_cam = np.asarray(xyz_in_world, dtype=float) @ camera.cam_from_world[:, :3].T
-    in_cam = in_cam + camera.cam_from_world[:, 3]
-    depth = np.where(in_cam[..., 2:] > 0, in_cam[..., 2:], np.nan)
-    normalised = in_cam[..., :2] / depth
-    radius = np.hypot(normalised[..., :1], normalised[..., 1:])
-    return np.where(radius < camera.fold_radius, normalised, np.nan), depth
 
 
 def crop(camera: Camera, crop_px: Sequence[int]) -> Camera:
@@ -236,11 +248,6 @@ def write_toml(
         temporary.write_text(tomli_w.dumps(content), encoding="utf-8", newline="\n")
 
 
-MAX_ITERATIONS = 50  # ASSUME: enough for Newton's method; pixels not solved by then become NaN
-ENTRIES = 2048  # radii tabulated for its start, which so lies within about 1 %
-NEGLIGIBLE = 1e-30  # dividing by a coefficient this much smaller than the others overflows
-
-
 def distort(dist: NDArray, normalised: NDArray) -> NDArray:
     """Return where the lens shows points (..., 2) of the z = 1 plane.
 
@@ -257,12 +264,6 @@ def distort(dist: NDArray, normalised: NDArray) -> NDArray:
         ],
         axis=-1,
     )
-
-
-def jacobian(dist: NDArray, normalised: NDArray) -> NDArray:
-    """Return the derivative (..., 2, 2) of `distort`; it is symmetric."""
-    along_x, mixed, along_y = _slopes(dist, normalised)
-    return np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*mixed.shape, 2, 2)
 
 
 def _slopes(dist: NDArray, normalised: NDArray) -> tuple[NDArray, NDArray, NDArray]:
@@ -287,47 +288,9 @@ def jacobian_by_place(dist: NDArray, normalised: NDArray, depth: NDArray) -> NDA
     pinhole = np.zeros((*normalised.shape, 3))
     pinhole[..., 0, 0] = pinhole[..., 1, 1] = 1.0
     pinhole[..., 2] = -normalised
-    return jacobian(dist, normalised) @ pinhole / depth[..., np.newaxis]
-
-
-def fold_radius(dist: NDArray) -> float:
-    """Return the radius at which the radial part turns back, inf if it never does.
-
-    Beyond it the lens model maps several directions to one pixel.
-    """
-    k1, k2, _, _, k3 = dist
-    coefficients = np.array([7 * k3, 5 * k2, 3 * k1, 1.0])
-    coefficients[np.abs(coefficients) < NEGLIGIBLE * np.abs(coefficients).max()] = 0.0
-    squares = np.roots(coefficients)
-    real = squares.real[(np.abs(squares.imag) < 1e-9 * np.abs(squares)) & (squares.real > 0)]
-    return float(np.sqrt(real.min(initial=np.inf)))
-
-
-def undistort_below_fold(
-    dist: NDArray, fold: float, distorted: NDArray, tolerance: NDArray
-) -> NDArray:
-    """Invert `distort` (..., 2) below the `fold_radius`.
-
-    `tolerance` (...) is the accepted error of `distort` at the result. NaN where missing, and where
-    no point below the fold maps to that pixel.
-
-    Newton's method from the inverse of the radial part, tabulated up to the fold: it neither
-    diverges under strong distortion nor ends at a direction beyond the fold.
-    """
-    normalised = _undistort_radially(dist, fold, distorted)
-    for _ in range(MAX_ITERATIONS):
-        error = distorted - distort(dist, normalised)
-        solved = np.abs(error).max(axis=-1) <= tolerance
-        a, b, d = _slopes(dist, normalised)
-        determinant = a * d - b * b
-        rising = determinant > 0
-        if (solved | ~rising).all():
-            break
-        step = [d * error[..., 0] - b * error[..., 1], a * error[..., 1] - b * error[..., 0]]
-        divisor = np.where(rising, determinant, np.nan)[..., np.newaxis]
-        normalised = normalised + np.stack(step, axis=-1) / divisor
-    found = solved & rising & (np.hypot(normalised[..., 0], normalised[..., 1]) < fold)
-    return np.where(found[..., np.newaxis], normalised, np.nan)
+    along_x, mixed, along_y = _slopes(dist, normalised)
+    lens = np.stack([along_x, mixed, mixed, along_y], axis=-1).reshape(*mixed.shape, 2, 2)
+    return lens @ pinhole / depth[..., np.newaxis]
 
 
 def _radial(dist: NDArray, square: Any) -> Any:  # a float for a float, else an array

@@ -6,15 +6,14 @@ A straight pixel is what a lens without distortion would show, px about the prin
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.geometry import camera as camera_models
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, undistort
 
 TINY = 1e-12  # keeps divisions finite; far below any distance in px
 
 
 def straight_px(camera: Camera, xy: ArrayLike) -> NDArray:
     """Return the straight px (..., 2) of distorted px (..., 2), NaN where missing."""
-    return camera_models.undistort(camera, xy) * focal_px(camera)
+    return undistort(camera, xy) * focal_px(camera)
 
 
 def focal_px(camera: Camera) -> float:

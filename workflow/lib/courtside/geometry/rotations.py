@@ -123,23 +123,25 @@ def twist(rotation: NDArray, axis: NDArray) -> float:
     Swing-twist decomposition: what remains after the smallest rotation that moves the axis alike.
     """
     rest = swing(axis, rotation @ axis).T @ rotation
-    sine = 0.5 * np.array(
-        [rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]]
-    )
-    return float(np.arctan2(sine @ axis, (np.trace(rest) - 1) / 2))
+    return float(np.arctan2(_sine_axis(rest) @ axis, (np.trace(rest) - 1) / 2))
 
 
 def shares(start: NDArray, end: NDArray, parts: Iterable[float]) -> list[NDArray]:
     """Return rotations at shares 0..1 of the shortest way from one rotation (3, 3) to another."""
     turn = start.T @ end
-    sine = 0.5 * np.array(
-        [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
-    )
+    sine = _sine_axis(turn)
     length = np.sqrt(sine @ sine)
     angle = np.arctan2(length, (np.trace(turn) - 1) / 2)
     if length < 1e-9:  # ASSUME: no turn, for nobody turns the head or the trunk by half a turn
         return [start for _ in parts]
     return [start @ about_axis(sine / length, part * angle) for part in parts]
+
+
+def _sine_axis(turn: NDArray) -> NDArray:
+    """Return the axis (3,) of a rotation (3, 3) times the sine of its angle."""
+    return 0.5 * np.array(
+        [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
+    )
 
 
 def skew(vector: NDArray) -> NDArray:

@@ -15,9 +15,7 @@ MOST_SUBSETS = 2000  # ASSUME: all subsets of up to 23 points, and an even choic
 # Of the length of a normal vector in three dimensions with standard deviation 1 per axis.
 MEDIAN = 1.538
 QUANTILE_99 = 3.368
-MIRRORED_RATIO = (
-    4.0  # ASSUME: points are mirrored if their mirror image fits this many times better
-)
+MIRRORED_RATIO = 4.0  # ASSUME: points are mirrored if their mirror image fits so much better
 MAX_ROUNDS = 20  # ASSUME: the inliers settle in a few
 
 
@@ -52,7 +50,7 @@ def umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, weight: ArrayLike | None = Non
     or only collinear ones, have weight, or a number is not finite.
 
     Umeyama 1991, eq. 40-42. Never a reflection: mirrored points get the best rotation. See
-    `robust`.
+    `robust_umeyama`.
     """
     x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
     weight = np.ones(len(x_in_a)) if weight is None else np.asarray(weight, float)
@@ -92,15 +90,14 @@ def flatness(xyz: NDArray) -> NDArray:
     return extent / max(extent[0], np.finfo(float).tiny)
 
 
-def robust(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3, NDArray]:
+def robust_umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3, NDArray]:
     """Fit `b_from_a` to most of the same points (P, 3) in both frames, NaN where missing in one.
-
-    Raises `InputError` if the points are fewer than three, collinear, or mirrored.
 
     Least median of squares (Rousseeuw & Leroy 1987) over all subsets of three points: no random
     numbers. Then weighted least squares on the inliers until they stay the same. Mirrored points
     that all lie in one plane fit a rotation as well: only the cameras' positions tell them apart,
-    which are not known here.
+    which are not known here. Raises `InputError` if the points are fewer than three, collinear, or
+    mirrored.
 
     Parameters
     ----------

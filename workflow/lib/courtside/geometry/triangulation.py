@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.geometry import camera as camera_models
-from courtside.geometry.camera import Camera
+from courtside.geometry import epipolar
+from courtside.geometry.camera import Camera, project, undistort
 
 FADE = 4 / 3  # default of `fade_px`, in units of the limit: 20 px for 15, as in config/config.yaml
 # ASSUME: the schedule of the robust kernel; outliers of 80 to 400 px are left out (tests).
@@ -85,9 +85,6 @@ def triangulate_robust(
 ) -> Triangulated:
     """Triangulate points, leaving out views that disagree.
 
-    Raises `ValueError` if the inputs disagree on the number of cameras or points, or `min_views` is
-    below 2.
-
     The start is a weighted DLT. Points with a view beyond the limit are solved again by graduated
     non-convexity (Blake & Zisserman 1987; Yang et al. 2020): Gauss-Newton with Geman-McClure
     weights whose scale shrinks from 12 times its last value, so that an outlier loses its weight
@@ -95,7 +92,8 @@ def triangulate_robust(
     wide: a view fades as it disagrees instead of switching off, which keeps a point from jumping
     between frames when a view is near the limit (a slightly wrong calibration causes this). Views
     beyond twice the limit have no weight. Accepted are the views within the limit, and where these
-    are fewer than `min_views`, the closest ones within twice the limit.
+    are fewer than `min_views`, the closest ones within twice the limit. Raises `ValueError` if the
+    inputs disagree on the number of cameras or points, or `min_views` is below 2.
 
     Parameters
     ----------
@@ -112,18 +110,9 @@ def triangulate_robust(
     check(cameras, xy, score, min_views)
     sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
     pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
+    rules = min_views, min_score, max_error_px, fade_px or FADE * max_error_px
     parts = [
-        _solve(
-            cameras,
-            xy[:, piece],
-            score[:, piece],
-            sigma_px[piece],
-            fade_px=fade_px or FADE * max_error_px,
-            max_error_px=max_error_px,
-            min_views=min_views,
-            min_score=min_score,
-        )
-        for piece in pieces
+        _solve(cameras, xy[:, piece], score[:, piece], sigma_px[piece], *rules) for piece in pieces
     ]
     return Triangulated(
         xyz=np.concatenate([part.xyz for part in parts]),
@@ -149,26 +138,22 @@ def _solve(
     xy: NDArray,
     score: NDArray,
     sigma_px: NDArray,
-    *,
-    fade_px: float,
-    max_error_px: float,
     min_views: int,
     min_score: float,
+    max_error_px: float,
+    fade_px: float,
 ) -> Triangulated:
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
     usable = seen & (score >= min_score) & (score > 0)
     views = Views(cameras, xy, np.where(usable, score, 0.0))
-    enough = usable.sum(axis=0) >= min_views
     xyz = np.full((xy.shape[1], 3), np.nan)
     accepted = np.zeros_like(usable)
-    at = np.flatnonzero(enough)
+    at = np.flatnonzero(usable.sum(axis=0) >= min_views)
     if len(at):
-        xyz[at], accepted[:, at] = _select_and_refine(
-            views.of(at), max_error_px, fade_px, min_views
-        )
-    error_px = reprojection_px(cameras, xy, xyz)
+        found = _select_and_refine(views.of(at), max_error_px, fade_px, min_views)
+        xyz[at], accepted[:, at] = found
     covariance = noise_covariance(views, xyz, accepted, sigma_px)
-    return Triangulated(xyz, covariance, accepted, error_px)
+    return Triangulated(xyz, covariance, accepted, reprojection_px(cameras, xy, xyz))
 
 
 def _select_and_refine(
@@ -220,13 +205,13 @@ def noise_covariance(views: Views, xyz: NDArray, accepted: NDArray, sigma_px: ND
     `sigma_px` (N,) is the standard deviation per axis of a keypoint with weight 1.
     """
     _, in_cam = views.residuals(np.nan_to_num(xyz))
-    square = views.information(in_cam, views.weight * accepted)
-    return inverse_3x3(square) * (sigma_px**2)[:, None, None]
+    rows, weighted = views.jacobians(in_cam, views.weight * accepted)
+    return inverse_3x3(weighted @ rows) * (sigma_px**2)[:, None, None]
 
 
 def reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDArray:
     """Return the distance (C, N) px of keypoints to projected points."""
-    projected = np.stack([camera_models.project(camera, xyz) for camera in cameras])
+    projected = np.stack([project(camera, xyz) for camera in cameras])
     return np.linalg.norm(projected - xy, axis=-1)
 
 
@@ -237,13 +222,11 @@ class Views:
     """
 
     def __init__(self, cameras: Sequence[Camera], xy: NDArray, weight: NDArray) -> None:
-        self.xy = np.stack(
-            [camera_models.undistort(c, points) for c, points in zip(cameras, xy, strict=True)]
-        )
+        self.xy = np.stack([undistort(c, points) for c, points in zip(cameras, xy, strict=True)])
         self.weight = np.where(np.isfinite(self.xy).all(axis=-1), weight, 0.0)
         self.xy = np.nan_to_num(self.xy)
         self.matrix = np.stack([camera.cam_from_world for camera in cameras])
-        self.focal_px = np.array([(c.K[0, 0] + c.K[1, 1]) / 2 for c in cameras])
+        self.focal_px = np.array([epipolar.focal_px(camera) for camera in cameras])
 
     def of(self, at: NDArray) -> Views:
         """Return the same views of some of the points only."""
@@ -260,8 +243,8 @@ class Views:
         residual = (in_cam[..., :2] / depth - self.xy) * self.focal_px[:, None, None]
         return residual, in_cam
 
-    def _rows(self, in_cam: NDArray, weight: NDArray) -> tuple[NDArray, NDArray]:
-        """Return J (N, 2 C, 3) and J'W (N, 3, 2 C)."""
+    def jacobians(self, in_cam: NDArray, weight: NDArray) -> tuple[NDArray, NDArray]:
+        """Return the derivative J (N, 2 C, 3) of residuals by points, and J'W (N, 3, 2 C)."""
         scale = self.focal_px[:, None] / in_cam[..., 2]
         ratio = in_cam[..., :2] / in_cam[..., 2:]
         rows = self.matrix[:, None, :2, :3] - ratio[..., None] * self.matrix[:, None, 2:3, :3]
@@ -270,24 +253,12 @@ class Views:
         flat = rows.transpose(1, 0, 2, 3).reshape(rows.shape[1], -1, 3)
         return flat, weighted.transpose(1, 3, 0, 2).reshape(rows.shape[1], 3, -1)
 
-    def information(self, in_cam: NDArray, weight: NDArray) -> NDArray:
-        """Return J'WJ (N, 3, 3)."""
-        rows, weighted = self._rows(in_cam, weight)
-        return weighted @ rows
-
-    def normal(
-        self, in_cam: NDArray, weight: NDArray, residual: NDArray
-    ) -> tuple[NDArray, NDArray]:
-        """Return the normal equations: J'WJ (N, 3, 3) and J'Wr (N, 3)."""
-        rows, weighted = self._rows(in_cam, weight)
-        right = residual.transpose(1, 0, 2).reshape(len(rows), -1, 1)
-        return weighted @ rows, (weighted @ right)[..., 0]
-
     def stepped(self, xyz: NDArray, weight: NDArray) -> NDArray:
         """Return points (N, 3) after a Gauss-Newton step; one whose system is singular stays."""
         residual, in_cam = self.residuals(xyz)
-        square, right = self.normal(in_cam, weight, residual)
-        return xyz - np.nan_to_num(solve_3x3(square, right))
+        rows, weighted = self.jacobians(in_cam, weight)
+        right = weighted @ residual.transpose(1, 0, 2).reshape(len(rows), -1, 1)
+        return xyz - np.nan_to_num(solve_3x3(weighted @ rows, right[..., 0]))
 
     def distance(self, xyz: NDArray) -> NDArray:
         """Return the distance (C, N) px of keypoints to the projected points."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
-from scipy.spatial.transform import Rotation
 
+from courtside.geometry.rotations import rodrigues_from_rotation, rotation_from_rodrigues
 from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy, forward
 from virtualgym.devices import inertial_errors
 from virtualgym.devices.mocopi_skeleton import TORSO
@@ -79,11 +79,15 @@ def _sensors(
     tilt = inertial_errors.wandering(rng, n, (count, 3), step_s, errors.tilt_s)
     tilt *= np.radians(errors.tilt_deg) * (1 - UP)
     tilt[:, 0] += _leaked(true, step_s, errors) + _slipped(true, errors)
-    mount = _turn(np.radians(errors.mount_deg) * rng.standard_normal((count, 3)))
-    noise = _turn(np.radians(errors.noise_deg) * rng.standard_normal((n, count, 3)))
+    mount = rotation_from_rodrigues(np.radians(errors.mount_deg) * rng.standard_normal((count, 3)))
+    noise = rotation_from_rodrigues(
+        np.radians(errors.noise_deg) * rng.standard_normal((n, count, 3))
+    )
     felt = {}
     for row, joint in enumerate(SENSED):
-        outer = _turn(heading[:, row, None] * UP) @ _turn(tilt[:, row])
+        outer = rotation_from_rodrigues(heading[:, row, None] * UP) @ rotation_from_rodrigues(
+            tilt[:, row]
+        )
         felt[joint] = outer @ true.of(joint) @ mount[row] @ noise[:, row]
     return felt, heading[:, 0]
 
@@ -99,7 +103,7 @@ def _leaked(true: Turns, step_s: float, errors: inertial_errors.Errors) -> NDArr
 
 def _slipped(true: Turns, errors: inertial_errors.Errors) -> NDArray:
     """Return the tilt (T, 3) of the hips' sensor, which the trunk drags along with the belt."""
-    return errors.slip * _vector(true.of(TORSO[-1]) @ _inverse(true.of("root")))
+    return errors.slip * rodrigues_from_rotation(true.of(TORSO[-1]) @ _inverse(true.of("root")))
 
 
 class _Guesses:
@@ -120,15 +124,23 @@ class _Guesses:
         """Estimate the spine, which bends too little, and neck and clavicles from it."""
         root, wrong = self.true.of("root"), self._wandered()
         for rank, joint in enumerate(TORSO, start=1):
-            bend = (1 - self.errors.trunk) * _vector(_inverse(root) @ self.true.of(joint))
-            turned = self.made["root"] @ _turn(bend)
-            self.made[joint] = turned @ _turn(wrong * rank / len(TORSO))
+            bend = (1 - self.errors.trunk) * rodrigues_from_rotation(
+                _inverse(root) @ self.true.of(joint)
+            )
+            turned = self.made["root"] @ rotation_from_rodrigues(bend)
+            self.made[joint] = turned @ rotation_from_rodrigues(wrong * rank / len(TORSO))
         thorax = self.true.of(TORSO[-1])
         for joint in ("neck_1", "neck_2"):
             self.made[joint] = self.made[TORSO[-1]] @ _inverse(thorax) @ self.true.of(joint)
         for joint in ("l_shoulder", "r_shoulder"):
-            moved = (1 - self.errors.girdle) * _vector(_inverse(thorax) @ self.true.of(joint))
-            self.made[joint] = self.made[TORSO[-1]] @ _turn(moved) @ _turn(self._wandered())
+            moved = (1 - self.errors.girdle) * rodrigues_from_rotation(
+                _inverse(thorax) @ self.true.of(joint)
+            )
+            self.made[joint] = (
+                self.made[TORSO[-1]]
+                @ rotation_from_rodrigues(moved)
+                @ rotation_from_rodrigues(self._wandered())
+            )
 
     def limb(self, upper: str, lower: str, end: str, missed: float) -> None:
         """Estimate the upper segment of a limb whose lower one carries a sensor.
@@ -144,18 +156,22 @@ class _Guesses:
         hinge = np.cross(units[0], units[1])
         sine = np.linalg.norm(hinge, axis=-1, keepdims=True)
         bend = np.arctan2(sine, (units[0] * units[1]).sum(axis=-1, keepdims=True))
-        straighten = _turn(missed * bend * hinge / np.maximum(sine, LEAST_SINE))
+        straighten = rotation_from_rodrigues(missed * bend * hinge / np.maximum(sine, LEAST_SINE))
         span = np.einsum("tij,tj->ti", straighten, ways[0]) + ways[1]
         span /= np.linalg.norm(span, axis=-1, keepdims=True)
         errors = self.errors
         swivel = inertial_errors.wandering(self.rng, len(span), (1,), self.step_s, errors.swivel_s)
-        swivelled = _turn(np.radians(errors.swivel_deg) * swivel * span)
-        self.made[upper] = swivelled @ straighten @ first @ _turn(self._wandered())
+        swivelled = rotation_from_rodrigues(np.radians(errors.swivel_deg) * swivel * span)
+        self.made[upper] = (
+            swivelled @ straighten @ first @ rotation_from_rodrigues(self._wandered())
+        )
 
     def follow(self, joint: str, parent: str, share: float) -> None:
         """Keep a joint's true rotation from its parent, with a share of an estimate's error."""
         own = _inverse(self.true.of(parent)) @ self.true.of(joint)
-        self.made[joint] = self.made[parent] @ own @ _turn(share * self._wandered())
+        self.made[joint] = (
+            self.made[parent] @ own @ rotation_from_rodrigues(share * self._wandered())
+        )
 
     def _wandered(self) -> NDArray:
         """Return the error (T, 3) of one estimated segment, a rotation vector."""
@@ -167,15 +183,3 @@ class _Guesses:
 
 def _inverse(turns: NDArray) -> NDArray:
     return np.swapaxes(turns, -1, -2)
-
-
-def _turn(vectors: NDArray) -> NDArray:
-    """Return rotations (..., 3, 3) of rotation vectors (..., 3)."""
-    shape = np.shape(vectors)
-    flat = np.reshape(vectors, (-1, 3))
-    return Rotation.from_rotvec(flat).as_matrix().reshape(*shape, 3)
-
-
-def _vector(turns: NDArray) -> NDArray:
-    """Return rotation vectors (T, 3) of rotations."""
-    return Rotation.from_matrix(turns).as_rotvec()

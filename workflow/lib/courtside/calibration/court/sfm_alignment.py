@@ -114,7 +114,7 @@ def align(court: Court, xyz_in_sfm: NDArray) -> tuple[Sim3, NDArray]:
     Also return which points (P,) bool it accepts. Raises `InputError` if the points are too few,
     collinear or mirrored.
     """
-    return similarity.robust(xyz_in_sfm, court.xyz, court.sigma_m)
+    return similarity.robust_umeyama(xyz_in_sfm, court.xyz, court.sigma_m)
 
 
 def check(court: Court, xyz_in_sfm: NDArray, cameras: Sequence[Camera] = ()) -> list[str]:
