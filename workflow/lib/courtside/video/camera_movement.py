@@ -23,12 +23,13 @@ MIN_SPREAD = 0.1  # least standard deviation of the inliers' places, of the shor
 class Movement:
     """Similarity about the picture's centre between two pictures of a fixed camera."""
 
-    shift_px: NDArray  # (2,): movement of the content at the picture's centre: right, down; pixels
+    shift_px: NDArray  # (2,): of the content at the picture's centre: right, down
     zoom: float  # scale of the other picture relative to the reference; 1 for none
     rotation_deg: float  # clockwise rotation of the content, as seen on the picture
-    # background points that agree. If they are fewer than required, or do not spread over the
+    # Background points that agree. If they are fewer than required, or do not spread over the
     # picture, the rest is NaN.
     n_matches: int
+    sigma_px: float = float("nan")  # standard deviation of `shift_px` per axis, where it is known
 
     @property
     def known(self) -> bool:
@@ -115,25 +116,37 @@ def _roughly(before: NDArray, after: NDArray) -> list[NDArray]:
 def _track(before, after, corners, start) -> tuple[NDArray, NDArray]:
     """Return (N, 2) corners and their new places, those that are found again on the way back."""
     guess = cv2.transform(corners, start).astype(np.float32)
-    found, there = _flow(before, after, corners, guess)
-    back, again = _flow(after, before, found, corners.copy())
+    found, there = flow(before, after, corners, guess)
+    back, again = flow(after, before, found, corners.copy())
     returned = np.linalg.norm(back - corners, axis=2)[:, 0] < MAX_RETURN_PX
-    good = (there[:, 0] > 0) & (again[:, 0] > 0) & returned
+    good = there & again & returned
     return corners[good, 0], found[good, 0]
 
 
-def _flow(before, after, corners, guess) -> tuple[NDArray, NDArray]:
+def flow(
+    before: NDArray,
+    after: NDArray,
+    corners: NDArray,
+    guess: NDArray,
+    *,
+    levels: int = 3,
+    stop: tuple[int, float] = (40, 0.003),
+) -> tuple[NDArray, NDArray]:
+    """Track corners by pyramidal Lucas-Kanade from guessed places; also say which are found.
+
+    `levels` is how often the picture is halved, `stop` the most iterations and the least step, px.
+    """
     found, status, _ = cv2.calcOpticalFlowPyrLK(
         before,
         after,
         corners,
         guess,
         winSize=(WINDOW_PX, WINDOW_PX),
-        maxLevel=3,
+        maxLevel=levels,
         flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
-        criteria=(cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 0.003),
+        criteria=(cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, *stop),
     )
-    return found, status
+    return found, status[:, 0] > 0
 
 
 def _fit(x_before, x_after, max_error_px=MAX_ERROR_PX) -> tuple[NDArray, NDArray]:
@@ -200,8 +213,7 @@ class Fit:
     """A movement that tracked points agree on."""
 
     model: NDArray  # (6,): for `moved`; NaN where too few agree
-    # standard deviation of the shift per axis, unit: half of the longer side; NaN as `model`
-    sigma: float
+    sigma: float  # standard deviation of the shift per axis, in half longer sides; NaN as `model`
     n_matches: int  # points that agree
 
     @property

@@ -34,14 +34,9 @@ class _DamageError(Exception):
 def decode_checked(listing: Listing, first: int, stop: int) -> Iterator[tuple[int, av.VideoFrame]]:
     """Decode the frames `first` to `stop - 1` on one thread, each checked against the packets.
 
-    Raises `InputError` at the first missing or damaged frame, after those before it.
-
-    `first`, `stop`: indices into `listing.pts`, `first < stop`.
-
-    Yields
-    ------
-    index : every index of the range, in order
-    frame : av.VideoFrame; as stored: not turned upright, in its own pixel format
+    `first` and `stop`, `first < stop`, are indices into `listing.pts`. Each frame comes with its
+    index, as stored: not turned upright, in its own pixel format. Raises `InputError` at the first
+    missing or damaged frame, after those before it.
     """
     keys = listing.key_pts[listing.key_pts <= listing.pts[first]].tolist()
     key = int(np.searchsorted(listing.pts, keys[-1])) if keys else 0
@@ -119,15 +114,9 @@ def pictures(
 ) -> Iterator[tuple[int, NDArray]]:
     """Decode wanted frames into upright pictures; those between are decoded but not converted.
 
+    `wanted` are one or more increasing indices into `listing.pts`, `crop_px` left, top, width and
+    height, px of the upright picture. Pictures (H, W, 3) uint8, BGR, come with their indices.
     Raises `InputError` as `decode_checked`; also if the size changes or the crop lies outside.
-
-    `wanted`: indices into `listing.pts`, increasing, at least one; `crop_px`: (4,) int or None;
-    left, top, width and height in pixels of the upright picture.
-
-    Yields
-    ------
-    index : each of `wanted`
-    image : (H, W, 3) uint8; BGR
     """
     reformatter, matrix = VideoReformatter(), None
     shape, rest = None, iter(wanted)

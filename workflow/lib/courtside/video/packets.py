@@ -35,17 +35,15 @@ class Listing:
 
     path: Path
     pts: NDArray  # (T,) int; when each frame is shown, increasing
-    # (T,) int; for each frame, the last shown of those decoded up to it: its picture may depend on
-    # that one
+    # (T,) int; for each frame, the last shown of those decoded up to it: it may depend on that one.
     leans_on: NDArray
     key_pts: NDArray  # (K,) int; those where decoding can begin
     tick_s: Fraction  # one tick, in seconds
     end: int  # when the last frame's time is over
-    n_declared: int | None  # int or None; frames as the container declares them
+    n_declared: int | None  # frames as the container declares them
     problem: str  # why the file is shorter than it should be; empty if it is not
     last_dts: int  # decoding time of the last whole packet: no frame up to this time is missing
-    # the container stores no presentation order: frames are identified by counting only
-    by_order: bool
+    by_order: bool  # without a stored presentation order frames are identified by counting only
 
     @property
     def times_s(self) -> NDArray:

@@ -25,15 +25,15 @@ class VideoInfo:
     """Properties of a video file."""
 
     path: Path
-    size: tuple[int, int]  # (int, int); width and height of the upright picture, in pixels
-    n_frames: int | None  # int or None; frames as the container declares them, if it does
-    # frames per second, averaged over the file; NaN for a single frame. Its error is at most the
+    size: tuple[int, int]  # width and height of the upright picture, px
+    n_frames: int | None  # as the container declares them, if it does
+    # Frames per second, averaged over the file; NaN for a single frame. Its error is at most the
     # container's tick over its length: Matroska keeps milliseconds.
     rate_hz: float
     rotation_deg: int  # clockwise rotation that makes the stored picture upright: 0, 90, 180 or 270
     duration_s: float  # from the start of the first frame to the end of the last
-    # whether some frame interval differs from the average by more than 1 % and one tick of the
-    # container's clock
+    # Whether some frame interval differs from the average by more than 1 % and one tick of the
+    # container's clock.
     variable_rate: bool
 
 
@@ -84,10 +84,8 @@ def frames(
 
     Parameters
     ----------
-    start_s, stop_s : only frames with `start_s <= time_s < stop_s`; None for the start or end of
-        the file
-    crop_px : (4,) int or None; left, top, width and height of the part wanted, in pixels of the
-        upright picture
+    start_s, stop_s : only frames with `start_s <= time_s < stop_s`; None: the file's start or end
+    crop_px : left, top, width and height of the part wanted, px of the upright picture
 
     Yields
     ------

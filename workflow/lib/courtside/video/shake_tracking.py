@@ -1,7 +1,6 @@
 """Movement of a fixed camera's picture in every frame of a take, relative to its static picture."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -9,35 +8,20 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.video import camera_movement
+from courtside.video.camera_movement import LENS_MEAN, Movement
 
 # ASSUME: the values up to SMALLER and SPARSE have no source but the development sessions.
 WIDEST_PX = 2048  # larger pictures are reduced: a camera's movement needs no more
 N_CORNERS = 300
 APART = 0.02  # least distance of corners, picture widths
 SURROUNDINGS = 0.012  # picture widths: the mean over this is removed, against changes of light
-WINDOW_PX, LEVELS = 21, 4  # of a tracked corner, and how often the picture is halved to find it
+LEVELS, STOP = 4, (20, 0.01)  # of `camera_movement.flow`
 SMALLER = 4  # reduction of the pictures that find a large movement
 # Errors outside the fit (video coding, lens, interpolation): on virtual pictures with known
 # rotations, errors were 0.02 to 0.05 px where the corners' scatter alone predicted 0.005 to 0.015.
 FLOOR_PX, FLOOR_SHARE = 0.03, 0.002  # the second is a share of the shift
 SPARSE = 32  # frames: the longest pause between two searches for a lost picture
 NAMES = ("shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "n_matches", "sigma_px")
-
-
-@dataclass(frozen=True)
-class Shift:
-    """Place of the static picture's content in a frame."""
-
-    shift_px: NDArray  # (2,): of the content at the picture's centre: right, down
-    zoom: float  # scale at the centre; 1 for none
-    rotation_deg: float  # clockwise rotation about the centre, as seen on the picture
-    n_matches: int  # corners that agree; with too few, the rest is NaN
-    sigma_px: float  # standard deviation of `shift_px`, per axis
-
-    @property
-    def known(self) -> bool:
-        """Whether enough corners agree to tell."""
-        return bool(np.isfinite(self.zoom))
 
 
 class Tracker:
@@ -63,10 +47,10 @@ class Tracker:
         self._grey = grey
         self._half = max(grey.shape) / 2
         self._places = (self._corners - (np.array(grey.shape[::-1]) - 1) / 2) / self._half
-        self._static, self._last = static, np.r_[np.zeros(4), camera_movement.LENS_MEAN]
+        self._static, self._last = static, np.r_[np.zeros(4), LENS_MEAN]
         self._lost, self._next_search = 0, 0
 
-    def measure(self, frame: NDArray) -> Shift:
+    def measure(self, frame: NDArray) -> Movement:
         """Measure the place of the static picture in the next frame (H, W, 3) uint8, BGR.
 
         Raise ValueError if it differs in size from the static picture.
@@ -78,13 +62,13 @@ class Tracker:
         if not found.known:
             found = self._search(grey, frame)
         if not found.known:
-            return unknown(found.n_matches)
+            return camera_movement.unknown(found.n_matches)
         self._lost = self._next_search = 0
         self._last = model = found.model
         linear, unit_px = complex(1 + model[2], model[3]), self._half * self.shrink
         shift_px = model[:2] * unit_px
         floor_px = np.hypot(FLOOR_PX, FLOOR_SHARE * np.hypot(*shift_px))
-        return Shift(
+        return Movement(
             shift_px=shift_px,
             zoom=abs(linear),
             rotation_deg=float(np.degrees(np.angle(linear))),
@@ -95,9 +79,7 @@ class Tracker:
     def _search(self, grey: NDArray, frame: NDArray) -> camera_movement.Fit:
         """Find a lost picture from rest, by correlation, or by features (slow, so not always)."""
         for shift_px in (np.zeros(2), self._correlate(grey)):
-            found = self._follow(
-                grey, np.r_[shift_px / self._half, 0, 0, camera_movement.LENS_MEAN]
-            )
+            found = self._follow(grey, np.r_[shift_px / self._half, 0, 0, LENS_MEAN])
             if found.known:
                 return found
         self._lost += 1
@@ -109,9 +91,7 @@ class Tracker:
             return found
         linear = rough.zoom * np.exp(1j * np.radians(rough.rotation_deg))
         shift = rough.shift_px / self.shrink / self._half
-        return self._follow(
-            grey, np.r_[shift, linear.real - 1, linear.imag, camera_movement.LENS_MEAN]
-        )
+        return self._follow(grey, np.r_[shift, linear.real - 1, linear.imag, LENS_MEAN])
 
     def _correlate(self, grey: NDArray) -> NDArray:
         """Return the shift (2,) px, of any size, that correlates best."""
@@ -130,17 +110,10 @@ class Tracker:
         if inside.sum() < camera_movement.MIN_MATCHES:
             return camera_movement.unknown_turn()
         places, corners = self._places[inside], self._corners[inside].astype(np.float32)
-        moved, tracked, _ = cv2.calcOpticalFlowPyrLK(
-            self._grey,
-            grey,
-            corners,
-            guess[inside].astype(np.float32),
-            winSize=(WINDOW_PX, WINDOW_PX),
-            maxLevel=LEVELS,
-            flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
-            criteria=(cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 20, 0.01),
+        guess = guess[inside].astype(np.float32)
+        moved, good = camera_movement.flow(
+            self._grey, grey, corners, guess, levels=LEVELS, stop=STOP
         )
-        good = tracked[:, 0] > 0
         return camera_movement.fit_turn(
             places[good], (moved - corners)[good], grey.shape, inside.sum()
         )
@@ -154,11 +127,6 @@ class Tracker:
         side = 2 * round(SURROUNDINGS * grey.shape[1] / 2) + 1
         grey = cv2.GaussianBlur(grey, (3, 3), 0)
         return cv2.addWeighted(grey, 1.0, cv2.blur(grey, (side, side)), -1.0, 128.0)
-
-
-def unknown(n_matches: int = 0) -> Shift:
-    """Return an undetermined shift."""
-    return Shift(np.full(2, np.nan), np.nan, np.nan, n_matches, np.nan)
 
 
 def measure_take(

@@ -52,16 +52,12 @@ def check_still(
 
     Parameters
     ----------
-    camera : its name, for the message
     reference, other : (H, W, 3) uint8; its static picture and a later picture, BGR
     max_shift_px : largest shift of the picture's centre; also of the middle of its sides by
         rotation, pixels
     max_zoom_percent : largest change of scale
     where, mend : where the pictures are from and what to do, for the message
 
-    Returns
-    -------
-    movement : the measured movement, within the limits
     """
     start = f"camera {camera}: expected the same view in {where}"
     if reference.shape != other.shape:
@@ -103,15 +99,16 @@ def static_picture(
 
     Parameters
     ----------
-    camera, source : name and recording, for messages
-    images : list of (H, W, 3) uint8; spread over the recording, in order, BGR
+    source : the recording, for messages
+    images : (H, W, 3) uint8; spread over the recording, in order, BGR
     max_shift_px, max_zoom_percent : as for `check_still`, between the medians of the first and of
         the last third
 
     Returns
     -------
-    image, movement : (H, W, 3) uint8, Movement; the temporal median; the movement from the first to
-        the last third, unknown for fewer than three pictures, which are not checked
+    image : (H, W, 3) uint8; the temporal median
+    movement : from the first to the last third; unknown for fewer than three pictures, which are
+        not checked
     """
     image, third, found = temporal_median(images), len(images) // 3, unknown()
     check_light(source, image)
@@ -128,15 +125,10 @@ def static_picture(
     return image, found
 
 
-def too_dark(image: NDArray) -> bool:
-    """Return whether 80 % of a picture's pixels are below 20 of 255 in every channel."""
-    return bool(np.mean(image.max(axis=2) < BLACK_LEVEL) > BLACK_SHARE)
-
-
 def check_light(path: str | os.PathLike, image: NDArray) -> None:
     """Raise InputError if a picture (H, W, 3) uint8, BGR, from the file `path` is mostly black."""
-    if too_dark(image):
-        share = np.mean(image.max(axis=2) < BLACK_LEVEL)
+    share = np.mean(image.max(axis=2) < BLACK_LEVEL)
+    if share > BLACK_SHARE:
         raise InputError(
             f"{path}: expected a picture with light in it, found {100 * share:.0f} % of it black: "
             "take off the lens cap, light the room or expose longer, and film again"

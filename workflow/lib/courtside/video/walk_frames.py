@@ -34,8 +34,8 @@ def frames(
 
     Parameters
     ----------
-    source : path or list of paths; a video; a photo, photos, or a folder of photos. All photos are
-        used, in name order, numbers by value.
+    source : a video; a photo, photos, or a folder of photos. All photos are used, in name order,
+        numbers by value.
     every_s, every_frame : for a video, exactly one of them, positive (ValueError if not): spacing
         of the grid in seconds, as for `reader.extract_frames`, or in frames, from the first
 

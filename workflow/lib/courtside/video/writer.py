@@ -30,12 +30,10 @@ def write_video(
 ) -> int:
     """Write pictures as H.264 in yuv420p, at a constant rate; return how many.
 
-    Raises `ValueError` if there is no frame, a frame is not such a picture, or the rate is not
-    positive, `InputError` if the disk refuses the file.
-
     One thread: with more, x264 divides the bits among the frames differently from run to run. No
     macroblock tree: with AVX-512, x264's reads memory that is not its own, and no two runs are
-    alike.
+    alike. Raises `ValueError` if there is no frame, a frame is not such a picture, or the rate is
+    not positive, `InputError` if the disk refuses the file.
 
     Parameters
     ----------
