@@ -17,6 +17,7 @@ from courtside.exports import trc
 from courtside.geometry import camera as cameras
 from courtside.geometry import triangulation
 from courtside.pose import decoders, foreground, tracking
+from courtside.pose.blazepose import BlazePoseDetector
 from courtside.reconstruction import fusion
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.configuration import yaml_files
@@ -75,7 +76,7 @@ def study():
 def detected(study):
     """Return the Keypoints2D of the four videos, found as the default study finds them."""
     joints = skeleton.read(ROOT / "config" / "skeletons" / "blazepose33.yaml").joints
-    find = decoders.person_detector(networks.detector_onnx())
+    find = BlazePoseDetector(networks.detector_onnx())
     place = decoders.landmark_network(networks.landmarks_onnx(), joints, decoder="blazepose")
     cv2.setNumThreads(1)
     return [detect(name, joints, find, place, study) for name in NAMES]

@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from courtside.pose import decoders, foreground, tracklets
+from courtside.pose.blazepose import BlazePoseDetector
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
@@ -23,7 +24,7 @@ def main(
         changed = foreground.Foreground(images.read(paths.background), min_difference)
     track = tracklets.track_people(
         log.progress(frames, info.n_frames if not trim_s else None, f"{camera}: frames"),
-        decoders.person_detector(paths.detector),
+        BlazePoseDetector(paths.detector),
         decoders.landmark_network(paths.landmarks, joints, **decoder),
         changed,
         max_people=max_people,

@@ -14,9 +14,6 @@ def test_blazepose_is_built():
         networks.landmarks_onnx(), ("joint",) * 33, decoder="blazepose"
     )
     assert isinstance(network, blazepose.BlazePoseLandmarks)
-    assert isinstance(
-        decoders.person_detector(networks.detector_onnx()), blazepose.BlazePoseDetector
-    )
 
 
 @needs_real

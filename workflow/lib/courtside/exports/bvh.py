@@ -20,23 +20,16 @@ EVEN_S = 1e-4  # deviation of a frame from an even grid: BVH has one frame time.
 def write(
     path: str | PathLike, posed: PosedHierarchy, *, order: str = "ZXY", unit_m: float = 0.01
 ) -> None:
-    """Write a posed hierarchy.
+    """Write a posed hierarchy with one root, its frames even in time.
 
-    Raises `InputError` if a value is missing, two joints have one name, a name is blank or has
-    blanks in it, or the frames are not even in time, `ValueError` if there is not one root at the
-    front, or `order` is no permutation of XYZ.
-
-    Six decimals of the unit and of a degree. Joints stand depth first, each chain to its end. BVH
-    has no start time: the first frame's time is lost. A joint at the end of a chain without a tip
-    gets one of length zero, because many readers require one. If the middle angle is 90 degrees the
-    other two are not unique; the last is then zero.
-
-    Parameters
-    ----------
-    posed : one root; time even. Every joint gets six channels, as in mocopi's files: its position
-        in its parent, then its rotation.
-    order : of the rotation channels: a permutation of XYZ. "ZXY" is R = Rz Rx Ry.
-    unit_m : length of the file's unit, metres
+    Every joint gets six channels, as in mocopi's files: its position in its parent, in units of
+    `unit_m` metres, then its rotation, with six decimals each. Joints stand depth first, each chain
+    to its end. BVH has no start time: the first frame's time is lost. A joint at the end of a chain
+    without a tip gets one of length zero, because many readers require one. If the middle angle is
+    90 degrees the other two are not unique; the last is then zero. Raises `InputError` if a value
+    is missing, two joints have one name, a name is blank or has blanks in it, or the frames are not
+    even in time, `ValueError` if there is not one root at the front, or `order`, of the rotation
+    channels, is no permutation of XYZ ("ZXY" is R = Rz Rx Ry).
     """
     shape = posed.hierarchy
     if list(shape.parents).count(NO_PARENT) != 1 or sorted(order) != ["X", "Y", "Z"]:

@@ -26,12 +26,10 @@ MOST_FRAMES = 65535  # the header counts frames in 16 bits
 def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
     """Write one person, by index.
 
-    Raises `InputError` if the take is longer than C3D's frame counter allows, or one frame, which
-    has no rate; if the disk refuses the file.
-
     A point's residual is its root-mean-square standard deviation from the keypoints, mm, 127 where
     it is larger; -1 marks a missing point, 0 one without a known uncertainty (interpolated, for
-    one).
+    one). Raises `InputError` if the take is longer than C3D's frame counter allows, or one frame,
+    which has no rate; if the disk refuses the file.
     """
     xyz = keypoints.xyz[person] * MM_PER_M
     n_frames, n_joints, _ = xyz.shape

@@ -7,11 +7,15 @@ ALSO = {"mid_hip": "CHip"}  # in BODY_25
 OTHER = {"foot_index": "BigToe", "mid_hip": "Hip", "head_top": "Head"}
 
 
+def side_and_part(joint: str) -> tuple[str, str]:
+    """Return a joint's side, `left`, `right` or empty, and its name without it."""
+    side, _, part = joint.partition("_")
+    return (side, part) if side in SIDES and part else ("", joint)
+
+
 def name(joint: str) -> str:
     """Return Pose2Sim's name of a joint: `LBigToe` for `left_foot_index`, `Neck` for `neck`."""
-    side, _, part = joint.partition("_")
-    if side not in SIDES or not part:
-        side, part = "", joint
+    side, part = side_and_part(joint)
     words = OTHER.get(part) or "".join(word.capitalize() for word in part.split("_"))
     return SIDES.get(side, "") + words
 

@@ -174,10 +174,8 @@ def _angle_rows(name: str, angle: Angle) -> Iterator[tuple[Any, ...]]:
 def cutoffs(choices: Mapping[str, Choice]) -> pd.DataFrame:
     """Return how the cut-offs of each group were chosen.
 
-    Returns
-    -------
-    rows : pandas.DataFrame; group, cutoff_hz, noise_mm (found by the analysis, per axis),
-        candidate_hz, residual_mm; one row with the last three empty if the cut-off was stated
+    `noise_mm`, per axis, was found by the analysis; it and the candidates' columns are empty in
+    the one row of a group whose cut-off was stated.
     """
     rows = []
     for group, choice in choices.items():

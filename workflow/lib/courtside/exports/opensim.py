@@ -64,9 +64,7 @@ def write_markers(path: str | PathLike, joints: Sequence[str]) -> None:
 
 def _place(path: str | PathLike, joint: str) -> tuple[str, tuple[float, float, float], bool]:
     """Return body, position and whether the position is exact."""
-    side, _, part = joint.partition("_")
-    if side not in markers.SIDES:
-        side, part = "", joint
+    side, part = markers.side_and_part(joint)
     letter = markers.SIDES.get(side, "").lower()
     if side and part in AT_ORIGIN:
         return AT_ORIGIN[part].format(letter), (0.0, 0.0, 0.0), True

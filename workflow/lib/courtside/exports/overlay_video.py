@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import camera as camera_models
-from courtside.geometry.camera import Camera
+from courtside.geometry import interpolation
+from courtside.geometry.camera import Camera, project, turned
 from courtside.pose import privacy, stick_drawing
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
@@ -27,16 +27,13 @@ class Track:
     """What is drawn on the pictures of one camera, frame by frame."""
 
     camera: str
-    # own_s, reference_s: (T,): time of each frame on the camera's own and on the reference clock,
-    # seconds
-    own_s: NDArray
-    reference_s: NDArray
-    # detected, reprojected: (P, T, J, 2): px; NaN where missing
-    detected: NDArray
-    reprojected: NDArray
-    used: NDArray  # (P, T, J) bool; whether the 3D point rests on this camera's keypoint
+    own_s: NDArray  # (T,): time of each frame on the camera's own clock
+    reference_s: NDArray  # (T,): and on the reference clock
+    detected: NDArray  # (P, T, J, 2): px; NaN where missing
+    reprojected: NDArray  # (P, T, J, 2): px; NaN where missing
+    used: NDArray  # (P, T, J) bool: whether the 3D point rests on this camera's keypoint
     faces: NDArray  # (F, T, K, 2): joints of all faces that may be in the picture, px, gaps bridged
-    bones: tuple[tuple[int, int], ...]  # tuple of (int, int)
+    bones: tuple[tuple[int, int], ...]
 
 
 def track(
@@ -50,15 +47,11 @@ def track(
 ) -> Track:
     """Gather what is drawn on one camera's pictures.
 
-    Raises `ValueError` if `points` do not rest on this camera, or persons or frames do not fit.
-
-    `view`: all tracklets: faces of bystanders are hidden as well; `assigned`: the same frames by
-    person, in the order of `points.person_id`.
-
-    Returns
-    -------
-    track : the 3D skeleton at each frame's own time, between neighbouring points; none beyond their
-        ends
+    `view` holds all tracklets: faces of bystanders are hidden as well. `assigned` holds the same
+    frames by person, in the order of `points.person_id`. The 3D skeleton is that of each frame's
+    own time, between neighbouring points; there is none beyond their ends. `turns` (T, 3) are
+    rotation vectors from the camera as calibrated to the camera in each frame. Raises `ValueError`
+    if `points` do not rest on this camera, or persons or frames do not fit.
     """
     if camera.name not in points.cameras or assigned.xy.shape[0] != len(points.person_id):
         raise ValueError(f"{camera.name}: points and 2D keypoints of other cameras or persons")
@@ -66,10 +59,9 @@ def track(
         raise ValueError(f"{camera.name}: persons at other frames than tracklets")
     reference_s = clock.to_reference(view.time_s)
     xyz = between(points.time_s, points.xyz, reference_s)
-    reprojected = camera_models.project(camera, xyz)
+    reprojected = project(camera, xyz)
     for frame, turn in enumerate([] if turns is None else turns):
-        turned = camera_models.turned(camera, turn)
-        reprojected[:, frame] = camera_models.project(turned, xyz[:, frame])
+        reprojected[:, frame] = project(turned(camera, turn), xyz[:, frame])
     at = np.interp(reference_s, points.time_s, np.arange(len(points.time_s))).round().astype(int)
     column = points.cameras.tolist().index(camera.name)
     face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
@@ -89,28 +81,25 @@ def track(
 def between(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
     """Interpolate positions (P, T, J, 3) at times (T,) linearly at other times (W,).
 
-    Returns
-    -------
-    xyz : (P, W, J, 3) float; NaN where a neighbour is missing, and more than half a frame outside
-        the times
+    NaN where a neighbour is missing, and more than half a frame outside the times.
     """
-    step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else 0.0
-    inside = (wanted_s >= time_s[0] - step_s / 2) & (wanted_s <= time_s[-1] + step_s / 2)
-    place = np.interp(wanted_s, time_s, np.arange(len(time_s)))
-    place = np.where(np.abs(place - place.round()) < 1e-3, place.round(), place)
-    low, high = np.floor(place).astype(int), np.ceil(place).astype(int)
-    share = (place - low)[:, None, None]
-    found = (1 - share) * xyz[:, low] + share * xyz[:, high]
-    return np.where(inside[:, None, None], found, np.nan)
+    if len(time_s) < 2:
+        return np.where((wanted_s == time_s)[:, None, None], xyz, np.nan)
+    before, share = interpolation.shares(time_s, wanted_s)
+    # Near a sample, a missing neighbour on its other side does not matter.
+    near = np.abs(share - share.round()) < 1e-3
+    found = interpolation.linear(time_s, xyz.swapaxes(0, 1), wanted_s)
+    found[near] = xyz[:, before[near] + share[near].round().astype(int)].swapaxes(0, 1)
+    half_s = np.median(np.diff(time_s)) / 2
+    found[(wanted_s < time_s[0] - half_s) | (wanted_s > time_s[-1] + half_s)] = np.nan
+    return found.swapaxes(0, 1)
 
 
 def bridged(time_s: NDArray, xy: NDArray) -> NDArray:
     """Fill short gaps in paths (T, K, 2) px, so that a face stays hidden while it is not seen.
 
-    Returns
-    -------
-    xy : (T, K, 2) float; straight lines over gaps, and the nearest known position beyond the ends;
-        NaN where no frame within 1 s has the joint
+    They become straight lines, and the nearest known position beyond the ends; NaN where no frame
+    within 1 s has the joint.
     """
     result = np.array(xy, dtype=float)
     for joint in range(xy.shape[1]):
@@ -136,22 +125,17 @@ def pictures(
     hide_faces: bool,
     keep_background: bool = False,
 ) -> Iterator[NDArray]:
-    """Draw on pictures as they come; only one is in memory.
+    """Draw on pictures (H, W, 3) uint8, BGR, as they come; only one is in memory.
 
-    Raises `InputError` if `track` has no frame at a frame's time: a face might show.
+    An odd height or width grows by a pixel, as H.264 requires. Raises `InputError` if `track` has
+    no frame at a frame's time: a face might show.
 
     Parameters
     ----------
-    frames : iterable of (float, (H, W, 3) uint8); time on the camera's own clock and picture, BGR
-    colours : (3,) of (int, int, int); BGR of detected joints, of the 3D skeleton, and of views that
-        were not used
+    frames : time on the camera's own clock, and picture
+    colours : BGR of detected joints, of the 3D skeleton, and of views that were not used
     keep_background : whether surroundings stay sharp where faces are hidden: for videos that show
         nobody else
-
-    Yields
-    ------
-    image : (H, W, 3) uint8; BGR, as many as `frames`; an odd height or width grows by a pixel, as
-        H.264 requires
     """
     step_s = np.median(np.diff(track.own_s)) if len(track.own_s) > 1 else 1.0
     for time_s, image in frames:

@@ -48,15 +48,10 @@ def write_project(
 ) -> None:
     """Write a project of one take.
 
-    Raises `ValueError` if a camera has no view, or a view other frames, persons or joints than the
-    points.
-
-    Parameters
-    ----------
-    folder : replaced as a whole; its name begins the names of Pose2Sim's own results
-    views : dict of str to (xy, score); by camera, at the times of `points`: (P, T, J, 2) px and (P,
-        T, J); persons as in `points`
-    skeleton : name of the joints' skeleton
+    The folder, whose name begins the names of Pose2Sim's own results, is replaced as a whole.
+    `views` are px (P, T, J, 2) and scores (P, T, J) by camera, at the times and with the persons of
+    `points`; `skeleton` is the name of the joints' skeleton. Raises `ValueError` if a camera has no
+    view, or a view other frames, persons or joints than the points.
     """
     shape = points.xyz.shape[:3]
     for camera in cameras:
@@ -127,18 +122,10 @@ def read_takes(
 ) -> Keypoints3D:
     """Read 3D keypoints of another program, one TRC file for each person.
 
-    Raises `InputError` if a file is no TRC file, has none of the joints, or other times than the
-    first one.
-
-    Parameters
-    ----------
-    files : by person
-    skeleton : its joints are looked for among the markers, under Pose2Sim's names or their own
-    model : name for the keypoints
-
-    Returns
-    -------
-    points : in the file's frame with z up; covariances unknown, without views
+    They stay in the file's frame with z up, without views or known covariances, and get the name
+    `model`. The skeleton's joints are looked for among the markers, under Pose2Sim's names or their
+    own. Raises `InputError` if a file is no TRC file, has none of the joints, or other times than
+    the first one.
     """
     found: list[list[NDArray]] = []
     for path in files.values():
@@ -155,19 +142,14 @@ def read_takes(
         if len(time_s) != len(times) or not np.allclose(time_s, times, atol=1e-4):
             raise InputError(f"{path}: expected the times of {first}, found others; cut both alike")
         found.append([np.full((len(xyz), 3), np.nan) if k is None else xyz[:, k] for k in places])
-    return _points(np.array(found).swapaxes(1, 2), list(files), times, skeleton, model)
-
-
-def _points(
-    xyz: NDArray, persons: Sequence[str], time_s: NDArray, skeleton: Skeleton, model: str
-) -> Keypoints3D:
+    xyz = np.array(found).swapaxes(1, 2)
     there = np.isfinite(xyz).all(axis=-1)
     return Keypoints3D(
         cameras=np.array([], dtype=str),
         model=model,
         joints=np.array(skeleton.joints),
-        person_id=np.array(persons),
-        time_s=time_s,
+        person_id=np.array(list(files)),
+        time_s=times,
         xyz=np.where(there[..., None], xyz, np.nan),
         covariance_2d=np.full((*xyz.shape, 3), np.nan),
         covariance_camera=np.full((*xyz.shape, 3), np.nan),

@@ -51,17 +51,11 @@ def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
 
 
 def read(path: str | PathLike) -> tuple[list[str], float, NDArray, NDArray]:
-    """Read a TRC file, ours or another program's.
+    """Read joints, rate (Hz), times (T,) s and positions (T, J, 3) of any program's TRC file.
 
-    Raises `InputError` if the file is not a TRC file in m, cm or mm, a line has another number of
-    values, or the header counts other markers or frames than there are.
-
-    Returns
-    -------
-    joints : list of str
-    rate_hz
-    time_s : (T,) float
-    xyz_in_world : (T, J, 3) float; metres, world axes, NaN where blank
+    Positions are metres along world axes, NaN where blank. Raises `InputError` if the file is not a
+    TRC file in m, cm or mm, a line has another number of values, or the header counts other markers
+    or frames than there are.
     """
     with reading(path, "a TRC file", "export it again"):
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()

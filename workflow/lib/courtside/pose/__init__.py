@@ -1,7 +1,7 @@
 """2D pose networks in onnxruntime: detection, tracking, decoding, privacy.
 
 decoders
-    `person_detector`, `landmark_network`: networks by the name of their decoder.
+    `landmark_network`: a network by the name of its decoder.
 detector
     `Region`, `Pose`, `cut_out`: the interface of networks; blazepose, heatmaps: their kinds.
 tracking, tracklets

@@ -42,14 +42,10 @@ def anchors() -> NDArray:
 
 
 def region_from_points(centre: NDArray, rim: NDArray) -> Region:
-    """Return the region of a person from the two points that BlazePose gives for it.
+    """Return a person's region from the two points (2,) px that BlazePose gives for it.
 
-    `centre`, `rim`: (2,) float; hip centre, and a point of the circle around the whole person above
-    it, px.
-
-    Returns
-    -------
-    region : rotated so that the person stands upright in it, with a margin of a quarter
+    They are the hip centre and a point above it of the circle around the whole person, who stands
+    upright in the region, with a margin of a quarter.
     """
     toward = np.asarray(rim) - centre
     angle_rad = math.pi / 2 - math.atan2(-toward[1], toward[0])
@@ -88,10 +84,9 @@ class BlazePoseDetector:
 
 
 def merge_overlapping(box: NDArray, score: NDArray) -> list[NDArray]:
-    """Join overlapping detections into their score-weighted mean, best first.
+    """Join overlapping detections (N, 4 + K) into their mean, weighted by score (N,), best first.
 
-    `box`: (N, 4 + K) float; centre x, y, width, height, then anything else to average; `score`:
-    (N,) float; weights.
+    A detection is centre x, y, width, height, then anything else to average.
     """
     merged = []
     remaining = np.argsort(-score, kind="stable")
@@ -147,15 +142,10 @@ class BlazePoseLandmarks:
 
 
 def refine(fraction: NDArray, heat_maps: NDArray) -> NDArray:
-    """Move each landmark to the centre of mass of its heat map around it.
+    """Move landmarks (J, 2), fractions of the region, to the centre of mass of the heat map around.
 
-    `fraction`: (J, 2) float; landmarks as fractions of the region; `heat_maps`: (H, W, J) float;
-    logits.
-
-    Returns
-    -------
-    refined : (J, 2) float; unchanged if the landmark lies outside, or no cell nearby reaches a
-        probability of one half
+    `heat_maps` (H, W, J) are logits. A landmark stays if it lies outside, or no cell nearby reaches
+    a probability of one half.
     """
     height, width, _ = heat_maps.shape
     refined = fraction.copy()

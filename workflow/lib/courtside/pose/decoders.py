@@ -3,15 +3,10 @@
 from collections.abc import Sequence
 from os import PathLike
 
-from courtside.pose.blazepose import BlazePoseDetector, BlazePoseLandmarks
-from courtside.pose.detector import LandmarkNetwork, PersonDetector
+from courtside.pose.blazepose import BlazePoseLandmarks
+from courtside.pose.detector import LandmarkNetwork
 from courtside.pose.heatmaps import HeatmapLandmarks
 from courtside.study.errors import InputError
-
-
-def person_detector(onnx_path: str | PathLike) -> PersonDetector:
-    """Open a person detector; there is one kind, BlazePose's."""
-    return BlazePoseDetector(onnx_path)
 
 
 def landmark_network(
@@ -22,15 +17,11 @@ def landmark_network(
     input_range: tuple[float, float] | None = None,
     channels: str | None = None,
 ) -> LandmarkNetwork:
-    """Open a landmark network.
+    """Open a landmark network for the joints of its skeleton.
 
-    Raises `InputError` if the network has another number of joints than its skeleton.
-
-    Parameters
-    ----------
-    joints : the skeleton's joints
-    decoder : {"blazepose", "heatmaps"}
-    input_range, channels : of a heat-map network, see `courtside.pose.heatmaps.HeatmapLandmarks`
+    The decoder is "blazepose" or "heatmaps", which needs `input_range` and `channels`: see
+    `courtside.pose.heatmaps.HeatmapLandmarks`. Raises `InputError` if the network has another
+    number of joints than its skeleton.
     """
     network: LandmarkNetwork
     if decoder == "blazepose":

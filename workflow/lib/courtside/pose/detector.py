@@ -19,12 +19,10 @@ from numpy.typing import NDArray
 class Region:
     """A rotated square in a picture."""
 
-    # x, y: centre, px
-    x: float
+    x: float  # of the centre, px
     y: float
-    side: float  # length of a side, px
-    # rotation of the square; positive turns the x axis towards the y axis (clockwise as seen)
-    angle_rad: float = 0.0
+    side: float  # px
+    angle_rad: float = 0.0  # positive turns the x axis towards the y axis (clockwise as seen)
 
 
 @dataclass(frozen=True)
@@ -33,8 +31,7 @@ class Pose:
 
     xy: NDArray  # (J, 2): joints, px of the picture
     score: NDArray  # (J,): confidence of each joint, 0 to 1
-    # (J, 3): the network's own metric guess relative to the hip centre, metres, axes as in cam; NaN
-    # without one
+    # (J, 3): the network's own guess from the hip centre, m, axes as in cam; NaN without one.
     xyz_in_body: NDArray
     presence: float  # confidence that the region shows a person at all, 0 to 1
     region: Region  # where to look for the same person in the next frame
@@ -76,19 +73,9 @@ def cut_out(
 ) -> NDArray:
     """Cut a rotated square out of a picture and scale it to a network's input.
 
-    Bilinear without half-pixel shift and without smoothing when it shrinks, as MediaPipe's OpenCV
+    Parts outside the picture (H, W, 3) uint8 are filled as OpenCV's border mode says. Bilinear
+    without half-pixel shift and without smoothing when it shrinks, as MediaPipe's OpenCV
     image-to-tensor calculator does: its networks were trained on such input.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8; any channel order
-    region : parts outside the picture are filled as `border` says
-    side_px : side of the result
-    border : OpenCV border mode
-
-    Returns
-    -------
-    patch : (side_px, side_px, 3) uint8
     """
     scale = region.side / side_px
     cosine, sine = math.cos(region.angle_rad) * scale, math.sin(region.angle_rad) * scale
@@ -106,14 +93,7 @@ def cut_out(
 
 
 def to_picture(fraction: NDArray, region: Region) -> NDArray:
-    """Map positions in a region, as fractions of its side, to the picture.
-
-    `fraction`: (..., 2) float; (0, 0) is the region's first corner, (1, 1) the opposite one.
-
-    Returns
-    -------
-    xy : (..., 2) float; pixels of the picture
-    """
+    """Map fractions (..., 2) of a region's sides, from its first corner, to px of the picture."""
     centre = np.array([region.x, region.y])
     return centre + rotate((fraction - 0.5) * region.side, region.angle_rad)
 

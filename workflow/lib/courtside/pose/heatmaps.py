@@ -65,16 +65,10 @@ class HeatmapLandmarks:
 
 
 def peaks(maps: NDArray) -> tuple[NDArray, NDArray]:
-    """Find the peak of each heat map to a fraction of a cell.
+    """Find the peak of each heat map (H, W, J) to a fraction of a cell, and its value, 0 to 1.
 
-    The offset within a cell is the vertex of the parabola through the peak and its neighbours.
-
-    `maps`: (H, W, J) float; confidence, about 0 to 1.
-
-    Returns
-    -------
-    fraction : (J, 2) float; x, y as fractions of the region; a cell's centre lies half a cell in
-    score : (J,) float; peak value, clipped to 0 to 1
+    Peaks (J, 2) are x, y as fractions of the region; a cell's centre lies half a cell in. The
+    offset within a cell is the vertex of the parabola through the peak and its neighbours.
     """
     height, width, n_joints = maps.shape
     fraction = np.empty((n_joints, 2))

@@ -19,11 +19,8 @@ BODY = 0.18  # of a person's extent: width of the body around its bones
 def blur_face(image: NDArray, xy_face: NDArray) -> NDArray:
     """Return a new picture with the face hidden under a mosaic.
 
-    A mosaic of at most 8 cells across destroys the detail; a Gaussian blur could be sharpened
-    again.
-
-    `image`: (H, W, 3) uint8; `xy_face`: (K, 2) float; joints of one face, px; NaN are ignored.
-    Nothing changes if all are NaN.
+    `xy_face` (K, 2) px are joints of one face; NaN are ignored. A mosaic of at most 8 cells across
+    destroys the detail; a Gaussian blur could be sharpened again.
     """
     known = xy_face[np.isfinite(xy_face).all(axis=1)]
     result = image.copy()
@@ -56,19 +53,9 @@ def hide_faces(image: NDArray, xy_of_faces: Iterable[NDArray]) -> NDArray:
 def only_persons(image: NDArray, persons: NDArray, bones: Sequence[tuple[int, int]]) -> NDArray:
     """Return a picture that is sharp at some persons only, so that nobody else can be recognised.
 
-    No detector looks for others: it misses those in the background most often.
-
-    Parameters
-    ----------
-    image : (H, W, 3) uint8
-    persons : (n, J, 2) float; joints, px; NaN where unknown. Without a known person nothing is left
-        sharp.
-    bones : sequence of (int, int)
-
-    Returns
-    -------
-    image : (H, W, 3) uint8; a new picture. Surroundings are reduced to 60 cells along the height,
-        then drawn smoothly.
+    `persons` (n, J, 2) are joints, px, NaN where unknown. Surroundings are reduced to 60 cells
+    along the height, then drawn smoothly. No detector looks for others: it misses those in the
+    background most often.
     """
     height, width = image.shape[:2]
     cell = max(1.0, height * COARSE)

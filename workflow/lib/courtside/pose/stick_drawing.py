@@ -28,15 +28,9 @@ def draw(
     thick: int,
     radius: int,
 ) -> None:
-    """Draw persons into a picture, in place.
+    """Draw persons, (J, 2) px each, NaN where missing, into a picture, in place.
 
-    Parameters
-    ----------
-    image : (H, W) or (H, W, 3) uint8
-    persons : sequence of (J, 2) float; px; NaN where missing
-    bones : sequence of (int, int)
-    colour : int or (int, int, int); BGR
-    thick, radius : of bones and of joints, px
+    Bones are `thick` px wide, joints discs of a `radius`, px.
     """
     for xy in persons:
         inside = drawable(xy)

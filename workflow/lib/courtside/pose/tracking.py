@@ -67,13 +67,9 @@ def track_person(
 
 
 def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:
-    """Return whether a track has left what moves, for a bystander or a poster.
+    """Return whether joints (J, 2) px have left the foreground, for a bystander or a poster.
 
-    Parameters
-    ----------
-    xy : (J, 2) float; joints, px
-    boxes : list of (x, y, width, height); foreground, px. Without any it returns False: a person
-        may stand still for long.
+    Without foreground it returns False: a person may stand still for long.
     """
     middle = np.median(xy, axis=0)
     for x, y, width, height in boxes:
@@ -112,15 +108,10 @@ def regions_near(image: NDArray, box: Box, detector: PersonDetector) -> list[Reg
 def as_row(
     pose: Pose | None, n_joints: int, shape: Sequence[int] | None
 ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-    """Return one frame of a `Track`.
+    """Return xy, score, reason and xyz_in_body of one frame of a `Track`.
 
-    `pose`: none where nobody was found; `shape`: (height, width, ...) of int; of the picture, px;
-    not used without a pose.
-
-    Returns
-    -------
-    xy, score, reason, xyz_in_body : (J, 2), (J,), (J,), (J, 3); joints outside the picture are NaN
-        with that reason
+    Joints outside the picture, whose `shape` begins with height and width, are NaN with that
+    reason. `shape` is not used without a pose, where nobody was found.
     """
     if pose is None or shape is None:
         xy, xyz = np.full((n_joints, 2), np.nan), np.full((n_joints, 3), np.nan)

@@ -3,8 +3,10 @@
 A tracklet certainly shows one body: it ends where its tracker may have changed to another one.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +35,14 @@ class _Body:
     pose: Pose
     velocity: NDArray
 
-    @property
-    def ahead(self) -> NDArray:
-        return middle(self.pose) + self.velocity
+    def off_px(self, pose: Pose) -> float:
+        """Return how far a pose is from where this body's is predicted."""
+        return float(np.linalg.norm(middle(pose) - (middle(self.pose) + self.velocity)))
+
+    def moved(self, pose: Pose) -> _Body:
+        """Return the body in its next pose."""
+        step = middle(pose) - middle(self.pose)
+        return replace(self, pose=pose, velocity=STEADY * self.velocity + (1 - STEADY) * step)
 
     @property
     def region(self) -> Region:
@@ -63,7 +70,10 @@ def track_people(
     min_presence: float,
     redetect: bool = False,
 ) -> Track:
-    """Follow several people through a video.
+    """Follow several people through a video: a track whose arrays have a leading axis of P rows.
+
+    A row holds tracklets one after another, at least 0.1 s apart: P stays a few more than
+    `max_people`, however often tracklets end; a gap may change the person.
 
     A body is lost where the network doubts it, where it leaves the foreground or jumps off its
     course. Of two tracks on one body, the one further off its course is dropped. Where two bodies
@@ -74,18 +84,13 @@ def track_people(
     frames, detector, landmarks, foreground, min_presence, redetect : as for `tracking.track_person`
     max_people : people followed at once, 1 or more. With 1, the result is that of `track_person`.
 
-    Returns
-    -------
-    track : arrays have a leading axis of P rows. A row holds tracklets one after another, at least
-        0.1 s apart: P stays a few more than `max_people`, however often tracklets end; a gap may
-        change the person.
     """
     if max_people == 1:
         track = tracking.track_person(
             frames, detector, landmarks, foreground, min_presence=min_presence, redetect=redetect
         )
-        arrays = {name: value[None] for name, value in vars(track).items()}
-        return Track(**{**arrays, "time_s": track.time_s})
+        time_s, *arrays = vars(track).values()
+        return Track(time_s, *(array[None] for array in arrays))
     crowd = _Crowd(detector, landmarks, foreground, max_people, min_presence)
     times: list[float] = []
     found: list[dict[int, tuple[NDArray, ...]]] = []
@@ -118,23 +123,19 @@ def _stacked(
     return Track(time_s, *arrays)
 
 
+@dataclass
 class _Crowd:
     """The followed bodies of one camera."""
 
-    def __init__(
-        self,
-        detector: PersonDetector,
-        landmarks: LandmarkNetwork,
-        foreground: Foreground | Whole,
-        max_people: int,
-        min_presence: float,
-    ) -> None:
-        self.detector, self.landmarks, self.foreground = detector, landmarks, foreground
-        self.max_people, self.min_presence = max_people, min_presence
-        self.bodies: list[_Body] = []
-        self.now_s = 0.0
-        self.ended_s: dict[int, float] = {}  # by row: when its last tracklet ended
-        self.meeting: set[int] = set()
+    detector: PersonDetector
+    landmarks: LandmarkNetwork
+    foreground: Foreground | Whole
+    max_people: int
+    min_presence: float
+    bodies: list[_Body] = field(default_factory=list)
+    now_s: float = 0.0
+    ended_s: dict[int, float] = field(default_factory=dict)  # by row: when its last tracklet ended
+    meeting: set[int] = field(default_factory=set)  # rows of bodies that are close to another
 
     def follow(self, image: NDArray) -> None:
         """Find the same bodies in the next picture."""
@@ -147,20 +148,14 @@ class _Crowd:
         self._end(set(self.bodies) - {body for body, _ in kept})
         self.bodies = []
         for body, pose in self._without_twins(kept):
-            step = middle(pose) - middle(body.pose)
-            velocity = STEADY * body.velocity + (1 - STEADY) * step
-            followed = replace(body, pose=pose, velocity=velocity)
-            if np.linalg.norm(middle(pose) - body.ahead) > JUMP * size_px(pose):
-                followed = self._renewed(followed)
-            self.bodies.append(followed)
+            followed = body.moved(pose)
+            jumped = body.off_px(pose) > JUMP * size_px(pose)
+            self.bodies.append(self._renewed(followed) if jumped else followed)
 
     def _without_twins(self, pairs: list[tuple[_Body, Pose]]) -> list[tuple[_Body, Pose]]:
         """Drop, of two bodies with one pose, the one further off its course; end both tracklets."""
-        off = [np.linalg.norm(middle(pose) - body.ahead) for body, pose in pairs]
-        order = np.argsort(off, kind="stable")
         kept: list[tuple[_Body, Pose]] = []
-        for at in order:
-            body, pose = pairs[at]
+        for body, pose in sorted(pairs, key=lambda pair: pair[0].off_px(pair[1])):
             twin = next((k for k in kept if are_twins(k[1], pose)), None)
             if twin is None:
                 kept.append((body, pose))
@@ -190,15 +185,11 @@ class _Crowd:
 
         old: list[_Body] = [] if keep else self.bodies
         bodies = list(self.bodies) if keep else []
-        cost = np.array(
-            [[np.linalg.norm(middle(p) - b.ahead) / size_px(p) for p in poses] for b in old]
-        )
+        cost = np.array([[body.off_px(pose) / size_px(pose) for pose in poses] for body in old])
         taken = set()
         for at, to in zip(*linear_sum_assignment(cost.reshape(len(old), len(poses))), strict=True):
             if cost[at, to] <= JUMP:
-                step = middle(poses[to]) - middle(old[at].pose)
-                velocity = STEADY * old[at].velocity + (1 - STEADY) * step
-                bodies.append(replace(old[at], pose=poses[to], velocity=velocity))
+                bodies.append(old[at].moved(poses[to]))
                 taken.add(to)
         rows = {body.row for body in bodies}
         self._end([body for body in old if body.row not in rows])

@@ -18,6 +18,7 @@ from courtside.pose.conversion.tflite_tensors import (
     Tensor,
     entries,
     integers,
+    names_of,
     read_tensor,
 )
 from courtside.study.errors import InputError
@@ -41,15 +42,11 @@ OPTIONS = {
 }
 
 
-def _names(enum: type) -> dict[int, str]:
-    return {number: name for name, number in vars(enum).items() if isinstance(number, int)}
-
-
-OPERATORS = _names(tflite.BuiltinOperator)
+OPERATORS = names_of(tflite.BuiltinOperator)
 # Options that are numbers in the file and names here.
 ENUMS = {
-    "padding": _names(tflite.Padding),
-    "fused_activation_function": _names(tflite.ActivationFunctionType),
+    "padding": names_of(tflite.Padding),
+    "fused_activation_function": names_of(tflite.ActivationFunctionType),
 }
 
 
@@ -104,12 +101,10 @@ def read(path: str | PathLike) -> Graph:
 
 
 def keep_outputs(graph: Graph, names: Iterable[str]) -> Graph:
-    """Remove all outputs but some, with the operators that only the removed ones need.
+    """Remove all outputs but those named, with the operators that only the removed ones need.
 
-    Raises `InputError` if a name is no output of the network, or there is none.
-
-    `names`: names of the outputs to keep. They stay in the file's order, and tensors keep their
-    indices.
+    Outputs stay in the file's order, and tensors keep their indices. Raises `InputError` if a name
+    is no output of the network, or there is none.
     """
     wanted = set(names)
     there = {graph.tensors[index].name: index for index in graph.outputs}

@@ -23,17 +23,11 @@ def convert(
 ) -> None:
     """Convert a TFLite network of floats to ONNX (opset 17).
 
-    Raises `InputError` if the file is no TFLite network or a damaged one, lacks one of the
-    `outputs`, or needs an operator, a fused activation, a sparse layout or a tensor type that is
-    not supported.
-
-    The shape of each operator's result, as ONNX infers it, must be the one the TFLite file states.
-
-    Parameters
-    ----------
-    onnx_path : it appears under its name only when whole. Equal inputs give equal bytes. Inputs and
-        outputs keep their names, order and TFLite layout; all are float32.
-    outputs : names of the outputs to keep; what only the others need is left out. Default: all.
+    Only the named `outputs` (by default all) are kept, with what they need. Inputs and outputs keep
+    their names, order and TFLite layout; all are float32. The shape of each operator's result, as
+    ONNX infers it, must be the one the TFLite file states. Equal inputs give equal bytes. Raises
+    `InputError` if the file is no TFLite network or a damaged one, lacks one of the `outputs`, or
+    needs an operator, a fused activation, a sparse layout or a tensor type that is not supported.
     """
     graph = tflite_graph.read(tflite_path)
     if outputs is not None:

@@ -164,13 +164,11 @@ def _concatenation(writer: Writer, operator: Operator) -> None:
     if not -rank <= axis < rank:
         raise ValueError(f"axis {axis} of {rank}")
     axis %= rank
-    if rank == IMAGE_RANK:
-        pieces = [writer.channels_first(index) for index in operator.inputs]
-        name = writer.add("Concat", pieces, axis=TO_FIRST.index(axis))
-        writer.finish(operator, name, writer.first)
-    else:
-        pieces = [writer.channels_last(index) for index in operator.inputs]
-        writer.finish(operator, writer.add("Concat", pieces, axis=axis), writer.last)
+    images = rank == IMAGE_RANK
+    place = writer.channels_first if images else writer.channels_last
+    pieces = [place(index) for index in operator.inputs]
+    name = writer.add("Concat", pieces, axis=TO_FIRST.index(axis) if images else axis)
+    writer.finish(operator, name, writer.first if images else writer.last)
 
 
 @_converts("PAD", 2, 2)
@@ -198,20 +196,13 @@ def _reshape(writer: Writer, operator: Operator) -> None:
     writer.finish(operator, name, writer.last)
 
 
-def _elementwise(writer: Writer, operator: Operator, kind: str) -> None:
+@_converts("LOGISTIC", 1, 1)
+@_converts("RELU", 1, 1)
+def _elementwise(writer: Writer, operator: Operator) -> None:
+    kind = {"LOGISTIC": "Sigmoid", "RELU": "Relu"}[operator.kind]
     layout = writer.first if operator.inputs[0] in writer.first else writer.last
     place = writer.channels_first if layout is writer.first else writer.channels_last
     writer.finish(operator, writer.add(kind, [place(operator.inputs[0])]), layout)
-
-
-@_converts("LOGISTIC", 1, 1)
-def _logistic(writer: Writer, operator: Operator) -> None:
-    _elementwise(writer, operator, "Sigmoid")
-
-
-@_converts("RELU", 1, 1)
-def _relu(writer: Writer, operator: Operator) -> None:
-    _elementwise(writer, operator, "Relu")
 
 
 @_converts("DEQUANTIZE", 1, 1)

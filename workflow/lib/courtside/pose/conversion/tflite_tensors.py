@@ -29,14 +29,19 @@ DTYPES: dict[str, np.dtype] = {
     "INT32": np.dtype("<i4"),
     "INT64": np.dtype("<i8"),
 }
-TYPES: dict[int, str] = {
-    number: name for name, number in vars(tflite.TensorType).items() if isinstance(number, int)
-}
 INDEX_VECTORS = {
     tflite.SparseIndexVector.Int32Vector: tflite.Int32Vector,
     tflite.SparseIndexVector.Uint16Vector: tflite.Uint16Vector,
     tflite.SparseIndexVector.Uint8Vector: tflite.Uint8Vector,
 }
+
+
+def names_of(enum: type) -> dict[int, str]:
+    """Return the names of an enumeration's members by their numbers."""
+    return {number: name for name, number in vars(enum).items() if isinstance(number, int)}
+
+
+TYPES = names_of(tflite.TensorType)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -91,19 +96,9 @@ def densify(
 ) -> NDArray:
     """Make a tensor dense whose last dimension is stored as compressed sparse rows.
 
+    All dimensions of the dense shape but the last, flattened, are the rows. Of the stored values
+    (N,), row r has those from `segments[r]` to before `segments[r + 1]`, at places `indices` (N,).
     Raises `ValueError` if the parts do not belong together.
-
-    Parameters
-    ----------
-    values : (N,) array; the stored entries, row by row
-    shape : the dense shape; all dimensions but the last, flattened, are the rows
-    segments : (rows + 1,) int; row r's entries are `segments[r]` to `segments[r + 1]`, the latter
-        not included
-    indices : (N,) int; the place of each entry in the last dimension
-
-    Returns
-    -------
-    dense : array of that shape; zero where nothing is stored
     """
     rows, columns = math.prod(shape[:-1]), shape[-1]
     counts = np.diff(segments)
