@@ -27,7 +27,7 @@ HOW = "film the board again: sharp, whole in the picture, in ten places, tilted 
 class Boards:
     """Chessboards found in pictures of one camera."""
 
-    paths: tuple[Path, ...]  # length B
+    paths: tuple[Path, ...]
     xy: NDArray  # (B, columns * rows, 2): inner corners, px, row by row
     size: tuple[int, int]  # width and height of the pictures, px; (0, 0) without any
     inner_corners: tuple[int, int]  # columns and rows
@@ -56,7 +56,7 @@ def find(
     takes other corners for the board's: those do not form a plane grid. Raises `InputError` if
     there are no pictures, one is unreadable, or their sizes differ.
 
-    `pictures`: a folder, or files; `inner_corners`: corners where four squares meet, along both
+    `pictures` is a folder or files; `inner_corners` counts where four squares meet, along both
     sides of the board, in either order.
     """
     columns, rows = (int(count) for count in inner_corners)
@@ -136,13 +136,11 @@ def _grid(inner_corners: tuple[int, int]) -> NDArray:
 def calibrate(boards: Boards, *, name: str = "camera") -> Lens:
     """Calibrate a lens from chessboards; `name` is the camera's, for messages.
 
-    Raises `InputError` if fewer than four boards are left, or these do not determine the focal
-    length (to 3 %).
-
     Zhang 2000, by OpenCV: one focal length, the principal point, k1 and k2. A handful of boards
     does not tell decentering (p1, p2) from the principal point, nor k3 from k2. Boards that the
     others contradict are left out one after another. The size of the squares does not matter to a
-    lens.
+    lens. Raises `InputError` if fewer than four boards are left, or these do not determine the
+    focal length (to 3 %).
     """
     paths, xy = list(boards.paths), list(boards.xy)
     dropped = dict(boards.dropped)

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.geometry import camera as cameras
+from courtside.geometry import camera as camera_files
 from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError, reading
@@ -22,6 +22,7 @@ FARTHEST_M = 300.0  # ASSUME: no hall is larger: a camera farther away is in mm 
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 FORMS = "Qualisys .qca.txt, TOML of Pose2Sim, aniposelib or Caliscope, or YAML or XML of OpenCV"
 QUALISYS_PER_PX = 64  # see `_from_qualisys`
+QUALISYS_TURNS = ("0", "90", "180", "270")
 # A Qualisys camera looks along -z with y up, ours along +z with y down.
 QUALISYS_CAM_FROM_CAM = np.diag([1.0, -1.0, -1.0])
 OPENCV_SUFFIXES = (".yml", ".yaml", ".xml")
@@ -36,18 +37,11 @@ OPENCV_KEYS = {  # the first is what `camera.build` calls it
 def read(path: str | os.PathLike) -> list[Camera]:
     """Read the cameras of a calibration file, choosing the reader by what the file holds.
 
+    It is a Qualisys `.qca.txt`; a TOML file of Pose2Sim, aniposelib or Caliscope; a YAML or XML
+    file of OpenCV's FileStorage with one or several cameras; or a folder of such, one camera each.
+    Cameras are in the file's order under the file's names, in metres, with the file's world frame.
     Raises `InputError` if the form is not known, or a camera is incomplete, impossible or named
     twice.
-
-    Parameters
-    ----------
-    path : a Qualisys `.qca.txt`; a TOML file of Pose2Sim, aniposelib or Caliscope; a YAML or XML
-        file of OpenCV's FileStorage with one or several cameras; or a folder of such, one camera
-        each
-
-    Returns
-    -------
-    found : in the file's order under the file's names, in metres, with the file's world frame
     """
     path = Path(path)
     if path.is_dir():
@@ -131,7 +125,7 @@ def _read_toml(path: Path, text: str) -> list[Camera]:
         for key, table in tables.items()
         if isinstance(table, dict) and ("cam_id" in table or "cameras" in content)
     }
-    return _read_caliscope(path, caliscope) if caliscope else cameras.read_toml(path)
+    return _read_caliscope(path, caliscope) if caliscope else camera_files.read_toml(path)
 
 
 def _read_caliscope(path: Path, tables: Mapping[str, dict]) -> list[Camera]:
@@ -143,7 +137,7 @@ def _read_caliscope(path: Path, tables: Mapping[str, dict]) -> list[Camera]:
     for key, table in tables.items():
         if not table.get("ignore", False):
             name = table.get("name", f"cam_{table.get('cam_id', key)}")
-            found.append(cameras.build(f"{path}: camera {name}", str(name), table, 1.0))
+            found.append(camera_files.build(f"{path}: camera {name}", str(name), table, 1.0))
     return found
 
 
@@ -172,7 +166,12 @@ def _from_qualisys(path: Path, element: ElementTree.Element) -> Camera:
     where = f"{path}: camera {name}"
     # ASSUME: viewrotation turns the picture in QTM's windows only; the video file and these numbers
     # are those of the sensor as it is.
-    _one_of(where, "viewrotation", element.get("viewrotation", "0"), ("0", "90", "180", "270"))
+    turned = element.get("viewrotation", "0")
+    if turned not in QUALISYS_TURNS:
+        raise InputError(
+            f"{where}: expected viewrotation as one of {', '.join(QUALISYS_TURNS)}, found "
+            f"{camera_fields.short(turned)}; {camera_fields.EXPORT_AGAIN}"
+        )
     left, top, right, bottom = _attributes(where, element, "fov_video", "left top right bottom")
     focal_u, focal_v, centre_u, centre_v, skew = _attributes(
         where, element, "intrinsic", "focalLengthU focalLengthV centerPointU centerPointV skew"
@@ -191,7 +190,7 @@ def _from_qualisys(path: Path, element: ElementTree.Element) -> Camera:
         "rotation": rotation,
         "translation": -rotation @ place[9:],
     }
-    return cameras.build(where, name, table, camera_fields.METRES["mm"])
+    return camera_files.build(where, name, table, camera_fields.METRES["mm"])
 
 
 def _attributes(where: str, element: ElementTree.Element, tag: str, keys: str) -> NDArray:
@@ -203,14 +202,6 @@ def _attributes(where: str, element: ElementTree.Element, tag: str, keys: str) -
             for key in keys.split()
         ]
     )
-
-
-def _one_of(where: str, key: str, value: str, allowed: Sequence[str]) -> None:
-    if value not in allowed:
-        raise InputError(
-            f"{where}: expected {key} as one of {', '.join(allowed)}, found "
-            f"{camera_fields.short(value)}; {camera_fields.EXPORT_AGAIN}"
-        )
 
 
 def _read_opencv(path: Path, text: str) -> list[Camera]:
@@ -238,7 +229,7 @@ def _from_opencv(path: Path, node: Any, name: str, root: Any) -> Camera:
     unit = _child(node, ("unit",)) or _child(root, ("unit",))
     # ASSUME: metres where the file names no unit; OpenCV has none of its own.
     metres = camera_fields.unit_in_metres(where, "m" if unit is None else _value(unit))
-    return cameras.build(where, name, table, metres)
+    return camera_files.build(where, name, table, metres)
 
 
 def _child(node: Any, keys: Sequence[str]) -> Any:

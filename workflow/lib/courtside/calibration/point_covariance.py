@@ -1,7 +1,5 @@
 """Covariance of triangulated points that the uncertainty of the cameras causes."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -16,28 +14,15 @@ MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1
 def sensitivity(network: Network, xyz: ArrayLike) -> NDArray:
     """Find how triangulated points move when image and lens parameters do, while pixels stay.
 
-    `network`: of the fixed cameras; its own points do not matter; `xyz`: (N, 3) float; places, m,
-    that every image sees.
-
-    Returns
-    -------
-    by_column : (N, 3, K) float; metres per unit of each column of the network
+    Every image of the network, whose own points do not matter, sees the places `xyz` (N, 3) m.
+    The result (N, 3, K) is metres per unit of each column of the network.
     """
     xyz = np.asarray(xyz, dtype=float)
     n_images, n_points = len(network.cam_from_world), len(xyz)
     image_idx = np.repeat(np.arange(n_images), n_points)
-    view = replace(
-        network,
-        xyz=xyz,
-        xyz_mean=np.zeros((n_points, 3)),
-        xyz_sigma=np.full(n_points, np.inf),
-        image_idx=image_idx,
-        point_idx=np.tile(np.arange(n_points), n_images),
-        xy=np.zeros((len(image_idx), 2)),
-        sigma_px=np.ones(len(image_idx)),
-        loss_scale=np.full(len(image_idx), np.inf),
-    )
-    by_camera, by_point = problem.jacobians(view)
+    point_idx = np.tile(np.arange(n_points), n_images)
+    view = problem.with_points(network, xyz, image_idx, point_idx, np.zeros((len(image_idx), 2)))
+    _, by_camera, by_point = problem.linearised(view)
     full = np.zeros((len(image_idx), 2, network.n_columns))
     np.put_along_axis(full, view.columns()[:, None, :].repeat(2, axis=1), by_camera, axis=2)
     full, by_point = (  # by image and point -> by point, all images together

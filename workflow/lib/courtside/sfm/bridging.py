@@ -28,14 +28,14 @@ def choose(
     *,
     walk: str = "walk",
 ) -> NDArray:
-    """Choose the bridging images among the usable frames of a walk's grid.
+    """Choose the bridging images, ascending places, among the usable frames of a walk's grid.
 
     "even" places images on multiples of q, the largest power of two up to 0.4 of the spacing (or
     1), so that `courtside.sfm.pairs.pair_list` holds all neighbours. Each wanted place goes to the
     nearest usable multiple; one within q of it wins that is the sharpest and clearly (1.25 times)
     sharper. Places are then settled together: none twice, where another choice exists no gap above
     8 q and both ends less than a spacing from the grid's, and otherwise as near to the preferred as
-    can be. "interval" ignores q: ask `courtside.sfm.pairs.missing_pairs`. Raises `InputError` if
+    can be. "interval" ignores q. Raises `InputError` if
     there are fewer than n usable frames, `ValueError` if an argument is out of its range.
 
     Parameters
@@ -47,11 +47,6 @@ def choose(
     sharpness : (G,) float; of every frame of the grid
     rule : "even": evenly spaced over the grid, sharper neighbours preferred; or "interval": every
         d-th usable frame, d = floor(K / n), as published
-    walk : its name, for the message
-
-    Returns
-    -------
-    place_idx : (n,) int; places in the grid, strictly increasing
     """
     kept_idx = np.asarray(kept_idx, dtype=int)
     if n < 2 or not 0 <= offset_idx < OFFSETS or rule not in ("even", "interval"):

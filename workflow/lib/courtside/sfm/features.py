@@ -35,13 +35,12 @@ def extract(
 ) -> tuple[dict[str, int], list[str]]:
     """Extract SIFT features and write them to a new COLMAP database.
 
+    Return the number of features by image, and the groups whose images do not state a focal length.
     Raises `InputError` if an image cannot be read, or has another size than the others of its
     camera, `ValueError` if a group has no images.
 
     Parameters
     ----------
-    path : of the database
-    image_root : the folder that the names of images start from
     groups : camera k of the database is group k - 1, image ids count through the groups in order,
         within one in the order of the names (COLMAP sorts them): both are the same whatever the
         number of threads
@@ -49,11 +48,6 @@ def extract(
     first_octave : 0: the picture as it is; -1: doubled first, which finds finer features at four
         times the cost
     focal_factor : focal length to start from, in picture widths, of images without EXIF data
-
-    Returns
-    -------
-    n_features : by image
-    guessed : groups whose images do not state a focal length
     """
     empty = [group.name for group in groups if not group.images]
     if empty:

@@ -19,21 +19,12 @@ def match(
     seed: int,
     max_ratio: float = 0.8,
 ) -> dict[tuple[str, str], int]:
-    """Match pairs of images and verify the matches; the result holds all that mapping needs.
+    """Match pairs of images, verify the matches, and write what mapping needs: no descriptors.
 
-    One thread: with several, one run in 15 to 50 on a busy machine had other matches of the first
-    few images, whatever the seed.
-
-    Parameters
-    ----------
-    matches_db : written: the features' places and the matches, without descriptors
-    pairs : names of images
-    seed : of the verification's random samples
-    max_ratio : of the distances to the best and the second-best descriptor (Lowe's test)
-
-    Returns
-    -------
-    n_verified : matches that agree with one two-view geometry, by pair; 0 where none was found
+    Return the number of matches that agree with one two-view geometry, by pair. The seed is that of
+    the verification's random samples, `max_ratio` that of the distances to the best and the
+    second-best descriptor (Lowe's test). One thread: with several, one run in 15 to 50 on a busy
+    machine had other matches of the first few images, whatever the seed.
     """
     matching = pycolmap.FeatureMatchingOptions(num_threads=1, use_gpu=False)
     matching.sift.max_ratio = max_ratio

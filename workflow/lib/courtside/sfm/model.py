@@ -2,11 +2,13 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
+from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import LENS, Network
 from courtside.sfm import model_files
 from courtside.study.errors import reading
@@ -19,17 +21,12 @@ LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)
 
 
 def read(folder: str | os.PathLike) -> tuple[Network, list[str], list[tuple[int, int]]]:
-    """Read the network of a model from the folder of COLMAP's binary files.
+    """Read the network of a model from COLMAP's binary files, names of images, and sizes, px.
 
-    Raises `InputError` if the files are damaged or do not belong together.
-
-    Returns
-    -------
-    network : in the model's own frame and unit, of registered images only, in the order of their
-        ids; all observations with a sigma of 1 px and no loss. Lenses are in the order of the
-        model's camera ids
-    names : of the images
-    sizes : width and height, px, of each lens's pictures
+    The network is in the model's own frame and unit, of registered images only, in the order of
+    their ids; all observations have a sigma of 1 px and no loss. Lenses, and the sizes (width,
+    height) of their pictures, are in the order of the model's camera ids. Raises `InputError` if
+    the files are damaged or do not belong together.
     """
     with reading(folder, "a COLMAP model", "delete it and run the study again"):
         model_files.check(folder)
@@ -50,24 +47,13 @@ def _network(found: pycolmap.Reconstruction) -> tuple[Network, list[str], list[t
     sizes = [(camera.width, camera.height) for camera in cameras]
     mean, sigma = lens_prior(sizes)
     poses = np.array([image.cam_from_world().matrix() for image in images]).reshape(-1, 3, 4)
-    network = Network(
-        cam_from_world=poses,
-        flex=np.zeros((len(images), 5)),
-        lens=np.array([_lens(camera) for camera in cameras]).reshape(-1, len(LENS)),
-        xyz=np.array([track.xyz for track in tracks]).reshape(-1, 3),
-        lens_of_image=np.array([camera_ids.index(i.camera_id) for i in images], dtype=int),
-        height_px=np.array([found.cameras[i.camera_id].height for i in images], dtype=float),
-        image_idx=image_idx,
-        point_idx=point_idx,
-        xy=xy,
-        sigma_px=np.ones(len(xy)),
-        loss_scale=np.full(len(xy), np.inf),
-        flex_sigma=np.zeros((len(images), 5)),
-        lens_mean=mean,
-        lens_sigma=sigma,
-        xyz_mean=np.zeros((len(tracks), 3)),
-        xyz_sigma=np.full(len(tracks), np.inf),
-    )
+    lenses = np.array([_lens(camera) for camera in cameras]).reshape(-1, len(LENS))
+    heights_px = [found.cameras[image.camera_id].height for image in images]
+    of_image = [camera_ids.index(image.camera_id) for image in images]
+    network = problem.without_points(poses, lenses, heights_px, of_image)
+    network = replace(network, lens_mean=mean, lens_sigma=sigma)
+    xyz = np.array([track.xyz for track in tracks]).reshape(-1, 3)
+    network = problem.with_points(network, xyz, image_idx, point_idx, xy)
     return network, [image.name for image in images], sizes
 
 

@@ -4,7 +4,7 @@ Places in the grid are counted from 0 to G - 1. Nothing here knows where the cam
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 STRIDES = 8  # longest stride within a level of the pairs; the widest gap of images, in multiples
 
@@ -12,9 +12,7 @@ STRIDES = 8  # longest stride within a level of the pairs; the widest gap of ima
 def pair_list(n_grid: int) -> NDArray:
     """List the pairs of grid frames to match, for any number of bridging images.
 
-    About 12 pairs (M, 2) int for each of the `n_grid` frames: places i < j in the grid, sorted,
-    each once.
-
+    About 12 pairs (M, 2) int for each frame: places i < j in the grid, sorted, each once.
     Level l holds the frames whose place is a multiple of q = 2**l, and their pairs up to 8 q apart.
     Those up to 4 q apart are in the levels below already.
     """
@@ -27,22 +25,3 @@ def pair_list(n_grid: int) -> NDArray:
         level *= 2
     found = np.concatenate(pairs) if pairs else np.empty((0, 2), dtype=int)
     return found[np.lexsort((found[:, 1], found[:, 0]))]
-
-
-def missing_pairs(place_idx: ArrayLike, n_grid: int, *, reach: int = 1) -> NDArray:
-    """Return the pairs (M, 2) int of neighbours among chosen frames that `pair_list` does not hold.
-
-    They must be matched besides. There are none for the rule "even" and reach 1 unless a long
-    stretch is unusable.
-
-    `place_idx`: (n,) int; chosen places in the grid, ascending; `reach`: 1 for next neighbours
-    only, 2 for second neighbours too, and so on.
-    """
-    place_idx = np.asarray(place_idx, dtype=int)
-    listed = set(map(tuple, pair_list(n_grid).tolist()))
-    wanted = [
-        pair
-        for step in range(1, reach + 1)
-        for pair in zip(place_idx[:-step].tolist(), place_idx[step:].tolist(), strict=True)
-    ]
-    return np.array(sorted(set(wanted) - listed), dtype=int).reshape(-1, 2)

@@ -1,7 +1,7 @@
 """Bundle adjustment of images, lenses and points, with clicked court points as control points.
 
 problem
-    Network, residuals, jacobians, linearised, without_points
+    Network, residuals, linearised, without_points, with_points
 solver
     adjust, cost, normal_equations, mean, Quadratic, Normal
 selection

@@ -7,7 +7,7 @@ the shift of the principal point by the image stabiliser (2, px). They are zero 
 tripod.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,7 +19,11 @@ LENS = ("f_px", "aspect", "cx_px", "cy_px", "k1", "k2", "p1", "p2")
 POSE = ("rx_rad", "ry_rad", "rz_rad", "tx_m", "ty_m", "tz_m")
 FLEX = ("wx_rad", "wy_rad", "wz_rad", "shift_x_px", "shift_y_px")
 IMAGE = len(POSE) + len(FLEX)
-_Seen = tuple[NDArray, NDArray, NDArray, NDArray]
+# Fields of `Network` by what they have an entry for; the first of each tells how many there are.
+PER_IMAGE = ("cam_from_world", "flex", "lens_of_image", "height_px", "flex_sigma")
+PER_LENS = ("lens", "lens_mean", "lens_sigma")
+PER_POINT = ("xyz", "xyz_mean", "xyz_sigma")
+PER_VIEW = ("xy", "image_idx", "point_idx", "sigma_px", "loss_scale")
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,42 +36,26 @@ class Network:
     xyz: NDArray  # (N, 3)
     lens_of_image: NDArray  # (V,) int
     height_px: NDArray  # (V,): of the picture: a row is read at (row + 0.5) / height - 0.5
-    # image_idx, point_idx: (M,) int; of each observation
-    image_idx: NDArray
-    point_idx: NDArray
+    image_idx: NDArray  # (M,) int: of each observation
+    point_idx: NDArray  # (M,) int
     xy: NDArray  # (M, 2): observed px
     sigma_px: NDArray  # (M,): standard deviation of an observation per axis
     loss_scale: NDArray  # (M,): scale of the Cauchy loss, in the observation's sigmas; inf: no loss
     flex_sigma: NDArray  # (V, 5): prior about 0; 0 keeps a number at 0
-    # lens_mean, lens_sigma: (L, 8): prior; sigma inf: unknown; 0: known exactly
-    lens_mean: NDArray
-    lens_sigma: NDArray
-    # xyz_mean, xyz_sigma: (N, 3), (N,) float; prior of points; sigma inf: unknown
-    xyz_mean: NDArray
-    xyz_sigma: NDArray
+    lens_mean: NDArray  # (L, 8): prior
+    lens_sigma: NDArray  # (L, 8): inf: unknown; 0: known exactly
+    xyz_mean: NDArray  # (N, 3): prior of points
+    xyz_sigma: NDArray  # (N,): inf: unknown
 
     def __post_init__(self) -> None:
-        n_images, n_points, n_seen = len(self.cam_from_world), len(self.xyz), len(self.xy)
-        expected = {
-            "flex": n_images,
-            "lens_of_image": n_images,
-            "height_px": n_images,
-            "flex_sigma": n_images,
-            "lens_mean": len(self.lens),
-            "lens_sigma": len(self.lens),
-            "image_idx": n_seen,
-            "point_idx": n_seen,
-            "sigma_px": n_seen,
-            "loss_scale": n_seen,
-            "xyz_mean": n_points,
-            "xyz_sigma": n_points,
-        }
-        for field in fields(self):
-            object.__setattr__(self, field.name, np.asarray(getattr(self, field.name)))
-        for name, length in expected.items():
-            if len(getattr(self, name)) != length:
+        for first, *others in (PER_IMAGE, PER_LENS, PER_POINT, PER_VIEW):
+            object.__setattr__(self, first, np.asarray(getattr(self, first)))
+            length = len(getattr(self, first))
+            for name in others:
+                object.__setattr__(self, name, np.asarray(getattr(self, name)))
                 found = len(getattr(self, name))
-                raise ValueError(f"expected {name} of length {length}, found {found}")
+                if found != length:
+                    raise ValueError(f"expected {name} of length {length}, found {found}")
 
     @property
     def n_columns(self) -> int:
@@ -107,15 +95,23 @@ class Network:
         return np.concatenate([images.ravel(), (self.lens - reference.lens).ravel()])
 
 
-def without_points(cam_from_world: NDArray, lens: NDArray, height_px: ArrayLike) -> Network:
-    """Return a network of V images with a lens (V, 8) each, without points or prior knowledge."""
+def without_points(
+    cam_from_world: NDArray,
+    lens: NDArray,
+    height_px: ArrayLike,
+    lens_of_image: ArrayLike | None = None,
+) -> Network:
+    """Return a network of V images without flex, points or prior knowledge.
+
+    By default each image has a lens of its own.
+    """
     n_images, nothing = len(cam_from_world), np.zeros(0)
     return Network(
         cam_from_world=cam_from_world,
         flex=np.zeros((n_images, len(FLEX))),
         lens=lens,
         xyz=np.zeros((0, 3)),
-        lens_of_image=np.arange(n_images),
+        lens_of_image=np.asarray(range(n_images) if lens_of_image is None else lens_of_image, int),
         height_px=np.asarray(height_px, dtype=float),
         image_idx=nothing.astype(int),
         point_idx=nothing.astype(int),
@@ -130,36 +126,47 @@ def without_points(cam_from_world: NDArray, lens: NDArray, height_px: ArrayLike)
     )
 
 
+def with_points(
+    network: Network, xyz: NDArray, image_idx: NDArray, point_idx: NDArray, xy: NDArray
+) -> Network:
+    """Return a network with other points (N, 3), of which nothing is known but where they are seen.
+
+    All M observations, `xy` (M, 2) px, have a sigma of 1 px and no loss.
+    """
+    return replace(
+        network,
+        xyz=xyz,
+        xyz_mean=np.zeros_like(xyz),
+        xyz_sigma=np.full(len(xyz), np.inf),
+        image_idx=image_idx,
+        point_idx=point_idx,
+        xy=xy,
+        sigma_px=np.ones(len(xy)),
+        loss_scale=np.full(len(xy), np.inf),
+    )
+
+
 def residuals(network: Network) -> NDArray:
     """Return predicted minus observed, (M, 2) px; NaN where a point lies behind its image."""
-    return _residuals(network, _see(network))
+    *_, distorted = _see(network)
+    return _residuals(network, distorted)
 
 
-def _residuals(network: Network, seen: _Seen) -> NDArray:
-    *_, distorted = seen
-    lens = network.lens[network.lens_of_image[network.image_idx]]
-    focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
+def _residuals(network: Network, distorted: NDArray) -> NDArray:
+    lens = _lens(network)
     shift = network.flex[network.image_idx, 3:]
-    return focal * distorted + lens[:, 2:4] + shift - network.xy
-
-
-def jacobians(network: Network) -> tuple[NDArray, NDArray]:
-    """Return d `residuals` / d `Network.columns` (M, 2, 19) and by the point (M, 2, 3)."""
-    return _jacobians(network, _see(network))
+    return _focal(lens) * distorted + lens[:, 2:4] + shift - network.xy
 
 
 def linearised(network: Network) -> tuple[NDArray, NDArray, NDArray]:
-    """Return `residuals` and, after them, both of `jacobians`."""
-    seen = _see(network)
-    return _residuals(network, seen), *_jacobians(network, seen)
+    """Return `residuals` and their derivatives.
 
-
-def _jacobians(network: Network, seen: _Seen) -> tuple[NDArray, NDArray]:
-    still, in_cam, normalised, distorted = seen
-    lens = network.lens[network.lens_of_image[network.image_idx]]
-    focal = lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
+    These are by `Network.columns` (M, 2, 19) and by the point (M, 2, 3).
+    """
+    still, in_cam, normalised, distorted = _see(network)
+    lens = _lens(network)
     # Of the point in the camera's frame.
-    by_place = focal[:, :, None] * camera.jacobian_by_place(
+    by_place = _focal(lens)[:, :, None] * camera.jacobian_by_place(
         _coefficients(lens), normalised, in_cam[:, 2:]
     )
     # Before the shutter's turn: r @ (I + [spin]) = r + r x spin.
@@ -172,7 +179,7 @@ def _jacobians(network: Network, seen: _Seen) -> tuple[NDArray, NDArray]:
     by_camera[:, :, 6:9] = turned * _row_time(network)[:, None, None]
     by_camera[:, 0, 9] = by_camera[:, 1, 10] = 1.0
     by_camera[:, :, IMAGE:] = _by_lens(lens, normalised, distorted)
-    return by_camera, by_still @ rotation
+    return _residuals(network, distorted), by_camera, by_still @ rotation
 
 
 def _by_lens(lens: NDArray, normalised: NDArray, distorted: NDArray) -> NDArray:
@@ -196,7 +203,7 @@ def _by_lens(lens: NDArray, normalised: NDArray, distorted: NDArray) -> NDArray:
     return along
 
 
-def _see(network: Network) -> _Seen:
+def _see(network: Network) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Return the points in the camera frame, (M, 3), at mid-exposure and when their row is read.
 
     And on the plane z = 1, without and with lens distortion, (M, 2) each.
@@ -206,8 +213,17 @@ def _see(network: Network) -> _Seen:
     in_cam = still + np.cross(_spin(network), still)
     depth = np.where(in_cam[:, 2:] > 1e-6, in_cam[:, 2:], np.nan)
     normalised = in_cam[:, :2] / depth
-    lens = network.lens[network.lens_of_image[network.image_idx]]
-    return still, in_cam, normalised, camera.distort(_coefficients(lens), normalised)
+    distorted = camera.distort(_coefficients(_lens(network)), normalised)
+    return still, in_cam, normalised, distorted
+
+
+def _lens(network: Network) -> NDArray:
+    """Return the lens of each observation, (M, 8)."""
+    return network.lens[network.lens_of_image[network.image_idx]]
+
+
+def _focal(lens: NDArray) -> NDArray:
+    return lens[:, :1] * np.stack([lens[:, 1], np.ones(len(lens))], axis=1)
 
 
 def _coefficients(lens: NDArray) -> NDArray:

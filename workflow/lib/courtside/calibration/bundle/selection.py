@@ -47,10 +47,9 @@ def select(network: Network, points: NDArray, seen: NDArray | None = None) -> Ne
     """
     seen = points[network.point_idx] & (True if seen is None else seen)
     number = np.cumsum(points) - 1
-    per_point = {name: getattr(network, name)[points] for name in ("xyz", "xyz_mean", "xyz_sigma")}
-    kept = ("image_idx", "xy", "sigma_px", "loss_scale")
-    per_view = {name: getattr(network, name)[seen] for name in kept}
-    return replace(network, point_idx=number[network.point_idx[seen]], **per_point, **per_view)
+    per_point = {name: getattr(network, name)[points] for name in problem.PER_POINT}
+    per_view = {name: getattr(network, name)[seen] for name in problem.PER_VIEW}
+    return replace(network, **per_point, **per_view | {"point_idx": number[per_view["point_idx"]]})
 
 
 def thin(
@@ -58,15 +57,11 @@ def thin(
 ) -> Network:
     """Keep a random choice of the points that tie images well.
 
-    A random choice does better than the points seen under the widest angles: those are often wrong.
+    Observations farther than `max_error_px` from their point's projection are dropped, then points
+    with fewer than two, or with less than `min_angle_deg` between their two most different rays. A
+    random choice does better than the points seen under the widest angles: those are often wrong.
     More points than a few thousand do not help: their errors come from the features and are not
     independent.
-
-    Parameters
-    ----------
-    min_angle_deg : smallest angle between a point's two most different rays
-    max_error_px : observations farther from their point's projection are dropped, then points with
-        fewer than two
     """
     error = np.linalg.norm(problem.residuals(network), axis=1)
     seen = error <= max_error_px  # of a point behind its image the error is NaN

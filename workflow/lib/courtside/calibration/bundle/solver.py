@@ -47,8 +47,7 @@ class Normal:
     gradient: NDArray  # (A,)
     cost: float  # half the sum of squared, robustly weighted residuals
     point_information: NDArray  # (N, 3, 3)
-    # from a step of the active parameters (A,) to the step of the points (N, 3)
-    back: Callable[[NDArray], NDArray]
+    back: Callable[[NDArray], NDArray]  # from a step of the active ones to that of points (N, 3)
 
 
 def adjust(
@@ -62,13 +61,8 @@ def adjust(
 
     Triggs et al. 2000. The Cauchy loss is applied by weights of Triggs's first order (IRLS).
     Without a prior on points or images the world frame is free: damping keeps it where it starts,
-    and the information is singular.
-
-    Parameters
-    ----------
-    network : a start within the reach of Newton's method
-    quadratic : knowledge that is not in the observations
-    tolerance : stop when the cost falls by less than this fraction
+    and the information is singular. `quadratic` is knowledge that is not in the observations; the
+    `tolerance` is the fall of the cost, a fraction of it, below which the adjustment stops.
     """
     damping = 1e-4
     normal = normal_equations(network, quadratic)
@@ -163,7 +157,10 @@ def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Norm
     root, point_gradient, point_information = _point_side(network, by_point, residual)
     coupling = _coupling(network, root, by_point, by_camera)[:, active]
     scaled_gradient = np.einsum("nij,nj->ni", root, point_gradient)
-    information = full[np.ix_(active, active)] - _dense(coupling.T @ coupling)
+    eliminated: Any = coupling.T @ coupling
+    if sparse.issparse(eliminated):
+        eliminated = eliminated.toarray()
+    information = full[np.ix_(active, active)] - eliminated
     gradient = gradient[active] - coupling.T @ scaled_gradient.ravel()
 
     def back(step: NDArray) -> NDArray:
@@ -262,7 +259,3 @@ def _coupling(network, root, by_point, by_camera) -> NDArray | sparse.csr_matrix
         return whole.reshape(n_rows, n_columns)
     at = (np.broadcast_to(rows, block.shape).ravel(), np.broadcast_to(columns, block.shape).ravel())
     return sparse.csr_matrix((block.ravel(), at), shape=(n_rows, n_columns))
-
-
-def _dense(matrix: Any) -> NDArray:
-    return matrix.toarray() if sparse.issparse(matrix) else matrix

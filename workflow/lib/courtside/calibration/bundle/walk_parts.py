@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.bundle import selection
-from courtside.calibration.bundle.problem import Network
-
-PER_IMAGE = ("cam_from_world", "flex", "lens_of_image", "height_px", "flex_sigma")
+from courtside.calibration.bundle.problem import PER_IMAGE, Network
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +27,8 @@ class Part:
 def split(network: Network, fixed: Sequence[int], images_per_part: int) -> list[Part]:
     """Share the images of a walk out among one or more parts, in turn.
 
-    `fixed`: images of the fixed cameras; every part has them all; `images_per_part`: images of the
-    walk; the number of parts that comes nearest to it is taken.
+    Every part has all images of the `fixed` cameras. The number of parts is taken whose number of
+    images of the walk comes nearest to `images_per_part`.
     """
     walked = np.setdiff1d(np.arange(len(network.cam_from_world)), fixed)
     n_parts = max(1, round(len(walked) / images_per_part))

@@ -21,14 +21,11 @@ class Stretch:
     """What is seen across a stretch of a line, and what was expected."""
 
     xy: NDArray  # (N, 2): where the line's middle is expected, px
-    # (N, 2): across the line in the picture, unit length, towards its edge of the higher coordinate
-    normal: NDArray
+    normal: NDArray  # (N, 2): unit, across the line, towards its edge of the higher coordinate
     along_px: NDArray  # (N,): along the line in the picture, 0 at the origin asked for
     width_px: float  # of the line, expected
-    # (N, S): brightness at steps of `STEP_PX` across, the middle one where the line is expected
-    seen: NDArray
-    # (N, T): share of paint expected there, 0..1, at the T middle ones of these steps
-    paint: NDArray
+    seen: NDArray  # (N, S): brightness at steps of `STEP_PX` across, about the expected line
+    paint: NDArray  # (N, T): share of paint expected, 0..1, at the T middle ones of these steps
 
 
 def sample_stretch(
@@ -55,7 +52,8 @@ def sample_stretch(
     """
     xyz = ends_m[0] + np.linspace(0, 1, 400)[:, np.newaxis] * (ends_m[1] - ends_m[0])
     xy = project(camera, xyz)
-    inside = _inside(xy, camera.size, reach_px + MARGIN_PX)
+    room = np.minimum(reach_px + MARGIN_PX, 12.0)
+    inside = ((xy > room) & (xy < np.array(camera.size) - 1 - room)).all(axis=1)
     if inside.sum() < 2:
         return None
     xyz, xy = xyz[inside], xy[inside]
@@ -65,10 +63,6 @@ def sample_stretch(
         return None
     at = np.linspace(0, travelled[-1], n + 1)[:-1] + travelled[-1] / n / 2
     xyz = np.column_stack([np.interp(at, travelled, column) for column in xyz.T])
-    return _sample(grey, camera, xyz, origin_m, ends_m, half_width_m, paint, reach_px, blur_px)
-
-
-def _sample(grey, camera, xyz, origin_m, ends_m, half_width_m, paint, reach_px, blur_px):
     xy = project(camera, xyz)
     tangent, normal = tangent_and_normal(camera, xyz, ends_m[1] - ends_m[0], half_width_m)
     across = project(camera, xyz + half_width_m) - project(camera, xyz - half_width_m)
@@ -91,8 +85,7 @@ def tangent_and_normal(
 ) -> tuple[NDArray, NDArray]:
     """Return unit vectors (N, 2) in the picture along a line at points on it, and normal to it.
 
-    `xyz`: (N, 3) float; on the line, m; `along_m`, `across_m`: (3,) float; along the line, and to
-    the side to which the normals point.
+    The points `xyz` (N, 3) m lie on the line; `across_m` (3,) points to the side of the normals.
     """
     small = 1e-3 / np.linalg.norm(along_m, axis=-1, keepdims=True)
     middle = project(camera, xyz)
@@ -101,11 +94,6 @@ def tangent_and_normal(
     normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
     towards = project(camera, xyz + across_m) - middle
     return tangent, normal * np.sign(np.sum(towards * normal, axis=-1, keepdims=True))
-
-
-def _inside(xy: NDArray, size: tuple[int, int], margin_px: float) -> NDArray:
-    room = np.minimum(margin_px, 12.0)
-    return ((xy > room) & (xy < np.array(size) - 1 - room)).all(axis=1)
 
 
 def _expected(paint: Paint, xy: NDArray, normal: NDArray, half: int, blur_px: float) -> NDArray:

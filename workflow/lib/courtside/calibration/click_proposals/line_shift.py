@@ -19,19 +19,15 @@ HUBER = 1.5  # standard deviations; 95 % efficiency for normal errors is at 1.34
 class Shift:
     """How far a line is from where it was expected."""
 
-    # low_px, high_px: of its two edges, along the normal, at the origin; the same where the line is
-    # too thin to separate them
-    low_px: float
-    high_px: float
+    low_px: float  # of its lower edge, along the normal, at the origin
+    high_px: float  # of its higher edge; the same where the line is too thin to separate them
     slope: float  # rotation of the line: px across per px along
     sigma_px: float  # standard deviation of the shift at the origin
     contrast: float  # paint against floor, levels
     share: float  # of the samples in which the line is seen, 0..1
     near_share: float  # the same of those near the origin
     score: float  # mean correlation of what is seen with what is expected there
-    # the best score farther than two widths away, relative to it: near 1 where the place is
-    # ambiguous
-    rival: float
+    rival: float  # the best score over two widths away, relative to it: near 1 if ambiguous
 
 
 def shift(
@@ -44,8 +40,8 @@ def shift(
     paint, and that paint's derivative, which gives the shift. The two edges are shifted separately
     where the line is 3 px wide.
 
-    `polarity`: 1 where paint is brighter than floor, -1 where darker, 0 where that may change along
-    the line; `near_px`: distance from the nearest sample that counts as near the origin.
+    `polarity` is 1 where paint is brighter than floor, -1 where darker, 0 where that may change
+    along the line; samples up to `near_px` from the nearest one count as near the origin.
     """
     match = _correlations(stretch, polarity)
     offset, slope, score, rival = _best_line(match, stretch.along_px, stretch.width_px)

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import erf
 
-from courtside.calibration.click_proposals import line_profiles, line_shift
-from courtside.calibration.click_proposals.view import Ray, View
+from courtside.calibration.click_proposals.view import NO_PLACE, Ray, View
 from courtside.calibration.court.court import Court
 from courtside.calibration.court.line_edges import Paint
 from courtside.geometry.camera import Camera, project
@@ -35,25 +34,19 @@ def axis(view: View, post: int) -> Ray | None:
 
 
 def tip(view: View, post: int) -> tuple[NDArray, NDArray, float, str]:
-    """Find the upper end of a post.
+    """Find the upper end of a post: (2,) px, covariance (2, 2), share that is seen, and reason.
 
-    Returns
-    -------
-    xy : (2,) float; px; NaN where it is not seen
-    covariance : (2, 2) float
-    share : of the post that is seen, 0..1
-    reason : why there is none; empty where there is
+    The reason says why there is none, and is empty where there is; the others are NaN then.
     """
-    nothing = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0
     ends = project(view.camera, _places(view.court, [0, 1], 1.0))
     if np.linalg.norm(ends[1] - ends[0]) < APART_PX or _covered(view, post, 1.0):
-        return *nothing, "one post is behind the other"
+        return *NO_PLACE, "one post is behind the other"
     ray = _axis(view, post, UPPER, 1.0)
     if ray is None:
-        return *nothing, "the post is not seen"
+        return *NO_PLACE, "the post is not seen"
     found = _end(view, post, ray)
     if found is None:
-        return *nothing, "the post's end is not seen"
+        return *NO_PLACE, "the post's end is not seen"
     along, sigma = found
     turn = np.array([[ray.direction[0], -ray.direction[1]], [ray.direction[1], ray.direction[0]]])
     covariance = turn @ np.diag([sigma**2, ray.sigma_px**2]) @ turn.T
@@ -78,22 +71,12 @@ def _axis(view: View, post: int, part: ArrayLike, share: float) -> Ray | None:
     places, origin = _places(view.court, post, part), _places(view.court, post, share)
     half = _half_width(view, post)
     shown = _shows(view.camera, _places(view.court, post, [0.0, 1.0]), half)
-    seen = line_profiles.sample_stretch(
-        view.grey, view.camera, places, origin, half, shown, SEARCH_PX, view.blur_px
-    )
-    if seen is None:
-        return None
-    shift = line_shift.shift(seen, polarity=0, blur_px=view.blur_px)
+    shift = view.measure(shown, places, origin, half, SEARCH_PX, polarity=0)
     if not shift or shift.score < LEAST_SCORE or shift.share < LEAST_SHARE:
         return None
-    tangent, normal = line_profiles.tangent_and_normal(
-        view.camera, origin[None], places[1] - places[0], half
-    )
-    moved = (shift.low_px + shift.high_px) / 2
-    direction = tangent[0] + shift.slope * normal[0]
-    start = project(view.camera, origin) + moved * normal[0]
-    sigma = np.hypot(shift.sigma_px, OWN_PX)
-    return Ray(start, direction / np.linalg.norm(direction), sigma, shift.share)
+    moved_px = (shift.low_px + shift.high_px) / 2
+    line = view.ray(origin, origin, places[1] - places[0], half, moved_px, shift.slope)
+    return Ray(*line, np.hypot(shift.sigma_px, OWN_PX), shift.share)
 
 
 def _shows(camera: Camera, ends: NDArray, half: NDArray) -> Paint:

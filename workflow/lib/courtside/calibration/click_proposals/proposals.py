@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.click_proposals import line_profiles, post_tips, refine_pose
 from courtside.calibration.click_proposals.line_shift import Shift
-from courtside.calibration.click_proposals.view import Ray, View
+from courtside.calibration.click_proposals.view import NO_PLACE, Ray, View
 from courtside.calibration.court import line_edges
 from courtside.calibration.court.court import Court
 from courtside.calibration.court.line_edges import Edge
@@ -35,12 +35,10 @@ class Proposals:
     """Proposed points of one camera."""
 
     xy: NDArray  # (P, 2): px; NaN where nothing is proposed
-    # (P,): expected standard deviation, the larger of both axes; NaN where nothing is proposed
-    sigma_px: NDArray
-    # (P,): 0..1: share of what is expected near the point that is seen, less where the place is
-    # uncertain
+    sigma_px: NDArray  # (P,): expected standard deviation, the larger of both axes; NaN as `xy`
+    # (P,): share of what is expected near the point that is seen, less where the place is uncertain
     confidence: NDArray
-    reason: tuple[str, ...]  # length P; why nothing is proposed; empty where something is
+    reason: tuple[str, ...]  # P: why nothing is proposed; empty where something is
     camera: Camera  # the given one, moved so that the lines fit
 
 
@@ -55,13 +53,11 @@ def propose(
 ) -> Proposals:
     """Propose the points of a court in one camera's picture.
 
-    Raises `ValueError` if the picture has not the camera's size.
-
     First the camera is moved so that all painted lines lie where they are seen, stretch by stretch.
     Then each point is measured by the lines it names, near it: their edges are fitted and
     intersected; along lines that meet at an acute angle the moved camera helps. A post's tip is
     where its axis, fitted likewise, ends. A point that is not seen is not proposed, even where the
-    camera predicts it.
+    camera predicts it. Raises `ValueError` if the picture has not the camera's size.
 
     Parameters
     ----------
@@ -118,24 +114,23 @@ def _point(view: View, at: int) -> _Found:
     """Return (xy, covariance, share, reason) of one point."""
     court, place = view.court, view.court.xyz[at]
     expected = project(view.camera, place)
-    nothing = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0
     inside = (expected > 1) & (expected < np.array(view.camera.size) - 2)
     if not (np.isfinite(expected).all() and inside.all()):
-        return *nothing, "outside the picture"
+        return *NO_PLACE, "outside the picture"
     post = line_edges.post(court, at)
     edges = line_edges.named(court)[at]
     if place[2] > 0:
         if post is None:
-            return *nothing, "neither on a line nor on a post"
+            return *NO_PLACE, "neither on a line nor on a post"
         return post_tips.tip(view, post)
     rays = [_edge(view, edge, place) for edge in edges]
     if len(edges) < 2 and post is not None and edges:
         rays.append(post_tips.axis(view, post))
     if len(rays) < 2:
-        return *nothing, "fewer than two edges meet here"
+        return *NO_PLACE, "fewer than two edges meet here"
     one, other = rays[:2]
     if one is None or other is None:
-        return *nothing, "a line it names is not seen near it"
+        return *NO_PLACE, "a line it names is not seen near it"
     return _meet(one, other)
 
 
@@ -156,22 +151,17 @@ def _edge(view: View, edge: Edge, place: NDArray) -> Ray | None:
     shift = view.shift(edge.line, stretch, origin, NEAR_PX)
     if not shift or shift.score < LEAST_SCORE or shift.near_share < LEAST_SHARE:
         return None
-    tangent, normal = line_profiles.tangent_and_normal(
-        view.camera, origin[None], ends[1] - ends[0], half
-    )
     moved = {-1: shift.low_px, 0: (shift.low_px + shift.high_px) / 2, 1: shift.high_px}[edge.side]
-    start = project(view.camera, place) + moved * normal[0]
-    direction = tangent[0] + shift.slope * normal[0]
-    sigma = np.hypot(shift.sigma_px, PAINT_PX)
+    line = view.ray(origin, place, ends[1] - ends[0], half, moved, shift.slope)
     share = min(shift.near_share, shift.share)
-    return Ray(start, direction / np.linalg.norm(direction), sigma, share)
+    return Ray(*line, np.hypot(shift.sigma_px, PAINT_PX), share)
 
 
 def _meet(one: Ray, other: Ray) -> _Found:
     """Return (xy, covariance, share, reason) where two rays meet."""
     across = np.array([[-ray.direction[1], ray.direction[0]] for ray in (one, other)])
     if abs(np.linalg.det(across)) < 0.03:
-        return np.full(2, np.nan), np.full((2, 2), np.nan), 0.0, "its lines run into one another"
+        return *NO_PLACE, "its lines run into one another"
     back = np.linalg.inv(across)
     xy = back @ np.array([across[0] @ one.start, across[1] @ other.start])
     covariance = back @ np.diag([one.sigma_px**2, other.sigma_px**2]) @ back.T

@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.click_proposals import line_profiles, line_shift
 from courtside.calibration.court import line_edges
 from courtside.calibration.court.court import Court
-from courtside.geometry.camera import Camera
+from courtside.geometry.camera import Camera, project
+
+NO_PLACE = np.full(2, np.nan), np.full((2, 2), np.nan), 0.0  # px, covariance, share that is seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,23 +26,52 @@ class View:
     def shift(
         self, line: int, ends_m: NDArray, origin_m: NDArray, reach_px: float
     ) -> line_shift.Shift | None:
-        """Return how far a stretch of a painted line is off, None where it is not seen.
-
-        Parameters
-        ----------
-        line : row of the court's `lines_m`
-        ends_m : (2, 3) float; of the stretch, on the line's middle
-        origin_m : (3,) float; on the same straight line: where the shift is wanted
-        reach_px : how far off the line may be
-        """
+        """Return how far a stretch of a row of the court's `lines_m` is off; see `measure`."""
         _, half = line_edges.middle_line(self.court, line)
         paint = line_edges.paint(self.camera, self.court)
+        return self.measure(paint, ends_m, origin_m, half, reach_px, self.polarity)
+
+    def measure(
+        self,
+        paint: line_edges.Paint,
+        ends_m: NDArray,
+        origin_m: NDArray,
+        half_width_m: NDArray,
+        reach_px: float,
+        polarity: int,
+    ) -> line_shift.Shift | None:
+        """Return how far a stretch of an expected line is off, None where it is not seen.
+
+        The ends (2, 3) lie on its middle. The shift is wanted at the origin (3,), on the same
+        straight line, which may be up to `reach_px` off.
+        """
         seen = line_profiles.sample_stretch(
-            self.grey, self.camera, ends_m, origin_m, half, paint, reach_px, self.blur_px
+            self.grey, self.camera, ends_m, origin_m, half_width_m, paint, reach_px, self.blur_px
         )
         if seen is None:
             return None
-        return line_shift.shift(seen, polarity=self.polarity, blur_px=self.blur_px)
+        return line_shift.shift(seen, polarity=polarity, blur_px=self.blur_px)
+
+    def ray(
+        self,
+        origin_m: NDArray,
+        place_m: NDArray,
+        along_m: NDArray,
+        across_m: NDArray,
+        moved_px: float,
+        slope: float,
+    ) -> tuple[NDArray, NDArray]:
+        """Return start and unit direction, (2,) px each, of a line as it was seen at a place.
+
+        It was expected through the origin; it lies `moved_px` across from there, and is turned by
+        a `slope`.
+        """
+        tangent, normal = line_profiles.tangent_and_normal(
+            self.camera, origin_m[None], along_m, across_m
+        )
+        direction = tangent[0] + slope * normal[0]
+        start = project(self.camera, place_m) + moved_px * normal[0]
+        return start, direction / np.linalg.norm(direction)
 
 
 @dataclass(frozen=True, eq=False)

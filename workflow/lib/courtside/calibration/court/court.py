@@ -38,12 +38,11 @@ class Court:
     line_width_m: float
     points: tuple[str, ...]
     xyz: NDArray  # (P, 3): m
-    edges: tuple[str, ...]  # length P; which edges meet at the point, in words
+    edges: tuple[str, ...]  # P: which edges meet at the point, in words
     sigma_m: NDArray  # (P,): how far a real court is from `xyz`, standard deviation per axis
     sets: dict[str, tuple[str, ...]]  # named subsets of `points`; "all" is always there
     lines_m: NDArray  # (L, 4): painted rectangles: x0 y0 x1 y1
-    # `y_m`, `x_m` [left, right], `post_height_m`, `mid_height_m`; None without a net
-    net: dict | None
+    net: dict | None  # `y_m`, `x_m` [left, right], `post_height_m`, `mid_height_m`
 
     def line_corners(self) -> tuple[NDArray, NDArray]:
         """Return the low and the high corner of each painted rectangle, (L, 2) m each."""
@@ -176,12 +175,10 @@ def to_line_centres(court: Court) -> NDArray:
     """
     low, high = court.line_corners()
     across = np.argmin(high - low, axis=1)  # the axis that the line's width is measured along
-    shift = np.zeros_like(court.xyz)
+    shift, places = np.zeros_like(court.xyz), court.xyz[:, :2]
     for line in range(len(low)):
         axis = across[line]
-        inside = (court.xyz[:, :2] >= low[line] - ON_EDGE_M) & (
-            court.xyz[:, :2] <= high[line] + ON_EDGE_M
-        )
+        inside = (places >= low[line] - ON_EDGE_M) & (places <= high[line] + ON_EDGE_M)
         on = inside.all(axis=1) & (court.xyz[:, 2] == 0)
         middle = (low[line, axis] + high[line, axis]) / 2
         shift[on, axis] = middle - court.xyz[on, axis]

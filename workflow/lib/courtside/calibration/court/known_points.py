@@ -19,9 +19,8 @@ class Method:
     """One way to calibrate from known points."""
 
     linear: bool  # by DLT; otherwise by least squares
-    # with the lens known from a chessboard; otherwise focal length and k1 are found too
-    board: bool
-    points: NDArray  # (n,) int; indices of the court points used
+    board: bool  # the lens is known from a chessboard; otherwise focal length and k1 are found too
+    points: NDArray  # (n,) int: indices of the court points used
 
 
 def method(name: str, court: Court) -> Method:
@@ -53,15 +52,10 @@ def calibrate(
     *,
     click_sigma_px: float,
 ) -> dict[str, resection.Linear | resection.Fitted]:
-    """Calibrate each camera from its clicks.
+    """Calibrate each camera, whose pictures have the given size (px), from its clicks.
 
-    Raises `InputError` if the points do not determine a camera.
-
-    Parameters
-    ----------
-    sizes : of the pictures, px
-    lenses : K and dist by camera, for methods with a board
-    click_sigma_px : at a picture width of 3840 px
+    `lenses` give K and dist, for methods with a board; `click_sigma_px` is that at a picture width
+    of 3840 px. Raises `InputError` if the points do not determine a camera.
     """
     found: dict[str, resection.Linear | resection.Fitted] = {}
     for name, size in sizes.items():
@@ -97,8 +91,6 @@ def cameras(found: Mapping[str, resection.Linear | resection.Fitted]) -> list[Ca
     return calibrated
 
 
-def matrices(
-    found: Mapping[str, resection.Linear | resection.Fitted],
-) -> dict[str, NDArray]:
+def matrices(found: Mapping[str, resection.Linear | resection.Fitted]) -> dict[str, NDArray]:
     """Return the projection matrices (3, 4) that DLT gives, by camera."""
     return {name: one.matrix for name, one in found.items() if isinstance(one, resection.Linear)}

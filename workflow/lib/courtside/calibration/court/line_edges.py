@@ -17,8 +17,7 @@ class Edge:
     line: int  # row of `Court.lines_m`
     axis: int  # 0 where the edge runs along y at a fixed x, 1 where it runs along x at a fixed y
     at_m: float  # that fixed coordinate
-    # -1 for the edge of the lower coordinate, 0 for the line's middle, 1 for the other edge
-    side: int
+    side: int  # -1: the edge of the lower coordinate, 0: the line's middle, 1: the other edge
 
 
 def named(court: Court) -> tuple[tuple[Edge, ...], ...]:
@@ -77,10 +76,7 @@ def middle_line(court: Court, line: int) -> tuple[NDArray, NDArray]:
 def stretches(court: Court, length_m: float) -> tuple[NDArray, NDArray]:
     """Cut all lines into stretches of about one length.
 
-    Returns
-    -------
-    line : (M,) int; row of `lines_m`
-    ends : (M, 2, 3) float; on the line's middle, m
+    Return the row of `lines_m` (M,) of each, and its ends (M, 2, 3) m on the line's middle.
     """
     found = []
     for line in range(len(court.lines_m)):
@@ -96,8 +92,7 @@ class Paint:
     """What a camera expects to be painted where."""
 
     place: Callable[[NDArray], NDArray]  # from px (..., 2) to places (..., 2), smooth
-    # from places (..., 2) to (...) bool: whether there is paint
-    shows: Callable[[NDArray], NDArray]
+    shows: Callable[[NDArray], NDArray]  # from places (..., 2) to whether there is paint (...)
 
 
 def paint(camera: Camera, court: Court) -> Paint:

@@ -102,13 +102,10 @@ def _poses(clicks: Clicks, matrix: NDArray, dist: NDArray) -> list[NDArray]:
 
 
 def residuals(state: State, clicks: Clicks) -> tuple[NDArray, NDArray, NDArray]:
-    """Return projected minus clicked px, the derivative by the point, and the depth.
+    """Return projected minus clicked px (P, 2), their derivative (P, 2, 3), and depths (P,) m.
 
-    Returns
-    -------
-    off : (P, 2) float
-    by_point : (P, 2, 3) float; by the point in the camera's frame, px per metre
-    depth : (P,) float; m; px are meaningless where it is not positive
+    The derivative is by the point in the camera's frame, px per metre. Px are meaningless where
+    the depth is not positive.
     """
     in_cam = clicks.xyz @ state.cam_from_world[:, :3].T + state.cam_from_world[:, 3]
     depth = in_cam[:, 2]

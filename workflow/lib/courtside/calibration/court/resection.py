@@ -22,9 +22,8 @@ OUTLIER = 4.0  # sigmas; a good click is farther off in 0.03 % of cases
 CAUCHY = 3.0  # ASSUME: scale of the Cauchy loss, in sigmas
 # ASSUME: a DLT that magnifies click errors more often than this within the volume is degenerate.
 MAX_MAGNIFICATION = 30.0
-MAX_MISFIT = (
-    0.02  # ASSUME: of the picture's width: clicks that most miss by more are of other points
-)
+# ASSUME: of the picture's width: clicks that most miss by more are of other points.
+MAX_MISFIT = 0.02
 MIN_EXTENT = 1e-9  # relative singular value below which rounding errors leave nothing determined
 
 
@@ -34,13 +33,12 @@ class Linear:
 
     # (3, 4): from homogeneous world points (m) to homogeneous pixels, all eleven numbers free;
     # positive before the camera. For `triangulation.triangulate` with pixels in place of normalised
-    # points
+    # points.
     matrix: NDArray
-    # the same but for skew, which `Camera` does not have; None where the matrix holds no camera
-    camera: Camera | None
+    camera: Camera | None  # without the matrix's skew; None where it holds no camera
     rms_px: float  # per axis, of the points it was found from
-    # how many times larger than a click's error a projected point's error is, at worst, in the box
-    # around the points up to half its short side (the playing volume); inf for points in one plane
+    # How many times larger than a click's error a projected point's error is, at worst, in the box
+    # around the points up to half its short side (the playing volume); inf for points in one plane.
     magnification: float
     degenerate: bool  # whether the points do not determine the camera
     reason: str  # one sentence if so, else empty
@@ -51,14 +49,11 @@ class Fitted:
     """A camera found by least squares."""
 
     camera: Camera
-    # (n, n): of `parameters`. The pose changes from the left: a step r, t takes x_in_cam to exp(r)
-    # x_in_cam + t
+    # (n, n): of `parameters`. A step r, t of the pose takes x_in_cam to exp(r) x_in_cam + t.
     covariance: NDArray
     parameters: tuple[str, ...]  # `problem.POSE`, then f_px and k1 where the lens was unknown
-    # (P,) bool; the clicks used: present, and within four sigmas of the fit to the others
-    accepted: NDArray
-    # (P,): distance of each click, accepted or not, to its projected point; NaN where not clicked
-    error_px: NDArray
+    accepted: NDArray  # (P,) bool: clicks used: present, within four sigmas of the others' fit
+    error_px: NDArray  # (P,): of each click, accepted or not, to its projected point
     rms_px: float  # per axis, of the accepted clicks
 
 
@@ -67,13 +62,11 @@ def dlt(
 ) -> Linear:
     """Calibrate a camera linearly from known points: a projection matrix of eleven free numbers.
 
-    Raises `InputError` if fewer than six points are clicked.
-
     Hartley & Zisserman 2004, alg. 7.1 without its last step; normalised by their sec. 4.4. No lens
     distortion. `degenerate` comes from the covariance of the linear solution. It shows points in
     one plane, and, which the residuals do not show, the layout with a camera in the plane of the
     net: of the only points above the floor, the tips of the posts, one then stands behind the
-    other.
+    other. Raises `InputError` if fewer than six points are clicked.
 
     Parameters
     ----------
@@ -83,14 +76,9 @@ def dlt(
     """
     xyz, xy, _ = _clicked(xyz, xy, FEWEST["dlt"], name)
     from_xyz, from_xy = _normaliser(xyz), _normaliser(xy)
-    left, right = _apply(from_xyz, xyz), _apply(from_xy, xy)
+    left, right = _homogeneous(xyz) @ from_xyz.T, _homogeneous(xy) @ from_xy.T
     nothing = np.zeros_like(left)
-    rows = np.concatenate(
-        [
-            np.concatenate([left, nothing, -right[:, :1] * left], axis=1),
-            np.concatenate([nothing, left, -right[:, 1:2] * left], axis=1),
-        ]
-    )
+    rows = np.block([[left, nothing, -right[:, :1] * left], [nothing, left, -right[:, 1:2] * left]])
     _, extent, vectors = np.linalg.svd(rows, full_matrices=True)
     normalised = vectors[-1].reshape(3, 4)
     magnification = _magnification(xyz, from_xyz, normalised, extent, vectors)
@@ -154,17 +142,13 @@ def _homogeneous(points: NDArray) -> NDArray:
     return np.concatenate([points, np.ones((len(points), 1))], axis=1)
 
 
-def _apply(matrix: NDArray, points: NDArray) -> NDArray:
-    return _homogeneous(points) @ matrix.T
-
-
 def _magnification(xyz, from_xyz, normalised, extent, vectors) -> float:
     """Return the largest error in the volume per unit of click error, to first order."""
-    depth = np.abs(_apply(from_xyz, xyz) @ normalised[2])
+    depth = np.abs(_homogeneous(xyz) @ from_xyz.T @ normalised[2])
     low, high = xyz.min(axis=0), xyz.max(axis=0)
     high[2] = max(high[2], low[2] + np.sort(high - low)[1] / 2)
     corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
-    corners = _apply(from_xyz, corners)
+    corners = _homogeneous(corners) @ from_xyz.T
     seen = corners @ normalised.T
     if extent[-2] < MIN_EXTENT * extent[0] or (np.abs(seen[:, 2]) < MIN_EXTENT * depth.max()).any():
         return np.inf
@@ -204,13 +188,11 @@ def nonlinear(
 ) -> Fitted:
     """Calibrate a camera by robust least squares of the pixel errors, without a start value.
 
-    Raises `InputError` if the points are too few (8, or 4 with K), on one line, leave the camera
-    undetermined, or do not agree with one another.
-
     Start: for each of several focal lengths the pose by SQPnP (Terzakis & Lourakis 2020); the one
     with the least median error. Then Levenberg-Marquardt with a Cauchy loss, and once more without
     on the accepted clicks: the covariance is that of this last fit, for errors as large as
-    `sigma_px` and `xyz_sigma` say.
+    `sigma_px` and `xyz_sigma` say. Raises `InputError` if the points are too few (8, or 4 with K),
+    on one line, leave the camera undetermined, or do not agree with one another.
 
     Parameters
     ----------

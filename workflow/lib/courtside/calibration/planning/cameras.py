@@ -30,17 +30,11 @@ def camera(
     fov_deg: float | None = None,
     roll: float = 0.0,
 ) -> Camera:
-    """Return a planned camera: no distortion, principal point in the middle.
+    """Return a planned camera at a place (3,) m: no distortion, principal point in the middle.
 
-    Raises `ValueError` if none or both of focal length and field of view are given, `InputError` if
-    it looks straight up or down, or nowhere.
-
-    Parameters
-    ----------
-    place_m, aim_m : (3,) float; world, m
-    size_px : width and height
-    focal_px, fov_deg : one of them: focal length, or field of view across the width
-    roll : rotation about its own axis, rad
+    Either its focal length or its field of view across the width is given; `roll` turns it about
+    its own axis, rad. Raises `ValueError` if none or both of focal length and field of view are
+    given, `InputError` if it looks straight up or down, or nowhere.
     """
     if (focal_px is None) == (fov_deg is None):
         raise ValueError("expected one of focal_px and fov_deg")
@@ -105,11 +99,7 @@ def walked_cameras(
 ) -> list[Camera]:
     """Return the bridging images of a planned walk, in order, with the scatter of a person's aim.
 
-    Parameters
-    ----------
-    way_m, n_images, height_m : as for `places_on_path`
-    aim_m : (3,) float; what the camera is aimed at
-    **lens : `focal_px` or `fov_deg` of `camera`
+    The way is as for `places_on_path`; `**lens` is `focal_px` or `fov_deg` of `camera`.
     """
     length_m = _measured(way_m)[1][-1]
     knots = np.linspace(0, 1, max(4, round(length_m / STRAY_EVERY_M) + 1))
@@ -127,17 +117,10 @@ def walked_cameras(
 
 
 def neighbour_angles_deg(centres: ArrayLike, point: ArrayLike) -> NDArray:
-    """Measure the angles between neighbouring views, as seen from a point.
+    """Return the angles (V - 1,) between neighbouring views, 0 to 180, as seen from a point (3,).
 
-    Parameters
-    ----------
-    centres : (V, 3) float; optical centres in order along the path, the fixed cameras at its ends
-        included; m
-    point : (3,) float; where the angles are measured: for the study the court's centre, 1 m high
-
-    Returns
-    -------
-    angle_deg : (V - 1,) float; between 0 and 180; NaN beside a centre that is NaN
+    Optical centres (V, 3) are in order along the path, fixed cameras included; angles beside one
+    that is NaN are NaN.
     """
     ray = np.asarray(centres, dtype=float) - np.asarray(point, dtype=float)
     cross = np.linalg.norm(np.cross(ray[:-1], ray[1:]), axis=1)

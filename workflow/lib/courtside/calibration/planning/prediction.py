@@ -29,12 +29,10 @@ class Prediction:
     """What to expect with one number of bridging images."""
 
     n_images: int
-    # widest angle between neighbouring views, seen from the court's centre; NaN without a walk
-    neighbour_deg: float
+    neighbour_deg: float  # widest angle of neighbours from the court's centre; NaN without a walk
     n_ties: int  # points that tie images
     least_ties: int  # points that the fixed camera with the fewest sees
-    # 5 %, 50 % and 95 % quantile of the root mean square error over the volume; NaN where `fault`
-    error_cm: tuple[float, ...]
+    error_cm: tuple[float, ...]  # `QUANTILES` of the rms error over the volume; NaN where `fault`
     solution: joint_adjustment.Solution | None = None  # cameras as planned, with their covariance
     fault: str = ""  # why nothing can be predicted, or empty
 
@@ -138,11 +136,8 @@ def needed(
 ) -> tuple[Prediction | None, str]:
     """Return the prediction with the fewest images that are enough, and why; or None and why not.
 
-    Parameters
-    ----------
-    predictions : with a walk; in any order
-    min_points : fewest ties that place a fixed camera
-    target_cm : median error that is wanted; by default the least of all predictions, within 10 %
+    A fixed camera needs `min_points` ties. `target_cm` is the median error that is wanted, by
+    default the least of all predictions, within 10 %.
     """
     whole = [p for p in predictions if p.n_images and p.neighbour_deg <= WIDEST_DEG]
     if not whole:

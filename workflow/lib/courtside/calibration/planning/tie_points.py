@@ -28,11 +28,10 @@ NEAREST_M = 1.0
 class Texture:
     """How much there is to see in a hall."""
 
-    # features in a picture 1280 px wide that are found again from exactly the same place; in
-    # proportion to the width
+    # Features in a picture 1280 px wide that are found again from exactly the same place; in
+    # proportion to the width.
     n_alive: float
-    # mean length of the lives of two kinds of features, exponentially distributed
-    lives_deg: tuple[float, ...]
+    lives_deg: tuple[float, ...]  # mean lives, exponentially distributed, of two kinds of features
     shares: tuple[float, ...]  # of the kinds among the features of one picture
     noise_px: float  # standard deviation of a tie per axis, whatever the picture's size
     floor: float  # share of the features that are on the floor
@@ -152,22 +151,10 @@ def _in_view(camera: Camera, xyz: NDArray) -> NDArray:
 def _network_of(images, n_fixed, xyz, seen, lens_prior) -> Network:
     point_idx, image_idx = np.nonzero(seen)
     alone = selection.of_cameras(images)
-    lens_of_image = np.minimum(np.arange(len(images)), n_fixed)
     lens = alone.lens[: n_fixed + 1]
-    mean, sigma = lens_prior
-    blank = replace(
-        alone,
-        lens=lens,
-        lens_of_image=lens_of_image,
-        lens_mean=mean[: len(lens)],
-        lens_sigma=sigma[: len(lens)],
-        xyz=xyz,
-        xyz_mean=np.zeros_like(xyz),
-        xyz_sigma=np.full(len(xyz), np.inf),
-        image_idx=image_idx,
-        point_idx=point_idx,
-        xy=np.zeros((len(image_idx), 2)),
-        sigma_px=np.ones(len(image_idx)),
-        loss_scale=np.full(len(image_idx), np.inf),
-    )
+    mean, sigma = (values[: len(lens)] for values in lens_prior)
+    of_image = np.minimum(np.arange(len(images)), n_fixed)
+    alone = replace(alone, lens=lens, lens_of_image=of_image, lens_mean=mean, lens_sigma=sigma)
+    nowhere = np.zeros((len(image_idx), 2))
+    blank = problem.with_points(alone, xyz, image_idx, point_idx, nowhere)
     return replace(blank, xy=problem.residuals(blank))

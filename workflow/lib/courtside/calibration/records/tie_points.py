@@ -40,19 +40,17 @@ class Record:
     """The fixed cameras of one structure from motion."""
 
     outcome: str  # empty, or in one line which fixed camera was not placed, and what to film again
-    # empty, or in one line why the placed cameras could not be adjusted with the court points
-    fault: str
+    fault: str  # empty, or why the placed cameras could not be adjusted with the court points
     sfm_cameras: list[Camera]  # the registered fixed cameras, in the model's own frame and unit
     n_points_seen: NDArray  # (C,) int; points of the model that each of them sees
     ties: joint_adjustment.Ties | None  # None where there is an outcome or a fault
     images: NDArray  # (V,) str; names of the registered images
-    # (V, 3): their projection centres: in the court's frame where there are ties, else in the
-    # model's
+    # (V, 3): their projection centres: in the court's frame where there are ties, else the model's.
     centres: NDArray
     xyz: NDArray  # (N, 3): tie points, in the same frame
     residual_px: float  # of the ties, robust standard deviation per axis; NaN without ties
-    # number of maps of the same matches that place the images as this one does, itself included,
-    # and number of all maps made
+    # Number of maps of the same matches that place the images as this one does, itself included,
+    # and number of all maps made.
     n_maps: tuple[int, int]
 
 
