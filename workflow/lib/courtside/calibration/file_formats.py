@@ -51,7 +51,13 @@ def read(path: str | os.PathLike) -> list[Camera]:
         text = _text(path)
         found = _reader(text)(path, text)
     for camera in camera_fields.check_distinct(path, found):
-        _check_distance(path, camera)
+        far_m = np.linalg.norm(camera.centre_in_world)
+        if far_m > FARTHEST_M:
+            raise InputError(
+                f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's "
+                f"origin, found {far_m:.0f} m; if the file is in mm or cm, add the key unit (TOML: "
+                "in [metadata])"
+            )
     return found
 
 
@@ -100,16 +106,6 @@ def _reader(text: str) -> Callable[[Path, str], list[Camera]]:
     if start.startswith("<"):
         return _read_qualisys
     return _read_toml
-
-
-def _check_distance(path: Path, camera: Camera) -> None:
-    far_m = np.linalg.norm(camera.centre_in_world)
-    if far_m > FARTHEST_M:
-        raise InputError(
-            f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's "
-            f"origin, found {far_m:.0f} m; if the file is in mm or cm, add the key unit (TOML: in "
-            "[metadata])"
-        )
 
 
 def _read_toml(path: Path, text: str) -> list[Camera]:

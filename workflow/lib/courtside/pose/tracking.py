@@ -22,7 +22,7 @@ class Track:
     time_s: NDArray  # (T,)
     xy: NDArray  # (T, J, 2): pixels; NaN where nobody was found
     score: NDArray  # (T, J)
-    reason: NDArray  # (T, J) uint8; `courtside.records.keypoints.missing_reason`
+    reason: NDArray  # (T, J) uint8: `courtside.records.keypoints.missing_reason`
     xyz_in_body: NDArray  # (T, J, 3): metres, see `courtside.pose.detector.Pose`
 
 
@@ -37,13 +37,12 @@ def track_person(
 ) -> Track:
     """Follow the largest moving person through a video: a track with one row per frame.
 
+    The detector, used when there is no track, sees only the surroundings of the foreground, so that
+    a person who is small in the picture is large in its input.
+
     Parameters
     ----------
-    frames : iterable of (float, (H, W, 3) uint8); time in seconds and picture, BGR
-    detector : used when there is no track; it sees only the surroundings of the foreground, so that
-        a person who is small in the picture is large in its input
-    landmarks : used in every frame
-    foreground : where the camera sees something new
+    frames : time in seconds, and picture (H, W, 3) uint8, BGR
     min_presence : below this confidence, 0 to 1, the network's answer is dropped and the person
         searched again
     redetect : search in every frame instead of following: slower, and without memory
@@ -57,7 +56,8 @@ def track_person(
         if region is not None and not redetect:
             pose = landmarks.estimate(image, region)
         if pose is None or pose.presence < min_presence or strayed(pose.xy, boxes):
-            pose = _search(image, boxes, detector, landmarks)
+            near = regions_near(image, boxes[0], detector) if boxes else []
+            pose = landmarks.estimate(image, near[0]) if near else None
         found = pose if pose is not None and pose.presence >= min_presence else None
         region = None if found is None else found.region
         times.append(time_s)
@@ -78,16 +78,6 @@ def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:
         if (low <= middle).all() and (middle <= high).all():
             return False
     return bool(boxes)
-
-
-def _search(
-    image: NDArray, boxes: Sequence[Box], detector: PersonDetector, landmarks: LandmarkNetwork
-) -> Pose | None:
-    """Return the pose in the best region near the largest foreground box; None without a box."""
-    if not boxes:
-        return None
-    region = regions_near(image, boxes[0], detector)[0]
-    return landmarks.estimate(image, region)
 
 
 def regions_near(image: NDArray, box: Box, detector: PersonDetector) -> list[Region]:

@@ -42,11 +42,10 @@ def mean(knowledge: Sequence[Quadratic]) -> Quadratic:
 class Normal:
     """Normal equations of a network with its points eliminated."""
 
-    active: NDArray  # (K,) bool; parameters that are free and observed
+    active: NDArray  # (K,) bool: parameters that are free and observed
     information: NDArray  # (A, A): of the active ones
     gradient: NDArray  # (A,)
     cost: float  # half the sum of squared, robustly weighted residuals
-    point_information: NDArray  # (N, 3, 3)
     back: Callable[[NDArray], NDArray]  # from a step of the active ones to that of points (N, 3)
 
 
@@ -154,7 +153,7 @@ def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Norm
     )
     full, gradient = _camera_side(network, by_camera, residual, quadratic)
     active = _active(network) & (np.diag(full) > 0)
-    root, point_gradient, point_information = _point_side(network, by_point, residual)
+    root, point_gradient = _point_side(network, by_point, residual)
     coupling = _coupling(network, root, by_point, by_camera)[:, active]
     scaled_gradient = np.einsum("nij,nj->ni", root, point_gradient)
     eliminated: Any = coupling.T @ coupling
@@ -167,7 +166,7 @@ def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Norm
         pulled = (coupling @ step).reshape(-1, 3) + scaled_gradient
         return -np.einsum("nji,nj->ni", root, pulled)
 
-    return Normal(active, information, gradient, total, point_information, back)
+    return Normal(active, information, gradient, total, back)
 
 
 def _along(values: NDArray, terms: NDArray) -> NDArray:
@@ -227,8 +226,8 @@ def _camera_side(network, by_camera, residual, quadratic) -> tuple[NDArray, NDAr
     return information, gradient
 
 
-def _point_side(network, by_point, residual) -> tuple[NDArray, NDArray, NDArray]:
-    """Return the points' root, root.T @ root = covariance (N, 3, 3), gradient and information."""
+def _point_side(network, by_point, residual) -> tuple[NDArray, NDArray]:
+    """Return the points' root, root.T @ root = covariance (N, 3, 3), and gradient."""
     n_points = len(network.xyz)
     blocks = np.einsum("mri,mrj->mij", by_point, by_point).reshape(-1, 9)
     information = _sum_by(network.point_idx, blocks, n_points).reshape(-1, 3, 3)
@@ -240,7 +239,7 @@ def _point_side(network, by_point, residual) -> tuple[NDArray, NDArray, NDArray]
     most = extent[:, -1:]
     extent = np.maximum(extent, MIN_INFORMATION * most + (most == 0))
     root = axes.transpose(0, 2, 1) / np.sqrt(extent)[:, :, None]
-    return root, gradient, information
+    return root, gradient
 
 
 def _sum_by(index: NDArray, values: NDArray, length: int) -> NDArray:

@@ -23,7 +23,6 @@ class Shift:
     high_px: float  # of its higher edge; the same where the line is too thin to separate them
     slope: float  # rotation of the line: px across per px along
     sigma_px: float  # standard deviation of the shift at the origin
-    contrast: float  # paint against floor, levels
     share: float  # of the samples in which the line is seen, 0..1
     near_share: float  # the same of those near the origin
     score: float  # mean correlation of what is seen with what is expected there
@@ -56,10 +55,10 @@ def shift(
         moves, turn, rest = found
         middle, slope = (low + high) / 2, slope + turn
         low, high = middle + moves[0], middle + moves[-1]
-    sigma, contrast, kept = rest
+    sigma, kept = rest
     nearest = np.abs(stretch.along_px) <= np.abs(stretch.along_px).min() + near_px
     shares = kept.mean(), kept[nearest].mean()
-    return Shift(low, high, slope, sigma, contrast, *shares, score, rival)
+    return Shift(low, high, slope, sigma, *shares, score, rival)
 
 
 def _correlations(stretch: Stretch, polarity: int) -> NDArray:
@@ -106,7 +105,7 @@ def _best_line(match, along_px, width_px) -> tuple[float, float, float, float]:
 
 
 def _refine(stretch, offset, slope, polarity, sides, blur_px):
-    """Return the edges' moves at the origin, slope, (sigma, contrast, kept); None where lost."""
+    """Return the edges' moves at the origin, slope, (sigma, kept); None where lost."""
     n, width = stretch.paint.shape
     moved_px = (offset + slope * stretch.along_px)[:, None]
     columns = (stretch.seen.shape[1] - 1) / 2 + moved_px / STEP_PX
@@ -133,7 +132,7 @@ def _refine(stretch, offset, slope, polarity, sides, blur_px):
     parts = [rate] if sides == 1 else [np.where(t < 0, rate, 0), np.where(t >= 0, rate, 0)]
     moved, spread = _moves(seen, np.array(floor), stretch.paint, parts, used, noise)
     moves, turn, sigma = _line(moved, spread, stretch.along_px, kept)
-    return moves, turn, (sigma, float(polarity or 1) * float(typical), kept)
+    return moves, turn, (sigma, kept)
 
 
 def _at(values: NDArray, columns: NDArray) -> NDArray:
