@@ -2,10 +2,7 @@
 
 The rooms: court, bundle, planning, click_proposals, records.
 
-file_formats
-    read, rename: calibrations by other programs
-chessboard
-    find, calibrate: a lens from pictures of a chessboard
-point_covariance
-    point_covariance, sensitivity, of_columns, pseudo_inverse, mahalanobis
+file_formats: read, rename: calibrations by other programs
+chessboard: find, calibrate: a lens from pictures of a chessboard
+point_covariance: point_covariance, sensitivity, of_columns, pseudo_inverse, mahalanobis
 """

@@ -54,10 +54,9 @@ def find(
 
     OpenCV's sector-based detector (Duda & Frese 2018), which is sub-pixel by itself. It sometimes
     takes other corners for the board's: those do not form a plane grid. Raises `InputError` if
-    there are no pictures, one is unreadable, or their sizes differ.
-
-    `pictures` is a folder or files; `inner_corners` counts where four squares meet, along both
-    sides of the board, in either order.
+    there are no pictures, one is unreadable, or their sizes differ. `pictures` is a folder or
+    files; `inner_corners` counts where four squares meet, along both sides of the board, in either
+    order.
     """
     columns, rows = (int(count) for count in inner_corners)
     if min(columns, rows) < 3 or columns == rows:

@@ -127,15 +127,11 @@ def pictures(
 ) -> Iterator[NDArray]:
     """Draw on pictures (H, W, 3) uint8, BGR, as they come; only one is in memory.
 
-    An odd height or width grows by a pixel, as H.264 requires. Raises `InputError` if `track` has
-    no frame at a frame's time: a face might show.
-
-    Parameters
-    ----------
-    frames : time on the camera's own clock, and picture
-    colours : BGR of detected joints, of the 3D skeleton, and of views that were not used
-    keep_background : whether surroundings stay sharp where faces are hidden: for videos that show
-        nobody else
+    They come with times on the camera's own clock. `colours` are those of detected joints, of the
+    3D skeleton, and of views that were not used. With `keep_background` surroundings stay sharp
+    where faces are hidden: for videos that show nobody else. An odd height or width grows by a
+    pixel, as H.264 requires. Raises `InputError` if `track` has no frame at a frame's time: a face
+    might show.
     """
     step_s = np.median(np.diff(track.own_s)) if len(track.own_s) > 1 else 1.0
     for time_s, image in frames:

@@ -93,21 +93,15 @@ def flatness(xyz: NDArray) -> NDArray:
 def robust_umeyama(x_in_a: ArrayLike, x_in_b: ArrayLike, sigma: ArrayLike) -> tuple[Sim3, NDArray]:
     """Fit `b_from_a` to most of the same points (P, 3) in both frames, NaN where missing in one.
 
+    Also return the inliers (P,) bool: points within the 99 % limit. `sigma`, one or (P,), is the
+    standard deviation of a point per axis, in units of b. If the points scatter more, all sigmas
+    are scaled up by one factor.
+
     Least median of squares (Rousseeuw & Leroy 1987) over all subsets of three points: no random
     numbers. Then weighted least squares on the inliers until they stay the same. Mirrored points
     that all lie in one plane fit a rotation as well: only the cameras' positions tell them apart,
     which are not known here. Raises `InputError` if the points are fewer than three, collinear, or
     mirrored.
-
-    Parameters
-    ----------
-    sigma : float or (P,) float; standard deviation of a point per axis, in units of b. If the
-        points scatter more, all sigmas are scaled up by one factor.
-
-    Returns
-    -------
-    b_from_a
-    accepted : (P,) bool; inliers: points within the 99 % limit
     """
     x_in_a, x_in_b = np.asarray(x_in_a, float), np.asarray(x_in_b, float)
     sigma = np.broadcast_to(np.asarray(sigma, float), len(x_in_a))

@@ -1,15 +1,11 @@
 """2D pose networks in onnxruntime: detection, tracking, decoding, privacy.
 
-decoders
-    `landmark_network`: a network by the name of its decoder.
-detector
-    `Region`, `Pose`, `cut_out`: the interface of networks; blazepose, heatmaps: their kinds.
-tracking, tracklets
-    `track_person`, `track_people`: people followed through the pictures of one camera.
-foreground
-    `Foreground`, `Whole`: where to search for people.
-privacy, stick_drawing
-    `hide_faces`, `only_persons`, `hide`; `draw`.
+decoders: `landmark_network`: a network by the name of its decoder.
+detector: `Region`, `Pose`, `cut_out`: the interface of networks; blazepose, heatmaps: their kinds.
+tracking, tracklets: `track_person`, `track_people`: people followed through the pictures of one
+    camera.
+foreground: `Foreground`, `Whole`: where to search for people.
+privacy, stick_drawing: `hide_faces`, `only_persons`, `hide`; `draw`.
 
 Folder: `conversion` (networks from TFLite to ONNX).
 """

@@ -21,11 +21,9 @@ BLUR = (0.25, 0.5, 0.25)  # binomial: smooths a map before its peak is taken
 class HeatmapLandmarks:
     """A landmark network with an (H, W, J) heat map as its only output.
 
-    Parameters
-    ----------
-    input_range : values that black and white pixels become
-    channels : {"rgb", "bgr"}; channel order of its input
-    presence_joints : joints whose mean peak is taken as the confidence that a person is there
+    Black and white pixels become the values of `input_range`; `channels` is the channel order of
+    its input, "rgb" or "bgr". The mean peak of the `presence_joints` is taken as the confidence
+    that a person is there.
     """
 
     def __init__(

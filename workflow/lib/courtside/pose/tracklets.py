@@ -77,13 +77,9 @@ def track_people(
 
     A body is lost where the network doubts it, where it leaves the foreground or jumps off its
     course. Of two tracks on one body, the one further off its course is dropped. Where two bodies
-    come close and where they part, both tracklets end: the other views decide who is who.
-
-    Parameters
-    ----------
-    frames, detector, landmarks, foreground, min_presence, redetect : as for `tracking.track_person`
-    max_people : people followed at once, 1 or more. With 1, the result is that of `track_person`.
-
+    come close and where they part, both tracklets end: the other views decide who is who. At most
+    `max_people` are followed at once; with 1, the result is that of `tracking.track_person`, which
+    explains the other parameters.
     """
     if max_people == 1:
         track = tracking.track_person(

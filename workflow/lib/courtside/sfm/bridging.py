@@ -35,8 +35,8 @@ def choose(
     nearest usable multiple; one within q of it wins that is the sharpest and clearly (1.25 times)
     sharper. Places are then settled together: none twice, where another choice exists no gap above
     8 q and both ends less than a spacing from the grid's, and otherwise as near to the preferred as
-    can be. "interval" ignores q. Raises `InputError` if
-    there are fewer than n usable frames, `ValueError` if an argument is out of its range.
+    can be. "interval" ignores q. Raises `InputError` if there are fewer than n usable frames,
+    `ValueError` if an argument is out of its range.
 
     Parameters
     ----------

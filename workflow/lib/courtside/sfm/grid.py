@@ -17,8 +17,8 @@ class Grid:
     """Frames of all walks, one walk after the other."""
 
     walks: NDArray  # (G,) str
-    names: NDArray  # (G,) str; of the images, from the image root
-    kept: NDArray  # (G,) bool; whether a frame may become a bridging image
+    names: NDArray  # (G,) str: of the images, from the image root
+    kept: NDArray  # (G,) bool: whether a frame may become a bridging image
     sharpness: NDArray  # (G,)
 
     def of_walk(self, walk: str) -> tuple[str, ...]:

@@ -12,9 +12,9 @@ STRIDES = 8  # longest stride within a level of the pairs; the widest gap of ima
 def pair_list(n_grid: int) -> NDArray:
     """List the pairs of grid frames to match, for any number of bridging images.
 
-    About 12 pairs (M, 2) int for each frame: places i < j in the grid, sorted, each once.
-    Level l holds the frames whose place is a multiple of q = 2**l, and their pairs up to 8 q apart.
-    Those up to 4 q apart are in the levels below already.
+    About 12 pairs (M, 2) int for each frame: places i < j in the grid, sorted, each once. Level l
+    holds the frames whose place is a multiple of q = 2**l, and their pairs up to 8 q apart. Those
+    up to 4 q apart are in the levels below already.
     """
     pairs, level = [], 1
     while level < n_grid:

@@ -61,11 +61,8 @@ def movement(reference: NDArray, other: NDArray, *, min_matches: int = MIN_MATCH
     RANSAC. For a camera that panned or tilted this holds near the centre only: towards the edges
     its picture moves a little more.
 
-    Parameters
-    ----------
-    reference, other : (H, W, 3) uint8; BGR, such as a camera's static picture and a frame of a
-        take; ValueError if sizes differ
-    min_matches : with fewer agreeing background points the result is NaN
+    Pictures are (H, W, 3) uint8, BGR, such as a camera's static picture and a frame of a take;
+    ValueError if sizes differ. With fewer than `min_matches` agreeing points the result is NaN.
     """
     if reference.shape != other.shape:
         raise ValueError(f"pictures of two sizes: {reference.shape} and {other.shape}")
@@ -174,13 +171,10 @@ LENS_MEAN, LENS_SIGMA = np.array([0.0, 0.35]), np.array([0.12, 0.25])
 def moved(places: NDArray, model: NDArray) -> NDArray:
     """Return how far a rotation of the camera moves each place (N, 2), in half longer sides.
 
-    Parameters
-    ----------
-    places : (N, 2) float; from the picture's centre
-    model : (6,) float; shift of the centre x, y; linear change a - 1 and b of the similarity [[a,
-        -b], [b, a]]; and, for the lens, k and p: the centre's shift t is (1 + k r^2) t + p x (x .
-        t) at x. A pinhole has k = 0 and p = (that half / focal length)^2 = p0; distortion k1 adds
-        k1 p0 to k and 2 k1 p0 to p, to third order.
+    Places are from the picture's centre. The model (6,) is the shift of the centre x, y; the linear
+    change a - 1 and b of the similarity [[a, -b], [b, a]]; and, for the lens, k and p: the centre's
+    shift t is (1 + k r^2) t + p x (x . t) at x. A pinhole has k = 0 and p = (that half / focal
+    length)^2 = p0; distortion k1 adds k1 p0 to k and 2 k1 p0 to p, to third order.
     """
     shift, (scale, turn, k, p) = model[:2], model[2:]
     x, y = places.T

@@ -34,10 +34,10 @@ class Listing:
     """The whole packets of a video file; times in ticks of its clock."""
 
     path: Path
-    pts: NDArray  # (T,) int; when each frame is shown, increasing
-    # (T,) int; for each frame, the last shown of those decoded up to it: it may depend on that one.
+    pts: NDArray  # (T,) int: when each frame is shown, increasing
+    # (T,) int: for each frame, the last shown of those decoded up to it: it may depend on that one.
     leans_on: NDArray
-    key_pts: NDArray  # (K,) int; those where decoding can begin
+    key_pts: NDArray  # (K,) int: those where decoding can begin
     tick_s: Fraction  # one tick, in seconds
     end: int  # when the last frame's time is over
     n_declared: int | None  # frames as the container declares them

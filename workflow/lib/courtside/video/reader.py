@@ -77,20 +77,12 @@ def frames(
     stop_s: float | None = None,
     crop_px: tuple[int, int, int, int] | None = None,
 ) -> Iterator[tuple[float, NDArray]]:
-    """Decode a video one frame at a time.
+    """Decode a video one frame at a time: seconds since its first frame, and picture.
 
-    Raises `InputError` if the file is missing, no video, damaged or cut short within the range,
-    holds no frame in it, or is smaller than the crop.
-
-    Parameters
-    ----------
-    start_s, stop_s : only frames with `start_s <= time_s < stop_s`; None: the file's start or end
-    crop_px : left, top, width and height of the part wanted, px of the upright picture
-
-    Yields
-    ------
-    time_s : seconds since the first frame of the file
-    image : (H, W, 3) uint8; BGR, upright
+    Pictures are (H, W, 3) uint8, BGR, upright. Only frames with `start_s <= time_s < stop_s` are
+    wanted (None: the file's start or end), and of them the part `crop_px`: left, top, width and
+    height, px of the upright picture. Raises `InputError` if the file is missing, no video, damaged
+    or cut short within the range, holds no frame in it, or is smaller than the crop.
     """
     listing, first, stop = _range(path, start_s, stop_s)
     times_s = listing.times_s
@@ -106,19 +98,11 @@ def extract_frames(
     stop_s: float | None = None,
     crop_px: tuple[int, int, int, int] | None = None,
 ) -> Iterator[tuple[int, float, NDArray]]:
-    """Decode the frames nearest to a regular grid of times.
+    """Decode the frames nearest to a regular grid of times: index in the file, time and picture.
 
-    Parameters
-    ----------
-    every_s : spacing of the grid, which begins at `start_s` (or 0) and ends with the last frame.
-        ValueError if it is not positive.
-    start_s, stop_s, crop_px : as for `frames`, which also tells the errors
-
-    Yields
-    ------
-    frame_idx : index of the frame in the file. A frame nearest to several grid times comes once; of
-        two equally near, the earlier is taken.
-    time_s, image : as for `frames`
+    The grid begins at `start_s` (or 0) and ends with the last frame. A frame nearest to several
+    grid times comes once; of two equally near, the earlier is taken. ValueError if the spacing
+    `every_s` is not positive; all else is as for `frames`.
     """
     if not every_s > 0:
         raise ValueError(f"every_s must be positive, not {every_s}")

@@ -47,17 +47,10 @@ def check_still(
 ) -> Movement:
     """Check that a fixed camera neither moved nor zoomed between two pictures.
 
-    Raises `InputError` if the sizes differ, the camera moved, or too few background points agree to
-    tell.
-
-    Parameters
-    ----------
-    reference, other : (H, W, 3) uint8; its static picture and a later picture, BGR
-    max_shift_px : largest shift of the picture's centre; also of the middle of its sides by
-        rotation, pixels
-    max_zoom_percent : largest change of scale
-    where, mend : where the pictures are from and what to do, for the message
-
+    Pictures are (H, W, 3) uint8, BGR. `max_shift_px` limits the shift of the picture's centre, and
+    that of the middle of its sides by rotation. `where` and `mend` tell in the message where the
+    pictures are from and what to do. Raises `InputError` if the sizes differ, the camera moved, or
+    too few background points agree to tell.
     """
     start = f"camera {camera}: expected the same view in {where}"
     if reference.shape != other.shape:
@@ -95,20 +88,10 @@ def static_picture(
 ) -> tuple[NDArray, Movement]:
     """Make the static picture of a fixed camera, after checking that it stood still meanwhile.
 
-    Raises `InputError` if the camera moved, that cannot be told, or the median is mostly black.
-
-    Parameters
-    ----------
-    source : the recording, for messages
-    images : (H, W, 3) uint8; spread over the recording, in order, BGR
-    max_shift_px, max_zoom_percent : as for `check_still`, between the medians of the first and of
-        the last third
-
-    Returns
-    -------
-    image : (H, W, 3) uint8; the temporal median
-    movement : from the first to the last third; unknown for fewer than three pictures, which are
-        not checked
+    Of images (H, W, 3) uint8, BGR, spread over a recording, in order, it is the temporal median.
+    Also return the movement between the medians of the first and of the last third, which
+    `check_still` checks; it is unknown for fewer than three pictures, which are not checked. Raises
+    `InputError` if the camera moved, that cannot be told, or the median is mostly black.
     """
     image, third, found = temporal_median(images), len(images) // 3, unknown()
     check_light(source, image)

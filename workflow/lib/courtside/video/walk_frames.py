@@ -27,23 +27,14 @@ Source = str | os.PathLike | Sequence[str | os.PathLike]
 def frames(
     source: Source, *, every_s: float | None = None, every_frame: int | None = None
 ) -> Iterator[tuple[int, float, NDArray]]:
-    """Decode the frames of a walk on a fixed grid, or all its photos.
+    """Decode the frames of a walk on a fixed grid, or all its photos: index, time and picture.
 
-    Raises `InputError` if the source is missing, damaged, holds no picture or pictures of several
-    sizes, or a photo is mostly black.
-
-    Parameters
-    ----------
-    source : a video; a photo, photos, or a folder of photos. All photos are used, in name order,
-        numbers by value.
-    every_s, every_frame : for a video, exactly one of them, positive (ValueError if not): spacing
-        of the grid in seconds, as for `reader.extract_frames`, or in frames, from the first
-
-    Yields
-    ------
-    frame_idx : of the video; of photos, the place in name order
-    time_s : since the video's first frame; NaN for photos
-    image : (H, W, 3) uint8; BGR, upright, all of one size
+    The source is a video, or photos or a folder of these: all are used, in name order, numbers by
+    value, without a time (NaN). For a video give one of `every_s` and `every_frame`, positive
+    (ValueError if not): the spacing of the grid in seconds, as for `reader.extract_frames`, or in
+    frames, from the first. Pictures are (H, W, 3) uint8, BGR, upright, all of one size. Raises
+    `InputError` if the source is missing, damaged, holds no picture or pictures of several sizes,
+    or a photo is mostly black.
     """
     paths = photo_paths(source)
     if paths:

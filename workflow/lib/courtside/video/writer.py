@@ -37,12 +37,9 @@ def write_video(
 
     Parameters
     ----------
-    path : its suffix chooses the container (`.mp4`). The file appears under its name only when
-        whole.
-    frames : iterable of (H, W, 3) uint8; BGR, all of one even size
-    rate_hz : frames per second; frame k is shown at k / rate_hz
-    crf : constant rate factor of x264: 0 loses only what yuv420p loses, 18 looks lossless, 28 is
-        poor
+    path : its suffix chooses the container; the file appears under its name only when whole
+    frames : (H, W, 3) uint8; BGR, all of one even size; frame k is shown at k / `rate_hz`
+    crf : constant rate factor of x264: 0 loses only what yuv420p loses, 18 looks lossless, 28 poor
     effort : preset of x264: "veryfast" takes a third of the time of "medium"
     """
     if not 0 < rate_hz < np.inf:

@@ -1,11 +1,8 @@
 """Bundle adjustment of images, lenses and points, with clicked court points as control points.
 
-problem
-    Network, residuals, linearised, without_points, with_points
-solver
-    adjust, cost, normal_equations, mean, Quadratic, Normal
-selection
-    thin, weigh, select, transform, add_control_points, marginalise, free_frame, cameras, of_cameras
-walk_parts
-    split, centres, points, residual_spread
+problem: Network, residuals, linearised, without_points, with_points
+solver: adjust, cost, normal_equations, mean, Quadratic, Normal
+selection: thin, weigh, select, transform, add_control_points, marginalise, free_frame, cameras,
+    of_cameras
+walk_parts: split, centres, points, residual_spread
 """

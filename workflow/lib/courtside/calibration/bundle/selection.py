@@ -123,14 +123,9 @@ def add_control_points(
 ) -> Network:
     """Return a network with control points appended to its own points.
 
-    Parameters
-    ----------
-    network : in the frame of `xyz`
-    xyz : (P, 3) float; known places, m; those without a click are left out
-    xyz_sigma : (P,) float; how well they are known, m
-    clicks : (P, 2) px by index of the image; NaN where not clicked
-    sigma_px : of the clicks, by index of the image
-    loss_scale : in sigmas
+    Their places `xyz` (P, 3) m, in the network's frame, are known with `xyz_sigma` (P,). The clicks
+    (P, 2) px, NaN where not clicked, and their sigma are by index of the image; points without a
+    click are left out. `loss_scale` is in sigmas.
     """
     clicked = [
         (v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))

@@ -19,8 +19,8 @@ from courtside.calibration.bundle.problem import PER_IMAGE, Network
 class Part:
     """Some images of a network."""
 
-    images: NDArray  # (W,) int; their indices in the whole network, ascending
-    fixed: NDArray  # (C,) int; indices of the fixed cameras' images within the part
+    images: NDArray  # (W,) int: their indices in the whole network, ascending
+    fixed: NDArray  # (C,) int: indices of the fixed cameras' images within the part
     network: Network  # of these images; has all points and lenses of the whole until it is thinned
 
 

@@ -40,15 +40,10 @@ def sample_stretch(
 ) -> Stretch | None:
     """Sample a picture across a stretch of a line; None where too little of it is in the picture.
 
-    Parameters
-    ----------
-    grey : (H, W) float32
-    ends_m : (2, 3) float; of the stretch, on the line's middle; world, m
-    origin_m : (3,) float; on the same straight line, where shifts are wanted
-    half_width_m : (3,) float; from the line's middle to its edge of the higher coordinate
-    paint : expected by the camera
-    reach_px : how far off the line may be
-    blur_px : of the picture, standard deviation
+    The stretch of an expected line, which may be `reach_px` off, has its ends (2, 3) on the line's
+    middle, and shifts are wanted at the origin (3,), on the same straight line. `half_width_m` (3,)
+    leads from the middle to the edge of the higher coordinate; `blur_px` is the standard deviation
+    of the picture's blur.
     """
     xyz = ends_m[0] + np.linspace(0, 1, 400)[:, np.newaxis] * (ends_m[1] - ends_m[0])
     xy = project(camera, xyz)

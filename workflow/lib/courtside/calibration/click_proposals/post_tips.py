@@ -36,7 +36,7 @@ def axis(view: View, post: int) -> Ray | None:
 def tip(view: View, post: int) -> tuple[NDArray, NDArray, float, str]:
     """Find the upper end of a post: (2,) px, covariance (2, 2), share that is seen, and reason.
 
-    The reason says why there is none, and is empty where there is; the others are NaN then.
+    The reason is empty, or says why there is none; then px and covariance are NaN, the share 0.
     """
     ends = project(view.camera, _places(view.court, [0, 1], 1.0))
     if np.linalg.norm(ends[1] - ends[0]) < APART_PX or _covered(view, post, 1.0):

@@ -57,14 +57,12 @@ def propose(
     Then each point is measured by the lines it names, near it: their edges are fitted and
     intersected; along lines that meet at an acute angle the moved camera helps. A post's tip is
     where its axis, fitted likewise, ends. A point that is not seen is not proposed, even where the
-    camera predicts it. Raises `ValueError` if the picture has not the camera's size.
+    camera predicts it.
 
-    Parameters
-    ----------
-    camera : as known from two or three clicks: the court it expects may be `search_px` off
-    image : (H, W, 3) uint8; its static picture
-    max_sigma_px : a point whose expected error is larger is not proposed
-    lines : "light" or "dark", against the floor
+    The camera is known from two or three clicks: the court it expects may be `search_px` off in its
+    static picture (H, W, 3) uint8. A point whose expected error is above `max_sigma_px` is not
+    proposed. Against the floor the lines are "light" or "dark". Raises `ValueError` if the picture
+    has not the camera's size.
     """
     if image.shape[1::-1] != tuple(camera.size):
         raise ValueError(f"expected a picture of {camera.size} px, found {image.shape[1::-1]}")

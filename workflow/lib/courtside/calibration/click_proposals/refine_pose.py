@@ -36,19 +36,10 @@ def refine(
 ) -> tuple[Camera, NDArray]:
     """Move a camera so that points of lines appear shifted across these lines as was seen.
 
-    Parameters
-    ----------
-    camera : the start, which also is the prior
-    xyz : (M, 3) float; on lines, m
-    normal : (M, 2) float; across the lines in the picture, unit length
-    offset_px : (M,) float; along the normal, from where the camera expects the line to where it is
-        seen
-    sigma_px : (M,) float; standard deviation of that
-
-    Returns
-    -------
-    camera
-    rest_px : (M,) float; what remains of the offsets
+    The given camera is the start and the prior. The points `xyz` (M, 3) m lie on lines, `normal`
+    (M, 2) is across these in the picture, of unit length. `offset_px` (M,) is along the normal,
+    from where the camera expects the line to where it is seen, with a standard deviation of
+    `sigma_px` (M,). Also return what remains of the offsets, (M,) px.
     """
     start = project(camera, xyz)
     sigma = np.hypot(sigma_px, FLOOR_PX)

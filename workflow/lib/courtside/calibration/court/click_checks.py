@@ -156,21 +156,12 @@ def check(
     inwards: tuple[float, float] | None = None,
     table: LeaveOneOut | None = None,
 ) -> list[str]:
-    """Check clicked court points as far as the fixed cameras allow.
+    """Check clicked court points as far as the fixed cameras, in one frame, allow.
 
-    Raises `InputError` if the points cannot be this court: see `sfm_alignment.check`.
-
-    Parameters
-    ----------
-    cameras : in one frame
-    sigma_px : of a good click per axis
-    inwards : shift of all clicks towards line centres and its sigma, from `inward_shift`; by
-        default from `inward_shift_of_points`
-    table : of these cameras and clicks, where it is known already
-
-    Returns
-    -------
-    warnings : one line each: weak geometry, wrong clicks by camera and point, line centres
+    Return warnings of one line: weak geometry, wrong clicks by camera and point, line centres.
+    `sigma_px` is that of a good click per axis. `inwards`, the shift of all clicks towards line
+    centres and its sigma, is from `inward_shift`, by default from `inward_shift_of_points`. Raises
+    `InputError` if the points cannot be this court: see `sfm_alignment.check`.
     """
     sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks)
     xyz = sfm_alignment.reconstruct(cameras, clicks)

@@ -33,23 +33,18 @@ def check_cameras(
     inwards: tuple[float, float] | None = None,
     strict: bool = True,
 ) -> dict[str, Any]:
-    """Check cameras against the clicked court points, each left out in turn.
+    """Check cameras, in the court's frame, against the clicked court points, each left out in turn.
 
-    Raises `InputError` if the points cannot be this court.
+    The result, for a JSON file, holds `warnings`; `left_out`, by point: how far it is from its
+    place (cm) and from each click (px) in a similarity fitted to the other points; and
+    `expected_volume_rms_cm` where the covariance is known. Raises `InputError`, or if not `strict`
+    warns, if the points cannot be this court.
 
     Parameters
     ----------
-    cameras : in the court's frame
     click_sigma_px : of a good click, in the largest picture
     point_covariance : covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate
     inwards : as for `click_checks.check`
-    strict : whether points that cannot be this court are an error; otherwise they are a warning
-
-    Returns
-    -------
-    quality : for a JSON file: `warnings`; `left_out`, by point: how far it is from its place (cm)
-        and from each click (px) in a similarity fitted to the other points;
-        `expected_volume_rms_cm` where the covariance is known
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
     known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
@@ -72,12 +67,10 @@ def adjust_and_check(
     """Adjust the fixed cameras with the clicked court points, and check them, as `check_cameras`.
 
     `**weights` are those of the clicks, as for `joint_adjustment.solve`. Raises `InputError` if the
-    points cannot be this court.
-
-    A model of structure from motion is bent by what its ties leave open, mostly focal lengths: with
-    12 small pictures by 0.02 to 0.4 m at the court points, where clicks are 1 cm off. The
-    adjustment removes as much of the bend as the ties' own covariance allows: what is left is the
-    fault of the clicks or the court.
+    points cannot be this court. A model of structure from motion is bent by what its ties leave
+    open, mostly focal lengths: with 12 small pictures by 0.02 to 0.4 m at the court points, where
+    clicks are 1 cm off. The adjustment removes as much of the bend as the ties' own covariance
+    allows: what is left is the fault of the clicks or the court.
     """
     solved = joint_adjustment.solve(ties, clicks, court, max_iterations=30, **weights)
     sigma_px = joint_adjustment.largest_click_sigma(weights["click_sigma_px"], solved.cameras)

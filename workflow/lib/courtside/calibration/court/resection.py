@@ -68,11 +68,8 @@ def dlt(
     net: of the only points above the floor, the tips of the posts, one then stands behind the
     other. Raises `InputError` if fewer than six points are clicked.
 
-    Parameters
-    ----------
-    xyz : (P, 3) float; known places, m
-    xy : (P, 2) float; clicks, px; NaN where missing
-    size : of the picture, px: for `camera` only
+    Known places `xyz` (P, 3) are m, clicks `xy` (P, 2) px, NaN where missing. The picture's size is
+    for `camera` only.
     """
     xyz, xy, _ = _clicked(xyz, xy, FEWEST["dlt"], name)
     from_xyz, from_xy = _normaliser(xyz), _normaliser(xy)

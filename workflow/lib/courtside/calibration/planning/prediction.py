@@ -53,15 +53,10 @@ def predict(
 ) -> Prediction:
     """Predict the error over the court with planned fixed cameras and bridging images.
 
-    Parameters
-    ----------
-    walked : may be empty: then the cameras rest on clicked court points alone
-    hall_m : (2, 3) float; two opposite corners of the hall, m
-    lens_prior : as for `tie_points.network`
-    images_per_part : see `walk_parts.split`
-    tie_sigma : weight of ties, in units of their noise: as after a session
-    thinning : arguments of `selection.thin`
-    **clicking : `click_sigma_px`, `click_bias_px`, `click_loss` of `joint_adjustment.solve`
+    Without any image of a walk the cameras rest on clicked court points alone. The hall and lenses
+    are as for `tie_points.network`, `images_per_part` as for `walk_parts.split`; `tie_sigma` is the
+    weight of ties in units of their noise, as after a session; `thinning` are arguments of
+    `selection.thin`, `**clicking` sigma, bias and loss of clicks in `joint_adjustment.solve`.
     """
     rng = np.random.default_rng([seed, len(walked)])
     ties = tie_points.network(fixed, walked, hall_m, texture, lens_prior, rng)

@@ -57,15 +57,9 @@ def network(
 ) -> Network:
     """Return the network that error-free structure from motion would find, in the court's frame.
 
-    Fixed cameras come first; points seen once or never are not in it.
-
-    Parameters
-    ----------
-    fixed : each with a lens of its own
-    walked : the bridging images in order, all by one camera
-    hall_m : (2, 3) float; two opposite corners of the hall, m
-    lens_prior : mean and sigma of `Network`, (C + 1, 8) each: the fixed cameras' lenses, then the
-        walked one's
+    Fixed cameras come first, each with a lens of its own, then the bridging images in order, all by
+    one camera; points seen once or never are not in it. `hall_m` (2, 3) are two opposite corners of
+    the hall. `lens_prior` is mean and sigma of the lenses, (C + 1, 8) each.
     """
     images = [*fixed, *walked]
     order = path_order(fixed, walked)

@@ -1,7 +1,5 @@
 """Files between rules of the calibration.
 
-tie_points
-    Record, read, write: tie-point constraints of one structure from motion
-covariance
-    CameraCovariance, of_network, read, write: joint covariance of the fixed cameras
+tie_points: Record, read, write: tie-point constraints of one structure from motion
+covariance: CameraCovariance, of_network, read, write: joint covariance of the fixed cameras
 """

@@ -42,9 +42,9 @@ class Record:
     outcome: str  # empty, or in one line which fixed camera was not placed, and what to film again
     fault: str  # empty, or why the placed cameras could not be adjusted with the court points
     sfm_cameras: list[Camera]  # the registered fixed cameras, in the model's own frame and unit
-    n_points_seen: NDArray  # (C,) int; points of the model that each of them sees
+    n_points_seen: NDArray  # (C,) int: points of the model that each of them sees
     ties: joint_adjustment.Ties | None  # None where there is an outcome or a fault
-    images: NDArray  # (V,) str; names of the registered images
+    images: NDArray  # (V,) str: names of the registered images
     # (V, 3): their projection centres: in the court's frame where there are ties, else the model's.
     centres: NDArray
     xyz: NDArray  # (N, 3): tie points, in the same frame
