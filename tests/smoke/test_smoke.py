@@ -64,7 +64,7 @@ def test_raw_and_filtered_results_are_both_exported(tiny_study):
         rows = pd.read_csv(f"{stem}.csv")
         c3d = ezc3d.c3d(f"{stem}.c3d")
         assert rate_hz == 60
-        assert list(rows.columns) == list(tidy.DICTIONARY)
+        assert list(rows.columns) == list(tidy.COLUMNS)
         assert c3d["parameters"]["POINT"]["LABELS"]["value"] == joints
         np.testing.assert_allclose(
             rows[["x_m", "y_m", "z_m"]].to_numpy().reshape(xyz.shape), xyz, atol=2e-5

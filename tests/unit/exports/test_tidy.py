@@ -17,7 +17,7 @@ def test_columns_and_values_are_the_records(tmp_path):
     record = walker.points(n_persons=2)
     tidy.write(tmp_path / "p2.csv", record, 1)
     rows = pd.read_csv(tmp_path / "p2.csv")
-    assert list(rows.columns) == list(tidy.DICTIONARY)
+    assert list(rows.columns) == list(tidy.COLUMNS)
     assert len(rows) == 20 * 33
     assert set(rows.person) == {"p2"}
     at = rows[(rows.frame_idx == 6) & (rows.joint == "left_hip")].iloc[0]
@@ -49,7 +49,7 @@ def test_missing_points_are_empty_and_say_why(tmp_path):
 
 def test_every_column_is_explained_in_the_documentation():
     text = (Path(__file__).parents[3] / "config" / "README.md").read_text()
-    assert [name for name in tidy.DICTIONARY if f"`{name}`" not in text] == []
+    assert [name for name in tidy.COLUMNS if f"`{name}`" not in text] == []
 
 
 def test_every_row_is_the_records(tmp_path):

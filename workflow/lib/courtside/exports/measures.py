@@ -13,49 +13,16 @@ from courtside.kinematics.joint_angles import Angle
 from courtside.records.keypoints import missing_reason
 
 LEAST_EXTENT_M = 1.0  # ASSUME: over shorter paths a relative error of lengths says little
-# column: (unit, meaning, meaning of an empty cell); POINT is neck, centre or mass, ANGLE one of
-# joint_angles
-FRAME_DICTIONARY = {
-    "frame_idx": ("", "frame, from 0", "never empty"),
-    "time_s": ("s", "time on the reference clock", "never empty"),
-    "person": ("", "the person's pseudonym", "never empty"),
-    "POINT_x_m": ("m", "filtered position in the world frame; also y, z", "missing, see reason"),
-    "POINT_sd_mm": (
-        "mm",
-        "standard deviation of the position from the keypoints' noise, root of the sum over the "
-        "axes",
-        "missing or unknown",
-    ),
-    "POINT_speed_m_s": ("m/s", "speed in space", "missing"),
-    "POINT_speed_sd_m_s": ("m/s", "its standard deviation", "missing or unknown"),
-    "POINT_ground_speed_m_s": ("m/s", "speed of the projection on the floor", "missing"),
-    "POINT_ground_speed_sd_m_s": ("m/s", "its standard deviation", "missing or unknown"),
-    "POINT_acceleration_m_s2": ("m/s2", "length of the acceleration, without gravity", "missing"),
-    "POINT_acceleration_sd_m_s2": ("m/s2", "its standard deviation", "missing or unknown"),
-    "POINT_reason": ("", f"one of {', '.join(missing_reason.WORDS.values())}", "never empty"),
-    "ANGLE_deg": ("degrees", "see courtside.kinematics.joint_angles", "a joint is missing"),
-    "ANGLE_sd_deg": ("degrees", "its standard deviation", "missing or unknown"),
-}
-SUMMARY_DICTIONARY = {
-    "person": ("", "the person's pseudonym", "never empty"),
-    "measure": ("", "what was measured", "never empty"),
-    "value": ("see unit", "", "missing"),
-    "sigma": ("see unit", "standard deviation from the keypoints' noise", "unknown"),
-    "sigma_camera": (
-        "see unit",
-        "upper bound of the standard deviation from the calibration, which all frames share",
-        "unknown, or not estimated",
-    ),
-    "unit": ("", "of the three before", "a ratio"),
-    "n": ("", "frames that it rests on", "never empty"),
-    "definition": ("", "values compare without a mark only where this is the same", "never empty"),
-}
+# The data dictionary of config/README.md describes the columns.
+SUMMARY_COLUMNS = (
+    "person", "measure", "value", "sigma", "sigma_camera", "unit", "n", "definition",
+)  # fmt: skip
 # measure, value, sigma, sigma_camera, unit, n
 Row = tuple[str, float, float, float, str, int]
 
 
 def frames(people: Sequence[measures.Person]) -> pd.DataFrame:
-    """Return the measures of every frame: columns of `FRAME_DICTIONARY`, T rows for each person."""
+    """Return the measures of every frame, T rows for each person."""
     return pd.concat([_frames_of(person) for person in people], ignore_index=True)
 
 
@@ -92,7 +59,7 @@ def _columns(point: measures.Point) -> dict[str, NDArray]:
 
 
 def summary(people: Sequence[measures.Person]) -> pd.DataFrame:
-    """Return the measures of the whole take, in the columns of `SUMMARY_DICTIONARY`.
+    """Return the measures of the whole take, in `SUMMARY_COLUMNS`.
 
     Largest values are those of one frame, with its sigma: of many noisy frames the largest lies
     above the true one, by one to three sigma.
@@ -106,7 +73,7 @@ def summary(people: Sequence[measures.Person]) -> pd.DataFrame:
             ]
         for name, angle in person.angles.items():
             rows += [(person.person, *row) for row in _angle_rows(name, angle)]
-    return pd.DataFrame(rows, columns=list(SUMMARY_DICTIONARY))
+    return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
 
 
 def _camera_share(point: measures.Point) -> float:

@@ -10,36 +10,17 @@ from courtside.records import tables
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 
-# column: (unit, meaning, meaning of an empty cell)
-DICTIONARY = {
-    "frame_idx": ("", "frame, from 0", "never empty"),
-    "time_s": ("s", "time on the reference clock", "never empty"),
-    "person": ("", "the person's pseudonym", "never empty"),
-    "joint": ("", "joint name of the network's skeleton", "never empty"),
-    "x_m": (
-        "m",
-        "position in the world frame, x along the court's 6.1 m side",
-        "missing, see reason",
-    ),
-    "y_m": (
-        "m",
-        "position in the world frame, y along the court's 13.4 m side",
-        "missing, see reason",
-    ),
-    "z_m": ("m", "position in the world frame, height", "missing, see reason"),
-    "sd_x_mm": ("mm", "standard deviation of x from the keypoints' own noise", "unknown"),
-    "sd_y_mm": ("mm", "standard deviation of y from the keypoints' own noise", "unknown"),
-    "sd_z_mm": ("mm", "standard deviation of z from the keypoints' own noise", "unknown"),
-    "n_views": ("", "cameras that the point rests on", "never empty; 0 where missing"),
-    "reproj_error_px": ("px", "mean distance to the keypoints of these cameras", "missing"),
-    "reason": ("", f"one of {', '.join(missing_reason.WORDS.values())}", "never empty"),
-}
+# The data dictionary of config/README.md describes them.
+COLUMNS = (
+    "frame_idx", "time_s", "person", "joint", "x_m", "y_m", "z_m", "sd_x_mm", "sd_y_mm", "sd_z_mm",
+    "n_views", "reproj_error_px", "reason",
+)  # fmt: skip
 
 
 def table(keypoints: Keypoints3D, person: int) -> pd.DataFrame:
     """Return one person, by index, as a table.
 
-    Columns of `DICTIONARY`, T x J rows, joints within frames; rounded to 0.01 mm and 0.01 px.
+    `COLUMNS`, T x J rows, joints within frames; rounded to 0.01 mm and 0.01 px.
     """
     n_frames, n_joints = keypoints.xyz.shape[1:3]
     xyz = keypoints.xyz[person].reshape(-1, 3)
@@ -56,7 +37,7 @@ def table(keypoints: Keypoints3D, person: int) -> pd.DataFrame:
         "reproj_error_px": _mean_error(keypoints, person).round(2),
         "reason": pd.Series(keypoints.reason[person].ravel()).map(missing_reason.WORDS),
     }
-    return pd.DataFrame(columns)
+    return pd.DataFrame(columns, columns=list(COLUMNS))
 
 
 def _mean_error(keypoints: Keypoints3D, person: int) -> NDArray:

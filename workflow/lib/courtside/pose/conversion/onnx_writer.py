@@ -90,8 +90,12 @@ class Writer:
                 raise ValueError(f"tensor {index} used before it is made")
         return self.last[index]
 
-    def finish(self, operator: Operator, name: str, layout: dict[int, str]) -> None:
-        """Record an ONNX name, in a layout (`first` or `last`), as the result of an operator."""
+    def take(self, index: int, *, images: bool) -> str:
+        """Return the ONNX name of a tensor, channels first if the operator is on images."""
+        return self.channels_first(index) if images else self.channels_last(index)
+
+    def finish(self, operator: Operator, name: str, *, images: bool = True) -> None:
+        """Record an ONNX name as the result of an operator, channels first if on images."""
         activation = operator.options.get("fused_activation_function", "NONE")
         if activation == "RELU":
             name = self.add("Relu", [name])
@@ -103,7 +107,7 @@ class Writer:
         if self.graph.tensors[index].dtype != np.float32:
             raise ValueError(f"a result of type {self.graph.tensors[index].dtype}, not float32")
         expected = self.shape(index)
-        if layout is self.first:
+        if images:
             expected = tuple(self.shape(index, IMAGE_RANK)[axis] for axis in TO_FIRST)
-        layout[index] = name
+        (self.first if images else self.last)[index] = name
         self.results.append((operator, name, expected))

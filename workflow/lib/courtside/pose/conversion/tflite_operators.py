@@ -93,7 +93,7 @@ def _convolve(writer: Writer, operator: Operator, weights: NDArray, groups: int)
     dilations = _steps(operator, "dilation_h_factor", "dilation_w_factor")
     window = _window(writer, operator, weights.shape[2:], dilations)
     name = writer.add("Conv", inputs, group=groups, dilations=dilations, **window)
-    writer.finish(operator, name, writer.first)
+    writer.finish(operator, name)
 
 
 @_converts("CONV_2D", 2, 3)
@@ -118,7 +118,7 @@ def _max_pool_2d(writer: Writer, operator: Operator) -> None:
     kernel = _steps(operator, "filter_height", "filter_width")
     window = _window(writer, operator, kernel, (1, 1))
     name = writer.add("MaxPool", [writer.channels_first(operator.inputs[0])], **window)
-    writer.finish(operator, name, writer.first)
+    writer.finish(operator, name)
 
 
 @_converts("RESIZE_BILINEAR", 2, 2)
@@ -134,7 +134,7 @@ def _resize_bilinear(writer: Writer, operator: Operator) -> None:
     sizes = writer.store(np.array([batch, channels, *size], np.int64))
     inputs = [writer.channels_first(image), "", "", sizes]
     name = writer.add("Resize", inputs, mode="linear", coordinate_transformation_mode=mode)
-    writer.finish(operator, name, writer.first)
+    writer.finish(operator, name)
 
 
 @_converts("DEPTH_TO_SPACE", 1, 1)
@@ -145,7 +145,7 @@ def _depth_to_space(writer: Writer, operator: Operator) -> None:
         raise ValueError(f"blocks of {block} from an image of shape {writer.shape(image)}")
     # DCR: the channels of the result vary fastest, as TFLite has them.
     name = writer.add("DepthToSpace", [writer.channels_first(image)], blocksize=block, mode="DCR")
-    writer.finish(operator, name, writer.first)
+    writer.finish(operator, name)
 
 
 @_converts("ADD", 2, 2)
@@ -153,9 +153,8 @@ def _add(writer: Writer, operator: Operator) -> None:
     # A constant may have fewer dimensions: the missing ones lead, as in numpy.
     made = [index for index in operator.inputs if index not in writer.constants]
     images = all(len(writer.shape(index)) == IMAGE_RANK for index in (*made, operator.outputs[0]))
-    place = writer.channels_first if images else writer.channels_last
-    name = writer.add("Add", [place(index) for index in operator.inputs])
-    writer.finish(operator, name, writer.first if images else writer.last)
+    name = writer.add("Add", [writer.take(index, images=images) for index in operator.inputs])
+    writer.finish(operator, name, images=images)
 
 
 @_converts("CONCATENATION", 1, MAX_INPUTS)
@@ -165,10 +164,9 @@ def _concatenation(writer: Writer, operator: Operator) -> None:
         raise ValueError(f"axis {axis} of {rank}")
     axis %= rank
     images = rank == IMAGE_RANK
-    place = writer.channels_first if images else writer.channels_last
-    pieces = [place(index) for index in operator.inputs]
+    pieces = [writer.take(index, images=images) for index in operator.inputs]
     name = writer.add("Concat", pieces, axis=TO_FIRST.index(axis) if images else axis)
-    writer.finish(operator, name, writer.first if images else writer.last)
+    writer.finish(operator, name, images=images)
 
 
 @_converts("PAD", 2, 2)
@@ -181,9 +179,9 @@ def _pad(writer: Writer, operator: Operator) -> None:
     images = rank == IMAGE_RANK
     if images:
         widths = widths[list(TO_FIRST)]
-    name = writer.channels_first(image) if images else writer.channels_last(image)
-    name = writer.add("Pad", [name, writer.store(widths.T.reshape(-1))], mode="constant")
-    writer.finish(operator, name, writer.first if images else writer.last)
+    inputs = [writer.take(image, images=images), writer.store(widths.T.reshape(-1))]
+    name = writer.add("Pad", inputs, mode="constant")
+    writer.finish(operator, name, images=images)
 
 
 @_converts("RESHAPE", 1, 2)
@@ -193,16 +191,16 @@ def _reshape(writer: Writer, operator: Operator) -> None:
     if math.prod(writer.shape(operator.inputs[0])) != math.prod(shape.tolist()):
         raise ValueError(f"shape {shape.tolist()} from {writer.shape(operator.inputs[0])}")
     name = writer.add("Reshape", [writer.channels_last(operator.inputs[0]), writer.store(shape)])
-    writer.finish(operator, name, writer.last)
+    writer.finish(operator, name, images=False)
 
 
 @_converts("LOGISTIC", 1, 1)
 @_converts("RELU", 1, 1)
 def _elementwise(writer: Writer, operator: Operator) -> None:
     kind = {"LOGISTIC": "Sigmoid", "RELU": "Relu"}[operator.kind]
-    layout = writer.first if operator.inputs[0] in writer.first else writer.last
-    place = writer.channels_first if layout is writer.first else writer.channels_last
-    writer.finish(operator, writer.add(kind, [place(operator.inputs[0])]), layout)
+    images = operator.inputs[0] in writer.first
+    name = writer.add(kind, [writer.take(operator.inputs[0], images=images)])
+    writer.finish(operator, name, images=images)
 
 
 @_converts("DEQUANTIZE", 1, 1)
