@@ -110,9 +110,18 @@ def triangulate_robust(
     check(cameras, xy, score, min_views)
     sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
     pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
-    rules = min_views, min_score, max_error_px, fade_px or FADE * max_error_px
     parts = [
-        _solve(cameras, xy[:, piece], score[:, piece], sigma_px[piece], *rules) for piece in pieces
+        _solve(
+            cameras,
+            xy[:, piece],
+            score[:, piece],
+            sigma_px[piece],
+            min_views=min_views,
+            min_score=min_score,
+            max_error_px=max_error_px,
+            fade_px=fade_px or FADE * max_error_px,
+        )
+        for piece in pieces
     ]
     return Triangulated(
         xyz=np.concatenate([part.xyz for part in parts]),
@@ -138,6 +147,7 @@ def _solve(
     xy: NDArray,
     score: NDArray,
     sigma_px: NDArray,
+    *,
     min_views: int,
     min_score: float,
     max_error_px: float,
