@@ -84,14 +84,12 @@ def faults(file: Path, content: dict[str, Any]) -> Iterator[str]:
         for word in (w for w in agreed if NEEDS.get(w, w) not in agreed):
             yield (
                 f"{file}: subjects.{name}.consent: expected {NEEDS[word]} with {word}, found "
-                f"{list(agreed)}; "
-                "add it, or write [] for somebody who has withdrawn"
+                f"{list(agreed)}; add it, or write [] for somebody who has withdrawn"
             )
         if shown and "pictures" in agreed and "faces" not in agreed:
             yield (
                 f"{file}: blur_faces: expected `faces` in the consent of {name} to show faces, "
-                "found "
-                f"{list(agreed)}; ask them, or remove blur_faces: false"
+                f"found {list(agreed)}; ask them, or remove blur_faces: false"
             )
 
 

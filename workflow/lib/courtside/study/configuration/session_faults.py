@@ -117,8 +117,7 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
     if named:
         yield (
             f"{file}: {named[0]}: expected no file of its own in a virtual session, which makes "
-            "its own; "
-            "remove it"
+            "its own; remove it"
         )
     if content["court"] == "none":
         yield (
@@ -135,8 +134,7 @@ def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
     if not found and (cameras or not takes):
         yield (
             f"{file}: expected `walks`, `court_points` or `calibration`, found none; say how the "
-            "cameras are "
-            "to be found"
+            "cameras are to be found"
         )
     if len(cameras) < 2 and ("calibration" in content or any("videos" in take for take in takes)):
         yield (
@@ -151,8 +149,7 @@ def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
         if not (camera or {}).get("static"):
             yield (
                 f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty "
-                "court, found "
-                "none; bridging images are tied to it"
+                "court, found none; bridging images are tied to it"
             )
 
 
@@ -163,8 +160,7 @@ def _court_faults(file: Path, content: Content) -> Iterator[str]:
     if content["court"] != "none" and content.get("walks") and content["cameras"] and not clicked:
         yield (
             f"{file}: expected `court_points` for a session with a court, found none; say where "
-            "they are to "
-            "be saved, and the study makes a page to click them on, or set court: none"
+            "they are to be saved, and the study makes a page to click them on, or set court: none"
         )
 
 

@@ -32,9 +32,8 @@ def of_other_programs(folder: Path, file: Path, content: Content) -> Iterator[st
         missing = wanted & set(imported(content)) - set(take.get("pose2d", {}))
         for skeleton in sorted(missing if take.get("videos") else ()):
             yield (
-                f"{file}: takes.{name}.pose2d: expected {skeleton}, as override.models says, "
-                "found none; "
-                "name its folders"
+                f"{file}: takes.{name}.pose2d: expected {skeleton}, as override.models says, found "
+                "none; name its folders"
             )
 
 
@@ -61,17 +60,15 @@ def find(
     first = next(iter(take.get("videos", {})), None)
     if any(take.get("clocks", {}).get(first, {}).get(key, 0) for key in ("offset_s", "drift_ppm")):
         yield (
-            f"{where}.clocks.{first}: expected no offset or drift of the first camera, whose "
-            "clock is the "
-            "reference, found one; state the other clocks against it"
+            f"{where}.clocks.{first}: expected no offset or drift of the first camera, whose clock "
+            "is the reference, found one; state the other clocks against it"
         )
     yield from _filmed_faults(where, take.get("virtual"), cameras, there)
     if take.get("steady") and not virtual:
         for name in (n for n in take.get("videos", {}) if not (cameras.get(n) or {}).get("static")):
             yield (
                 f"{where}.steady: expected `static` of camera {name}, against which shake is "
-                "measured, found "
-                "none; name a recording of the empty court"
+                "measured, found none; name a recording of the empty court"
             )
     start_s, stop_s = take.get("trim_s", (0, 1))
     if start_s >= stop_s:
@@ -88,8 +85,7 @@ def _kind_faults(where: str, take: Content, virtual: bool) -> Iterator[str]:
     if not virtual and ("virtual" in take or not set(RECORDINGS) & set(take)):
         yield (
             f"{where}: expected the key 'videos' or 'devices' and not 'virtual' in a recorded "
-            "session, found "
-            f"{sorted(take)}; correct the take"
+            f"session, found {sorted(take)}; correct the take"
         )
 
 

@@ -92,8 +92,7 @@ def fetch(
         if found != artefact.sha256:
             raise InputError(
                 f"{source}: expected sha256 {artefact.sha256} (artefact {artefact.name}), found "
-                f"{found}; "
-                f"{AGAIN}"
+                f"{found}; {AGAIN}"
             )
         unpack(source, artefact, outputs)
 
@@ -125,8 +124,7 @@ def _download(artefact: Artefact, folder: Path) -> Path:
     if artefact.requirement is None:
         raise InputError(
             f"artefact {artefact.name}: expected {artefact.mirror_file} in the folder that "
-            "`mirror_folder` "
-            f"of config.yaml names, found none; {artefact.note}"
+            f"`mirror_folder` of config.yaml names, found none; {artefact.note}"
         )
     wanted = folder / "requirement.txt"
     wanted.write_text(f"{artefact.requirement} --hash=sha256:{artefact.sha256}\n", encoding="utf-8")
@@ -148,8 +146,7 @@ def _download(artefact: Artefact, folder: Path) -> Path:
         raise InputError(
             f"artefact {artefact.name}: expected {artefact.requirement} from the package registry, "
             f"found: {lines[-1]}; go online, or put the wheel with sha256 {artefact.sha256} into "
-            "the "
-            "folder that `mirror_folder` of config.yaml names"
+            "the folder that `mirror_folder` of config.yaml names"
         )
     return wheels[0]
 

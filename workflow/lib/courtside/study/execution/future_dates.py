@@ -30,10 +30,8 @@ def check(folders: Iterable[str | os.PathLike]) -> None:
     when_s, path = max(late)
     raise InputError(
         f"{path}: expected a date in the past, found {_in_words(when_s)} (now: "
-        f"{_in_words(time.time())}), "
-        f"as in {len(late) - 1} more files; set this computer's clock if it is wrong, otherwise "
-        "give them "
-        f"today's date: {_advice(there)}"
+        f"{_in_words(time.time())}), as in {len(late) - 1} more files; set this computer's clock "
+        f"if it is wrong, otherwise give them today's date: {_advice(there)}"
     )
 
 

@@ -28,9 +28,8 @@ def check(folder: str | os.PathLike) -> None:
     free_mb = shutil.disk_usage(folder).free / 1e6
     if free_mb < LEAST_FREE_MB:
         raise InputError(
-            f"{folder}: expected at least {LEAST_FREE_MB} MB free on its disk, found "
-            f"{free_mb:.1f} MB; "
-            f"free some room, {AGAIN}"
+            f"{folder}: expected at least {LEAST_FREE_MB} MB free on its disk, found {free_mb:.1f} "
+            f"MB; free some room, {AGAIN}"
         )
 
 

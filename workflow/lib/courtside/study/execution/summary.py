@@ -77,9 +77,8 @@ def failed(
     if len(faults) > N_FAULTS:
         lines.append(f"  and {len(faults) - N_FAULTS} more jobs")
     lines.append(
-        "What is finished is kept: mend the fault and give the same command again. If it says "
-        "that the folder "
-        "is locked and no other run is going on in it: snakemake --unlock."
+        "What is finished is kept: mend the fault and give the same command again. If it says that "
+        "the folder is locked and no other run is going on in it: snakemake --unlock."
     )
     lines += [f"Log of the run: {whole_log}"] if whole_log else []
     return "\n".join(lines)

@@ -68,8 +68,7 @@ def read(path: str | os.PathLike) -> Rows:
     if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
         raise InputError(
             f"{path}: expected columns {', '.join(COLUMNS)}, found "
-            f"{', '.join(rows[0] if rows else [])}; "
-            "make the table with --write-checksums"
+            f"{', '.join(rows[0] if rows else [])}; make the table with --write-checksums"
         )
     return {name: (int(size), digest) for _, name, size, digest in rows[1:]}
 

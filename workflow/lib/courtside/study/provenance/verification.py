@@ -148,8 +148,7 @@ def _words(run: dict[str, Any]) -> list[str]:
     if words[:1] != ["snakemake"] or not options <= REPEATED:
         raise InputError(
             f"provenance.json: expected a command of snakemake with none but {sorted(REPEATED)}, "
-            "found "
-            f"{run['command']!r}; delete the record and run snakemake in this folder"
+            f"found {run['command']!r}; delete the record and run snakemake in this folder"
         )
     return words
 
