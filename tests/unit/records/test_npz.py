@@ -1,9 +1,12 @@
 """npz files that hold what they say, or are refused."""
 
 import zipfile
+from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from courtside.records import npz
 from courtside.study.errors import InputError
@@ -17,6 +20,14 @@ SPEC = {
 GOOD = {"name": "a", "x": np.zeros((3, 2)), "ok": np.ones(3, bool), "n": np.arange(3)}
 
 
+@dataclass
+class Kept:
+    name: str
+    x: Annotated[NDArray, "float T 2"]
+    ok: Annotated[NDArray, "bool T"]
+    n: Annotated[NDArray, "int T"]
+
+
 @pytest.fixture
 def path(tmp_path):
     npz.write(tmp_path / "f.npz", "test 1", SPEC, GOOD)
@@ -28,6 +39,19 @@ def test_the_round_trip_keeps_everything(path):
     assert set(found) == set(GOOD)
     for key, value in GOOD.items():
         np.testing.assert_array_equal(found[key], value)
+
+
+def test_a_record_states_its_own_spec(path):
+    assert npz.spec_of(Kept) == SPEC
+    found = npz.read_record(path, "test 1", Kept)
+    assert found.name == "a" and type(found.name) is str
+    np.testing.assert_array_equal(found.n, GOOD["n"])
+
+
+def test_a_record_is_checked_when_written(path):
+    npz.write_record(path, "test 1", Kept(**GOOD))
+    with pytest.raises(ValueError, match=r"n: expected int, found float"):
+        npz.write_record(path, "test 1", Kept(**GOOD | {"n": np.zeros(3)}))
 
 
 def test_the_same_arrays_give_the_same_bytes(path, tmp_path):

@@ -23,37 +23,20 @@ CAMERA = re.compile(
 
 @dataclass(frozen=True)
 class Recording:
-    """A file, or a folder of photos, that a session may use.
+    """A file, or a folder of photos, that a session may use."""
 
-    Attributes
-    ----------
-    path : str
-        As a session's file names it.
-    parts : tuple of str
-        Folders below the one that was searched, and the name without its suffix.
-    kind : str
-        `video`, `photo`, `photos`, `bvh`, `bag`, `court_points`, `racket`, `calibration`, or
-        `unusable`.
-    size : (int, int) or None
-        Of its pictures, px.
-    rate_hz, duration_s : float or None
-        Of a video.
-    n_photos : int
-        Of a folder of photos.
-    note : str
-        Why it is unusable, or what is unusual about it.
-    cameras : dict of str to (int, int)
-        Of a calibration: sizes of the pictures of its cameras.
-    """
-
-    path: str
+    path: str  # as a session's file names it
+    # Folders below the one that was searched, and the name without its suffix
     parts: tuple[str, ...]
+    # `video`, `photo`, `photos`, `bvh`, `bag`, `court_points`, `racket`, `calibration`, or
+    # `unusable`
     kind: str
-    size: tuple[int, int] | None = None
-    rate_hz: float | None = None
-    duration_s: float | None = None
-    n_photos: int = 0
-    note: str = ""
+    size: tuple[int, int] | None = None  # of its pictures, px
+    rate_hz: float | None = None  # of a video
+    duration_s: float | None = None  # of a video
+    n_photos: int = 0  # of a folder of photos
+    note: str = ""  # why it is unusable, or what is unusual about it
+    # Of a calibration: sizes of the pictures of its cameras
     cameras: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     @property
@@ -68,36 +51,21 @@ Words = dict[str, tuple[str, ...]]  # by path, or by camera
 
 @dataclass
 class Guess:
-    """What the recordings of a folder seem to be.
-
-    Attributes
-    ----------
-    cameras : list of str
-    static : dict of str to Recording
-        By camera; from a take where `stand_ins` names the camera.
-    stand_ins : list of str
-    boards : dict of str to Recording
-        Pictures of a chessboard, by camera.
-    walks : dict of str to Recording
-    takes : dict of str to dict of str to Recording
-        By take and camera.
-    devices : list of (str, str, Recording)
-        Take or "", kind of device, file.
-    court_points, calibration : Recording or None
-    unused : list of (Recording, str)
-        With the reason.
-    """
+    """What the recordings of a folder seem to be."""
 
     cameras: list[str] = field(default_factory=list)
+    # By camera; from a take where `stand_ins` names the camera
     static: dict[str, Recording] = field(default_factory=dict)
     stand_ins: list[str] = field(default_factory=list)
+    # Pictures of a chessboard, by camera
     boards: dict[str, Recording] = field(default_factory=dict)
     walks: dict[str, Recording] = field(default_factory=dict)
-    takes: dict[str, Take] = field(default_factory=dict)
+    takes: dict[str, Take] = field(default_factory=dict)  # by take and camera
+    # Take or "", kind of device, file
     devices: list[tuple[str, str, Recording]] = field(default_factory=list)
     court_points: Recording | None = None
     calibration: Recording | None = None
-    unused: list[tuple[Recording, str]] = field(default_factory=list)
+    unused: list[tuple[Recording, str]] = field(default_factory=list)  # with the reason
 
 
 def guess(recordings: Sequence[Recording]) -> Guess:

@@ -1,7 +1,7 @@
 """What rules hand to each other: files with their units, checked when read.
 
 npz
-    `read`, `write`: arrays with stated keys, shapes and kinds; `plain`: fields of a record.
+    `read`, `write`: arrays with stated keys, shapes and kinds; `read_record`, `write_record`.
 tables
     `read`, `write`: CSV tables.
 

@@ -6,7 +6,7 @@ object.
 
 from collections.abc import Mapping
 from os import PathLike
-from typing import Any
+from typing import TypeVar, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,7 @@ from courtside.study.execution.files import atomic
 # throughout the file, a digit string a fixed length.
 Spec = Mapping[str, tuple[str, tuple[str, ...]]]
 KINDS = {"float": np.floating, "int": np.integer, "bool": np.bool_, "str": np.str_}
+Record = TypeVar("Record")
 
 
 def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, ArrayLike]) -> None:
@@ -67,9 +68,27 @@ def read(path: str | PathLike, form: str, spec: Spec) -> dict[str, NDArray]:
     return found
 
 
-def plain(arrays: Mapping[str, NDArray]) -> dict[str, Any]:
-    """Return arrays as the fields of a record: those without dimensions become plain values."""
-    return {key: value.item() if value.ndim == 0 else value for key, value in arrays.items()}
+def spec_of(record: type) -> Spec:
+    """Return the spec of a dataclass: kind and dimensions of `Annotated[NDArray, "int T J"]`.
+
+    A field of a plain type (str, float) is a value without dimensions.
+    """
+    found = {}
+    for name, hint in get_type_hints(record, include_extras=True).items():
+        kind, *dimensions = getattr(hint, "__metadata__", (hint.__name__,))[0].split()
+        found[name] = kind, tuple(dimensions)
+    return found
+
+
+def write_record(path: str | PathLike, form: str, record: object) -> None:
+    """Write a dataclass that `spec_of` understands, as `write`."""
+    write(path, form, spec_of(type(record)), vars(record))
+
+
+def read_record(path: str | PathLike, form: str, kind: type[Record]) -> Record:
+    """Read a dataclass that `write_record` wrote, as `read`."""
+    arrays = read(path, form, spec_of(kind))
+    return kind(**{key: value if value.ndim else value.item() for key, value in arrays.items()})
 
 
 def _fault(spec: Spec, arrays: Mapping[str, NDArray]) -> str | None:

@@ -16,19 +16,11 @@ HALFBODY = "halfbody"  # the paper's rule for three cameras
 
 @dataclass(frozen=True)
 class Variant:
-    """One structure from motion of a session's sweep.
+    """One structure from motion of a session's sweep."""
 
-    Attributes
-    ----------
-    mapper : str
-        `global` or `incremental`.
-    n_images, offset : int
-        Number of bridging images, and which choice of so many.
-    """
-
-    mapper: str
-    n_images: int
-    offset: int = 0
+    mapper: str  # `global` or `incremental`
+    n_images: int  # number of bridging images
+    offset: int = 0  # which choice of so many images
 
     @classmethod
     def parse(cls, name: str) -> "Variant":
@@ -48,31 +40,20 @@ class Variant:
 
 @dataclass(frozen=True)
 class Calibration:
-    """A way to find the fixed cameras of a session.
+    """A way to find the fixed cameras of a session."""
 
-    Attributes
-    ----------
-    name : str
-        `file`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`, `paper-global-n40`, `known18`,
-        `known8-board`, `dlt18` and the like.
-    kind : str
-        `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
-        together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
-        `known` (resection), `dlt`.
-    variant : Variant or None
-        The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
-        the paper.
-    n_points : int or None
-        Number of clicked points, where they are all that it rests on.
-    board : bool
-        Whether lenses come from pictures of a chessboard.
-    """
-
+    # `file`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`, `paper-global-n40`, `known18`,
+    # `known8-board`, `dlt18` and the like
     name: str
+    # `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
+    # together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
+    # `known` (resection), `dlt`
     kind: str
+    # The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
+    # the paper
     variant: Variant | None = None
-    n_points: int | None = None
-    board: bool = False
+    n_points: int | None = None  # number of clicked points, where they are all that it rests on
+    board: bool = False  # whether lenses come from pictures of a chessboard
 
     @classmethod
     def parse(cls, name: str) -> "Calibration":
@@ -100,24 +81,15 @@ class Calibration:
 
 @dataclass(frozen=True)
 class Fusion:
-    """A way to fuse views into 3D joints.
+    """A way to fuse views into 3D joints."""
 
-    Attributes
-    ----------
-    name : str
-        `all-robust`, `two-dlt`, `all-unsteady`, `halfbody`; `trc` of another program's 3D joints.
-    cameras : str
-        Name of the set of cameras: `all`, or a key of the session's `views`; empty for `halfbody`
-        and `trc`.
-    rule : str
-        `robust`, `dlt`, `halfbody` or `trc`.
-    steadied : bool
-        Whether the shake of cameras is taken out, in takes where it is measured.
-    """
-
+    # `all-robust`, `two-dlt`, `all-unsteady`, `halfbody`; `trc` of another program's 3D joints
     name: str
+    # Name of the set of cameras: `all`, or a key of the session's `views`; empty for `halfbody` and
+    # `trc`
     cameras: str
-    rule: str
+    rule: str  # `robust`, `dlt`, `halfbody` or `trc`
+    # Whether the shake of cameras is taken out, in takes where it is measured
     steadied: bool = True
 
     @classmethod

@@ -17,18 +17,10 @@ LARGEST = 2**53  # up to here a float holds every whole number exactly
 
 @dataclass(frozen=True, eq=False)
 class FrameTimes:
-    """The frames of one device stream, and of the constant-rate video made of them.
+    """The frames of one device stream, and of the constant-rate video made of them."""
 
-    Attributes
-    ----------
-    time_s : (T,) float
-        On the device's clock, increasing.
-    number : (T,) int
-        The device's own frame count; a gap is a lost frame.
-    """
-
-    time_s: NDArray
-    number: NDArray
+    time_s: NDArray  # (T,) float: on the device's clock, increasing
+    number: NDArray  # (T,) int: the device's own frame count; a gap is a lost frame
 
     @property
     def n_missing(self) -> int:

@@ -21,34 +21,19 @@ NOT_USED = "give its offset_s under clocks of the take, or film a clap that all 
 
 @dataclass(frozen=True)
 class Clock:
-    """A clock that shows `t_own = t_ref * (1 + drift_ppm * 1e-6) + offset_s`.
+    """A clock that shows `t_own = t_ref * (1 + drift_ppm * 1e-6) + offset_s`."""
 
-    Attributes
-    ----------
-    offset_s : float
-        Its reading when the reference clock shows zero, seconds.
-    drift_ppm : float
-        How much faster it runs, millionths.
-    uncertainty_s : float
-        Standard deviation of its time against the reference, where in the take this is largest,
-        seconds; NaN where nothing is known. 90 % of errors should lie within 1.645 of it.
-    drift_uncertainty_ppm : float
-        Standard deviation of the drift, millionths.
-    status : str
-        `reference`, `found`, `assumed` (the session states it), `ambiguous` (several offsets
-        explain the recording), `unknown` (none explains it well enough).
-    note : str
-        One line on how it was found, or why it was not.
-    candidates_s : tuple of float
-        Other offsets that explain the recording about as well, best first.
-    """
-
-    offset_s: float = 0.0
-    drift_ppm: float = 0.0
+    offset_s: float = 0.0  # its reading when the reference clock shows zero, seconds
+    drift_ppm: float = 0.0  # how much faster it runs, millionths
+    # Standard deviation of its time against the reference, where in the take this is largest,
+    # seconds; NaN where nothing is known. 90 % of errors should lie within 1.645 of it
     uncertainty_s: float = 0.0
-    drift_uncertainty_ppm: float = 0.0
+    drift_uncertainty_ppm: float = 0.0  # standard deviation of the drift, millionths
+    # `reference`, `found`, `assumed` (the session states it), `ambiguous` (several offsets explain
+    # the recording), `unknown` (none explains it well enough)
     status: str = "assumed"
-    note: str = ""
+    note: str = ""  # one line on how it was found, or why it was not
+    # Other offsets that explain the recording about as well, best first
     candidates_s: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:

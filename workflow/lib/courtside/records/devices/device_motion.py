@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,47 +12,20 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError
 
 FORM = "courtside device motion 1"
-SPEC = {
-    "source": ("str", ()),
-    "kind": ("str", ()),
-    "joints": ("str", ("J",)),
-    "time_s": ("float", ("T",)),
-    "xyz": ("float", ("T", "J", "3")),
-    "reason": ("int", ("T", "J")),
-    "performed": ("bool", ("T",)),
-}
 
 
 @dataclass(frozen=True, eq=False)
 class DeviceMotion:
-    """One skeleton over time, in the device's own frame and on its own clock.
+    """One skeleton over time, in the device's own frame and on its own clock."""
 
-    Attributes
-    ----------
-    source : str
-        `mocopi`, `d415-rgb`, `d415-depth` or `cameras`.
-    kind : str
-        `inertial`, `rgb`, `rgbd` or `cameras`.
-    joints : (J,) str
-        Names as in `config/skeletons/`.
-    time_s : (T,) float
-        On the device's own clock.
-    xyz : (T, J, 3) float
-        Metres, in the device's own axes; NaN where missing.
-    reason : (T, J) uint8
-        `courtside.records.keypoints.missing_reason`.
-    performed : (T,) bool
-        False for frames that nobody performed, like the rest pose in the first row of a mocopi
-        file.
-    """
-
-    source: str
-    kind: str
-    joints: NDArray
-    time_s: NDArray
-    xyz: NDArray
-    reason: NDArray
-    performed: NDArray
+    source: str  # `mocopi`, `d415-rgb`, `d415-depth` or `cameras`
+    kind: str  # `inertial`, `rgb`, `rgbd` or `cameras`
+    joints: Annotated[NDArray, "str J"]  # names as in `config/skeletons/`
+    time_s: Annotated[NDArray, "float T"]  # on the device's own clock
+    xyz: Annotated[NDArray, "float T J 3"]  # metres, in the device's own axes; NaN where missing
+    reason: Annotated[NDArray, "int T J"]  # uint8: codes of `missing_reason`
+    # False for frames that nobody performed, like the rest pose in the first row of a mocopi file
+    performed: Annotated[NDArray, "bool T"]
 
     def joint(self, name: str) -> NDArray:
         """Return the path (T, 3) of a joint, metres; raise `ValueError` if there is none."""
@@ -101,9 +74,9 @@ def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> Devi
 
 def write(path: str | PathLike, motion: DeviceMotion) -> None:
     """Write a `DeviceMotion` to an npz file."""
-    npz.write(path, FORM, SPEC, vars(motion))
+    npz.write_record(path, FORM, motion)
 
 
 def read(path: str | PathLike) -> DeviceMotion:
     """Read a `DeviceMotion` from an npz file; raise `InputError` if it is not one."""
-    return DeviceMotion(**npz.plain(npz.read(path, FORM, SPEC)))
+    return npz.read_record(path, FORM, DeviceMotion)

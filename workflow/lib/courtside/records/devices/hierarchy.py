@@ -10,24 +10,16 @@ NO_PARENT = -1
 
 @dataclass(frozen=True, eq=False)
 class Hierarchy:
-    """Joints and their parents.
+    """Joints and their parents."""
 
-    Attributes
-    ----------
-    joints : tuple of str
-        Names, parents before their children; a file may use one name for two joints.
-    parents : (J,) int
-        Index of each joint's parent, below its own; `NO_PARENT` for a root.
-    offsets : (J, 3) float
-        Position of each joint's origin in its parent's axes at rest, metres.
-    ends : dict of str to (3,) float
-        Tips of the last bones (BVH's End Sites) in their joint's axes, metres; of the first joint
-        of each name.
-    """
-
+    # Names, parents before their children; a file may use one name for two joints
     joints: tuple[str, ...]
+    # (J,) int: index of each joint's parent, below its own; `NO_PARENT` for a root
     parents: NDArray
+    # (J, 3) float: position of each joint's origin in its parent's axes at rest, metres
     offsets: NDArray
+    # (3,) float: tips of the last bones (BVH's End Sites) in their joint's axes, metres; of the
+    # first joint of each name
     ends: dict[str, NDArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -42,23 +34,14 @@ class Hierarchy:
 
 @dataclass(frozen=True, eq=False)
 class PosedHierarchy:
-    """A hierarchy in motion.
-
-    Attributes
-    ----------
-    time_s : (T,) float
-        Seconds on the device's own clock.
-    translation : (T, J, 3) float
-        Each joint's origin in its parent's axes, metres: the device's own values, else the offset.
-        A root's is its position in the device's world.
-    parent_from_joint : (T, J, 3, 3) float
-        Rotation of each joint's axes in its parent's.
-    """
+    """A hierarchy in motion."""
 
     hierarchy: Hierarchy
-    time_s: NDArray
+    time_s: NDArray  # (T,) float: seconds on the device's own clock
+    # (T, J, 3) float: each joint's origin in its parent's axes, metres: the device's own values,
+    # else the offset. A root's is its position in the device's world
     translation: NDArray
-    parent_from_joint: NDArray
+    parent_from_joint: NDArray  # (T, J, 3, 3) float: rotation of each joint's axes in its parent's
 
     def __post_init__(self) -> None:
         shape = (len(self.time_s), len(self.hierarchy.joints), 3)

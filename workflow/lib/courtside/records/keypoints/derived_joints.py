@@ -28,16 +28,10 @@ class Definition:
 
 @dataclass(frozen=True)
 class DerivedJoints:
-    """The table of derived joints.
-
-    Attributes
-    ----------
-    definitions : dict of str to Definition
-    joints : dict of str to dict of str to str
-        For each derived joint and skeleton the name of its definition.
-    """
+    """The table of derived joints."""
 
     definitions: dict[str, Definition]
+    # For each derived joint and skeleton the name of its definition
     joints: dict[str, dict[str, str]]
 
     def definition(self, skeleton: str, name: str) -> str:

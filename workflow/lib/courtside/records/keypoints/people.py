@@ -25,23 +25,14 @@ SPEC = {
 
 @dataclass(frozen=True)
 class People:
-    """The persons of one take in the tracklets of its cameras.
+    """The persons of one take in the tracklets of its cameras."""
 
-    Attributes
-    ----------
-    model : str
-        Network that saw the tracklets.
-    person_id : (P,) str
-        Persons as the session names them.
-    placed : (P,) float
-        Share of the take in which two or more views agreed on the person's position.
-    index : dict of str to (P, T) int
-        By camera: which tracklet row shows the person in each of its T frames, -1 for none.
-    """
-
-    model: str
-    person_id: NDArray
+    model: str  # network that saw the tracklets
+    person_id: NDArray  # (P,) str: persons as the session names them
+    # (P,) float: share of the take in which two or more views agreed on the person's position
     placed: NDArray
+    # (P, T) int: by camera: which tracklet row shows the person in each of its T frames, -1 for
+    # none
     index: dict[str, NDArray]
 
     def assigned(self, view: Keypoints2D) -> Keypoints2D:

@@ -14,29 +14,15 @@ SIDES = {"left_": "right_", "right_": "left_"}
 
 @dataclass(frozen=True)
 class Skeleton:
-    """A joint list as one network or device gives it.
+    """A joint list as one network or device gives it."""
 
-    Attributes
-    ----------
-    name : str
-        As in the file name.
-    joints : tuple of str
-        Names in order; sides are prefixes, `left_wrist`.
-    bones : tuple of (str, str)
-        Pairs of joints drawn as lines.
-    segments : dict of str to (str, str)
-        Rigid limb segments, for checks of constant length.
-    groups : dict of str to tuple of str
-        Named sets of joints, such as `limbs` or `face`.
-    names : dict of str to str
-        Names of joints in the device's own files, where they differ from ours.
-    """
-
-    name: str
-    joints: tuple[str, ...]
-    bones: tuple[tuple[str, str], ...]
+    name: str  # as in the file name
+    joints: tuple[str, ...]  # names in order; sides are prefixes, `left_wrist`
+    bones: tuple[tuple[str, str], ...]  # pairs of joints drawn as lines
+    # Rigid limb segments, for checks of constant length
     segments: dict[str, tuple[str, str]]
-    groups: dict[str, tuple[str, ...]]
+    groups: dict[str, tuple[str, ...]]  # named sets of joints, such as `limbs` or `face`
+    # Names of joints in the device's own files, where they differ from ours
     names: dict[str, str] = field(default_factory=dict)
 
     def index(self, joint: str) -> int:

@@ -36,45 +36,26 @@ WALK = {  # each walk has its own number of frames G
 
 @dataclass(frozen=True, eq=False)
 class Walk:
-    """The walked camera at its frames.
+    """The walked camera at its frames."""
 
-    Attributes
-    ----------
-    time_s : (G,) float
-        Time of each frame since the first: mid-exposure of the middle row.
-    K, dist : (3, 3) float, (5,) float
-        The lens without stabilisation, px.
-    cam_from_world : (G, 3, 4) float
-        Pose at `time_s`, metres.
-    principal_point_px : (G, 2) float
-        Principal point of each frame, which a stabiliser moves; equal to that of `K` without one.
-    """
-
+    # (G,) float: time of each frame since the first: mid-exposure of the middle row
     time_s: NDArray
-    K: NDArray
-    dist: NDArray
-    cam_from_world: NDArray
+    K: NDArray  # (3, 3) float: the lens without stabilisation, px
+    dist: NDArray  # (5,) float
+    cam_from_world: NDArray  # (G, 3, 4) float: pose at `time_s`, metres
+    # (G, 2) float: principal point of each frame, which a stabiliser moves; equal to that of `K`
+    # without one
     principal_point_px: NDArray
 
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What a virtual session really is.
+    """What a virtual session really is."""
 
-    Attributes
-    ----------
-    cameras : list of Camera
-        The fixed cameras.
-    walks : dict of str to Walk
-    court_points : (P,) str
-        Names of the court's points.
-    court_xyz : (P, 3) float
-        Their real positions, metres: painted lines lie millimetres off.
-    """
-
-    cameras: list[Camera]
+    cameras: list[Camera]  # the fixed cameras
     walks: dict[str, Walk]
-    court_points: NDArray
+    court_points: NDArray  # (P,) str: names of the court's points
+    # (P, 3) float: their real positions, metres: painted lines lie millimetres off
     court_xyz: NDArray
 
 

@@ -37,66 +37,38 @@ SPEC = {
 
 @dataclass(frozen=True, eq=False)
 class DeviceTruth:
-    """The truth of one device.
+    """The truth of one device."""
 
-    Attributes
-    ----------
-    kind : str
-        `inertial` or `rgbd`.
-    person : str
-        Whom it follows.
-    offset_s, drift_ppm : float
-        Of its clock, as a camera's.
-    latency_s : float
-        Delay of its data: what happens at t_own on its clock is in its data at t_own + latency_s.
-    from_world : (3, 4) float
-        World to the device's own axes, metres: of a camera its colour sensor's cam_from_world; of
-        an inertial suit at the start of the recording, for afterwards it drifts.
-    """
-
-    kind: str
-    person: str
-    offset_s: float
+    kind: str  # `inertial` or `rgbd`
+    person: str  # whom it follows
+    offset_s: float  # of its clock, as a camera's
     drift_ppm: float
+    # Delay of its data: what happens at t_own on its clock is in its data at t_own + latency_s
     latency_s: float
+    # (3, 4) float: world to the device's own axes, metres: of a camera its colour sensor's
+    # cam_from_world; of an inertial suit at the start of the recording, for afterwards it drifts
     from_world: NDArray
 
 
 @dataclass(frozen=True, eq=False)
 class TakeTruth:
-    """What really happened in a take.
+    """What really happened in a take."""
 
-    Attributes
-    ----------
-    time_s : (T,) float
-        Of each frame of the first camera (without cameras, the first device), whose clock is the
-        reference, and in the same steps before and after, as long as anything records: mid-exposure
-        of the middle row.
-    joints : (J,) str
-        Names of the virtual body's joints.
-    person_id : (P,) str
-    xyz : (P, T, J, 3) float
-        World, metres.
-    racket : (P, T, 2, 3) float
-        Top and butt; NaN for a person without one.
-    offset_s, drift_ppm : dict of str to float
-        Of each camera, reference first: t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6).
-    events : dict of str to dict of str to float
-        By person and event the time on the reference clock, s.
-    shaken : dict of str to (F, 3, 4) float
-        For cameras that moved: cam_from_world at each of their frames, mid-exposure of the middle
-        row.
-    devices : dict of str to DeviceTruth
-    """
-
+    # (T,) float: of each frame of the first camera (without cameras, the first device), whose clock
+    # is the reference, and in the same steps before and after, as long as anything records:
+    # mid-exposure of the middle row
     time_s: NDArray
-    joints: NDArray
-    person_id: NDArray
-    xyz: NDArray
-    racket: NDArray
+    joints: NDArray  # (J,) str: names of the virtual body's joints
+    person_id: NDArray  # (P,) str
+    xyz: NDArray  # (P, T, J, 3) float: world, metres
+    racket: NDArray  # (P, T, 2, 3) float: top and butt; NaN for a person without one
+    # Of each camera, reference first: t_ref = (t_own - offset_s) / (1 + drift_ppm * 1e-6)
     offset_s: dict[str, float]
     drift_ppm: dict[str, float]
+    # By person and event the time on the reference clock, s
     events: dict[str, dict[str, float]] = field(default_factory=dict)
+    # (F, 3, 4) float: for cameras that moved: cam_from_world at each of their frames, mid-exposure
+    # of the middle row
     shaken: dict[str, NDArray] = field(default_factory=dict)
     devices: dict[str, DeviceTruth] = field(default_factory=dict)
 

@@ -15,39 +15,20 @@ TEXTURE = "plain"  # a plan without a word on texture expects few tie points
 
 @dataclass(frozen=True)
 class PlannedCamera:
-    """A fixed camera.
+    """A fixed camera."""
 
-    Attributes
-    ----------
-    place_m, aim_m : tuple of float
-        Where it stands and what it looks at, m.
-    size_px : tuple of int
-        Width and height.
-    focal_px, fov_deg : float or None
-        One of them: focal length, or field of view across the width.
-    """
-
-    place_m: tuple
-    aim_m: tuple
-    size_px: tuple
-    focal_px: float | None = None
-    fov_deg: float | None = None
+    place_m: tuple  # where it stands
+    aim_m: tuple  # what it looks at
+    size_px: tuple  # width and height
+    focal_px: float | None = None  # this or `fov_deg`
+    fov_deg: float | None = None  # across the width
 
 
 @dataclass(frozen=True)
 class PlannedWalk:
-    """The walk of the mobile camera.
+    """The walk of the mobile camera; its other fields are as of `PlannedCamera`."""
 
-    Attributes
-    ----------
-    way_m : tuple of tuple of float
-        Places on the floor that it passes, first and last included.
-    height_m : float
-    aim_m, size_px, focal_px, fov_deg
-        As of `PlannedCamera`.
-    """
-
-    way_m: tuple
+    way_m: tuple  # places on the floor that it passes, first and last included
     height_m: float
     aim_m: tuple
     size_px: tuple
@@ -57,34 +38,18 @@ class PlannedWalk:
 
 @dataclass(frozen=True)
 class Plan:
-    """A session that is only planned.
-
-    Attributes
-    ----------
-    description, court : str
-    hall_m : tuple of tuple of float
-        Two opposite corners.
-    texture : str
-        A key of `courtside.calibration.planning.tie_points.TEXTURES`.
-    cameras : dict of str to PlannedCamera
-    walk : PlannedWalk
-    n_images : tuple of int
-        Numbers of bridging images, increasing.
-    click_sigma_px : float or None
-        Scatter of a click per axis at a width of 3840 px, where it is not the study's.
-    target_cm : float or None
-        Error that is wanted.
-    """
+    """A session that is only planned."""
 
     description: str
     court: str
-    hall_m: tuple
-    texture: str
+    hall_m: tuple  # two opposite corners
+    texture: str  # a key of `courtside.calibration.planning.tie_points.TEXTURES`
     cameras: dict
     walk: PlannedWalk
-    n_images: tuple
+    n_images: tuple  # numbers of bridging images, increasing
+    # Scatter of a click per axis at a width of 3840 px, where it is not the study's
     click_sigma_px: float | None
-    target_cm: float | None
+    target_cm: float | None  # error that is wanted
 
 
 def read(path: str | os.PathLike) -> Plan:

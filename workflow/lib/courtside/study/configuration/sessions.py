@@ -24,44 +24,25 @@ class Subject:
 
 @dataclass(frozen=True)
 class FixedCamera:
-    """One fixed camera of a session.
+    """One fixed camera of a session."""
 
-    Attributes
-    ----------
-    static
-        A recording without people.
-    crop_px
-        (x, y, width, height): the part of the calibrated picture that the videos show.
-    name_in_calibration
-        Its name in the calibration file where that differs.
-    chessboard
-        `images`, `inner_corners`, `square_m`: pictures of a chessboard that this camera took.
-    """
-
-    static: str | None = None
+    static: str | None = None  # a recording without people
+    # (x, y, width, height): the part of the calibrated picture that the videos show
     crop_px: tuple[int, ...] | None = None
-    name_in_calibration: str | None = None
+    name_in_calibration: str | None = None  # its name in the calibration file where that differs
+    # `images`, `inner_corners`, `square_m`: pictures of a chessboard that this camera took
     chessboard: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True)
 class Device:
-    """A device that follows one person by itself during a take.
+    """A device that follows one person by itself during a take."""
 
-    Attributes
-    ----------
-    kind
-        `inertial` (mocopi's BVH), `rgb` (a video), `rgbd` (a RealSense recording or a folder),
-        `nuitrack`.
-    file
-        Its recording.
-    subject
-        Whom it follows.
-    """
-
+    # `inertial` (mocopi's BVH), `rgb` (a video), `rgbd` (a RealSense recording or a folder),
+    # `nuitrack`
     kind: str
-    file: str
-    subject: str
+    file: str  # its recording
+    subject: str  # whom it follows
 
     def sources(self, name: str) -> tuple[str, ...]:
         """Return the names of the skeletons that this device, called `name`, gives."""
@@ -71,91 +52,49 @@ class Device:
 
 @dataclass(frozen=True)
 class Take:
-    """One recording by several fixed cameras, by devices of their own, or by both.
-
-    Attributes
-    ----------
-    videos
-        Path by camera.
-    subjects
-        Persons in it.
-    trim_s
-        (start, stop) on each camera's own clock.
-    synchronised
-        Whether the cameras share one clock; otherwise it is found from the videos.
-    steady
-        Whether the shake of the cameras is measured and taken out.
-    virtual
-        Settings of the simulation of a virtual take.
-    clocks
-        Known clocks of cameras and devices: `offset_s`, perhaps `drift_ppm`, `uncertainty_s`.
-    pose2d
-        For a skeleton, by camera, the folder of keypoints that another program found.
-    pose3d
-        For a skeleton, by person, the TRC file of another program.
-    """
+    """One recording by several fixed cameras, by devices of their own, or by both."""
 
     name: str
-    videos: dict[str, str]
-    subjects: tuple[str, ...]
-    trim_s: tuple[float, ...] | None = None
+    videos: dict[str, str]  # path by camera
+    subjects: tuple[str, ...]  # persons in it
+    trim_s: tuple[float, ...] | None = None  # (start, stop) on each camera's own clock
+    # Whether the cameras share one clock; otherwise it is found from the videos
     synchronised: bool = False
-    steady: bool = False
-    virtual: dict[str, Any] | None = None
+    steady: bool = False  # whether the shake of the cameras is measured and taken out
+    virtual: dict[str, Any] | None = None  # settings of the simulation of a virtual take
     devices: dict[str, Device] = field(default_factory=dict)
+    # Known clocks of cameras and devices: `offset_s`, perhaps `drift_ppm`, `uncertainty_s`
     clocks: dict[str, dict[str, float]] = field(default_factory=dict)
+    # For a skeleton, by camera, the folder of keypoints that another program found
     pose2d: dict[str, dict[str, str]] = field(default_factory=dict)
+    # For a skeleton, by person, the TRC file of another program
     pose3d: dict[str, dict[str, str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Session:
-    """One visit to one gym.
-
-    Attributes
-    ----------
-    file
-        Its YAML file.
-    calibration_file
-        Cameras found elsewhere.
-    walks
-        Video, or folder of photos, of each walk by the mobile camera.
-    court_points
-        Clicked court points.
-    virtual
-        Settings of the simulation of a virtual session.
-    condition
-        What makes this session differ from the one it is a variation of.
-    views
-        Named sets of cameras.
-    halfbody
-        The cameras that play `centre`, `left`, `right` in the paper's rule for three cameras.
-    parameters
-        The steps' parameters of the study, with this session's overrides.
-    unclicked
-        Where court points that nobody has clicked yet are to be saved.
-    withheld
-        Takes that are not among `takes`, because persons in them have not agreed to be measured:
-        who, by take.
-    """
+    """One visit to one gym."""
 
     name: str
-    file: str
+    file: str  # its YAML file
     description: str
     court: str | None
     subjects: dict[str, Subject]
     cameras: dict[str, FixedCamera]
     takes: dict[str, Take]
-    calibration_file: str | None
-    walks: dict[str, str]
-    court_points: str | None
-    virtual: dict[str, Any] | None
-    condition: dict[str, Any]
+    calibration_file: str | None  # cameras found elsewhere
+    walks: dict[str, str]  # video, or folder of photos, of each walk by the mobile camera
+    court_points: str | None  # clicked court points
+    virtual: dict[str, Any] | None  # settings of the simulation of a virtual session
+    condition: dict[str, Any]  # what makes this session differ from the one it is a variation of
     blur_faces: bool
-    views: dict[str, tuple[str, ...]]
+    views: dict[str, tuple[str, ...]]  # named sets of cameras
+    # The cameras that play `centre`, `left`, `right` in the paper's rule for three cameras
     halfbody: dict[str, str] | None
-    parameters: dict[str, Any]
-    unclicked: str | None = None
+    parameters: dict[str, Any]  # the steps' parameters of the study, with this session's overrides
+    unclicked: str | None = None  # where court points that nobody has clicked yet are to be saved
+    # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
+    # by take
     withheld: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     def calibration_camera_names(self) -> dict[str, str]:
@@ -248,20 +187,12 @@ class Model:
 
 @dataclass(frozen=True)
 class Study:
-    """Everything the rules need to know.
-
-    Attributes
-    ----------
-    parameters
-        The study's configuration as checked.
-    folder
-        The folder config/.
-    """
+    """Everything the rules need to know."""
 
     sessions: dict[str, Session]
     artefacts: dict[str, Artefact]
     models: dict[str, Model]
-    parameters: dict[str, Any]
+    parameters: dict[str, Any]  # the study's configuration as checked
     folder: Path = Path("config")
 
     def takes(self) -> Iterator[tuple[Session, Take]]:

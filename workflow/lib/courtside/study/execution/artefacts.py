@@ -33,28 +33,14 @@ PIP_OPTIONS = [
 
 @dataclass(frozen=True)
 class Artefact:
-    """An entry of config/external.yaml.
-
-    Attributes
-    ----------
-    name : str
-    sha256 : str
-        Of the file that is fetched.
-    members : dict of str to str
-        Checksum of each member that is used.
-    requirement : str or None
-        `name==version` in the package registry.
-    mirror_file : str or None
-        Its file name in the mirror folder, for what no registry holds.
-    licence, note : str
-    """
+    """An entry of config/external.yaml."""
 
     name: str
-    sha256: str
-    members: dict
+    sha256: str  # of the file that is fetched
+    members: dict  # checksum of each member that is used
     licence: str
-    requirement: str | None = None
-    mirror_file: str | None = None
+    requirement: str | None = None  # `name==version` in the package registry
+    mirror_file: str | None = None  # its file name in the mirror folder, for what no registry holds
     note: str = ""
 
     @classmethod

@@ -51,20 +51,11 @@ FAULTS = (DIFFERENT, ONLY_HERE, ONLY_THERE)
 
 @dataclass(frozen=True)
 class Verdict:
-    """How a file compares with its twin.
+    """How a file compares with its twin."""
 
-    Attributes
-    ----------
-    name : str
-        Below the folder of results.
-    outcome : str
-    largest : float
-        Largest difference of numbers, NaN where there are none to compare.
-    """
-
-    name: str
+    name: str  # below the folder of results
     outcome: str
-    largest: float = math.nan
+    largest: float = math.nan  # largest difference of numbers, NaN where there are none to compare
 
 
 def compare(here: str | os.PathLike, there: str | os.PathLike) -> list[Verdict]:

@@ -15,19 +15,11 @@ STROKE_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11")
 
 @dataclass(frozen=True)
 class MeasuredTake:
-    """A take measured with one calibration and one network.
+    """A take measured with one calibration and one network."""
 
-    Attributes
-    ----------
-    measures, pose3d : str
-        Its summary of measures and its filtered skeletons.
-    labels : dict of str to str
-        Session, take, calibration and model.
-    """
-
-    measures: str
-    pose3d: str
-    labels: dict[str, str]
+    measures: str  # the file of its summary of measures
+    pose3d: str  # the file of its filtered skeletons
+    labels: dict[str, str]  # session, take, calibration and model
 
     @property
     def joint_labels(self) -> dict[str, str]:
