@@ -6,6 +6,8 @@ Fill a pattern with `str.format`. Names in braces are wildcards: `session`, `tak
 the one rule that writes it. Paths below the folder config/ are functions of that folder.
 """
 
+from collections.abc import Iterable
+from itertools import product
 from pathlib import Path
 
 RESULTS = "results"
@@ -151,6 +153,12 @@ def part(pattern: str, **known: str) -> str:
     for name, value in known.items():
         pattern = pattern.replace(f"{{{name}}}", value)
     return pattern
+
+
+def each(pattern: str, **values: str | int | Iterable[str]) -> list[str]:
+    """Fill a pattern with every combination of values; the last name varies fastest."""
+    lists = [[one] if isinstance(one, str | int) else one for one in values.values()]
+    return [pattern.format(**dict(zip(values, chosen, strict=True))) for chosen in product(*lists)]
 
 
 def formats(stems: list[str]) -> list[str]:

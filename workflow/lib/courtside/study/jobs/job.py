@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Device, FixedCamera, Model, Session, Study, Take
 from courtside.study.errors import InputError
@@ -70,9 +71,8 @@ class Job:
         return pattern.format(**{**self.wildcards, **more})
 
     def of_each(self, pattern: str, **choice: Iterable[str]) -> list[str]:
-        """Fill a pattern with each value of one more wildcard."""
-        ((name, values),) = choice.items()
-        return [self.fill(pattern, **{name: value}) for value in values]
+        """Fill a pattern with the wildcards, and with each value of one more."""
+        return paths.each(pattern, **{**self.wildcards, **choice})
 
     def court_file(self) -> Path | list:
         """Return the court of its session, nothing without a court."""

@@ -44,29 +44,21 @@ def every_error(sessions: Iterable[Session]) -> list[str]:
 
 def every_study_figure(study: Study) -> list[str]:
     """Return the figures and tables of the calibration study."""
-    names = [f"court_points.{court}" for court in courts_used(study)]
-    names += drawn_conditions(study)
-    stems = [paths.STUDY_FIGURE.format(figure=name) for name in names]
+    courts = sorted({session.court for session in study.sessions.values() if session.court})
+    names = [*(f"court_points.{court}" for court in courts), *drawn_conditions(study)]
+    stems = paths.each(paths.STUDY_FIGURE, figure=names)
     for session in swept(study):
         names = ["badminton_fig08", "coverage", "growth"]
         names += [f"badminton_fig06.{mapper}" for mapper in session.parameters["sweep"]["mappers"]]
-        stems += _figures(session, names)
+        stems += paths.each(paths.SESSION_FIGURE, session=session.name, figure=names)
     for session in study.sessions.values():
         if session.court:
             ways = map(Calibration.parse, session.calibrations())
-            stems += _figures(session, [f"error_map.{w.name}" for w in ways if w.has_covariance])
+            names = [f"error_map.{way.name}" for way in ways if way.has_covariance]
+            stems += paths.each(paths.SESSION_FIGURE, session=session.name, figure=names)
     if racket_sessions(study):
         stems.append(paths.STUDY_FIGURE.format(figure="badminton_fig12"))
     return paths.formats(stems) + [paths.CALIBRATION_TABLE] * bool(swept(study))
-
-
-def _figures(session: Session, names: Iterable[str]) -> list[str]:
-    return [paths.SESSION_FIGURE.format(session=session.name, figure=name) for name in names]
-
-
-def courts_used(study: Study) -> list[str]:
-    """Return the names of the courts of all sessions."""
-    return sorted({session.court for session in study.sessions.values() if session.court})
 
 
 def filmed_for_calibration(study: Study) -> list[Session]:

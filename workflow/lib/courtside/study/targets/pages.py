@@ -3,6 +3,7 @@
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
+from courtside.study.targets import takes
 
 
 def every_viewer(study: Study) -> list[str]:
@@ -15,7 +16,7 @@ def viewers(session: Session, take: Take) -> list[str]:
     if not (take.devices or (take.videos and session.take_calibrations())):
         return []
     model = session.parameters["models"][0]
-    return [paths.VIEWER.format(session=session.name, take=take.name, model=model)]
+    return takes.files(paths.VIEWER, session, take, model=model)
 
 
 def every_clicking_page(study: Study) -> list[str]:
@@ -36,22 +37,12 @@ def overlay_videos(study: Study, session: Session, take: Take) -> list[str]:
     wanted = study.parameters["export_overlay_video"]["takes"]
     if f"{session.name}/{take.name}" not in wanted or consent.refusing(session, take, "pictures"):
         return []
-    known = {"session": session.name, "take": take.name, "model": session.parameters["models"][0]}
-    return [
-        paths.OVERLAY_VIDEO.format(
-            **known, fusion=session.fusions()[0], calibration=way, camera=camera
-        )
-        for camera in take.videos
-        for way in session.take_calibrations()
-    ]
+    first = {"fusion": session.fusions()[0], "model": session.parameters["models"][0]}
+    each = {"camera": take.videos, "calibration": session.take_calibrations()}
+    return takes.files(paths.OVERLAY_VIDEO, session, take, **first, **each)
 
 
 def every_plan(study: Study) -> list[str]:
     """Return the figures of all planned sessions."""
-    return paths.formats(
-        [
-            paths.PLAN_FIGURE.format(plan=plan, figure=figure)
-            for plan in study.parameters["plans"]
-            for figure in ("growth", "map")
-        ]
-    )
+    plans = study.parameters["plans"]
+    return paths.formats(paths.each(paths.PLAN_FIGURE, plan=plans, figure=("growth", "map")))

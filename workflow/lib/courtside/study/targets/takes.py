@@ -1,6 +1,6 @@
 """What the study makes of each take: checks, exports, figures, measures, errors."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import product
 
 from courtside.study import paths
@@ -11,6 +11,23 @@ from courtside.study.configuration.sessions import Session, Study, Take
 PICTURED = ("overlay", "badminton_fig09", "badminton_fig10", "badminton_fig11")
 
 
+def files(pattern: str, session: Session, take: Take, **chosen: str | Iterable[str]) -> list[str]:
+    """Fill a pattern for a take with every method that it names, and with what is chosen."""
+    methods = {
+        "calibration": session.take_calibrations(),
+        "fusion": session.fusions(),
+        "model": session.parameters["models"],
+    }
+    named = {name: found for name, found in methods.items() if f"{{{name}}}" in pattern}
+    return paths.each(
+        pattern,
+        session=session.name,
+        take=take.name,
+        **{name: found for name, found in named.items() if name not in chosen},
+        **chosen,
+    )
+
+
 def every_check(study: Study) -> list[str]:
     """Return the checks that cameras with a static recording stood still until each take."""
     return [path for session, take in study.takes() for path in checks(session, take)]
@@ -19,7 +36,7 @@ def every_check(study: Study) -> list[str]:
 def checks(session: Session, take: Take) -> list[str]:
     """Return the checks of one take; none where shake is measured instead."""
     still = [] if take.steady else [c for c in take.videos if session.cameras[c].static]
-    return [paths.MOVEMENT.format(session=session.name, take=take.name, camera=c) for c in still]
+    return files(paths.MOVEMENT, session, take, camera=still)
 
 
 def every_export(study: Study) -> list[str]:
@@ -29,25 +46,25 @@ def every_export(study: Study) -> list[str]:
         refusing = consent.refusing(session, take, "export")
         persons = [name for name in take.subjects if name not in refusing]
         stages = session.parameters["export_stages"]
-        for person, way, stage in product(persons, _ways(session), stages):
-            if stage in study.stages(way["model"]):
-                found += [
-                    _fill(paths.EXPORT, session, take, way, stage=stage, person=person, suffix=s)
-                    for s in ("trc", "c3d", "csv")
-                ]
+        ways = product(
+            persons, session.take_calibrations(), session.fusions(), session.parameters["models"]
+        )
+        for person, calibration, fusion, model in ways:
+            known = {"calibration": calibration, "fusion": fusion, "model": model, "person": person}
+            there = [stage for stage in stages if stage in study.stages(model)]
+            found += files(
+                paths.EXPORT, session, take, **known, stage=there, suffix=("trc", "c3d", "csv")
+            )
     return found
 
 
 def every_figure(study: Study) -> list[str]:
     """Return the figures of all takes."""
-    return paths.formats(
-        [
-            _fill(paths.TAKE_FIGURE, session, take, way, figure=figure)
-            for session, take in study.takes()
-            for way in _ways(session)
-            for figure in shown(session, take, session.parameters["take_figures"])
-        ]
-    )
+    stems = []
+    for session, take in study.takes():
+        names = shown(session, take, session.parameters["take_figures"])
+        stems += files(paths.TAKE_FIGURE, session, take, figure=names)
+    return paths.formats(stems)
 
 
 def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
@@ -58,37 +75,31 @@ def shown(session: Session, take: Take, figures: Iterable[str]) -> list[str]:
 
 def every_shake(study: Study) -> list[str]:
     """Return the figures of how cameras shook, of the takes in which that is taken out."""
-    steady = [(session, take) for session, take in study.takes() if take.steady]
     stems = []
-    for session, take in steady:
-        choices = (session.take_calibrations(), session.parameters["models"], session.fusions())
-        for calibration, model, fusion in product(*choices):
-            way = {"calibration": calibration, "model": model, "fusion": fusion}
-            stems.append(_fill(paths.TAKE_FIGURE, session, take, way, figure="shake"))
+    for session, take in study.takes():
+        if take.steady:
+            fusions = session.fusions()
+            stems += files(paths.TAKE_FIGURE, session, take, fusion=fusions, figure="shake")
     return paths.formats(stems)
 
 
 def every_kinematics(study: Study) -> list[str]:
     """Return the measures of all takes, those of other programs' skeletons included."""
-    imported = {"calibration": "imported", "fusion": "trc"}
-    return [
-        _fill(paths.MEASURES, session, take, {**imported, "model": skeleton})
-        for session, take in study.takes()
-        for skeleton in take.pose3d
-    ] + [
-        _fill(paths.MEASURES, session, take, way)
-        for session, take in study.takes()
-        for way in _ways(session)
-    ]
+    imported, own = [], []
+    for session, take in study.takes():
+        trc = {"calibration": "imported", "fusion": "trc", "model": take.pose3d}
+        imported += files(paths.MEASURES, session, take, **trc)
+        own += files(paths.MEASURES, session, take)
+    return imported + own
 
 
 def every_comparison_of_views(study: Study) -> list[str]:
     """Return how far sets of cameras are from all of them, in real takes."""
     return [
-        _fill(paths.VIEW_DISTANCES, session, take, way)
+        path
         for session, take in study.takes()
         if not session.virtual and session.fusions("compared_fusions")
-        for way in _networks(session)
+        for path in files(paths.VIEW_DISTANCES, session, take)
     ]
 
 
@@ -99,42 +110,16 @@ def evaluations(study: Study, kind: str) -> list[str]:
     another).
     """
     found = []
-    for session, take in study.takes():
-        if session.virtual:
-            for way in _networks(session):
-                found += _evaluations(study, session, take, way, kind)
+    for session, take in ((session, take) for session, take in study.takes() if session.virtual):
+        if kind == "errors":
+            found += files(paths.ERRORS, session, take)
+        elif kind == "clocks" and not take.synchronised:
+            found += files(paths.CLOCK_ERRORS, session, take)
+        elif kind == "kinematics":
+            found += files(paths.MEASURE_ERRORS, session, take, fusion=session.fusions())
+        elif kind == "gains" and session.fusions("compared_fusions"):
+            for way, model in product(session.take_calibrations(), session.parameters["models"]):
+                known = {"calibration": way, "model": model}
+                stages = ("pose3d", study.stages(model)[-1])
+                found += files(paths.GAINS, session, take, **known, stage=stages)
     return found
-
-
-def _evaluations(
-    study: Study, session: Session, take: Take, way: dict[str, str], kind: str
-) -> list[str]:
-    kinds: dict[str, list[tuple[str, dict[str, str]]]] = {
-        "errors": [(paths.ERRORS, {})],
-        "kinematics": [(paths.MEASURE_ERRORS, {"fusion": name}) for name in session.fusions()],
-        "clocks": [(paths.CLOCK_ERRORS, {})] if not take.synchronised else [],
-        "gains": [
-            (paths.GAINS, {"stage": stage})
-            for stage in ("pose3d", study.stages(way["model"])[-1])
-            if session.fusions("compared_fusions")
-        ],
-    }
-    return [_fill(pattern, session, take, way, **more) for pattern, more in kinds[kind]]
-
-
-def _ways(session: Session) -> Iterator[dict[str, str]]:
-    """Yield every calibration, fusion and network that takes of a session are measured with."""
-    for calibration, fusion, model in product(
-        session.take_calibrations(), session.fusions(), session.parameters["models"]
-    ):
-        yield {"calibration": calibration, "fusion": fusion, "model": model}
-
-
-def _networks(session: Session) -> Iterator[dict[str, str]]:
-    """Yield every calibration and network that takes of a session are measured with."""
-    for calibration, model in product(session.take_calibrations(), session.parameters["models"]):
-        yield {"calibration": calibration, "model": model}
-
-
-def _fill(pattern: str, session: Session, take: Take, way: dict[str, str], **more: str) -> str:
-    return pattern.format(session=session.name, take=take.name, **way, **more)

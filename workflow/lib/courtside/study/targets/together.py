@@ -3,11 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration import consent
-from courtside.study.configuration.sessions import Session, Study
+from courtside.study.configuration.sessions import Study
 from courtside.study.targets import takes
 
 STROKE_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11")
@@ -29,11 +28,16 @@ class MeasuredTake:
 
 def every_players_figure(study: Study) -> list[str]:
     """Return the figures that takes are drawn in together, and the table of players."""
-    stems = [*_round_trips(study), *_strokes(study)]
+    stems = []
+    for session, take in study.named_takes(study.parameters["evaluate_round_trip"]["takes"]):
+        stems += takes.files(paths.CALIBRATED_FIGURE, session, take, figure="badminton_tab01")
+    for session, take in study.named_takes(study.parameters["draw_stroke"]["takes"]):
+        model, names = session.parameters["models"][0], takes.shown(session, take, STROKE_FIGURES)
+        stems += takes.files(paths.TAKE_FIGURE, session, take, model=model, figure=names)
     stems += [paths.STUDY_FIGURE.format(figure="badminton_fig05")] if fig05_layouts(study) else []
     for session, take in study.named_takes(study.parameters["draw_three_cameras"]["takes"]):
-        models = session.parameters["models"][:1]
-        stems += _figures("three_cameras", session, take.name, models)
+        known = {"figure": "three_cameras", "model": session.parameters["models"][0]}
+        stems += takes.files(paths.CALIBRATED_FIGURE, session, take, **known)
     there = {
         "clock_errors": takes.evaluations(study, "clocks"),
         "agreement": compared_takes(study),
@@ -41,39 +45,6 @@ def every_players_figure(study: Study) -> list[str]:
     }
     stems += [paths.STUDY_FIGURE.format(figure=name) for name, found in there.items() if found]
     return paths.formats(stems) + [paths.PLAYERS_TABLE] * bool(takes.evaluations(study, "errors"))
-
-
-def _round_trips(study: Study) -> list[str]:
-    named = study.named_takes(study.parameters["evaluate_round_trip"]["takes"])
-    return [
-        stem
-        for session, take in named
-        for stem in _figures("badminton_tab01", session, take.name, session.parameters["models"])
-    ]
-
-
-def _figures(figure: str, session: Session, take: str, models: Iterable[str]) -> list[str]:
-    known = {"figure": figure, "session": session.name, "take": take}
-    return [
-        paths.CALIBRATED_FIGURE.format(**known, calibration=calibration, model=model)
-        for calibration, model in product(session.take_calibrations(), models)
-    ]
-
-
-def _strokes(study: Study) -> list[str]:
-    return [
-        paths.TAKE_FIGURE.format(
-            session=session.name,
-            take=take.name,
-            figure=figure,
-            calibration=calibration,
-            fusion=fusion,
-            model=session.parameters["models"][0],
-        )
-        for session, take in study.named_takes(study.parameters["draw_stroke"]["takes"])
-        for calibration, fusion in product(session.take_calibrations(), session.fusions())
-        for figure in takes.shown(session, take, STROKE_FIGURES)
-    ]
 
 
 def fig05_layouts(study: Study) -> dict[str, list]:
@@ -111,9 +82,6 @@ def archived_takes(study: Study) -> list[MeasuredTake]:
     """Return the takes of a subject that are compared over sessions."""
     step = study.parameters["compare_sessions"]
     rows = measured_takes(study, step["sessions"], study.parameters["models"][:1])
-    return [row for row in rows if _archived(study, row.labels, step)]
-
-
-def _archived(study: Study, labels: dict[str, str], step: dict[str, Any]) -> bool:
-    take = study.sessions[labels["session"]].takes[labels["take"]]
-    return step["subject"] in take.subjects and take.name.startswith(tuple(step["takes"]))
+    named = [row for row in rows if row.labels["take"].startswith(tuple(step["takes"]))]
+    of = {(session.name, take.name): take.subjects for session, take in study.takes()}
+    return [r for r in named if step["subject"] in of[r.labels["session"], r.labels["take"]]]
