@@ -25,19 +25,9 @@ BOARD = "inner_corners: [7, 4], square_m: 0.06"
 def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> str:
     """Write a session's file as YAML text, every guess marked by `# guess:`.
 
-    Parameters
-    ----------
-    title : str
-        Of the session, one line.
-    folder : str
-        Of the recordings, as paths in the file begin; clicked court points are expected in it.
-    court : str
-        A court of config/courts, or `none`.
-
-    Raises
-    ------
-    InputError
-        If there is no recording to make a session of.
+    `title` is one line on the session. `folder` is that of the recordings, as paths in the file
+    begin; clicked court points are expected in it. `court` is one of config/courts, or `none`. An
+    `InputError` if there is no recording to make a session of.
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
@@ -63,10 +53,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
 def write(path: Path, content: str) -> None:
     """Write a drafted session (from `text`) to config/sessions/<session>.yaml, never over a file.
 
-    Raises
-    ------
-    InputError
-        If the file exists, or its name is not allowed for a session.
+    An `InputError` if the file exists, or its name is not allowed for a session.
     """
     if not configuration.NAME.fullmatch(path.stem) or path.stem in configuration.RESERVED:
         raise InputError(
@@ -258,14 +245,8 @@ def to_check(
 ) -> list[str]:
     """List what a user should check after drafting, in order.
 
-    Parameters
-    ----------
-    path : str or Path
-        Of the draft.
-    court_points : str
-        Where clicked court points are expected.
-    study : str or Path
-        The study that names the session.
+    `path` is the draft, `court_points` where clicked court points are expected, `study` the study
+    that names the session.
     """
     lines = [f"Look at {path}: every line with `{MARK}`, and what stands under `not used`."]
     lines += [f"Odd: {line}" for line in _odd(guess)]

@@ -26,17 +26,8 @@ def survey(folder: str | PathLike, *, root: str | PathLike) -> list[Recording]:
     """Describe every recording of a folder and of the folders in it, in name order.
 
     Files that are clearly no recordings are left out; unreadable ones come as `unusable` with the
-    reason.
-
-    Parameters
-    ----------
-    root : str or Path
-        Where paths of sessions start from; a folder elsewhere gives absolute paths.
-
-    Raises
-    ------
-    InputError
-        If there is no such folder.
+    reason. Paths start from `root`, as those of sessions do; a folder elsewhere gives absolute
+    paths. An `InputError` if there is no such folder.
     """
     folder = Path(folder)
     if not folder.is_dir():

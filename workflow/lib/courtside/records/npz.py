@@ -24,18 +24,9 @@ Record = TypeVar("Record")
 def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, ArrayLike]) -> None:
     """Write arrays under their names, after checking them; the file appears only when whole.
 
-    Parameters
-    ----------
-    form : str
-        What the file is and its version, such as `"courtside keypoints2d 1"`.
-    arrays : dict of str to array_like
-        One array for each key of `spec`.
-
-    Raises
-    ------
-    ValueError
-        If a key is missing or unknown, a kind or shape is not as stated, or `time_s` does not
-        increase.
+    `form` says what the file is, with its version: "courtside keypoints2d 1". A `ValueError` if a
+    key of `spec` is missing, another is there, a kind or shape is not as stated, or `time_s` does
+    not increase.
     """
     checked = {key: np.asarray(value) for key, value in arrays.items()}
     fault = _fault(spec, checked)
@@ -49,10 +40,7 @@ def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, Arra
 def read(path: str | PathLike, form: str, spec: Spec) -> dict[str, NDArray]:
     """Read arrays written by `write`: one for each key of `spec`.
 
-    Raises
-    ------
-    InputError
-        If the file is not an npz of this form, or its arrays are not as stated.
+    An `InputError` if the file is not an npz of this form, or its arrays are not as stated.
     """
     with (
         reading(path, f"an npz file ({form})"),

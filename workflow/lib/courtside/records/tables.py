@@ -22,14 +22,9 @@ def write(
 ) -> None:
     """Write a table as CSV, whole or not at all.
 
-    Parameters
-    ----------
-    labels : dict of str to str or number, optional
-        Columns put before the others, the same in every row: session, take, how it was measured.
-    float_format : str, optional
-        Format of every number that is not whole; shortest exact form if None.
-    about : str, optional
-        A comment for the first line.
+    `labels` are columns put before the others, the same in every row: session, take, how it was
+    measured. `float_format` is that of every number that is not whole, None for the shortest exact
+    form. `about` is a comment for the first line.
     """
     labels = labels or {}
     rows = rows.assign(**labels)
@@ -46,21 +41,11 @@ def write(
 def read(
     path: str | PathLike, what: str, fault_of: Callable[[pd.DataFrame], str], **options: Any
 ) -> pd.DataFrame:
-    """Read a CSV table that another rule wrote.
+    """Read a CSV table that another rule wrote, with options of `pandas.read_csv`.
 
-    Parameters
-    ----------
-    what : str
-        What the table is, with its article: "a frame table".
-    fault_of : callable
-        Takes the table; returns in a few words what is wrong with it, empty if nothing is.
-    **options
-        Of `pandas.read_csv`.
-
-    Raises
-    ------
-    InputError
-        If the file is missing or no such table.
+    `what` names the table with its article: "a frame table". `fault_of` takes the table and returns
+    in a few words what is wrong with it, empty if nothing is. An `InputError` if the file is
+    missing or no such table.
     """
     with reading(path, what, REMAKE):
         table = pd.read_csv(path, **options)

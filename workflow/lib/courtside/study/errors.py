@@ -34,13 +34,9 @@ SPARE_MEMORY = "end other programs, or run fewer jobs at a time with --cores 1"
 class InputError(ValueError):
     """Something the user gave is wrong; its message is one line, shown without a traceback.
 
-    The message names the file, camera or take, what was expected, what was found, and what to do.
-
-    Parameters
-    ----------
-    *lines : str
-        Several if several things are wrong at once. Unprintable characters are escaped, and the
-        middle of an endless line is left out: parts of the lines come out of files.
+    The message names the file, camera or take, what was expected, what was found, and what to do;
+    it has several lines if several things are wrong at once. Unprintable characters are escaped,
+    and the middle of an endless line is left out: parts of the lines come out of files.
     """
 
     def __init__(self, *lines: object) -> None:
@@ -79,21 +75,9 @@ def reading(
 ) -> Iterator[None]:
     """Turn the exceptions that a damaged file causes within the block into one `InputError`.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file; or file and place in it.
-    what : str
-        What was expected.
-    advice : str
-        What to do.
-    kinds : tuple of type
-        Exceptions that mean damage here, if not the default: what readers raise, and a TypeError or
-        AttributeError out of a library's code. All others pass, and so does `InputError` itself.
-
-    Raises
-    ------
-    InputError
+    `path` is the file, or file and place in it; `what` was expected; `advice` says what to do.
+    `kinds` are the exceptions that mean damage here; by default what readers raise, and a TypeError
+    or AttributeError out of a library's code. All others pass, and so does `InputError` itself.
     """
     caught: tuple[type[Exception], ...] = (*kinds, *AMBIGUOUS)
     try:

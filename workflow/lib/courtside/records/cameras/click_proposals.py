@@ -20,10 +20,8 @@ WHAT = "a table of proposed court points"
 def write(path: str | PathLike, proposals: Mapping[str, Any], points: Sequence[str]) -> None:
     """Write proposals of court points, and why there are none for the other points.
 
-    Parameters
-    ----------
-    proposals : dict of str to courtside.calibration.click_proposals.proposals.Proposals
-        By camera; untyped here, for `calibration` stands above this room.
+    `proposals` has a `courtside.calibration.click_proposals.proposals.Proposals` for each camera,
+    untyped here, for `calibration` stands above this room.
     """
     rows = [
         [camera, point, STATIC, *found.xy[at], found.sigma_px[at], found.confidence[at], reason]
@@ -36,17 +34,10 @@ def write(path: str | PathLike, proposals: Mapping[str, Any], points: Sequence[s
 def read(
     path: str | PathLike, cameras: Sequence[str], points: Sequence[str]
 ) -> dict[str, dict[str, dict[str, float]]]:
-    """Read proposals as the page for clicking shows them.
+    """Read proposals as the page for clicking shows them: `x`, `y`, `sigma_px` by camera and point.
 
-    Returns
-    -------
-    proposals : dict of str to dict of str to dict
-        By camera and point: `x`, `y`, `sigma_px`; points without a proposal are left out.
-
-    Raises
-    ------
-    InputError
-        If the file is no such table, or names unknown cameras or points.
+    Points without a proposal are left out. An `InputError` if the file is no such table, or names
+    unknown cameras or points.
     """
 
     def fault(table: pd.DataFrame) -> str:

@@ -17,28 +17,12 @@ STATIC = 0  # frame_idx of the static picture
 
 
 def read(path: str | PathLike, cameras: Sequence[str], points: Sequence[str]) -> dict[str, NDArray]:
-    """Read clicked court points.
+    """Read clicked court points, (P, 2) px for every camera, NaN where not clicked.
 
-    Parameters
-    ----------
-    path : str or Path
-        CSV with the columns camera, point, frame_idx (0, the static picture), x_px, y_px (px of the
-        video's size, first pixel's centre at (0, 0)). A hidden point has no row.
-    cameras : list of str
-        Fixed cameras of the session.
-    points : sequence of str, length P
-        Points of the court.
-
-    Returns
-    -------
-    clicks : dict of str to (P, 2) float
-        For every camera, px; NaN where not clicked.
-
-    Raises
-    ------
-    InputError
-        If the file is no such table, a row names an unknown camera, point or frame, a position is
-        not a number, or one camera has a point twice.
+    The CSV has the columns camera, point, frame_idx (0, the static picture), x_px, y_px (px of the
+    video's size, first pixel's centre at (0, 0)); a hidden point has no row. `points` are the P
+    points of the court. An `InputError` if the file is no such table, a row names an unknown
+    camera, point or frame, a position is not a number, or one camera has a point twice.
     """
     clicks = {camera: np.full((len(points), 2), np.nan) for camera in cameras}
     index = {point: at for at, point in enumerate(points)}

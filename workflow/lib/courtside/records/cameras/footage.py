@@ -38,12 +38,9 @@ class Footage:
         return float(self.clock.to_reference(self.view.time_s[frame]))
 
     def reprojected(self, points: Keypoints3D, frame: int) -> NDArray:
-        """Project the skeletons of a take into one frame of this camera, turned as it was then.
+        """Project the skeletons into one frame of this camera, turned as it was then: (P, J, 2) px.
 
-        Returns
-        -------
-        xy : (P, J, 2) float
-            Px, linearly between the two neighbouring times of `points`; NaN beyond its ends.
+        Linearly between the two neighbouring times of `points`; NaN beyond its ends.
         """
         camera = self.camera
         if self.turns is not None:
@@ -74,19 +71,10 @@ def read(
     videos: Sequence[str | PathLike],
     wanted: Sequence[str] | None = None,
 ) -> list[Footage]:
-    """Read what the cameras of a take gave.
+    """Read what the cameras of a take gave: `wanted` ones in this order, all by default.
 
-    Parameters
-    ----------
-    pose2d_npz, videos : sequence of str or Path
-        One for each camera, in one order.
-    wanted : sequence of str, optional
-        Cameras to return, in this order; all by default.
-
-    Raises
-    ------
-    InputError
-        If a camera is not calibrated, has no clock, or none of the files is of a wanted one.
+    `pose2d_npz` and `videos` have one file for each camera, in one order. An `InputError` if a
+    camera is not calibrated, has no clock, or none of the files is of a wanted one.
     """
     known = {camera.name: camera for camera in camera_models.read_toml(cameras_toml)}
     who, (_, by_camera) = people.read(people_npz), clocks.read(sync_json)

@@ -13,20 +13,11 @@ REASONS = ("", "dark", "blurred", "duplicate")  # why a frame is not kept; empty
 
 
 def write(path: str | PathLike, table: pd.DataFrame) -> None:
-    """Write a frame table as CSV.
+    """Write a frame table as CSV; a `ValueError` if it does not meet this description.
 
-    Parameters
-    ----------
-    table : DataFrame
-        One row per extracted frame: `frame_idx` (of the video; of photos, the place in name
-        order), `time_s` (since the video's first frame; NaN for photos), `name` (of the PNG file),
-        `sharpness` (variance of the Laplacian, squared grey levels), `kept` (bool), `reason` (""
-        where kept).
-
-    Raises
-    ------
-    ValueError
-        If the table does not meet this description.
+    One row per extracted frame: `frame_idx` (of the video; of photos, the place in name order),
+    `time_s` (since the video's first frame; NaN for photos), `name` (of the PNG file), `sharpness`
+    (variance of the Laplacian, squared grey levels), `kept` (bool), `reason` ("" where kept).
     """
     fault = _fault(table)
     if fault:

@@ -24,22 +24,13 @@ MEASURED = ("shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_p
 
 
 def write(path: str | PathLike, table: pd.DataFrame) -> None:
-    """Write a shake table as CSV.
+    """Write a shake table as CSV; a `ValueError` if it does not meet this description.
 
-    Parameters
-    ----------
-    table : DataFrame
-        One row per frame: `frame_idx` (of the file), `time_s` (on the camera's own clock),
-        `shift_x_px` and `shift_y_px` (of the content at the centre of the static picture: right,
-        down), `rotation_deg` (of the content about the centre, clockwise as seen), `zoom_percent`
-        (its growth), `n_matches` (background corners that agree), `sigma_px` (standard deviation
-        of the shift, per axis). Where too few corners agree, all but index, time and number are
-        NaN.
-
-    Raises
-    ------
-    ValueError
-        If the table does not meet this description.
+    One row per frame: `frame_idx` (of the file), `time_s` (on the camera's own clock), `shift_x_px`
+    and `shift_y_px` (of the content at the centre of the static picture: right, down),
+    `rotation_deg` (of the content about the centre, clockwise as seen), `zoom_percent` (its
+    growth), `n_matches` (background corners that agree), `sigma_px` (standard deviation of the
+    shift, per axis). Where too few corners agree, all but index, time and number are NaN.
     """
     fault = _fault(table)
     if fault:

@@ -117,10 +117,7 @@ def _json_number(value: float) -> float | None:
 def read(path: str | PathLike) -> tuple[str, dict[str, Clock]]:
     """Read the reference camera and the clocks of a take.
 
-    Raises
-    ------
-    InputError
-        If the file is not one of `write`, or a number is impossible.
+    An `InputError` if the file is not one of `write`, or a number is impossible.
     """
     content = read_json(path)
     if not isinstance(content, dict) or content.get("form") != FORM:

@@ -35,10 +35,7 @@ class DeviceMotion:
 def of_truth(truth: Any, person: str) -> DeviceMotion:
     """Return a person of a virtual take as a source without gaps.
 
-    Parameters
-    ----------
-    truth : TakeTruth
-        Untyped, for methods import this module and must not reach the truth.
+    `truth` is a `TakeTruth`; untyped, for methods import this module and must not reach the truth.
     """
     xyz = truth.xyz[list(map(str, truth.person_id)).index(person)]
     complete = np.ones(len(truth.time_s), dtype=bool)
@@ -49,10 +46,7 @@ def of_truth(truth: Any, person: str) -> DeviceMotion:
 def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> DeviceMotion:
     """Return one person of the fixed cameras as a source: in world, on the reference clock.
 
-    Raises
-    ------
-    InputError
-        If there is no such person.
+    An `InputError` if there is no such person.
     """
     known = points.person_id.tolist()
     if person not in known:

@@ -55,12 +55,7 @@ class PosedHierarchy:
 def forward(posed: PosedHierarchy) -> tuple[NDArray, NDArray]:
     """Compute every joint's pose in the device's world: forward kinematics.
 
-    Returns
-    -------
-    xyz : (T, J, 3) float
-        Joint origins, metres.
-    world_from_joint : (T, J, 3, 3) float
-        Rotation of each joint's axes.
+    Returns the joints' origins (T, J, 3), metres, and the rotations (T, J, 3, 3) of their axes.
     """
     # The joint axis comes first here: each joint's frames are then contiguous in memory, and one
     # matrix product per joint solves all frames.

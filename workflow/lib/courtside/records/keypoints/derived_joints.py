@@ -35,13 +35,7 @@ class DerivedJoints:
     joints: dict[str, dict[str, str]]
 
     def definition(self, skeleton: str, name: str) -> str:
-        """Return the name of the definition of a joint in a skeleton.
-
-        Raises
-        ------
-        InputError
-            If the table has no such joint, or no definition of it for this skeleton.
-        """
+        """Return the name of the definition of a joint in a skeleton; `InputError` if none."""
         known = self.joints.get(name, {})
         if skeleton not in known:
             raise InputError(
@@ -57,15 +51,8 @@ class DerivedJoints:
     def weights(self, skeleton: str, name: str, joints: Iterable[str]) -> NDArray:
         """Return the weights of `joints` that make a derived joint or a plain one, (J,) float.
 
-        Parameters
-        ----------
-        name : str
-            A derived joint, or one of `joints` itself if the table has none of that name.
-
-        Raises
-        ------
-        InputError
-            As for `definition`, or if a part is not among `joints`.
+        `name` is a derived joint, or one of `joints` itself if the table has none of that name. An
+        `InputError` as for `definition`, or if a part is not among `joints`.
         """
         joints = list(joints)
         if name not in self.joints and name in joints:
@@ -83,10 +70,8 @@ class DerivedJoints:
 def read(path: str | PathLike) -> DerivedJoints:
     """Read a table of derived joints: YAML with `definitions` and `joints`.
 
-    Raises
-    ------
-    InputError
-        If a key is missing, weights do not sum to 1, or a joint names an unknown definition.
+    An `InputError` if a key is missing, weights do not sum to 1, or a joint names an unknown
+    definition.
     """
     content = yaml_files.read(path)
     what = (
@@ -169,12 +154,10 @@ def of(
 ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Return one derived joint of all persons and frames; `points` are of `skeleton`.
 
-    Returns
-    -------
-    xyz, covariance_2d, covariance_camera, reason
-        Arrays (P, T, 3), (P, T, 3, 3), (P, T, 3, 3), (P, T); see `combine`. The calibration's error
-        is nearly the same for neighbouring joints and does not average out: its covariance is the
-        weighted mean of the parts', which is never too small for weights that are not negative.
+    xyz, covariance_2d, covariance_camera and reason: (P, T, 3), (P, T, 3, 3), (P, T, 3, 3), (P, T);
+    see `combine`. The calibration's error is nearly the same for neighbouring joints and does not
+    average out: its covariance is the weighted mean of the parts', which is never too small for
+    weights that are not negative.
     """
     weights = table.weights(skeleton, name, points.joints)
     xyz, covariance, reason = combine(points.xyz, points.covariance_2d, points.reason, weights)

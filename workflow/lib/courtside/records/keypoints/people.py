@@ -74,22 +74,8 @@ def read(path: str | PathLike) -> People:
 def assigned(view: Keypoints2D, index: NDArray) -> Keypoints2D:
     """Return the keypoints of one camera by person instead of by tracklet.
 
-    Parameters
-    ----------
-    view : Keypoints2D
-        With tracklet rows.
-    index : (P, T) int
-        Row of each person in each frame, -1 for none.
-
-    Returns
-    -------
-    by_person : Keypoints2D
-        P persons; where a person has no row, NaN with the reason UNSEEN.
-
-    Raises
-    ------
-    InputError
-        If the index has other frames or rows than the keypoints.
+    `index` (P, T) has the tracklet of each person in each frame, -1 for none: there all is NaN with
+    the reason UNSEEN. An `InputError` if it has other frames or tracklets than the keypoints.
     """
     index, frames = np.asarray(index), len(view.time_s)
     if index.shape[1:] != (frames,) or index.max(initial=-1) >= len(view.xy):

@@ -49,10 +49,7 @@ class Skeleton:
     def by_group(self, values: Mapping[str, float]) -> list[float]:
         """Return for each joint the value of its group.
 
-        Raises
-        ------
-        InputError
-            If a group is unknown or a joint is in none of the groups named.
+        An `InputError` if a group is unknown or a joint is in none of the groups named.
         """
         owner = {
             joint: value for name, value in values.items() for joint in self.groups.get(name, ())
@@ -77,12 +74,9 @@ def _other_side(joint: str) -> str:
 def read(path: str | PathLike) -> Skeleton:
     """Read a skeleton file: YAML with `joints`, `bones`, `segments`, `groups`, perhaps `names`.
 
-    Raises
-    ------
-    InputError
-        If a key is missing, a joint stands twice in `joints`, a bone or segment is no pair, a
-        bone, segment or group names a joint that is not in `joints`, a side has no mirror, or
-        `names` gives two joints one name.
+    An `InputError` if a key is missing, a joint stands twice in `joints`, a bone or segment is no
+    pair, a bone, segment or group names a joint that is not in `joints`, a side has no mirror, or
+    `names` gives two joints one name.
     """
     content = yaml_files.read(path)
     what = (

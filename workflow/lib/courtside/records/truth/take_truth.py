@@ -76,11 +76,8 @@ class TakeTruth:
 def write(path: str | PathLike, truth: TakeTruth) -> None:
     """Write the truth of a take to an npz file.
 
-    Raises
-    ------
-    ValueError
-        If shapes disagree, the clocks are not of the same cameras, or events or devices name an
-        unknown person.
+    A `ValueError` if shapes disagree, the clocks are not of the same cameras, or events or devices
+    name an unknown person.
     """
     people, cameras = [str(person) for person in truth.person_id], list(truth.offset_s)
     there = {*truth.events, *(device.person for device in truth.devices.values())}

@@ -57,21 +57,9 @@ def load(
 ) -> Study:
     """Check the whole configuration and return what it says.
 
-    Parameters
-    ----------
-    config : dict
-        The merged configuration, as Snakemake gives it.
-    config_file : str
-        Its name, for messages.
-    folder : str or Path
-        The folder config/ with sessions/, skeletons/, models.yaml and external.yaml.
-    root : str or Path
-        The folder that relative paths in sessions start from.
-
-    Raises
-    ------
-    ConfigurationError
-        With every fault of every file.
+    `config` is merged, as Snakemake gives it, and `config_file` its name, for messages. `folder` is
+    config/ with sessions/, skeletons/, models.yaml and external.yaml; relative paths in sessions
+    start from `root`. A `ConfigurationError` has every fault of every file.
     """
     folder = Path(folder)
     faults: list[str] = []

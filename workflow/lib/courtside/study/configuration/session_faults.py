@@ -18,20 +18,10 @@ SIMULATED = VIRTUAL.format(session="")
 def find(
     folder: Path, file: Path, content: Content, known: dict[str, Artefact] | None, root: Path
 ) -> Iterator[str]:
-    """Yield what in a session contradicts the rest of the configuration or the disk, one line each.
+    """Yield what in a session contradicts the rest of the configuration or the disk.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder config/.
-    file : Path
-        The session's.
-    content : dict
-        As its schema allows it.
-    known : dict or None
-        Artefacts by name.
-    root : Path
-        Where relative paths start.
+    `folder` is config/, `file` the session's and `content` what it says, as its schema allows it;
+    `known` are the artefacts by name, and relative paths start from `root`.
     """
     cameras, subjects = content["cameras"], content.get("subjects", {})
     court = content["court"]

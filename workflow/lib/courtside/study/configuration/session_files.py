@@ -36,17 +36,10 @@ def session(
     parameters: Content,
     root: str | os.PathLike = ".",
 ) -> Session:
-    """Build a `Session`.
+    """Build a `Session` from its checked YAML file.
 
-    Parameters
-    ----------
-    name, file : str
-    content : dict
-        The session's YAML file, checked.
-    parameters : dict
-        The study's configuration, whose steps `override` in `content` changes.
-    root : str or Path
-        Where relative paths start.
+    `parameters` is the study's configuration, whose steps `override` in `content` changes; relative
+    paths start from `root`.
     """
     clicked, unclicked = _clicks(content, root)
     subjects = _subjects(content)
@@ -92,14 +85,9 @@ def _clicks(content: Content, root: str | os.PathLike) -> tuple[str | None, str 
 def variations(base: Session, name: str, content: Content) -> dict[str, Session]:
     """Build the sessions `{name}-{k}` that differ from a virtual one in some of its settings.
 
-    Parameters
-    ----------
-    base : Session
-    name : str
-        Of the condition.
-    content : dict
-        `vary`: values of keys of `virtual`, of which every combination is one session; `set`: keys
-        of `virtual` that are the same for all; `override`: parameters of steps that differ.
+    `content` is that of the condition called `name`: `vary` has values of keys of `virtual`, of
+    which every combination is one session; `set` has keys of `virtual` that are the same for all;
+    `override` has parameters of steps that differ.
     """
     found, vary = {}, content["vary"]
     for k, values in enumerate(product(*vary.values())):

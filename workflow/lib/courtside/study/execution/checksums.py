@@ -33,10 +33,7 @@ def members(folder: str | os.PathLike) -> list[Path]:
 class Checksums:
     """The checksums of a study's inputs, kept in one JSON file between runs.
 
-    Parameters
-    ----------
-    path : str or Path
-        Where they are kept; a file that cannot be read as such is taken for an empty one.
+    A file that cannot be read as such is taken for an empty one.
     """
 
     def __init__(self, path: str | os.PathLike) -> None:

@@ -13,14 +13,10 @@ SLACK_S = 60.0  # by which the clocks of a computer and of a disk in its network
 
 
 def check(folders: Iterable[str | os.PathLike]) -> None:
-    """Check that no file below some folders is dated in the future; missing folders are left out.
+    """Check that no file below some folders is dated in the future; leave out missing folders.
 
-    Snakemake ends a job with an error if what it made is older than what it was made from.
-
-    Raises
-    ------
-    InputError
-        If there is such a file; the line names the one that is furthest ahead.
+    Snakemake ends a job with an error if what it made is older than what it was made from. An
+    `InputError` names the file that is furthest ahead.
     """
     there = [Path(folder) for folder in folders if Path(folder).is_dir()]
     latest_s = time.time() + SLACK_S

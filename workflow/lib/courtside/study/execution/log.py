@@ -51,15 +51,8 @@ def _log_exception(
 def progress(items: Iterable[T], total: int | None, what: str, every_s: float = 5.0) -> Iterator[T]:
     """Pass items through and report progress, in the log and on a terminal.
 
-    Parameters
-    ----------
-    items : iterable
-    total : int or None
-        How many are expected; None where that is unknown.
-    what : str
-        What is counted, with its owner: `"cam_01: frames"`.
-    every_s : float
-        Seconds between two messages.
+    `total` is how many are expected, None where that is unknown; `what` is what is counted, with
+    its owner: "cam_01: frames"; `every_s` are seconds between two messages.
     """
     start = last = time.monotonic()
     count = 0

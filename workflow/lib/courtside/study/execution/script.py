@@ -10,14 +10,10 @@ IGNORED = ("code", "pin")  # parameters that only tell Snakemake when to run a j
 
 
 def run(main: Callable[..., None], job: Any) -> None:
-    """Open the log of a job and call its script's `main`.
+    """Open the log of a job (Snakemake's `snakemake` object) and call its script's `main`.
 
-    Parameters
-    ----------
-    main : callable
-        Its parameters are named as the files and parameters of the rule. `paths` takes all inputs,
-        `threads` the number of threads, and wildcards are given where `main` names them.
-    job : Snakemake's `snakemake` object
+    Parameters of `main` are named as the files and parameters of the rule. `paths` takes all
+    inputs, `threads` the number of threads, and wildcards are given where `main` names them.
     """
     log.to_file(job.log[0])
     main(**arguments(main, job))
@@ -28,13 +24,8 @@ def arguments(main: Callable[..., None], job: Any) -> dict[str, Any]:
 
     An input that is left empty keeps the default of `main` where there is one. Files that `main`
     does not name are only for Snakemake. The parameter `step` is spread: each of its entries is an
-    argument, unless `main` takes `step` itself.
-
-    Raises
-    ------
-    TypeError
-        A name that two parts of the rule give, a parameter that `main` does not take, or an
-        argument that nothing gives.
+    argument, unless `main` takes `step` itself. A `TypeError` names what two parts of the rule
+    give, what `main` does not take, or what nothing gives.
     """
     every = inspect.signature(main).parameters
     taken = {name: one for name, one in every.items() if one.kind is not one.VAR_KEYWORD}

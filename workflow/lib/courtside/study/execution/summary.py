@@ -27,14 +27,8 @@ KINDS = (
 def finished(made: Iterable[str], seconds: float, look_at: Iterable[str] = ()) -> str:
     """Return a few lines on a run in which everything was made.
 
-    Parameters
-    ----------
-    made : iterable of str
-        The files that this run made.
-    seconds : float
-        How long it took.
-    look_at : iterable of str
-        What to look at, in this order; files that do not exist are left out.
+    `made` are the files that this run made; `look_at` is what to look at, in this order: files that
+    do not exist are left out.
     """
     made = list(made)
     if not made:
@@ -58,16 +52,8 @@ def failed(
 ) -> str:
     """Return a few lines on a run that stopped: what failed and why, what to do.
 
-    Parameters
-    ----------
-    faults : list of (str, list of str)
-        Name of each job that failed, and its log files.
-    n_finished, n_wanted : int
-        Jobs done, and jobs to do at the start.
-    seconds : float
-        How long it took.
-    whole_log : str
-        Snakemake's own log of the run.
+    `faults` are the jobs that failed, each a name with its log files; `n_wanted` counts the jobs to
+    do at the start; `whole_log` is Snakemake's own log of the run.
     """
     lines = [f"Courtside: stopped after {n_finished} of {n_wanted} jobs, {duration(seconds)}."]
     for name, logs in faults[:N_FAULTS]:

@@ -47,13 +47,8 @@ class Wildcards(SimpleNamespace):
 def content(study: Study, rules: Iterable[Any], captions: str) -> dict[str, Any]:
     """Return all that the report is made of.
 
-    Parameters
-    ----------
-    study : Study
-    rules : iterable of snakemake.rules.Rule
-        All rules, of which those that draw figures know the captions.
-    captions : str
-        The folder of the captions.
+    `rules` are all of Snakemake's, of which those that draw figures know the captions; `captions`
+    is the folder of these.
     """
     rules = list(rules)
     sessions = [session for session in study.sessions.values() if not session.condition]

@@ -33,29 +33,14 @@ def record(
     """Write the sidecars of all final files that are newer than theirs, and the record of the run.
 
     A file that was not made again keeps its sidecar, which says what the file was made of, not what
-    it would be made of now.
+    it would be made of now. Returns the files that got a new sidecar.
 
-    Parameters
-    ----------
-    jobs : sequence of dict
-        All jobs that the study asked for, in the form above.
-    folder : str or Path
-        The folder of the records: `provenance.json`, `checksums.json`, `provenance/<file>.json`.
-    run : dict
-        What is the same for all files: `command` (list of words, without the file), `surroundings`,
-        `config`, `config_files` (paths).
-    root : str or Path
-        The folder of all results; sidecars are named after files below it.
-    pinned : sequence of str
-        Starts of paths of artefacts and networks, which are given with checksum though a job made
-        them.
-    targets : collection of str
-        Files that were asked for by name: they are final whatever their kind.
-
-    Returns
-    -------
-    written : list of str
-        The files that got a new sidecar.
+    `jobs` are all that the study asked for, in the form above; `folder` is that of the records
+    (`provenance.json`, `checksums.json`, `provenance/<file>.json`), `root` that of all results,
+    below which sidecars are named. `run` is what is the same for all files: `command` (list of
+    words, without the file), `surroundings`, `config`, `config_files` (paths). `pinned` are starts
+    of paths of artefacts and networks, which are given with checksum though a job made them.
+    `targets` were asked for by name: they are final whatever their kind.
     """
     folder = Path(folder)
     known = checksums.Checksums(folder / "checksums.json")
@@ -109,10 +94,7 @@ def _is_due(name: str, job: Job, record_of_it: Path) -> bool:
 def upstream(jobs: Sequence[Job]) -> list[frozenset[int]]:
     """Return, for each job, the indices of itself and of all jobs that it rests on.
 
-    Raises
-    ------
-    ValueError
-        If two jobs make one file, or jobs depend on one another in a circle.
+    A `ValueError` if two jobs make one file, or jobs depend on one another in a circle.
     """
     maker = makers(jobs)
     before = [
@@ -157,21 +139,10 @@ def origin(
 ) -> dict[str, Any]:
     """Return what a job's files rest on.
 
-    Parameters
-    ----------
-    jobs : sequence of dict
-    reached : iterable of int
-        The job and all that it rests on, of `upstream`.
-    sha256_of : callable
-        Checksum of a path, None for one that is gone.
-    pinned : sequence of str
-        As of `record`.
-
-    Returns
-    -------
-    origin : dict
-        inputs and artefacts {path: sha256}, settings {rule: [params of its jobs, each once]},
-        seeds {name: [values]}, code {script: digest}.
+    `reached` are the job and all that it rests on, of `upstream`; `sha256_of` gives the checksum of
+    a path, None for one that is gone; `pinned` is as of `record`. The result has inputs and
+    artefacts {path: sha256}, settings {rule: [params of its jobs, each once]}, seeds {name:
+    [values]}, code {script: digest}.
     """
     upstream_jobs = [jobs[at] for at in sorted(reached)]
     made = {name for job in upstream_jobs for name in job["outputs"]}

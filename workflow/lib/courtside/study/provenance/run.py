@@ -18,19 +18,9 @@ def record(
 ) -> None:
     """Write the sidecars of all files that are newer than theirs.
 
-    Parameters
-    ----------
-    workflow : snakemake.workflow.Workflow
-    repository : Path
-    config : mapping
-        The merged configuration.
-    shared : iterable of str
-        YAML files that the study was read from, beside Snakemake's configuration files.
-
-    Raises
-    ------
-    InputError
-        If they cannot be written.
+    `workflow` is Snakemake's, `config` the merged configuration, `shared` the YAML files that the
+    study was read from beside Snakemake's configuration files. An `InputError` if sidecars cannot
+    be written.
     """
     dag = workflow.dag
     jobs = [plain_job(job, dag, touched=workflow.touch) for job in dag.jobs]

@@ -28,20 +28,9 @@ def of_study(
 
     Without date and serial number: the same parts give the same bytes. A package has the checksums
     of all files that the lock allows, one for each platform. Its licence is what the installed
-    package of this version says; a package for other platforms has none.
-
-    Parameters
-    ----------
-    lock_text : str
-        A lock with hashes.
-    artefacts : iterable of Artefact
-    name, version, licence : str
-        Of the study itself.
-
-    Raises
-    ------
-    InputError
-        If a requirement of the lock is not pinned with hashes.
+    package of this version says; a package for other platforms has none. `name`, `version` and
+    `licence` are of the study itself. An `InputError` if a requirement of the lock is not pinned
+    with hashes.
     """
     study = {"type": "application", "name": name, "version": version, **_licences(licence)}
     parts = [*packages(lock_text), *map(_artefact, artefacts)]
