@@ -126,7 +126,7 @@ def device_times(folder):
 def read_times(path):
     """Read times of frames and what follows from them."""
     found = frame_times.read(path)
-    return found.rate_hz, found.n_missing
+    return found.rate_hz
 
 
 def shake(folder):

@@ -20,11 +20,6 @@ def recording(**changed):
     )
 
 
-def test_missing_frames_are_gaps_in_the_numbers():
-    assert FrameTimes(np.arange(5.0), np.array([7, 8, 10, 11, 14])).n_missing == 3
-    assert FrameTimes(np.zeros(0), np.zeros(0, int)).n_missing == 0
-
-
 def test_separation_is_the_distance_of_the_cameras():
     assert recording().separation_m == pytest.approx(np.sqrt(0.0147**2 + 0.0002**2 + 0.0005**2))
 

@@ -1,10 +1,6 @@
 """What rules hand to each other: files with their units, checked when read.
 
-npz
-    `read`, `write`: arrays with stated keys, shapes and kinds; `read_record`, `write_record`.
-tables
-    `read`, `write`: CSV tables.
-
-Folders: `keypoints` (skeletons, people), `cameras` (clicks, frames, footage), `devices` (motion,
-clocks), `truth` (of simulated sessions; for evaluation only).
+npz: arrays with stated keys, shapes and kinds
+tables: CSV tables
+cameras, devices, keypoints: what is known of each; truth: of simulated sessions, for evaluation
 """

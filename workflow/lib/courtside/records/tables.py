@@ -1,6 +1,6 @@
 """Write and read the CSV tables of the study: whole files, labels first, floats to 6 digits."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,15 @@ from courtside.study.errors import InputError, reading
 from courtside.study.execution.files import atomic
 
 REMAKE = "delete it and run the study again"
+
+
+def column_fault(table: pd.DataFrame, columns: Iterable[str], numbers: Iterable[str]) -> str:
+    """Say in a few words which column is missing or no number; nothing if all are as expected."""
+    missing = [name for name in columns if name not in table.columns]
+    if missing:
+        return f"found no column {', '.join(missing)}"
+    words = [name for name in numbers if not pd.api.types.is_numeric_dtype(table[name])]
+    return f"found {words[0]} that is not a number" if len(table) and words else ""
 
 
 def write(

@@ -8,12 +8,12 @@ import numpy as np
 import pandas as pd
 
 from courtside.records import tables
+from courtside.records.cameras.clicks import STATIC
 
 COLUMNS = (
     "camera", "point", "frame_idx", "x_px", "y_px", "sigma_px", "confidence", "reason",
 )  # fmt: skip
 NUMBERS = ("x_px", "y_px", "sigma_px")
-STATIC = 0  # frame_idx of the static picture
 WHAT = "a table of proposed court points"
 
 
@@ -24,7 +24,15 @@ def write(path: str | PathLike, proposals: Mapping[str, Any], points: Sequence[s
     untyped here, for `calibration` stands above this room.
     """
     rows = [
-        [camera, point, STATIC, *found.xy[at], found.sigma_px[at], found.confidence[at], reason]
+        [
+            camera,
+            point,
+            STATIC,
+            *found.xy[at],
+            found.sigma_px[at],
+            found.confidence[at],
+            reason,
+        ]
         for camera, found in proposals.items()
         for at, (point, reason) in enumerate(zip(points, found.reason, strict=True))
     ]
@@ -44,9 +52,8 @@ def read(
         if list(table.columns) != list(COLUMNS):
             return f"found the columns {', '.join(table.columns)}"
         table[list(NUMBERS)].astype(float)  # raises for others
-        odd = {*table["camera"]} - {*cameras} | {*table["point"]} - {
-            *points
-        }  # an empty cell is NaN
+        # An empty cell is NaN.
+        odd = ({*table["camera"]} - {*cameras}) | ({*table["point"]} - {*points})
         return f"found unknown cameras or points: {', '.join(sorted(map(str, odd)))}" if odd else ""
 
     table = tables.read(path, WHAT, fault, dtype={"camera": str, "point": str})

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
+from courtside.geometry import interpolation
 from courtside.records.devices import clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints, people
@@ -54,13 +55,11 @@ def between(points: Keypoints3D, time_s: float) -> NDArray:
     known, tick = points.time_s, 1e-3 / max(points.rate_hz, 1) if len(points.time_s) > 1 else 1e-6
     if not known[0] - tick <= time_s <= known[-1] + tick:
         return np.full(points.xyz[:, 0].shape, np.nan)
-    left = int(np.clip(np.searchsorted(known, time_s, side="right") - 1, 0, len(known) - 1))
-    right = min(left + 1, len(known) - 1)
-    span = known[right] - known[left]
-    share = np.clip((time_s - known[left]) / span, 0, 1) if span > 0 else 0.0
+    wanted_s = np.array([time_s])
+    (left,), (share,) = interpolation.shares(known, wanted_s) if len(known) > 1 else ([0], [0.0])
     if share < 1e-3 or share > 1 - 1e-3:  # on a frame: its neighbour may be missing
-        return points.xyz[:, right if share > 0.5 else left]
-    return (1 - share) * points.xyz[:, left] + share * points.xyz[:, right]
+        return points.xyz[:, left + round(share)]
+    return interpolation.linear(known, points.xyz.swapaxes(0, 1), wanted_s)[0]
 
 
 def read(

@@ -40,12 +40,8 @@ def read(path: str | PathLike) -> pd.DataFrame:
 
 def _fault(table: pd.DataFrame) -> str:
     """Return in a few words what is wrong with a table; empty if nothing is."""
-    missing = [name for name in COLUMNS if name not in table.columns]
-    if missing:
-        return f"found no column {', '.join(missing)}"
-    words = [name for name in NUMBERS if not pd.api.types.is_numeric_dtype(table[name])]
-    if len(table) and words:
-        return f"found {words[0]} that is not a number"
+    if fault := tables.column_fault(table, COLUMNS, NUMBERS):
+        return fault
     if not len(table) or np.any(np.diff(table["frame_idx"]) <= 0) or not table["name"].is_unique:
         return "found no frames, or not each once in order"
     if not set(table["kept"]) <= {0, 1} or not set(table["reason"]) <= set(REASONS):

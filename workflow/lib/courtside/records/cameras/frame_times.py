@@ -23,13 +23,6 @@ class FrameTimes:
     number: NDArray  # (T,) int: the device's own frame count; a gap is a lost frame
 
     @property
-    def n_missing(self) -> int:
-        """Number of frames lost between the first and the last."""
-        if not len(self.number):
-            return 0
-        return int(self.number[-1] - self.number[0] + 1 - len(self.number))
-
-    @property
     def rate_hz(self) -> float:
         """Rate of the video: from the median time between frames; 30 for a single frame."""
         if len(self.time_s) < 2:

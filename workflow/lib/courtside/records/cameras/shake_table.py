@@ -53,14 +53,10 @@ def read_all(paths: Iterable[str | PathLike]) -> dict[str, pd.DataFrame]:
 
 def _fault(table: pd.DataFrame) -> str:
     """Return in a few words what is wrong with a table; empty if nothing is."""
-    missing = [name for name in DECIMALS if name not in table.columns]
-    if missing:
-        return f"found no column {', '.join(missing)}"
+    if fault := tables.column_fault(table, DECIMALS, DECIMALS):
+        return fault
     if not len(table):
         return "found no frame"
-    words = [name for name in DECIMALS if not pd.api.types.is_numeric_dtype(table[name])]
-    if words:
-        return f"found {words[0]} that is not a number"
     if not (np.diff(table["frame_idx"]) > 0).all() or not (np.diff(table["time_s"]) > 0).all():
         return "found frames that are not in order"
     values = table[list(MEASURED)].to_numpy(float)

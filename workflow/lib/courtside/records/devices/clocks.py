@@ -71,11 +71,6 @@ def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
     return {name: Clock(**clock, note="stated by the session") for name, clock in numbers.items()}
 
 
-def usable(clocks: Mapping[str, Clock]) -> bool:
-    """Return whether every clock may be used."""
-    return all(clock.usable for clock in clocks.values())
-
-
 def fault_line(where: str | PathLike, clocks: Mapping[str, Clock]) -> str:
     """Return a line on the first camera whose clock may not be used; empty if all may.
 
@@ -105,13 +100,10 @@ def write(path: str | PathLike, reference: str, clocks: Mapping[str, Clock]) -> 
     tables = {}
     for camera, clock in clocks.items():
         table = asdict(clock)
-        table |= {key: _json_number(table[key]) for key in NUMBERS}
+        # JSON has no NaN.
+        table |= {k: float(table[k]) if math.isfinite(table[k]) else None for k in NUMBERS}
         tables[camera] = table | {"candidates_s": [float(at) for at in clock.candidates_s]}
     write_json(path, {"form": FORM, "reference": reference, "cameras": tables})
-
-
-def _json_number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def read(path: str | PathLike) -> tuple[str, dict[str, Clock]]:

@@ -54,16 +54,9 @@ def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> Devi
             f"person {person}: expected one of {known} of the fixed cameras; name the subject of "
             "the devices"
         )
-    at = known.index(person)
-    return DeviceMotion(
-        source=source,
-        kind="cameras",
-        joints=points.joints,
-        time_s=points.time_s,
-        xyz=points.xyz[at],
-        reason=points.reason[at],
-        performed=np.ones(len(points.time_s), dtype=bool),
-    )
+    xyz, reason = points.xyz[known.index(person)], points.reason[known.index(person)]
+    complete = np.ones(len(points.time_s), dtype=bool)
+    return DeviceMotion(source, "cameras", points.joints, points.time_s, xyz, reason, complete)
 
 
 def write(path: str | PathLike, motion: DeviceMotion) -> None:

@@ -14,6 +14,7 @@ from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading, require_scalar, require_type
 
 SUM_TOLERANCE = 1e-9  # far above the rounding of a sum of decimal fractions
+WHAT = "`definitions` with `means` and `weights`, and `joints` with a definition for each skeleton"
 SEE = "see config/derived_joints.yaml"
 RIG = "rig"  # name in the table of the skeleton of virtual sessions' truth
 
@@ -74,10 +75,7 @@ def read(path: str | PathLike) -> DerivedJoints:
     definition.
     """
     content = yaml_files.read(path)
-    what = (
-        "`definitions` with `means` and `weights`, and `joints` with a definition for each skeleton"
-    )
-    with reading(path, what, SEE):
+    with reading(path, WHAT, SEE):
         definitions = {
             name: _definition(require_type(value, dict))
             for name, value in require_type(content["definitions"], dict).items()
