@@ -29,7 +29,7 @@ rule draw_wrist_arcs:
     input:
         paths_csv=paths.part(paths.ARCS, what="paths"),
         distortion_csv=paths.part(paths.ARCS, what="distortion"),
-        truth_csv=of_job(devices.true_arcs, paths.TRUE_PATHS),
+        truth_csv=of_job(Job.true_file, paths.TRUE_PATHS),
     output:
         **device_figure("wrist_arcs", "wrist_arcs"),
     log:

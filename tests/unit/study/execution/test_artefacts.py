@@ -39,7 +39,7 @@ def artefact(mirror, **changes):
         "licence": "MIT",
         "members": {name: sha256(CONTENT[name]) for name in ("pkg/a.bin", "pkg/b.bin")},
     }
-    return Artefact.of("thing", entry | changes)
+    return Artefact("thing", **(entry | changes))
 
 
 def outputs(tmp_path):
@@ -99,7 +99,7 @@ def test_a_member_that_is_too_large_is_refused(mirror, tmp_path, monkeypatch):
 def test_a_single_file_is_its_own_member(tmp_path):
     (tmp_path / "net.tflite").write_bytes(b"net")
     entry = {"mirror_file": "net.tflite", "sha256": sha256(b"net"), "licence": "MIT"}
-    one = Artefact.of("net", entry | {"members": {"net.tflite": sha256(b"net")}})
+    one = Artefact("net", **(entry | {"members": {"net.tflite": sha256(b"net")}}))
     artefacts.fetch(one, {"net.tflite": tmp_path / "out" / "net.tflite"}, mirror_folder=tmp_path)
     assert (tmp_path / "out" / "net.tflite").read_bytes() == b"net"
 
@@ -107,9 +107,9 @@ def test_a_single_file_is_its_own_member(tmp_path):
 def test_what_no_registry_holds_must_be_in_the_mirror(tmp_path):
     entry = {"mirror_file": "net.tflite", "sha256": "0" * 64, "licence": "MIT", "members": {}}
     with pytest.raises(InputError, match=r"net\.tflite in the folder that `mirror_folder`"):
-        artefacts.fetch(Artefact.of("net", entry), {}, mirror_folder=None)
+        artefacts.fetch(Artefact("net", **entry), {}, mirror_folder=None)
     with pytest.raises(InputError, match="mirror_folder: expected a folder"):
-        artefacts.fetch(Artefact.of("net", entry), {}, mirror_folder=tmp_path / "none")
+        artefacts.fetch(Artefact("net", **entry), {}, mirror_folder=tmp_path / "none")
 
 
 def test_offline_is_one_line_that_says_what_to_do(mirror, tmp_path, monkeypatch):
@@ -213,13 +213,13 @@ def test_a_single_file_that_reads_as_a_zip_file_is_copied_whole(mirror, tmp_path
     assert zipfile.is_zipfile(io.BytesIO(content))
     (mirror / "net.tflite").write_bytes(content)
     entry = {"mirror_file": "net.tflite", "sha256": sha256(content), "licence": "MIT"}
-    one = Artefact.of("net", entry | {"members": {"net.tflite": sha256(content)}})
+    one = Artefact("net", **(entry | {"members": {"net.tflite": sha256(content)}}))
     artefacts.fetch(one, {"net.tflite": tmp_path / "out" / "net.tflite"}, mirror_folder=mirror)
     assert (tmp_path / "out" / "net.tflite").read_bytes() == content
 
 
 def test_a_file_that_is_not_in_the_mirror_folder_is_named_with_its_note(tmp_path):
     entry = {"mirror_file": "n.bin", "sha256": "0" * 64, "licence": "MIT", "note": "ask Ann"}
-    one = Artefact.of("net", entry | {"members": {}})
+    one = Artefact("net", **(entry | {"members": {}}))
     with pytest.raises(InputError, match=r"expected n\.bin in the folder .*; ask Ann"):
         artefacts.fetch(one, {}, mirror_folder=tmp_path)

@@ -128,12 +128,12 @@ def test_truth_is_that_of_virtual_takes(job, study):
     paths_csv = (
         "results/single-view-tiny/evaluation/takes/claps/sources/blazepose-full.true_paths.csv"
     )
-    assert devices.true_arcs(job(**CLAPS), paths.TRUE_PATHS) == paths_csv
+    assert job(**CLAPS).true_file(paths.TRUE_PATHS) == paths_csv
     assert devices.thesis_truth(study) == paths_csv
     assert devices.smoothed_truth(study, paths.TRUE_PATHS) == [paths_csv]
     real = replace(study.sessions["single-view-tiny"], virtual=None)
     study = replace(study, sessions={"single-view-tiny": real})
-    assert devices.true_arcs(job(study, **CLAPS), paths.TRUE_PATHS) == []
+    assert job(study, **CLAPS).true_file(paths.TRUE_PATHS) == []
     assert devices.thesis_truth(study) == []
     assert devices.smoothed_truth(study, paths.TRUE_PATHS) == []
 

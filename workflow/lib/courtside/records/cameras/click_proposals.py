@@ -24,15 +24,7 @@ def write(path: str | PathLike, proposals: Mapping[str, Any], points: Sequence[s
     untyped here, for `calibration` stands above this room.
     """
     rows = [
-        [
-            camera,
-            point,
-            STATIC,
-            *found.xy[at],
-            found.sigma_px[at],
-            found.confidence[at],
-            reason,
-        ]
+        [camera, point, STATIC, *found.xy[at], found.sigma_px[at], found.confidence[at], reason]
         for camera, found in proposals.items()
         for at, (point, reason) in enumerate(zip(points, found.reason, strict=True))
     ]

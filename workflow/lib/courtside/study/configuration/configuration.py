@@ -68,7 +68,7 @@ def load(
     faults += schema_faults(config, "config", config_file)
     known = None
     if external is not None:
-        known = {name: Artefact.of(name, entry) for name, entry in external.items()}
+        known = {name: Artefact(name, **entry) for name, entry in external.items()}
     if models is not None:
         for name, entry in models.items():
             faults += _model_faults(folder, name, entry, known)
@@ -101,10 +101,8 @@ def load(
 def _models(models: Content, found: dict[str, tuple]) -> dict[str, Model]:
     """Return the networks, and the skeletons of imported keypoints."""
     imported = [name for _, content in found.values() for name in take_faults.imported(content)]
-    return {
-        **{name: sessions.imported(name) for name in imported},
-        **{name: sessions.model(name, entry) for name, entry in models.items()},
-    }
+    others = {name: Model(name=name, decoder="imported", skeleton=name) for name in imported}
+    return others | {name: sessions.model(name, entry) for name, entry in models.items()}
 
 
 def _sessions(

@@ -224,11 +224,6 @@ class Study:
         return paths.skeleton(self.folder, self.models[model].skeleton)
 
 
-def imported(name: str) -> Model:
-    """Return the model of keypoints of another program, named after their skeleton."""
-    return Model(name=name, decoder="imported", skeleton=name)
-
-
 def model(name: str, content: dict[str, Any]) -> Model:
     """Build a model from its checked entry in config/models.yaml."""
     networks = {part: Network(**content[part]) for part in ("detector", "landmarks")}

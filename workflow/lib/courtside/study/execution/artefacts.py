@@ -1,21 +1,19 @@
 """Pinned files from outside: fetched, checked, and only their named members unpacked."""
 
 import os
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import Any
 
 from courtside.study.configuration import yaml_files
 from courtside.study.errors import InputError, reading
-from courtside.study.execution import files
+from courtside.study.execution import digest, files
 
 LARGEST_MEMBER_BYTES = 1 << 30  # ASSUME: far more than any pinned member has
 AGAIN = "delete the file and fetch it again"
@@ -43,15 +41,10 @@ class Artefact:
     mirror_file: str | None = None  # its file name in the mirror folder, for what no registry holds
     note: str = ""
 
-    @classmethod
-    def of(cls, name: str, entry: dict[str, Any]) -> "Artefact":
-        """Build an artefact from its entry in the YAML file."""
-        return cls(name=name, **entry)
-
 
 def read(path: str | os.PathLike) -> dict[str, Artefact]:
     """Return the artefacts of a file such as config/external.yaml, by name."""
-    return {name: Artefact.of(name, entry) for name, entry in yaml_files.read(path).items()}
+    return {name: Artefact(name, **entry) for name, entry in yaml_files.read(path).items()}
 
 
 def fetch(
@@ -84,16 +77,11 @@ def _in_mirror(artefact: Artefact, mirror_folder: str | Path | None) -> Path | N
     if artefact.mirror_file:
         matching = [folder / artefact.mirror_file]
     else:
-        wanted = _project(str(artefact.requirement).split("=="))
-        wheels = sorted(folder.glob("*-*.whl"))
-        matching = [path for path in wheels if _project(path.name.split("-")[:2]) == wanted]
+        project, version = str(artefact.requirement).split("==")
+        wanted = [digest.package_name(project), version]
+        split = ((path, path.name.split("-")) for path in sorted(folder.glob("*-*.whl")))
+        matching = [path for path, at in split if [digest.package_name(at[0]), at[1]] == wanted]
     return next((path for path in matching if path.is_file()), None)
-
-
-def _project(name_and_version: Sequence[str]) -> tuple[str, str]:
-    """Return (name, version) as wheels write them: `My.Thing` is `my_thing` there."""
-    name, version = name_and_version
-    return re.sub(r"[-_.]+", "_", name).lower(), version
 
 
 def _download(artefact: Artefact, folder: Path) -> Path:
@@ -104,18 +92,8 @@ def _download(artefact: Artefact, folder: Path) -> Path:
         )
     wanted = folder / "requirement.txt"
     wanted.write_text(f"{artefact.requirement} --hash=sha256:{artefact.sha256}\n", encoding="utf-8")
-    command = [
-        sys.executable,
-        "-m",
-        "pip",
-        "download",
-        "-r",
-        str(wanted),
-        "-d",
-        str(folder),
-        *PIP_OPTIONS,
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-m", "pip", "download", "-r", str(wanted), "-d", str(folder)]
+    done = subprocess.run([*command, *PIP_OPTIONS], capture_output=True, text=True, check=False)
     wheels = list(folder.glob("*.whl"))
     if done.returncode or not wheels:
         lines = [line for line in done.stderr.splitlines() if line.strip()] or ["no message"]

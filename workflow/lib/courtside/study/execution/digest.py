@@ -30,29 +30,30 @@ def rule_digest(script: str | os.PathLike, library: str | os.PathLike, lock_text
     lines, perhaps with markers) pins them: a new version of one reruns what imports it, a new
     version of a tool that no rule imports reruns nothing.
     """
-    pins = "\n".join(sorted(packages_of(script, library, lock_text)))
-    return f"{code_digest(script, library)}-{hashlib.sha256(pins.encode()).hexdigest()}"
+    packages = "\n".join(sorted(packages_of(script, library, lock_text)))
+    return f"{code_digest(script, library)}-{hashlib.sha256(packages.encode()).hexdigest()}"
 
 
 def packages_of(script: str | os.PathLike, library: str | os.PathLike, lock_text: str) -> set[str]:
     """Return the pins (`name==version` with marker) of the packages that a script imports."""
     paths = [Path(script), *(_file(name, Path(library)) for name in modules_of(script, library))]
     imported = {name for path in paths for name in _parsed(path)[2]}
-    wanted = {_plain(INSTALLED_AS.get(name, name)) for name in imported}
-    pins = _pins(lock_text)
-    return {pin for name in wanted & set(pins) for pin in pins[name]}
+    wanted = {package_name(INSTALLED_AS.get(name, name)) for name in imported}
+    known = pins(lock_text)
+    return {pin for name in wanted & set(known) for pin in known[name]}
 
 
 @cache
-def _pins(lock_text: str) -> dict[str, list[str]]:
+def pins(lock_text: str) -> dict[str, list[str]]:
     """Return {name: its pins} of a lock; several where platforms or interpreters differ."""
     found: dict[str, list[str]] = {}
     for line in re.findall(r"^[A-Za-z0-9][^\n\\]*==[^\n\\]*", lock_text, re.M):
-        found.setdefault(_plain(re.split(r"\[|==", line)[0]), []).append(line.strip())
+        found.setdefault(package_name(re.split(r"\[|==", line)[0]), []).append(line.strip())
     return found
 
 
-def _plain(name: str) -> str:
+def package_name(name: str) -> str:
+    """Return the name of a package as registries compare it: `My.Thing` is `my-thing`."""
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
@@ -135,17 +136,13 @@ def _reached(
     found, waiting = set(), [script]
     while waiting:
         for name in imports_of(waiting.pop()):
-            for reached in _with_parents(name):
+            parts = name.split(".")
+            for reached in (".".join(parts[: at + 1]) for at in range(len(parts))):
                 file = find(reached, library)
                 if file is not None and reached not in found:
                     found.add(reached)
                     waiting.append(file)
     return found
-
-
-def _with_parents(name: str) -> list[str]:
-    parts = name.split(".")
-    return [".".join(parts[: at + 1]) for at in range(len(parts))]
 
 
 def _file(name: str, library: Path) -> Path | None:

@@ -82,14 +82,12 @@ def duration(seconds: float) -> str:
 
 
 def _by_kind(made: Iterable[str]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    found: dict[str, list[str]] = {kind: [] for kind, _, _ in KINDS}
     for path in map(str, made):
-        for kind, part, endings in KINDS:
-            if part in path and path.endswith(endings):
-                found.setdefault(kind, []).append(path)
-                break
-    order = [kind for kind, _, _ in KINDS]
-    return dict(sorted(found.items(), key=lambda pair: order.index(pair[0])))
+        kinds = (kind for kind, part, end in KINDS if part in path and path.endswith(end))
+        if kind := next(kinds, None):
+            found[kind].append(path)
+    return {kind: paths for kind, paths in found.items() if paths}
 
 
 def _places(paths: list[str]) -> str:

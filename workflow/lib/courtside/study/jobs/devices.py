@@ -167,11 +167,6 @@ def plates(job: Job) -> list[Path]:
     return [paths.skeleton(job.study.folder, name) for name in names]
 
 
-def true_arcs(job: Job, pattern: str) -> str | list:
-    """Return the true arcs of a take's wrists, where there is a truth."""
-    return job.fill(pattern) if job.session.virtual else []
-
-
 def thesis_file(study: Study, what: str) -> str:
     """Return a table of the arcs of the take of figures 3.1 and 3.2."""
     return _thesis_take(study).file(paths.ARCS, what=what)

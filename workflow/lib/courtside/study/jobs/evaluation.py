@@ -21,16 +21,6 @@ PAIRS = [  # of fusions that are compared, ours first
 ]
 
 
-def true_takes(job: Job) -> list[str]:
-    """Return the truth of every take of a session."""
-    return job.of_each(paths.TRUE_TAKE, take=job.session.takes)
-
-
-def true_take(job: Job) -> str | list:
-    """Return the truth of a take where there is one."""
-    return job.fill(paths.TRUE_TAKE) if job.session.virtual else []
-
-
 def skeletons(job: Job) -> list[str]:
     """Return the skeletons that are compared with the truth: every stage and fusion."""
     return [job.fill(paths.SKELETONS, stage=stage, fusion=fusion) for stage, fusion in _pairs(job)]

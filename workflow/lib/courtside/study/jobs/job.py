@@ -74,6 +74,10 @@ class Job:
         """Fill a pattern with the wildcards, and with each value of one more."""
         return paths.each(pattern, **{**self.wildcards, **choice})
 
+    def true_file(self, pattern: str) -> str | list:
+        """Return a file that rests on the truth, nothing of a real session."""
+        return self.fill(pattern) if self.session.virtual else []
+
     def court_file(self) -> Path | list:
         """Return the court of its session, nothing without a court."""
         return self.study.court_file(self.session) or []

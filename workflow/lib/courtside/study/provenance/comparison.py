@@ -80,12 +80,8 @@ def names(folder: str | os.PathLike) -> set[str]:
     }
 
 
-def tolerance(name: str) -> tuple[float, float]:
-    """Return (relative, absolute) tolerance of a file by its name below the folder of results."""
-    return _stated(name)[1:3]
-
-
-def _stated(name: str) -> tuple[str, float, float, str]:
+def stated(name: str) -> tuple[str, float, float, str]:
+    """Return the row of `TOLERANCES` of a file, by its name below the folder of results."""
     return next(row for row in TOLERANCES if fnmatch.fnmatch(name, row[0]))
 
 
@@ -121,7 +117,7 @@ def _of_drawing(name: str, here: Path, there: Path) -> Verdict:
 
 
 def _of_values(name: str, ours: dict[Any, Any], theirs: dict[Any, Any]) -> Verdict:
-    rtol, atol = tolerance(name)
+    _, rtol, atol, _ = stated(name)
     close, largest = True, math.nan
     for key, one in ours.items():
         one, other = np.asarray(one), np.asarray(theirs[key])
@@ -197,19 +193,24 @@ def table(verdicts: Iterable[Verdict]) -> list[str]:
     outcomes = [EQUAL, CLOSE, OTHER_BYTES, TIMES, DIFFERENT, ONLY_HERE, ONLY_THERE]
     rows = [["files", *outcomes, "largest difference", "tolerance", "because"]]
     for pattern, rtol, atol, why in TOLERANCES:
-        group = [each for each in verdicts if _stated(each.name)[0] == pattern]
+        group = [each for each in verdicts if stated(each.name)[0] == pattern]
         if group:
             counts = [str(sum(each.outcome == outcome for each in group)) for outcome in outcomes]
             largest = np.fmax.reduce([each.largest for each in group])
             gap = "" if math.isnan(largest) else f"{largest:.3g}"
             rows.append([pattern, *counts, gap, _in_words(rtol, atol), why])
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    pairs = [zip(row, widths, strict=True) for row in rows]
-    lines = ["  ".join(cell.ljust(width) for cell, width in row).rstrip() for row in pairs]
+    lines = aligned(rows)
     for each in (each for each in verdicts if each.outcome in FAULTS):
         gap = "" if math.isnan(each.largest) else f" by up to {each.largest:.3g}"
         lines.append(f"{each.name}: {each.outcome}{gap}")
     return lines
+
+
+def aligned(rows: list[list[str]]) -> list[str]:
+    """Return lines of cells, each column as wide as its longest cell."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    pairs = [zip(row, widths, strict=True) for row in rows]
+    return ["  ".join(cell.ljust(width) for cell, width in row).rstrip() for row in pairs]
 
 
 def _in_words(rtol: float, atol: float) -> str:

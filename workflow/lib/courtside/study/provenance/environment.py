@@ -2,15 +2,13 @@
 
 import os
 import platform
-import re
 import subprocess
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from courtside.study.execution import files
+from courtside.study.execution import digest, files
 
-LOCKED = re.compile(r"^([A-Za-z0-9._-]+)(?:\[[^]]*\])?==", re.M)
 GIT_SECONDS = 20  # ASSUME: enough for `git status` on a slow disk; a run does not wait longer
 
 
@@ -42,18 +40,9 @@ def commit(repository: str | os.PathLike) -> dict[str, Any]:
 def packages(lock: str | os.PathLike) -> dict[str, str]:
     """Return {name: version} of installed packages that a lock names; of all without a lock."""
     lock = Path(lock)
-    text = lock.read_text(encoding="utf-8") if lock.is_file() else None
-    wanted = None if text is None else {_plain(name) for name in LOCKED.findall(text)}
-    installed = {_plain(entry.name): entry.version for entry in metadata.distributions()}
-    return {
-        name: version
-        for name, version in sorted(installed.items())
-        if wanted is None or name in wanted
-    }
-
-
-def _plain(name: str) -> str:
-    return re.sub(r"[-_.]+", "-", name).lower()
+    found = {digest.package_name(one.name): one.version for one in metadata.distributions()}
+    named = digest.pins(lock.read_text(encoding="utf-8")) if lock.is_file() else found
+    return {name: version for name, version in sorted(found.items()) if name in named}
 
 
 def _git(repository: str | os.PathLike, *words: str) -> str | None:

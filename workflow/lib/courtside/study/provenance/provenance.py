@@ -6,6 +6,7 @@ done (its outputs are up to date), made (in this run).
 """
 
 import dataclasses
+import graphlib
 import json
 import os
 import shlex
@@ -97,27 +98,17 @@ def upstream(jobs: Sequence[Job]) -> list[frozenset[int]]:
     A `ValueError` if two jobs make one file, or jobs depend on one another in a circle.
     """
     maker = makers(jobs)
-    before = [
-        {maker[name] for name in job["inputs"] if name in maker and maker[name] != at}
+    before = {
+        at: {maker[name] for name in job["inputs"] if maker.get(name, at) != at}
         for at, job in enumerate(jobs)
-    ]
+    }
     found: dict[int, frozenset[int]] = {}
-    open_jobs: set[int] = set()
-    for start in range(len(jobs)):
-        waiting = [start]
-        while waiting:
-            at = waiting[-1]
-            missing = [] if at in found else [other for other in before[at] if other not in found]
-            if missing:
-                if open_jobs.intersection(missing):
-                    raise ValueError(f"jobs rest on one another in a circle: {jobs[at]['rule']}")
-                open_jobs.add(at)
-                waiting += missing
-                continue
-            waiting.pop()
-            open_jobs.discard(at)
-            if at not in found:
-                found[at] = frozenset({at}).union(*(found[other] for other in before[at]))
+    try:
+        for at in graphlib.TopologicalSorter(before).static_order():
+            found[at] = frozenset({at}).union(*(found[other] for other in before[at]))
+    except graphlib.CycleError as error:
+        rule = jobs[error.args[1][0]]["rule"]
+        raise ValueError(f"jobs rest on one another in a circle: {rule}") from None
     return [found[at] for at in range(len(jobs))]
 
 

@@ -89,10 +89,5 @@ def table(here: Rows, there: Rows) -> tuple[list[str], int]:
             rows.append([stage, *map(str, counts)])
         n_different += sum(counts[1:])
         first = first or (stage if counts[1] else "")
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
-    lines.append(f"first stage with other bytes: {first or 'none'}")
-    return lines, n_different
+    last = f"first stage with other bytes: {first or 'none'}"
+    return [*comparison.aligned(rows), last], n_different
