@@ -40,32 +40,15 @@ def survey(folder: str | PathLike, *, root: str | PathLike) -> list[Recording]:
         inner[:] = sorted(name for name in inner if not name.startswith("."))
         files = [Path(at) / name for name in sorted(names) if not name.startswith(".")]
         files = [path for path in files if path.is_file()]  # reading a pipe would block
-        photos = [
-            path
-            for path in files
-            if path.suffix.lower() in walk_frames.PHOTOS + walk_frames.UNREADABLE
-        ]
+        photos = [path for path in files if READERS.get(path.suffix.lower()) is _photos]
         together = len(photos) > 1 and Path(at) != folder
         if together:
             found.append(_described(Path(at), folder, root, _photos))
         for path in files:
-            reader = _READERS.get(_kind(path))
+            reader = READERS.get(path.suffix.lower())
             if reader and not (together and path in photos):
                 found.append(_described(path, folder, root, reader))
     return [recording for recording in found if recording]
-
-
-def _kind(path: Path) -> str:
-    suffix = path.suffix.lower()
-    for kind, suffixes in (
-        ("video", VIDEOS),
-        ("photo", {*walk_frames.PHOTOS, *walk_frames.UNREADABLE}),
-        ("bag", BAGS),
-        ("calibration", CALIBRATIONS),
-    ):
-        if suffix in suffixes:
-            return kind
-    return suffix.removeprefix(".")
 
 
 def _described(
@@ -97,15 +80,12 @@ def _video(path: Path) -> dict[str, Any]:
     return {"kind": "video", "size": info.size, **length, "note": note}
 
 
-def _photo(path: Path) -> dict[str, Any]:
-    height, width = walk_frames.read_photo(walk_frames.photo_paths(path)[0]).shape[:2]
-    return {"kind": "photo", "size": (width, height)}
-
-
 def _photos(path: Path) -> dict[str, Any]:
+    """Describe a photo or a folder of photos by the first of them."""
     photos = walk_frames.photo_paths(path)
     height, width = walk_frames.read_photo(photos[0]).shape[:2]
-    return {"kind": "photos", "size": (width, height), "n_photos": len(photos)}
+    more = {"kind": "photos", "n_photos": len(photos)} if path.is_dir() else {"kind": "photo"}
+    return {"size": (width, height), **more}
 
 
 def _table(path: Path) -> dict[str, Any] | None:
@@ -130,11 +110,11 @@ def _calibration(path: Path) -> dict[str, Any] | None:
     }
 
 
-_READERS: dict[str, Callable[[Path], dict[str, Any] | None]] = {
-    "video": _video,
-    "photo": _photo,
-    "csv": _table,
-    "calibration": _calibration,
-    "bvh": lambda path: {"kind": "bvh"},
-    "bag": lambda path: {"kind": "bag"},
+READERS: dict[str, Callable[[Path], dict[str, Any] | None]] = {  # by the ending of a file
+    **dict.fromkeys(VIDEOS, _video),
+    **dict.fromkeys((*walk_frames.PHOTOS, *walk_frames.UNREADABLE), _photos),
+    **dict.fromkeys(CALIBRATIONS, _calibration),
+    ".csv": _table,
+    ".bvh": lambda path: {"kind": "bvh"},
+    **dict.fromkeys(BAGS, lambda path: {"kind": "bag"}),
 }

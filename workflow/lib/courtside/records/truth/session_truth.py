@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,27 +26,19 @@ SPEC = {
     "court_points": ("str", ("P",)),
     "court_xyz": ("float", ("P", "3")),
 }
-WALK = {  # each walk has its own number of frames G
-    "time_s": ("float", ("{}",)),
-    "K": ("float", ("3", "3")),
-    "dist": ("float", ("5",)),
-    "cam_from_world": ("float", ("{}", "3", "4")),
-    "principal_point_px": ("float", ("{}", "2")),
-}
 
 
 @dataclass(frozen=True, eq=False)
 class Walk:
     """The walked camera at its frames."""
 
-    # (G,) float: time of each frame since the first: mid-exposure of the middle row
-    time_s: NDArray
-    K: NDArray  # (3, 3) float: the lens without stabilisation, px
-    dist: NDArray  # (5,) float
-    cam_from_world: NDArray  # (G, 3, 4) float: pose at `time_s`, metres
-    # (G, 2) float: principal point of each frame, which a stabiliser moves; equal to that of `K`
-    # without one
-    principal_point_px: NDArray
+    # Time of each frame since the first: mid-exposure of the middle row
+    time_s: Annotated[NDArray, "float G"]
+    K: Annotated[NDArray, "float 3 3"]  # the lens without stabilisation, px
+    dist: Annotated[NDArray, "float 5"]
+    cam_from_world: Annotated[NDArray, "float G 3 4"]  # pose at `time_s`, metres
+    # Principal point of each frame, which a stabiliser moves; equal to that of `K` without one
+    principal_point_px: Annotated[NDArray, "float G 2"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +70,7 @@ def write(
         "court_xyz": np.asarray(court_xyz, dtype=float),
     }
     for name, walk in walks.items():
-        arrays |= {f"{name}/{key}": getattr(walk, key) for key in WALK}
+        arrays |= {f"{name}/{key}": value for key, value in vars(walk).items()}
     npz.write(path, FORM, _spec(walks), arrays)
 
 
@@ -93,15 +86,17 @@ def read(path: str | PathLike) -> Truth:
             Camera(str(name), tuple(size.tolist()), matrix, dist, pose)
             for name, size, matrix, dist, pose in rows
         ]
-    walks = {name: Walk(**{key: arrays[f"{name}/{key}"] for key in WALK}) for name in names}
+    keys = npz.spec_of(Walk)
+    walks = {name: Walk(**{key: arrays[f"{name}/{key}"] for key in keys}) for name in names}
     return Truth(cameras, walks, arrays["court_points"], arrays["court_xyz"])
 
 
 def _spec(walks: Iterable[str]) -> npz.Spec:
+    # Each walk has its own number of frames G.
     of_walks = {
-        f"{name}/{key}": (kind, tuple(part.format(f"G of {name}") for part in dimensions))
+        f"{name}/{key}": (kind, tuple("G of " + name if one == "G" else one for one in dimensions))
         for name in walks
-        for key, (kind, dimensions) in WALK.items()
+        for key, (kind, dimensions) in npz.spec_of(Walk).items()
     }
     return SPEC | of_walks
 

@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 
@@ -20,7 +20,8 @@ def check(folders: Iterable[str | os.PathLike]) -> None:
     """
     there = [Path(folder) for folder in folders if Path(folder).is_dir()]
     latest_s = time.time() + SLACK_S
-    late = [found for folder in there for found in _dated(folder) if found[0] > latest_s]
+    found = (path for folder in there for path in folder.rglob("*") if path.is_file())
+    late = [dated for path in found if (dated := (path.stat().st_mtime, path))[0] > latest_s]
     if not late:
         return
     when_s, path = max(late)
@@ -40,13 +41,6 @@ def _advice(folders: list[Path]) -> str:
             "LastWriteTime -gt (Get-Date) | ForEach-Object { $_.LastWriteTime = Get-Date }"
         )
     return f"find {' '.join(named)} -newermt now -exec touch {{}} +"
-
-
-def _dated(folder: Path) -> Iterator[tuple[float, Path]]:
-    """Yield (date in seconds, path) of all files in a folder."""
-    for path in folder.rglob("*"):
-        if path.is_file():
-            yield path.stat().st_mtime, path
 
 
 def _in_words(time_s: float) -> str:

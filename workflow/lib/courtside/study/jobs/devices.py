@@ -36,16 +36,13 @@ def sources(job: Job, corrected: bool = True) -> dict[str, Source]:
     for name, device in devices:
         own = OF_KIND.get(device.kind)
         for source in device.sources(name):
-            file = job.fill(paths.DEVICE, device=name) if own else _source_file(job, source)
+            known = {"device": name, "source": source}
+            file = job.fill(paths.DEVICE if own else paths.SOURCE, **known)
             found[source] = Source(file, own or of_network, name)
     for name in correctable(job) if corrected else ():
         source = f"{name}-corrected"
-        found[source] = Source(_source_file(job, source), OF_KIND["inertial"], name)
+        found[source] = Source(job.fill(paths.SOURCE, source=source), OF_KIND["inertial"], name)
     return found
-
-
-def _source_file(job: Job, source: str) -> str:
-    return job.fill(paths.SOURCE, source=source)
 
 
 def source_files(job: Job, corrected: bool = True) -> list[str]:

@@ -23,16 +23,13 @@ PAIRS = [  # of fusions that are compared, ours first
 
 def skeletons(job: Job) -> list[str]:
     """Return the skeletons that are compared with the truth: every stage and fusion."""
-    return [job.fill(paths.SKELETONS, stage=stage, fusion=fusion) for stage, fusion in _pairs(job)]
+    return job.of_each(paths.SKELETONS, stage=job.stages(), fusion=every_fusion(job))
 
 
 def skeleton_labels(job: Job) -> list[dict[str, str]]:
     """Return the labels of these skeletons."""
-    return [{**job.wildcards, "stage": stage, "fusion": fusion} for stage, fusion in _pairs(job)]
-
-
-def _pairs(job: Job) -> product:
-    return product(job.stages(), every_fusion(job))
+    pairs = product(job.stages(), every_fusion(job))
+    return [{**job.wildcards, "stage": stage, "fusion": fusion} for stage, fusion in pairs]
 
 
 def pairs(job: Job) -> list[tuple[str, str]]:

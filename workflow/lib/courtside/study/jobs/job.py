@@ -71,7 +71,7 @@ class Job:
         return pattern.format(**{**self.wildcards, **more})
 
     def of_each(self, pattern: str, **choice: Iterable[str]) -> list[str]:
-        """Fill a pattern with the wildcards, and with each value of one more."""
+        """Fill a pattern with the wildcards, and with each of several values of other ones."""
         return paths.each(pattern, **{**self.wildcards, **choice})
 
     def true_file(self, pattern: str) -> str | list:

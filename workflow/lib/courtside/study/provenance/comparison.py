@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from courtside.study.errors import DAMAGED
 from courtside.study.execution import files
@@ -46,6 +45,7 @@ UNREAD = ("*.mp4", "virtual/*/backdrops.npz", "*.bag", "*.db", "*.bin", "*.html"
 TIMED = ("*/figures/growth.*", "report.html")
 EQUAL, CLOSE, DIFFERENT, TIMES = "bit-equal", "within tolerance", "different", "holds run times"
 OTHER_BYTES, ONLY_HERE, ONLY_THERE = "other bytes", "only here", "only there"
+NUMBERS = set("iuf")  # kinds of NumPy
 FAULTS = (DIFFERENT, ONLY_HERE, ONLY_THERE)
 
 
@@ -123,7 +123,7 @@ def _of_values(name: str, ours: dict[Any, Any], theirs: dict[Any, Any]) -> Verdi
         one, other = np.asarray(one), np.asarray(theirs[key])
         if one.shape != other.shape:
             return Verdict(name, DIFFERENT)
-        if not (_is_number(one) and _is_number(other)):
+        if not {one.dtype.kind, other.dtype.kind} <= NUMBERS:
             close = close and np.array_equal(one, other)
             continue
         close = close and bool(np.allclose(one, other, rtol, atol, equal_nan=True))
@@ -131,10 +131,6 @@ def _of_values(name: str, ours: dict[Any, Any], theirs: dict[Any, Any]) -> Verdi
         gaps = gaps[np.isfinite(gaps)]
         largest = np.fmax(largest, gaps.max()) if gaps.size else largest
     return Verdict(name, CLOSE if close else DIFFERENT, float(largest))
-
-
-def _is_number(array: NDArray) -> bool:
-    return array.dtype.kind in "iuf"
 
 
 def _from_npz(path: Path) -> dict[Any, Any]:
