@@ -192,9 +192,7 @@ def _described(recording: Recording) -> str:
     if recording.kind == "video":
         rate = "one frame" if recording.rate_hz is None else f"{recording.rate_hz:.4g} Hz"
         return ", ".join([size, rate, f"{recording.duration_s:.1f} s"])
-    return (
-        f"{recording.n_photos} photos, {size}" if recording.kind == "photos" else f"photo, {size}"
-    )
+    return f"{recording.n_photos} photos, {size}" if recording.n_photos else f"photo, {size}"
 
 
 def _what_is_there(guess: Guess) -> str:
@@ -274,10 +272,8 @@ def _odd(guess: Guess) -> Iterator[str]:
             yield f"camera {camera} has pictures of {found} pixels"
     for name, take in guess.takes.items():
         yield from _odd_take(name, take)
-    for recording in [
-        *guess.walks.values(),
-        *(r for t in guess.takes.values() for r in t.values()),
-    ]:
+    filmed = [recording for take in guess.takes.values() for recording in take.values()]
+    for recording in [*guess.walks.values(), *filmed]:
         if recording.note:
             yield f"{recording.path}: {recording.note}"
 

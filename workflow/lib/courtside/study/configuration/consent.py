@@ -97,8 +97,6 @@ def _together(who: Mapping[str, tuple[str, ...]]) -> Iterator[tuple[str, str]]:
     """Yield takes with the same persons, and these persons, in words."""
     for persons in dict.fromkeys(filter(None, who.values())):
         takes = [name for name, others in who.items() if others == persons]
-        noun, verb = (
-            ("take" if len(takes) == 1 else "takes"),
-            ("has" if len(persons) == 1 else "have"),
-        )
+        noun = "take" if len(takes) == 1 else "takes"
+        verb = "has" if len(persons) == 1 else "have"
         yield f"{noun} {', '.join(takes)}", f"{', '.join(persons)} {verb}"

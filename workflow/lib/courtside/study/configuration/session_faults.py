@@ -24,26 +24,24 @@ def find(
     `known` are the artefacts by name, and relative paths start from `root`.
     """
     cameras, subjects = content["cameras"], content.get("subjects", {})
-    court = content["court"]
+    court, virtual = content["court"], "virtual" in content
     if court != "none" and not (folder / "courts" / f"{court}.yaml").is_file():
         known_courts = sorted(path.stem for path in (folder / "courts").glob("*.yaml"))
         yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
-    yield from _source_faults(file, content)
+    for name in sorted(set(cameras) & set(content.get("walks", {}))):
+        yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
+    yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content)
     yield from consent.faults(file, content)
     for key, views in content.get("views", {}).items():
         yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
-    yield from take_faults.unknown(
-        f"{file}: halfbody", content.get("halfbody", {}).values(), cameras
-    )
+    players = content.get("halfbody", {}).values()
+    yield from take_faults.unknown(f"{file}: halfbody", players, cameras)
     paths = dict(_paths(content))
     for name, given in content.get("takes", {}).items():
         take: Content = given or {}
-        yield from take_faults.find(
-            f"{file}: takes.{name}", take, cameras, subjects, "virtual" in content
-        )
+        yield from take_faults.find(f"{file}: takes.{name}", take, cameras, subjects, virtual)
         # Recordings of somebody who has withdrawn may be gone.
-        withdrawn = consent.withdrawn(subjects, "virtual" in content)
-        if not withdrawn & set(take.get("subjects", [*subjects])):
+        if not consent.withdrawn(subjects, virtual) & set(take.get("subjects", [*subjects])):
             paths |= dict(_take_paths(f"takes.{name}", take))
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
@@ -79,17 +77,6 @@ def _paths(content: Content) -> Iterator[tuple[str, str]]:
     clickable = len(still) == len(content["cameras"]) and not clicks.startswith(EXTERNAL)
     if clicks and not clickable:  # else the study makes a page to click them on
         yield "court_points", clicks
-
-
-def _source_faults(file: Path, content: Content) -> Iterator[str]:
-    """Check that cameras can be found in some way, and that virtual sessions name no files."""
-    for name in sorted(set(content["cameras"]) & set(content.get("walks", {}))):
-        yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
-    if "virtual" in content:
-        yield from _virtual_faults(file, content)
-    else:
-        yield from _recorded_faults(file, content)
-        yield from _court_faults(file, content)
 
 
 def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
@@ -141,6 +128,7 @@ def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
                 f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty "
                 "court, found none; bridging images are tied to it"
             )
+    yield from _court_faults(file, content)
 
 
 def _court_faults(file: Path, content: Content) -> Iterator[str]:
@@ -166,13 +154,10 @@ def setting_faults(where: str, virtual: Content) -> list[str]:
 
 def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> list[str]:
     """Return the faults of the conditions; `found` has (file, content) of each session, by name."""
-    faults = take_faults.unknown(
-        f"{config_file}: variations", config["variations"], config["conditions"]
-    )
-    for name in config["variations"]:
-        if name not in config["conditions"]:
-            continue
-        condition = config["conditions"][name]
+    wanted, known = config["variations"], config["conditions"]
+    faults = take_faults.unknown(f"{config_file}: variations", wanted, known)
+    for name in (name for name in wanted if name in known):
+        condition = known[name]
         where, base = f"{config_file}: conditions.{name}", condition["session"]
         faults += take_faults.unknown(f"{where}.session", [base], found)
         if base in found and "virtual" not in found[base][1]:

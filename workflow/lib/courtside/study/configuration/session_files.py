@@ -42,7 +42,7 @@ def session(
     paths start from `root`.
     """
     clicked, unclicked = _clicks(content, root)
-    subjects = _subjects(content)
+    subjects, walks = _subjects(content), content.get("walks", {}).items()
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     takes = {
         key: _take(key, value or {}, recordings.get("takes", {}).get(key), subjects)
@@ -62,7 +62,7 @@ def session(
         takes={key: take for key, take in takes.items() if key not in withheld},
         withheld=withheld,
         calibration_file=content.get("calibration", {}).get("file"),
-        walks=recordings.get("walks") or _walks(content.get("walks", {})),
+        walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
         unclicked=unclicked,
         virtual=content.get("virtual"),
@@ -123,11 +123,11 @@ def _merged(parameters: Content, override: Content) -> Content:
 
 
 def _subjects(content: Content) -> dict[str, Subject]:
+    stated = {key: value or {} for key, value in content.get("subjects", {}).items()}
+    virtual = "virtual" in content
     return {
-        key: Subject(
-            **{**(value or {}), "consent": consent.stated(value or {}, "virtual" in content)}
-        )
-        for key, value in content.get("subjects", {}).items()
+        key: Subject(**{**value, "consent": consent.stated(value, virtual)})
+        for key, value in stated.items()
     }
 
 
@@ -159,10 +159,6 @@ def _devices(content: Content, subjects: tuple[str, ...]) -> dict[str, Device]:
         )
         for name, device in content.get("devices", {}).items()
     }
-
-
-def _walks(content: Content) -> dict[str, str]:
-    return {key: value.get("video") or value["images"] for key, value in content.items()}
 
 
 def _virtual(name: str, content: Content) -> Content:

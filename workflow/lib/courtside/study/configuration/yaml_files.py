@@ -25,15 +25,14 @@ class _StrictLoader(yaml.SafeLoader):
             if key_node.tag == "tag:yaml.org,2002:merge":
                 continue
             key = self.construct_object(key_node, deep=True)
-            line = key_node.start_mark.line + 1
+            problem = ""
             if not isinstance(key, str):
-                raise yaml.constructor.ConstructorError(
-                    problem=f"line {line}: expected a name, found {key!r}; put it in quotes"
-                )
-            if key in seen:
-                raise yaml.constructor.ConstructorError(
-                    problem=f"line {line}: expected each key once, found {key!r} again"
-                )
+                problem = f"expected a name, found {key!r}; put it in quotes"
+            elif key in seen:
+                problem = f"expected each key once, found {key!r} again"
+            if problem:
+                line = f"line {key_node.start_mark.line + 1}"
+                raise yaml.constructor.ConstructorError(problem=f"{line}: {problem}")
             seen.add(key)
         return super().construct_mapping(node, deep)
 

@@ -63,11 +63,9 @@ def code_digest(script: str | os.PathLike, library: str | os.PathLike) -> str:
     It changes with the syntax trees, not with comments, docstrings or formatting. `library` is the
     folder that holds the packages of the library. A syntax error is an `InputError`.
     """
-    parts = [_parsed(Path(script))[0]]
-    parts += [
-        _parsed(_file(name, Path(library)))[0] for name in sorted(modules_of(script, library))
-    ]
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+    names = sorted(modules_of(script, library))
+    paths = [Path(script), *(_file(name, Path(library)) for name in names)]
+    return hashlib.sha256("\n".join(_parsed(path)[0] for path in paths).encode()).hexdigest()
 
 
 def modules_of(script: str | os.PathLike, library: str | os.PathLike) -> set[str]:

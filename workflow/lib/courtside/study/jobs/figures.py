@@ -73,13 +73,11 @@ def seen_and_made(job: Job) -> dict[str, Any]:
 
 def fig05_errors(study: Study) -> list[str]:
     """Return the errors of detection of fig 5's takes."""
-    wanted, model = (
-        study.parameters["draw_badminton_fig05"]["layouts"],
-        study.parameters["models"][0],
-    )
+    wanted = study.parameters["draw_badminton_fig05"]["layouts"]
     named = dict.fromkeys(wanted[layout]["take"] for layout in fig05_layouts(study))
+    known = {"model": study.parameters["models"][0]}
     return [
-        paths.DETECTION_ERRORS.format(session=session.name, take=take.name, model=model)
+        paths.DETECTION_ERRORS.format(session=session.name, take=take.name, **known)
         for session, take in study.named_takes(named)
     ]
 

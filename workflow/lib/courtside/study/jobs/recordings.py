@@ -17,12 +17,11 @@ def inside(path: str) -> list[str]:
 
 def video(job: Job) -> str:
     """Return the video of a camera of a take, or of a device that films."""
-    if job["camera"] in job.take.videos:
-        return job.take.videos[job["camera"]]
-    device = job.take.devices[job["camera"]]
-    return (
-        device.file if device.kind == "rgb" else job.fill(paths.COLOUR_VIDEO, device=job["camera"])
-    )
+    name = job["camera"]
+    if name in job.take.videos:
+        return job.take.videos[name]
+    device = job.take.devices[name]
+    return device.file if device.kind == "rgb" else job.fill(paths.COLOUR_VIDEO, device=name)
 
 
 def trim_s(job: Job) -> tuple | None:

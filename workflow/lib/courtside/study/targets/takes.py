@@ -46,15 +46,12 @@ def every_export(study: Study) -> list[str]:
         refusing = consent.refusing(session, take, "export")
         persons = [name for name in take.subjects if name not in refusing]
         stages = session.parameters["export_stages"]
-        ways = product(
-            persons, session.take_calibrations(), session.fusions(), session.parameters["models"]
-        )
-        for person, calibration, fusion, model in ways:
-            known = {"calibration": calibration, "fusion": fusion, "model": model, "person": person}
+        methods = session.take_calibrations(), session.fusions(), session.parameters["models"]
+        for person, way, fusion, model in product(persons, *methods):
+            known = {"person": person, "calibration": way, "fusion": fusion, "model": model}
             there = [stage for stage in stages if stage in study.stages(model)]
-            found += files(
-                paths.EXPORT, session, take, **known, stage=there, suffix=("trc", "c3d", "csv")
-            )
+            kinds = {"stage": there, "suffix": ("trc", "c3d", "csv")}
+            found += files(paths.EXPORT, session, take, **known, **kinds)
     return found
 
 
