@@ -104,7 +104,7 @@ rule evaluate_joint_offsets:
         pose3d_npz=of_job(
             takes.every_take, paths.POSE3D_FILTERED, calibration="known18", fusion="all-robust"
         ),
-        truth_npz=of_job(takes.every_take, paths.TRUE_TAKE),
+        truth_npz=of_job(evaluation.true_takes),
     output:
         offsets_csv=paths.JOINT_OFFSETS,
     log:
@@ -120,7 +120,7 @@ rule evaluate_joint_offsets:
 rule evaluate_skin_depths:
     input:
         lifted_npz=of_job(takes.every_take, paths.DEPTH_SOURCE),
-        truth_npz=of_job(takes.every_take, paths.TRUE_TAKE),
+        truth_npz=of_job(evaluation.true_takes),
     output:
         depths_csv=paths.SKIN_DEPTHS,
     log:
@@ -158,7 +158,7 @@ rule evaluate_round_trip:
         sync_json=paths.CAMERA_CLOCKS,
         skeleton_yaml=of_job(Job.skeleton_file),
         derived_yaml=paths.derived_joints(CONFIG),
-        truth_npz=of_job(Job.true_file, paths.TRUE_TAKE),
+        truth_npz=of_job(evaluation.true_take),
     output:
         rows_csv=paths.ROUND_TRIP,
     log:

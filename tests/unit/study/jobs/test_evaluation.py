@@ -8,6 +8,14 @@ SHOT = {"session": "players-tiny", "take": "shot", "calibration": "known18"}
 NET = {**SHOT, "model": "blazepose-static"}
 PLAIN = {"session": "plain-tiny"}
 CLICKS = {"click_sigma_px": 0.7, "click_bias_px": 0.5, "click_loss": 4.0}
+TRUE = "results/virtual/players-tiny/takes"
+
+
+def test_truth_is_that_of_virtual_takes(job):
+    both = [f"{TRUE}/shot/truth.npz", f"{TRUE}/rally/truth.npz"]
+    assert evaluation.true_takes(job(session="players-tiny")) == both
+    assert evaluation.true_take(job(**SHOT)) == both[0]
+    assert evaluation.true_take(job(session="walk-4cams-tiny", take="balancing")) == []
 
 
 def test_skeletons_of_every_stage_and_fusion_are_compared_and_labelled(job):

@@ -41,13 +41,6 @@ def test_patterns_are_filled_with_wildcards_and_others(job):
     assert one.of_each("{session}/{take}", take=["a", "b"]) == ["s/a", "s/b"]
 
 
-def test_truth_is_that_of_virtual_takes(job):
-    pattern = "results/virtual/{session}/takes/{take}/truth.npz"
-    virtual = job(session="players-tiny", take="shot", calibration="known18")
-    assert virtual.true_file(pattern) == "results/virtual/players-tiny/takes/shot/truth.npz"
-    assert job(**REAL).true_file(pattern) == []
-
-
 def test_the_court_and_the_skeleton_are_files_of_the_configuration(job, study):
     assert job(session="plain-tiny").court_file() == study.folder / "courts" / "badminton.yaml"
     assert job(**REAL).court_file() == []

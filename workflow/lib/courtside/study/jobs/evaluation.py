@@ -21,6 +21,16 @@ PAIRS = [  # of fusions that are compared, ours first
 ]
 
 
+def true_takes(job: Job) -> list[str]:
+    """Return the truth of every take of a session."""
+    return job.of_each(paths.TRUE_TAKE, take=job.session.takes)
+
+
+def true_take(job: Job) -> str | list:
+    """Return the truth of a take where there is one."""
+    return job.true_file(paths.TRUE_TAKE)
+
+
 def skeletons(job: Job) -> list[str]:
     """Return the skeletons that are compared with the truth: every stage and fusion."""
     return job.of_each(paths.SKELETONS, stage=job.stages(), fusion=every_fusion(job))
