@@ -1,17 +1,11 @@
 """Files of devices and other programs, read into records: BVH, mocopi, Nuitrack, OpenPose, depth.
 
-bvh
-    `read`: any BVH file as a posed hierarchy; `read_text`: its checked content.
-mocopi, nuitrack
-    `read`: the motion of one person as a `DeviceMotion`.
-openpose
-    `read`: keypoints of one camera; `link`: persons followed through frames.
-open_depth
-    `read`: colour and depth of any form as a `DepthRecording`; `baseline`.
-depth_folder
-    `read`: colour and depth from a folder of plain files.
-depth_recording
-    `DepthRecording`.
+bvh: `read`: any BVH file as a posed hierarchy; `read_text`: its checked content
+mocopi, nuitrack: `read`: the motion of one person as a `DeviceMotion`
+openpose: `read`: keypoints of one camera; `link`: persons followed through frames
+open_depth: `read`: colour and depth of any form as a `DepthRecording`; `baseline`
+depth_folder: `read`: colour and depth from a folder of plain files
+depth_recording: `DepthRecording`
 
 Folder: `realsense` (recordings of RealSense cameras).
 """

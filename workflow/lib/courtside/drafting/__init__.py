@@ -1,6 +1,6 @@
 """A session's YAML file drafted from a folder of recordings.
 
-survey: what every file of a folder is
-guess: cameras, walks and takes, from the names of files
-draft: the session's file, its study, and advice
+survey: `survey`: what every file of a folder is; `written`: its path as a session names it
+guess: `guess`: cameras, walks and takes, from the names of files; `name`, `distinct`, `alike`
+draft: `text`, `write`, `write_study`: the session's file and its study; `to_check`: advice
 """

@@ -3,10 +3,7 @@
 Most modules have `table` (the numbers drawn, which become the CSV) and `draw`. Constants that place
 things on the page are chosen by eye.
 
-style
-    What figures share.
-calibration, take, devices, comparison
-    Figures by subject.
-badminton
-    Counterparts of the figures of [Shishido2020].
+style: What figures share
+calibration, take, devices, comparison: Figures by subject
+badminton: Counterparts of the figures of [Shishido2020]
 """

@@ -1,6 +1,9 @@
 """What rules hand to each other: files with their units, checked when read.
 
-npz: arrays with stated keys, shapes and kinds
-tables: CSV tables
-cameras, devices, keypoints: what is known of each; truth: of simulated sessions, for evaluation
+npz: `read`, `write`: arrays with stated keys, shapes and kinds; `read_record`,
+    `write_record`: records
+tables: `read`, `write`: CSV tables
+
+Folders: `keypoints` (skeletons, people), `cameras` (clicks, frames, footage), `devices` (motion,
+clocks), `truth` (of simulated sessions; for evaluation only).
 """

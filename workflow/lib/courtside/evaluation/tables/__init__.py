@@ -1,9 +1,7 @@
 """Tables of the study: calibration, players, racket.
 
-calibration
-    read, tidy, table: errors of calibrations; pick, summary, spread, structures_of: parts of it.
-players
-    read, together, table: errors of simulated players.
-racket
-    read, table: lengths of a racket.
+calibration: read, tidy, table: errors of calibrations; pick, summary, spread, structures_of: parts
+    of it
+players: read, together, table: errors of simulated players
+racket: read, table: lengths of a racket
 """
