@@ -5,6 +5,7 @@ Reads measures and 3D keypoints; writes pairs, limits of agreement and verdicts.
 
 import pandas as pd
 
+from courtside.kinematics import joint_means
 from courtside.records import tables
 from courtside.records.keypoints import keypoints
 from courtside.statistics import agreement, longitudinal
@@ -15,7 +16,7 @@ from courtside.study.execution.script import run
 def main(measures_csv, pose3d_npz, pairs_csv, table_csv, *, labels, joint_labels, networks, **step):
     parts = [longitudinal.read(measures_csv, labels)]
     parts += [
-        longitudinal.of_joints(keypoints.read_3d(path), label)
+        joint_means.table(keypoints.read_3d(path), label)
         for path, label in zip(pose3d_npz, joint_labels, strict=True)
     ]
     left_out = step.pop("left_out")

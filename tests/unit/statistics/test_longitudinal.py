@@ -6,7 +6,6 @@ import pytest
 
 from courtside.statistics import longitudinal
 from courtside.study.errors import InputError
-from fixtures.people import walker
 
 
 def rows(sessions, measure="neck_distance", subject="p1"):
@@ -162,25 +161,3 @@ def test_a_take_named_twice_and_a_table_without_units_are_refused(tmp_path):
     pd.read_csv(path).drop(columns="unit").to_csv(path, index=False)
     with pytest.raises(InputError, match=r"a\.csv: expected the columns .* missing: \['unit'\]"):
         longitudinal.read([path], [LABEL])
-
-
-def test_joints_are_measured_wherever_somebody_stands():
-    points = walker.points(n_persons=1)
-    left, wrist = (list(points.joints).index(f"left_{what}") for what in ("hip", "wrist"))
-    right = list(points.joints).index("right_hip")
-    time_s = points.time_s
-    points.xyz[0, :, [left, right]] = np.stack(
-        [0.3 * time_s, 0 * time_s, 0 * time_s + 0.9], axis=-1
-    )
-    points.xyz[0, :, wrist] = points.xyz[0, :, left] + [0.3, 0.0, 0.4]
-    points.xyz[0, 7, wrist] = np.nan
-    rows = longitudinal.of_joints(points, {"session": "s", "take": "t", "calibration": "file"})
-    found = rows.set_index("measure")["value"]
-    assert found["left_wrist_height_mean"] == pytest.approx(1300.0)
-    assert found["left_wrist_reach_mean"] == pytest.approx(500.0)
-    assert found["left_wrist_speed_mean"] == pytest.approx(0.3)
-    assert set(rows["model"]) == {"blazepose-full"}
-    turned = points.xyz @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]]) + [5.0, -3.0, 0.0]
-    points.xyz[:] = turned
-    again = longitudinal.of_joints(points, {"session": "s", "take": "t", "calibration": "file"})
-    np.testing.assert_allclose(again["value"], rows["value"])

@@ -7,6 +7,7 @@ path_length: `measure`, `mean_norm`
 joint_angles: `measure`, `between`, `trunk`
 centre_of_mass: `shares`, `weights`
 measures: `measure` (all of a take), `Filter`, `Person`, `Point`
+joint_means: `table`
 smoothness: `sparc`, `of_path`, `of_arcs`
 wrist_arcs: `arcs`, `paths`, `distortion`
 """

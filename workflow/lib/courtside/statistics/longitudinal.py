@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Protocol
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import stats
 
 from courtside.study.errors import InputError
@@ -32,7 +30,6 @@ COLUMNS = [
     "session", "date", "take", "model", "calibration", "subject", "measure", "value", "sigma",
     "unit", "definition",
 ]  # fmt: skip
-HIPS = ("left_hip", "right_hip")
 
 
 def of_subject(
@@ -227,43 +224,3 @@ def check_single(rows: pd.DataFrame) -> pd.DataFrame:
             f"measures: expected one value each, found two of {where}; name every take once"
         )
     return rows
-
-
-class Skeletons(Protocol):
-    """What `of_joints` reads of `Keypoints3D`, which this room may not import."""
-
-    model: str
-    joints: NDArray
-    person_id: NDArray
-    time_s: NDArray
-    xyz: NDArray
-
-
-def of_joints(points: Skeletons, label: Mapping[str, str]) -> pd.DataFrame:
-    """Measure every joint of a take in ways that do not depend on position or direction.
-
-    The points are filtered, because noise lengthens a path. `label` is as for `read`, without
-    model. `COLUMNS`: mean height above the floor (mm), mean speed (m/s, between neighbouring
-    frames), and mean distance to the middle of the hips (mm), over the frames that have them.
-    """
-    names = list(map(str, points.joints))
-    middle = points.xyz[:, :, [names.index(hip) for hip in HIPS]].mean(axis=2, keepdims=True)
-    step_m = np.linalg.norm(np.diff(points.xyz, axis=1), axis=-1)
-    found = {
-        ("height", "mm"): 1000 * points.xyz[..., 2],
-        ("speed", "m/s"): step_m / np.diff(points.time_s)[:, None],
-        ("reach", "mm"): 1000 * np.linalg.norm(points.xyz - middle, axis=-1),
-    }
-    rows = [
-        (str(person), f"{joint}_{what}_mean", _mean(values[at, :, place]), unit)
-        for at, person in enumerate(points.person_id)
-        for place, joint in enumerate(names)
-        for (what, unit), values in found.items()
-    ]
-    table = pd.DataFrame(rows, columns=["person", "measure", "value", "unit"])
-    return labelled(table, {**label, "model": points.model})
-
-
-def _mean(values: NDArray) -> float:
-    known = values[np.isfinite(values)]
-    return known.mean() if len(known) else np.nan
