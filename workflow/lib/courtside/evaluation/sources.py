@@ -15,6 +15,7 @@ from scipy.optimize import minimize_scalar
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import similarity
+from courtside.geometry.interpolation import cubic_bend
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.body_motion import BodyMotion
@@ -42,13 +43,11 @@ def at_times(time_s: NDArray, xyz: NDArray, wanted_s: NDArray) -> NDArray:
     share = (wanted_s - time_s[right - 1]) / span
     # A time that is a frame's own needs no neighbour.
     share = np.where(np.abs(share - np.rint(share)) < 1e-9, np.rint(share), share)
-    share = np.where((share >= 0) & (share <= 1) & (span <= LONGEST_S), share, np.nan)[
-        :, None, None
-    ]
+    between = (share >= 0) & (share <= 1) & (span <= LONGEST_S)
+    share = np.where(between, share, np.nan)[:, None, None]
     before, after = xyz[right - 1], xyz[right]
     first, last = xyz[np.maximum(right - 2, 0)], xyz[np.minimum(right + 1, len(xyz) - 1)]
-    bend = (share - 1) * (first - 2 * before + after) - share * (before - 2 * after + last)
-    bend = share * (1 - share) / 2 * bend
+    bend = cubic_bend(first, before, after, last, share)
     whole = (right > 1) & (right < len(xyz) - 1)
     usable = whole[:, None, None] & np.isfinite(bend).all(axis=-1, keepdims=True)
     mixed = before * (1 - share) + after * share + np.where(usable, bend, 0.0)
@@ -74,24 +73,22 @@ def matched(
     or `following`.
     """
     names = shared(source, reference)
-    own = getattr(source, form)[:, [list(source.joints).index(name) for name in names]]
-    other = getattr(reference, form)[:, [list(reference.joints).index(name) for name in names]]
+    own, other = (
+        getattr(motion, form)[:, [list(motion.joints).index(name) for name in names]]
+        for motion in (source, reference)
+    )
     true = at_times(reference.time_s, other, source.time_s + shift_s)
     to_mm = 1000 * reference.unit_m
     return own * to_mm, true * to_mm
 
 
 def errors(source: BodyMotion, reference: BodyMotion) -> tuple[list[str], dict[str, NDArray]]:
-    """Return the names of the M common joints, and the errors of a source in every alignment.
+    """Return the names of the M common joints, and a source's errors (T, M, 3) mm by alignment.
 
-    Returns
-    -------
-    names
-    errors : dict of str to (T, M, 3) float
-        mm. body_frame: in the frame of the T-pose, without further alignment. trunk_frame: in the
-        frame that moves with the trunk. root_relative: body_frame, minus the error of the middle of
-        the hips in each frame. procrustes_take: after one similarity for the whole take;
-        procrustes_frame: after one per frame.
+    body_frame: in the frame of the T-pose, without further alignment. trunk_frame: in the frame
+    that moves with the trunk. root_relative: body_frame, minus the error of the middle of the hips
+    in each frame. procrustes_take: after one similarity for the whole take; procrustes_frame: after
+    one per frame.
     """
     names = shared(source, reference)
     measured, true = matched(source, reference)
@@ -160,12 +157,7 @@ def split(source: BodyMotion, reference: BodyMotion, *, form: str = "fixed") -> 
     part: origin, scale, rotation, time, remainder, all; mean_square_mm2: they add up to that of
     all; percent of all; and the value in the fit of everything at once, where there is one:
     origin's shift in mm, scale's factor, rotation's angle in degrees, time's shift in seconds
-    (added to the source's times).
-
-    Parameters
-    ----------
-    form
-        `fixed` or `following`.
+    (added to the source's times). `form` is `fixed` or `following`.
 
     Notes
     -----
@@ -187,23 +179,12 @@ def split(source: BodyMotion, reference: BodyMotion, *, form: str = "fixed") -> 
             else:
                 at_s = shift_s if "time" in subset else 0.0
             fits[frozenset(subset)] = _fit(source, reference, form, inside, at_s, subset)
-    total, left = fits[frozenset()][0], fits[frozenset(PARTS)]
-    shares = {
-        part: _share(part, {subset: fit[0] for subset, fit in fits.items()}) for part in PARTS
-    }
-    values = left[1] | {"time": shift_s}
-    shares |= {"remainder": left[0], "all": total}
-    return pd.DataFrame(
-        [
-            {
-                "part": part,
-                "mean_square_mm2": share,
-                "percent": 100 * share / total if total else np.nan,
-                "value": values.get(part, np.nan),
-            }
-            for part, share in shares.items()
-        ]
-    )
+    total, (remainder, values) = fits[frozenset()][0], fits[frozenset(PARTS)]
+    left = {subset: fit[0] for subset, fit in fits.items()}
+    shares = {part: _share(part, left) for part in PARTS} | {"remainder": remainder, "all": total}
+    rows = pd.DataFrame(shares.items(), columns=["part", "mean_square_mm2"])
+    rows["percent"] = 100 * rows["mean_square_mm2"] / (total or np.nan)
+    return rows.assign(value=rows["part"].map(values | {"time": shift_s}))
 
 
 def _share(part: str, left: dict[frozenset[str], float]) -> float:
@@ -264,15 +245,11 @@ def _fit(
     zero = np.zeros(3)
     middle_a, middle_b = (a.mean(axis=0), b.mean(axis=0)) if "origin" in subset else (zero, zero)
     a, b = a - middle_a, b - middle_b
-    rotation = np.eye(3)
-    if "rotation" in subset:
-        left, _, right = np.linalg.svd(b.T @ a)
-        left[:, 2] *= np.linalg.det(left @ right)
-        rotation = left @ right
+    rotation = similarity.kabsch(b.T @ a)[0] if "rotation" in subset else np.eye(3)
     turned = a @ rotation.T
     scale = float((turned * b).sum() / (a * a).sum()) if "scale" in subset else 1.0
     rest = float(np.mean(np.sum((scale * turned - b) ** 2, axis=-1)))
-    angle = np.degrees(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
+    angle = np.degrees(Rotation.from_matrix(rotation).magnitude())
     shift = float(np.linalg.norm(middle_b - scale * rotation @ middle_a))
     return rest, {"origin": shift, "scale": scale, "rotation": float(angle)}
 
@@ -282,11 +259,10 @@ REMAKE = "make it again with the rule align_bodies"
 
 def read(path: str | os.PathLike) -> Sim3:
     """Read `body_from_device` from the JSON of a body frame; `InputError` for other content."""
-    with reading(path, "a body frame", REMAKE):
-        found = require_type(json.loads(Path(path).read_text(encoding="utf-8")), dict)
-        scale = float(require_scalar(found["scale_per_m"]))
     # numpy raises TypeError for entries other than numbers.
     with reading(path, "a body frame", REMAKE, kinds=(*RAISED_BY_READERS, TypeError)):
+        found = require_type(json.loads(Path(path).read_text(encoding="utf-8")), dict)
+        scale = float(require_scalar(found["scale_per_m"]))
         rotation, translation = (
             np.array(found[key], dtype=float).reshape(shape)
             for key, shape in (("rotation", (3, 3)), ("translation", (3,)))

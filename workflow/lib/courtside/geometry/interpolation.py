@@ -1,4 +1,4 @@
-"""Linear interpolation of samples in time."""
+"""Interpolation of samples in time: linear, and the cubic's deviation from the line."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,3 +19,14 @@ def linear(time_s: NDArray, values: NDArray, wanted_s: NDArray) -> NDArray:
     before, share = shares(time_s, wanted_s)
     share = share.reshape((-1,) + (1,) * (values.ndim - 1))
     return values[before] * (1 - share) + values[before + 1] * share
+
+
+def cubic_bend(
+    first: NDArray, before: NDArray, after: NDArray, last: NDArray, share: NDArray
+) -> NDArray:
+    """Return what the cubic of Catmull & Rom (1974) adds to the line from `before` to `after`.
+
+    The four samples are taken as evenly spaced; `share` is that of the way from `before`.
+    """
+    bend = (share - 1) * (first - 2 * before + after) - share * (before - 2 * after + last)
+    return share * (1 - share) / 2 * bend

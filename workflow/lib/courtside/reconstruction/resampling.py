@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.geometry.interpolation import cubic_bend
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.keypoints import Keypoints2D
 
@@ -82,7 +83,6 @@ def _cubic(values, known, left, right, share, longest_s) -> NDArray:
         known[outer_right] - known[right] <= longest_s
     )
     first, last = values[:, outer_left], values[:, outer_right]
-    bent = share * (1 - share) / 2 * ((share - 1) * (first - 2 * before + after))
-    bent -= share * (1 - share) / 2 * share * (before - 2 * after + last)
+    bent = cubic_bend(first, before, after, last, share)
     fine = np.isfinite(bent) & whole[:, None, None]
     return straight + np.where(fine & (left != right)[:, None, None], bent, 0.0)
