@@ -3,11 +3,9 @@
 import pandas as pd
 
 from courtside.figures.badminton import fig05
-from courtside.figures.style import style
-from courtside.pose import privacy
+from courtside.figures.style import picture_crops, style
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
-from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
@@ -18,14 +16,11 @@ def main(paths, pdf, png, csv, *, layouts, sources, blur_faces):
         for source, *pair in zip(sources, paths.pose2d, paths.videos, strict=True)
     }
     chosen, images = fig05.examples(rows, layouts), []
-    face = [joints.index(name) for name in joints.groups["face"]]
     for example in chosen:
         pose2d, film = files[example["session"], example["camera"]]
-        view = keypoints.read_2d(pose2d)
-        _, image = reader.read_frame(film, view.time_s[example["frame_idx"]])
-        if blur_faces:
-            persons = view.xy[:, example["frame_idx"]]
-            image = privacy.hide(image, persons, joints.bone_indices(), persons[:, face])
+        view, at = keypoints.read_2d(pose2d), example["frame_idx"]
+        persons = [view.xy[:, at]]
+        image = picture_crops.read(film, view.time_s[at], persons, joints, hidden=blur_faces)
         images.append(image)
     shares = fig05.table(rows, layouts)
     drawing = fig05.draw(shares, layouts, chosen, images, joints.bones)

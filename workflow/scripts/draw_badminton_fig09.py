@@ -1,18 +1,15 @@
 """Draw the chain from pictures to measures: 2D, 3D keypoints, videos, measures -> figure, CSV."""
 
-import numpy as np
 import pandas as pd
 
 from courtside.calibration.court import court as court_files
 from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig09
-from courtside.figures.style import stick_figure, style
-from courtside.pose import privacy
+from courtside.figures.style import picture_crops, stick_figure, style
 from courtside.reconstruction import camera_shake
 from courtside.records.cameras import footage, shake_table
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
-from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
@@ -32,11 +29,8 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
     images = {}
     for one in seen:
         at = one.frame_at(points.time_s[frame])
-        _, image = reader.read_frame(one.video, one.view.time_s[at])
-        if blur_faces:
-            both = one.view.xy[:, at], one.reprojected(points, at)
-            everyone = np.concatenate(both)
-            image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
+        both, when_s = (one.view.xy[:, at], one.reprojected(points, at)), one.view.time_s[at]
+        image = picture_crops.read(one.video, when_s, both, joints, hidden=blur_faces)
         images[one.camera.name] = image
     court = court_files.read(paths.court) if paths.get("court") else None
     rows, cameras = fig09.table(points, seen, frame, figure), [one.camera for one in seen]

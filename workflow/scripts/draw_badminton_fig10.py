@@ -3,18 +3,14 @@
 Reads 2D keypoints, 3D keypoints and videos; writes figure and CSV.
 """
 
-import numpy as np
-
 from courtside.calibration.court import court as court_files
 from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig10
-from courtside.figures.style import stick_figure, style
-from courtside.pose import privacy
+from courtside.figures.style import picture_crops, stick_figure, style
 from courtside.reconstruction import camera_shake
 from courtside.records.cameras import footage, shake_table
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
-from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
@@ -34,11 +30,8 @@ def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
 
     def picture(one, time_s):
         at = one.frame_at(time_s)
-        _, image = reader.read_frame(one.video, one.view.time_s[at])
-        if blur_faces:
-            both = one.view.xy[:, at], one.reprojected(points, at)
-            everyone = np.concatenate(both)
-            image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
+        both, when_s = (one.view.xy[:, at], one.reprojected(points, at)), one.view.time_s[at]
+        image = picture_crops.read(one.video, when_s, both, joints, hidden=blur_faces)
         return image, figure.of(one.view.xy[:, at])
 
     pictures = [

@@ -1,16 +1,12 @@
 """Draw one frame's detections and reprojected skeleton: 2D, 3D keypoints, videos -> figure, CSV."""
 
-import numpy as np
-
 from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig11
-from courtside.figures.style import stick_figure, style
-from courtside.pose import privacy
+from courtside.figures.style import picture_crops, stick_figure, style
 from courtside.reconstruction import camera_shake
 from courtside.records.cameras import footage, shake_table
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
-from courtside.video import reader
 
 
 def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
@@ -37,12 +33,9 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
     for one in seen:
         at = one.frame_at(points.time_s[frame])
         both = one.view.xy[:, at], one.reprojected(points, at)
-        _, image = reader.read_frame(one.video, one.view.time_s[at])
-        if blur_faces:
-            everyone = np.concatenate(both)
-            image = privacy.hide(image, everyone, joints.bone_indices(), figure.faces_of(*both))
-        name = one.camera.name
-        images[name], detected[name], reprojected[name] = image, *map(figure.of, both)
+        name, when_s = one.camera.name, one.view.time_s[at]
+        images[name] = picture_crops.read(one.video, when_s, both, joints, hidden=blur_faces)
+        detected[name], reprojected[name] = map(figure.of, both)
     drawing = fig11.draw(rows, images, detected, reprojected, figure, limit_torso)
     style.save(drawing, rows, pdf, png, csv)
 

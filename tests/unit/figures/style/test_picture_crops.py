@@ -5,6 +5,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from courtside.figures.style import picture_crops
+from fixtures.people import walker
 
 
 @pytest.mark.parametrize("aspect", [0.5, 1.0, 3.0])
@@ -52,3 +53,18 @@ def test_rings_are_where_the_points_are():
     axis = Figure().subplots()
     picture_crops.rings(axis, [[3.0, 4.0], [5.0, 6.0]])
     np.testing.assert_array_equal(axis.lines[0].get_xydata(), [[3, 4], [5, 6]])
+
+
+def test_faces_of_all_methods_are_hidden_on_request(monkeypatch):
+    image = np.arange(300 * 400 * 3, dtype=np.uint32).reshape(300, 400, 3).astype(np.uint8)
+    monkeypatch.setattr(picture_crops.reader, "read_frame", lambda video, time_s: (0, image))
+    xy = np.tile(np.linspace([150.0, 60.0], [250.0, 260.0], walker.N_JOINTS), (1, 1, 1))
+    unseen = np.full_like(xy, np.nan)
+    shown = picture_crops.read("film.mp4", 0.0, [xy], walker.SKELETON, hidden=False)
+    np.testing.assert_array_equal(shown, image)
+    nose = np.round(xy[0, walker.SKELETON.index("nose")]).astype(int)
+    knee = np.round(xy[0, walker.SKELETON.index("left_knee")]).astype(int)
+    for persons in ([xy, unseen], [unseen, xy]):
+        found = picture_crops.read("film.mp4", 0.0, persons, walker.SKELETON, hidden=True)
+        assert (found[nose[1], nose[0]] != image[nose[1], nose[0]]).any()
+        np.testing.assert_array_equal(found[knee[1], knee[0]], image[knee[1], knee[0]])

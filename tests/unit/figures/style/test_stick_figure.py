@@ -33,10 +33,3 @@ def test_a_missing_joint_removes_only_joints_made_of_it():
     xyz[:, walker.SKELETON.index("left_shoulder")] = np.nan
     missing = np.isnan(STICK.of(xyz)[0, :, 0])
     assert {STICK.joints[k] for k in np.flatnonzero(missing)} == {"left_shoulder", "neck"}
-
-
-def test_faces_of_several_sets_are_joined():
-    xy = np.arange(2 * 33 * 2, dtype=float).reshape(2, 33, 2)
-    found = STICK.faces_of(xy, xy + 1)
-    assert found.shape == (2, 22, 2)
-    np.testing.assert_array_equal(found[1, 11], xy[1, walker.SKELETON.index("nose")] + 1)

@@ -1,26 +1,31 @@
 """What is drawn on pictures lies where OpenCV projects it, and the table says the same."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from courtside.figures.style import style
+from courtside.figures.style import picture_crops
 from courtside.figures.take import overlay
-from courtside.geometry import camera as camera_models
+from courtside.records.cameras.footage import Footage
+from courtside.records.devices.clocks import Clock
 from fixtures.cameras import scene
 from fixtures.people import walker
 
 CAMERAS = scene.ring(3)
+IMAGE = np.zeros((1080, 1920, 3), np.uint8)
 
 
 def inputs(n_persons=1, offset_px=(3.0, 4.0)):
     record = walker.points(n_persons=n_persons)
-    return record, walker.views(record, CAMERAS, offset_px)
+    views = walker.views(record, CAMERAS, offset_px)
+    pairs = zip(CAMERAS, views, strict=True)
+    return record, [Footage(camera, view, Clock(), "") for camera, view in pairs]
 
 
 def test_the_table_holds_the_distances():
-    record, views = inputs(n_persons=2)
-    times_s = overlay.chosen_times(record, 2)
-    rows = overlay.table([CAMERAS] * 2, views, record, times_s)
+    record, footage = inputs(n_persons=2)
+    rows = overlay.table(record, footage, overlay.frames(record, 2))
     assert len(rows) == 2 * 3 * 2 * 33
     np.testing.assert_allclose(rows.distance_px.dropna(), 5.0, atol=1e-6)
     truth = scene.opencv_projection(CAMERAS[1], record.xyz[0, 6, :1])[0]
@@ -29,61 +34,69 @@ def test_the_table_holds_the_distances():
     np.testing.assert_allclose([at.reprojected_x_px, at.reprojected_y_px], truth, atol=1e-6)
 
 
-def test_each_time_has_its_own_cameras():
-    record, views = inputs(offset_px=(0.0, 0.0))
-    times_s = overlay.chosen_times(record, 2)
-    turned = [camera_models.turned(camera, [0, 14 / 1400, 0]) for camera in CAMERAS]
-    rows = overlay.table([CAMERAS, turned], views, record, times_s)
+def test_each_frame_has_its_own_camera():
+    record, footage = inputs(offset_px=(0.0, 0.0))
+    shown = overlay.frames(record, 2)
+    turns = np.zeros((len(record.time_s), 3))
+    turns[shown[1]] = [0, 14 / 1400, 0]
+    rows = overlay.table(record, [replace(one, turns=turns) for one in footage], shown)
+    times_s = record.time_s[shown]
     still, moved = (rows[rows.time_s == time_s].distance_px.dropna() for time_s in times_s)
     assert still.max() < 1e-6
     assert moved.between(13.9, 17).all()  # 14 px in the middle of the picture
 
 
-def test_times_are_evenly_spread_without_the_ends():
+def test_frames_are_evenly_spread_without_the_ends():
     record, _ = inputs()
-    times_s = overlay.chosen_times(record, 3)
-    assert len(times_s) == 3
-    assert record.time_s[0] < times_s[0] < times_s[-1] < record.time_s[-1]
+    shown = overlay.frames(record, 3)
+    assert len(shown) == 3
+    assert 0 < shown[0] < shown[-1] < len(record.time_s) - 1
 
 
-def drawn(monkeypatch, accepted=True, detected_offset=(200.0, 0.0)):
-    """Return the panel at full size over a black picture, and where its corner lies."""
-    monkeypatch.setattr(overlay, "PANEL_PX", 10_000)
-    record, _ = inputs()
-    xy = overlay.reproject(CAMERAS[0], record, record.time_s[6])
-    image = np.zeros((1080, 1920, 3), np.uint8)
-    flags = np.full(xy.shape[:2], accepted)
-    panel = overlay.panel(image, xy + detected_offset, xy, flags, walker.SKELETON)
-    x, y, side = overlay._extent(xy + detected_offset, xy, image)
-    corner = np.array([max(0, int(x - side / 2)), max(0, int(y - side / 2))])
-    return record, panel, corner
+def drawn(accepted=True):
+    """Return the axis of a panel in which joints are detected 200 px beside the true ones."""
+    record, footage = inputs(offset_px=(200.0, 0.0))
+    record = replace(record, accepted=np.full_like(record.accepted, accepted))
+    drawing = overlay.draw(record, footage[:1], [6], [[IMAGE]], walker.SKELETON)
+    return record, drawing.axes[0]
 
 
-def test_reprojected_bones_lie_where_opencv_projects_them(monkeypatch):
-    record, panel, corner = drawn(monkeypatch)
+def joints_of(axis, colour):
+    lines = [line for line in axis.lines if line.get_color() == colour]
+    return np.concatenate([line.get_xydata() for line in lines]) if lines else np.empty((0, 2))
+
+
+def test_reprojected_bones_lie_where_opencv_projects_them():
+    record, axis = drawn()
     for joint in ("left_knee", "nose", "right_wrist"):
         xyz = record.xyz[0, 6, [walker.SKELETON.index(joint)]]
-        x, y = np.round(scene.opencv_projection(CAMERAS[0], xyz)[0] - corner).astype(int)
-        assert tuple(panel[y, x]) == style.REPROJECTED_BGR
-        assert tuple(panel[y, x + 200]) == style.DETECTED_BGR
+        xy = scene.opencv_projection(CAMERAS[0], xyz)[0]
+        for colour, beside in ((picture_crops.REPROJECTED, 0), (picture_crops.DETECTED, 200)):
+            apart = np.linalg.norm(joints_of(axis, colour) - xy - [beside, 0], axis=1)
+            assert apart.min() < 1e-6
 
 
-def test_red_lines_only_where_a_view_was_not_used(monkeypatch):
+def test_red_lines_only_where_a_view_was_not_used():
     for accepted in (True, False):
-        _, panel, _ = drawn(monkeypatch, accepted)
-        red = (panel[..., 2] > 150) & (panel[..., :2] < 60).all(axis=2)
-        assert red.any() == (not accepted)
+        red = joints_of(drawn(accepted)[1], picture_crops.MARKED).reshape(-1, 2, 2)
+        assert len(red) == (0 if accepted else 33)
+        np.testing.assert_allclose(
+            red[:, 0] - red[:, 1], np.tile([200.0, 0.0], (len(red), 1)), atol=1e-9
+        )
 
 
 def test_nobody_seen_shows_the_whole_picture():
-    nothing = np.full((1, 33, 2), np.nan)
-    image = np.zeros((100, 160, 3), np.uint8)
-    panel = overlay.panel(image, nothing, nothing, np.zeros((1, 33), bool), walker.SKELETON)
-    assert panel.shape == image.shape
+    record, footage = inputs()
+    record = replace(record, xyz=np.full_like(record.xyz, np.nan))
+    unseen = replace(footage[0].view, xy=np.full_like(footage[0].view.xy, np.nan))
+    nobody = [replace(footage[0], view=unseen)]
+    axis = overlay.draw(record, nobody, [6], [[IMAGE]], walker.SKELETON).axes[0]
+    (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
+    assert left <= 0 <= 1920 <= right and top <= 0 <= 1080 <= bottom
 
 
 def test_the_figure_has_a_panel_for_each_camera_and_time():
-    panels = [[np.zeros((20, 20, 3), np.uint8)] * 3] * 2
-    drawing = overlay.draw(panels, [0.1, 0.2], ["c0", "c1", "c2"])
+    record, footage = inputs()
+    drawing = overlay.draw(record, footage, [5, 10], [[IMAGE] * 3] * 2, walker.SKELETON)
     assert [axis.get_title() for axis in drawing.axes][:2] == ["c0, 0.10 s", "c1, 0.10 s"]
     assert len(drawing.axes) == 6

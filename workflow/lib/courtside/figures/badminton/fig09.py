@@ -3,8 +3,6 @@
 The counterpart of [Shishido2020, fig 9], which shows the way back: projections triangulated again.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -89,11 +87,11 @@ def draw(
         for name, image in images.items()
     }
     _draw_pictures(parts[0], images, boxes)
-    _draw_joints(parts[1], rows, images, boxes, stick, ("detected",))
+    _draw_joints(parts[1], rows, images, boxes, stick)
     left, right = parts[2].subfigures(1, 2, width_ratios=(1.25, 1))
     _draw_space(left, rows, points, cameras, stick, court)
     _draw_measures(right, rows.time_s.iloc[0], measured)
-    _draw_joints(parts[3], rows, images, boxes, stick, ("detected", "reprojected"))
+    _draw_joints(parts[3], rows, images, boxes, stick, reprojected=True)
     time_s, moved = rows.time_s.iloc[0], rows.round_trip_mm.max()
     again = f"triangulated again: moved {moved:.0e} mm, an identity"
     titles = [
@@ -134,20 +132,19 @@ def _draw_joints(
     images: dict[str, NDArray],
     boxes: dict[str, picture_crops.Box],
     stick: Stick,
-    layers: Sequence[str],
+    *,
+    reprojected: bool = False,
 ) -> None:
     line = 1.4 if len(images) < 4 else 1.0
-    looks: dict[str, dict] = {
-        "detected": {"colour": picture_crops.DETECTED, "width": line},
-        "reprojected": {"colour": picture_crops.REPROJECTED, "width": line, "outline": 0},
-    }
-    if len(layers) > 1:
-        looks["detected"] |= {"width": 2 * line, "dots": False}
     axes = part.subplots(1, len(images), squeeze=False)[0]
     for axis, (name, image) in zip(axes, images.items(), strict=True):
         picture_crops.show(axis, image, boxes[name])
-        for layer in layers:
-            picture_crops.sticks(axis, _xy(rows, name, layer), stick.bones, **looks[layer])
+        found, colour = _xy(rows, name, "detected"), picture_crops.DETECTED
+        if reprojected:
+            back = _xy(rows, name, "reprojected")
+            picture_crops.compare(axis, found, back, stick.bones, line)
+        else:
+            picture_crops.sticks(axis, found, stick.bones, colour, width=line)
 
 
 def _draw_space(
@@ -169,10 +166,18 @@ def _draw_space(
 def _draw_measures(part: FigureBase, time_s: float, measured: pd.DataFrame) -> None:
     speed, angle = part.subplots(2, 1, sharex=True)
     own = measured[measured.person == measured.person.iloc[0]]
-    _draw_speed(speed, own)
-    _draw_angles(angle, own)
-    for each in (speed, angle):
-        each.axvline(time_s, color="black", linewidth=0.7)
+    for name, colour in kinematics.SPEEDS.items():
+        look = {"color": colour, "linewidth": 0.9, "label": kinematics.NAMES[name]}
+        speed.plot(own.time_s, own[f"{name}_ground_speed_m_s"], **look)
+    for name, colour in kinematics.ANGLES.items():
+        label = name.replace("_flexion", "").replace("_", " ")
+        angle.plot(own.time_s, own[f"{name}_deg"], color=colour, linewidth=0.9, label=label)
+    for axis in (speed, angle):
+        axis.axvline(time_s, color="black", linewidth=0.7)
+        axis.legend(**LEGEND)
+    speed.set(ylabel="ground speed\n(m/s)", ylim=(0, None))
+    speed.tick_params(labelbottom=False)
+    angle.set(xlabel="time (s)", ylabel="angle\n(degrees)")
 
 
 def _draw_hall(
@@ -206,20 +211,3 @@ def _draw_close(axis: Axes, xyz: NDArray, path: NDArray, stick: Stick, court: Co
         axis.plot([], [], color=style.CYCLE[2], linewidth=0.8, label="path of the neck")
     handles, labels = axis.get_legend_handles_labels()
     axis.legend(handles[:1], labels[:1], loc="upper center", bbox_to_anchor=(0.5, 0), fontsize=6)
-
-
-def _draw_speed(axis: Axes, own: pd.DataFrame) -> None:
-    for name, colour in kinematics.SPEEDS.items():
-        look = {"color": colour, "linewidth": 0.9, "label": kinematics.NAMES[name]}
-        axis.plot(own.time_s, own[f"{name}_ground_speed_m_s"], **look)
-    axis.set(ylabel="ground speed\n(m/s)", ylim=(0, None))
-    axis.tick_params(labelbottom=False)
-    axis.legend(**LEGEND)
-
-
-def _draw_angles(axis: Axes, own: pd.DataFrame) -> None:
-    for name, colour in kinematics.ANGLES.items():
-        label = name.replace("_flexion", "").replace("_", " ")
-        axis.plot(own.time_s, own[f"{name}_deg"], color=colour, linewidth=0.9, label=label)
-    axis.set(xlabel="time (s)", ylabel="angle\n(degrees)")
-    axis.legend(**LEGEND)

@@ -32,15 +32,8 @@ def disagreements(
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Return where a camera's keypoint does not fit the 3D joint.
 
-    Parameters
-    ----------
-    cameras
-        Of `points`, in its order.
-    joints : sequence of str, length K
-        Of `points`.
-    limit_torso
-        Share of the length of the person's torso in that camera's picture (its median over the
-        take).
+    `cameras` are those of `points`, in its order, and `joints` K of its joints. `limit_torso` is a
+    share of the length of the person's torso in that camera's picture (its median over the take).
 
     Returns
     -------
@@ -73,19 +66,10 @@ def table(
 ) -> pd.DataFrame:
     """Return the joints of one frame in every camera, and how often they disagree in the take.
 
-    Parameters
-    ----------
-    footage
-        Of the cameras of `points`, in its order.
-    mirror
-        For each joint of `points` the index of the same one on the other body side.
-    frame
-        Of `points`.
-    limit
-        Of `disagreements`, for these joints.
+    `footage` is of the cameras of `points`, in its order; `mirror` holds for each joint of `points`
+    the index of the same one on the other body side; `limit` is of `disagreements`, for these
+    joints.
 
-    Returns
-    -------
     For each person, camera and joint the detected pixel in the camera's nearest frame (with sides
     as the fusion used them: `sides_exchanged` marks joints of the other side) and the projection of
     the 3D joint; error_px as the fusion measured it at the frame's time; whether the view was used
@@ -148,14 +132,9 @@ def draw(
     axes = upper.subplots(1, len(names), squeeze=False)[0]
     line = LINE * np.sqrt(width / WIDEST_MM)
     for axis, name in zip(axes, names, strict=True):
-        both, size = [detected[name], reprojected[name]], images[name].shape[1::-1]
+        both, size = (detected[name], reprojected[name]), images[name].shape[1::-1]
         picture_crops.show(axis, images[name], picture_crops.box(both, size, ASPECT))
-        look = {"width": 2.2 * line, "outline": 0.8, "dots": False}
-        picture_crops.sticks(axis, detected[name], stick.bones, picture_crops.DETECTED, **look)
-        look = {"width": line, "outline": 0}
-        picture_crops.sticks(
-            axis, reprojected[name], stick.bones, picture_crops.REPROJECTED, **look
-        )
+        picture_crops.compare(axis, *both, stick.bones, line)
         axis.set_title(name)
         _mark(axis, rows[(rows.camera == name) & rows.disagrees], 7 * line)
     upper.legend(*_legend(limit_torso, line), loc="outside lower center", ncols=3)

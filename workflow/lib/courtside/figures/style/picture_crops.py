@@ -1,5 +1,6 @@
 """Parts of a picture around a person, with stick figures drawn on them as vector lines."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,9 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.figures.style import style
+from courtside.pose import privacy
+from courtside.records.keypoints.skeleton import Skeleton
+from courtside.video import reader
 
 MARGIN = 1.2  # of the person's extent, around it
 LARGEST_PX = 800  # longest side of what is kept of a picture
@@ -27,6 +31,27 @@ class Box:
     y: float
     width: float
     height: float
+
+
+def read(
+    video: str | os.PathLike,
+    time_s: float,
+    persons: Sequence[NDArray],
+    skeleton: Skeleton,
+    *,
+    hidden: bool,
+) -> NDArray:
+    """Return a video's frame (H, W, 3) BGR at a time of its own clock; `hidden`: without faces.
+
+    `persons` are the joints (P, J, 2) px of the same persons by one or more methods, such as
+    detected and reprojected: where one of them does not know a face, another may.
+    """
+    _, image = reader.read_frame(video, time_s)
+    if not hidden:
+        return image
+    face = [skeleton.index(name) for name in skeleton.groups["face"]]
+    faces = np.concatenate([xy[:, face] for xy in persons], axis=1)
+    return privacy.hide(image, np.concatenate(persons), skeleton.bone_indices(), faces)
 
 
 def box(xy: ArrayLike, size: tuple[int, int], aspect: float = 1.0) -> Box:
@@ -90,6 +115,18 @@ def sticks(
         if dots:
             look = {"markersize": 2.2 * width, "markeredgewidth": outline / 2, "zorder": 3}
             axis.plot(*one.T, "o", color=colour, markeredgecolor="black", **look)
+
+
+def compare(
+    axis: Axes,
+    detected: NDArray,
+    reprojected: NDArray,
+    bones: Sequence[tuple[int, int]],
+    width: float,
+) -> None:
+    """Draw reprojected stick figures (..., K, 2) px over the detected ones, which are wider."""
+    sticks(axis, detected, bones, DETECTED, width=2.2 * width, dots=False)
+    sticks(axis, reprojected, bones, REPROJECTED, width=width, outline=0)
 
 
 def rings(axis: Axes, xy: NDArray, colour: str | None = None, size: float = 9.0) -> None:

@@ -13,24 +13,11 @@ HEAD = ("neck", "head_centre")
 
 @dataclass(frozen=True, eq=False)
 class Stick:
-    """The stick figure of a skeleton.
+    """The stick figure of a skeleton."""
 
-    Attributes
-    ----------
-    joints : tuple of str, length K
-        The limb joints, neck, centre of the head: the paper's 14.
-    bones
-        Pairs of them that a line joins.
-    weights : (K, J) float
-        Of the skeleton's own joints.
-    face
-        The skeleton's own joints on the face.
-    """
-
-    joints: tuple[str, ...]
-    bones: tuple[tuple[int, int], ...]
-    weights: NDArray
-    face: list[int]
+    joints: tuple[str, ...]  # K: the limb joints, neck, centre of the head, the paper's 14
+    bones: tuple[tuple[int, int], ...]  # pairs of them that a line joins
+    weights: NDArray  # (K, J): of the skeleton's own joints
 
     def of(self, places: NDArray) -> NDArray:
         """Return the drawn joints (..., K, n) of a skeleton's own (..., J, n), or NaN."""
@@ -41,10 +28,6 @@ class Stick:
         ]
         return np.stack(made, axis=-2)
 
-    def faces_of(self, *places: NDArray) -> NDArray:
-        """Return the joints on each face (P, n, 2), from one or more sets of joints (P, J, 2)."""
-        return np.concatenate([xy[:, self.face] for xy in places], axis=1)
-
 
 def stick(skeleton: Skeleton, table: DerivedJoints) -> Stick:
     """Return the stick figure of a skeleton; `table` defines its neck and head_centre."""
@@ -52,5 +35,4 @@ def stick(skeleton: Skeleton, table: DerivedJoints) -> Stick:
     weights = np.stack([table.weights(skeleton.name, name, skeleton.joints) for name in joints])
     limbs = [pair for pair in skeleton.bones if set(pair) <= set(skeleton.groups["limbs"])]
     bones = tuple((joints.index(start), joints.index(stop)) for start, stop in (*limbs, HEAD))
-    face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
-    return Stick(joints, bones, weights, face)
+    return Stick(joints, bones, weights)

@@ -38,15 +38,19 @@ class Footage:
         """Return the time of a frame on the reference clock."""
         return float(self.clock.to_reference(self.view.time_s[frame]))
 
+    def standing(self, frame: int) -> camera_models.Camera:
+        """Return the camera, turned as it was in a frame."""
+        if self.turns is None:
+            return self.camera
+        return camera_models.turned(self.camera, self.turns[frame])
+
     def reprojected(self, points: Keypoints3D, frame: int) -> NDArray:
         """Project the skeletons into one frame of this camera, turned as it was then: (P, J, 2) px.
 
         Linearly between the two neighbouring times of `points`; NaN beyond its ends.
         """
-        camera = self.camera
-        if self.turns is not None:
-            camera = camera_models.turned(camera, self.turns[frame])
-        return camera_models.project(camera, between(points, self.reference_s(frame)))
+        xyz = between(points, self.reference_s(frame))
+        return camera_models.project(self.standing(frame), xyz)
 
 
 def between(points: Keypoints3D, time_s: float) -> NDArray:
