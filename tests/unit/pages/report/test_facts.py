@@ -85,11 +85,3 @@ def test_a_quality_file_that_is_not_json_is_named(tmp_path):
         report_facts.of_session({"quality": {"file": tmp_path / "quality.json"}})
     (tmp_path / "quality.json").write_text(json.dumps({"warnings": []}))
     assert report_facts.of_session({"quality": {"file": tmp_path / "quality.json"}})["model"] == {}
-
-
-def test_a_table_is_read_as_text_without_changes(tmp_path):
-    (tmp_path / "t.csv").write_text('a,b\n"x, y",\n1.50,NA\n')
-    assert report_facts.whole_table(tmp_path / "t.csv") == (
-        ["a", "b"],
-        [["x, y", ""], ["1.50", "NA"]],
-    )

@@ -60,3 +60,10 @@ def test_a_table_leaves_out_what_is_empty_and_escapes_the_rest(tmp_path):
 def test_ids_hold_only_characters_of_addresses():
     assert report_figures.identity("figures", "players-b", "shot") == "figures.players-b.shot"
     assert report_figures.identity("x", 'a"b c') == "x.a-b-c"
+
+
+def test_text_of_a_table_stays_as_it_is(tmp_path):
+    (tmp_path / "t.csv").write_text('a,b\n"x, y",\n1.50,NA\n')
+    entry = {"file": tmp_path / "t.csv", "title": "t", "words": "", "link": "t.csv"}
+    html = report_figures.table(entry)
+    assert "<td>x, y</td>" in html and "<td>NA</td>" in html

@@ -45,7 +45,7 @@ def test_methods_follow_another_configuration(study):
 def test_only_the_methods_that_were_used_are_cited(study):
     html = said(study)
     assert "Lowe" in html and "Bazarevsky" in html and "Homma" not in html
-    study["sessions"][0] |= {"way": "file", "mapper": None}
+    study["sessions"][0] |= {"calibration": "file", "mapper": None}
     study["sessions"][0]["takes"][0]["files"] = {"checks": "x.csv"}
     html = said(study)
     assert "made elsewhere" in html and "Homma" in html
@@ -60,6 +60,6 @@ def test_settings_of_several_sessions_are_stated_once(study):
 
 
 def test_names_of_users_are_escaped(study):
-    study["sessions"][0] |= {"name": report_made.ROGUE, "way": report_made.ROGUE}
+    study["sessions"][0] |= {"name": report_made.ROGUE, "model": report_made.ROGUE}
     study["sessions"][0]["overrides"] = {report_made.ROGUE: {"x": report_made.ROGUE}}
     assert "<img" not in said(study)

@@ -75,7 +75,7 @@ def test_text_of_users_is_escaped(tmp_path):
 
 def test_a_session_of_devices_says_nothing_of_cameras(study):
     assert "Cameras</span>" in report.build(study)
-    study["sessions"][0] |= {"files": {}, "way": None, "mapper": None}
+    study["sessions"][0] |= {"files": {}, "calibration": None, "mapper": None}
     assert "Cameras</span>" not in report.build(study)
 
 

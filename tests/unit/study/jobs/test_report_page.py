@@ -75,11 +75,11 @@ def test_tables_are_those_that_the_study_makes(content, study, rules, studies):
 
 def test_a_session_is_told_with_its_first_calibration_and_its_overrides(content):
     real, plain, players, single = content["sessions"]
-    assert (real["way"], real["mapper"], real["virtual"]) == ("file", None, False)
+    assert (real["calibration"], real["mapper"], real["virtual"]) == ("file", None, False)
     assert real["files"] == {
         "quality": {"file": "results/walk-4cams-tiny/calibration/file/quality.json"}
     }
-    assert (plain["way"], plain["mapper"], plain["n_images"]) == ("known18", "global", 12)
+    assert (plain["calibration"], plain["mapper"], plain["n_images"]) == ("known18", "global", 12)
     assert plain["files"]["model"] == "results/plain-tiny/sfm/global-n12-o0/summary.json"
     assert plain["files"]["static"] == [
         "results/plain-tiny/static/side.csv",
@@ -87,7 +87,7 @@ def test_a_session_is_told_with_its_first_calibration_and_its_overrides(content)
     ]
     assert plain["overrides"] == {"extract_features": {"first_octave": -1}}
     assert (players["fusion"], players["model"]) == ("all-robust", "blazepose-full")
-    assert (single["way"], single["takes"][0]["name"]) == (None, "claps")
+    assert (single["calibration"], single["takes"][0]["name"]) == (None, "claps")
 
 
 def test_the_number_of_images_is_that_of_the_calibration(study, rules):

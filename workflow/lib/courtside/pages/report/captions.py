@@ -24,19 +24,9 @@ def render(
 ) -> Markup:
     """Return a caption as HTML paragraphs in which all text is escaped.
 
-    Parameters
-    ----------
-    source
-        reStructuredText that may name `snakemake.wildcards` and `snakemake.params`.
-    wildcards
-        Of the figure: session, take, network ...
-    params
-        Of the rule that drew it; `params.step.n_frames` is looked up in dictionaries.
-
-    Raises
-    ------
-    ValueError
-        If the caption names something that is not given, or is not reStructuredText.
+    `source` is reStructuredText that may name `snakemake.wildcards` (session, take, network ...)
+    and `snakemake.params` of the rule that drew the figure. `ValueError` if it names something that
+    is not given, or is not reStructuredText.
     """
     snakemake = SimpleNamespace(wildcards=dict(wildcards or {}), params=dict(params or {}))
     try:

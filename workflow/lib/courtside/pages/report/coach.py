@@ -34,47 +34,41 @@ def with_error(value: float, half: float, unit: str, *_: object) -> Markup:
 
 
 def take(
-    said: dict, facts: dict, found: Sequence[warned.Warned], figures_id: str | None = None
+    configured: dict, facts: dict, found: Sequence[warned.Warned], figures_id: str | None = None
 ) -> Markup:
     """Return one take as HTML: its mark, the measures of each person, its warnings.
 
-    Parameters
-    ----------
-    said
-        `id`, `name`, `links` ([(address, words)]) of the take.
-    facts
-        As `facts.of_take` returns it.
-    figures_id
-        Where its figures are on the page.
+    `configured` has `id`, `name` and `links` ([(address, words)]) of the take, `facts` are of
+    `facts.of_take`, and `figures_id` is where its figures are on the page.
     """
     return page.render(
         "report_take.html",
-        said=said,
+        configured=configured,
         level=warned.worst(found),
         persons=[_person(name, facts) for name in facts["persons"]],
         sources=[row["source"] for row in facts["devices"]],
         found=found,
-        places=said["links"] + ([(f"#{figures_id}", "figures")] if figures_id else []),
+        places=configured["links"] + ([(f"#{figures_id}", "figures")] if figures_id else []),
     )
 
 
 def _person(person: str, facts: dict) -> dict:
-    """Return what the template says of a person: `said` is [(words, value, words after it)]."""
+    """Return what the template says of a person: `phrases` are [(words, value, words after it)]."""
     measures = facts["persons"][person]
-    said: list[tuple] = []
+    phrases: list[tuple] = []
     distance = measures.get("neck_distance")
     if distance and not math.isnan(distance[0]):
         over = f" in {facts['seconds']:.1f} s" if facts["seconds"] else ""
-        said.append(("the neck travelled", with_error(*distance), over))
+        phrases.append(("the neck travelled", with_error(*distance), over))
     for name, words in (("neck_speed_mean", "mean speed"), ("neck_speed_max", "largest speed")):
         if name in measures:
-            said.append((words, with_error(*measures[name]), ""))
+            phrases.append((words, with_error(*measures[name]), ""))
     if facts["left_out"].get(person):
         lost, total, _ = facts["left_out"][person]
-        said.append((f"from {total - lost} of {total} frames", "", ""))
+        phrases.append((f"from {total - lost} of {total} frames", "", ""))
     own = [row for row in facts["true_paths"] if (row["person"], row["point"]) == (person, "neck")]
     off = [value for row in own if not math.isnan(value := row["distance_error_percent"])]
-    return {"name": person, "said": said, "off": off[:1], "angles": _angles(measures)}
+    return {"name": person, "phrases": phrases, "off": off[:1], "angles": _angles(measures)}
 
 
 def _angles(measures: dict) -> list[tuple]:

@@ -25,19 +25,11 @@ def of_take(files: dict) -> dict:
     calibration is known)}}; `left_out`: {person: (frames without a neck, frames, {reason:
     frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
     Clock}; `shake`: lines; `movement`, `devices`, `truth` and `true_paths`: rows. Empty without a
-    file.
+    file. `InputError` if a file is missing or has another content.
 
-    Parameters
-    ----------
-    files
-        Paths by `summary` and `frames` (kinematics), `pose3d`, `sync`, `movement` (a list), `shake`
-        (text), `checks` (clocks of devices), `errors` and `kinematics` (against the truth); each
-        may be missing.
-
-    Raises
-    ------
-    InputError
-        If a file is missing or has another content.
+    `files` are paths by `summary` and `frames` (kinematics), `pose3d`, `sync`, `movement` (a list),
+    `shake` (text), `checks` (clocks of devices), `errors` and `kinematics` (against the truth);
+    each may be left out.
     """
     facts: dict = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
     if files.get("summary"):
@@ -49,7 +41,8 @@ def of_take(files: dict) -> dict:
         facts |= of_skeleton(keypoints.read_3d(files["pose3d"]))
     facts["clocks"] = clocks.read(files["sync"])[1] if files.get("sync") else {}
     facts["movement"] = [_row(path) for path in files.get("movement", ())]
-    facts["shake"] = _lines(files["shake"]) if files.get("shake") else []
+    text = Path(files["shake"]).read_text(encoding="utf-8") if files.get("shake") else ""
+    facts["shake"] = [line.strip() for line in text.splitlines() if line.strip()]
     facts["devices"] = _rows(files, "checks", ("source", "status"))
     facts["truth"] = _rows(files, "errors", ("stage", "fusion", "person", "joint", "median_mm"))
     facts["true_paths"] = _rows(files, "kinematics", ("person", "point", "distance_error_percent"))
@@ -60,15 +53,11 @@ def of_session(files: dict) -> dict:
     """Read the facts of a session's cameras.
 
     `quality`: {calibration: content}; `model`: content, empty without a file; `static`: rows.
-
-    Parameters
-    ----------
-    files
-        Paths by `quality`: {calibration: file}, `model` (summary of the structure from motion),
-        `static` (a list).
+    `files` are paths by `quality`: {calibration: file}, `model` (summary of the structure from
+    motion), `static` (a list); each may be left out.
     """
     return {
-        "quality": {way: read_json(path) for way, path in files.get("quality", {}).items()},
+        "quality": {name: read_json(path) for name, path in files.get("quality", {}).items()},
         "model": read_json(files["model"]) if files.get("model") else {},
         "static": [_row(path) for path in files.get("static", ())],
     }
@@ -145,14 +134,3 @@ def _rows(files: dict, key: str, columns: Sequence[str]) -> list[dict]:
 def _row(path: str | os.PathLike) -> dict:
     rows = _table(path, ("camera", "shift_x_px", "shift_y_px", "zoom_percent", "n_matches"))
     return rows.to_dict("records")[0]
-
-
-def _lines(path: str | os.PathLike) -> list[str]:
-    text = Path(path).read_text(encoding="utf-8")
-    return [line.strip() for line in text.splitlines() if line.strip()]
-
-
-def whole_table(path: str | os.PathLike) -> tuple[list[str], list[list[str]]]:
-    """Return a CSV file as text: (names of columns, rows of strings), as it stands there."""
-    table = pd.read_csv(path, dtype=str, keep_default_na=False)
-    return list(table.columns), table.values.tolist()

@@ -4,10 +4,11 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+import pandas as pd
 from markupsafe import Markup
 
 from courtside.pages import page, pictures
-from courtside.pages.report import captions, facts
+from courtside.pages.report import captions
 from courtside.study.errors import InputError
 
 TITLES = {
@@ -60,35 +61,26 @@ def title(stem: str, planned: bool = False) -> tuple[str, str]:
     return titles.get(name, name.replace("_", " ").replace("-", " ").capitalize()), way
 
 
-def figure(said: dict, name: str) -> tuple[Markup, bytes]:
-    """Return a figure as HTML, and its picture as PNG.
+def figure(entry: dict, name: str) -> tuple[Markup, bytes]:
+    """Return a figure as HTML, and its picture as PNG; `InputError` if this cannot be read.
 
-    Parameters
-    ----------
-    said
-        `png` and `caption` (paths), `wildcards`, `params`, `links` ([(address, words)]).
-    name
-        Of the picture on the page.
-
-    Raises
-    ------
-    InputError
-        If the picture cannot be read.
+    `entry` has `png` and `caption` (paths), `wildcards`, `params`, `session` and `links`
+    ([(address, words)]); `name` is that of the picture on the page.
     """
     try:
-        png, size = pictures.shrunk(Path(said["png"]).read_bytes())
+        png, size = pictures.shrunk(Path(entry["png"]).read_bytes())
     except OSError as error:
-        raise InputError(f"{said['png']}: expected a PNG, found: {error}; draw it again") from None
-    source = Path(said["caption"]).read_text(encoding="utf-8")
-    heading, way = title(Path(said["png"]).stem, said["session"] == PLANS)
+        raise InputError(f"{entry['png']}: expected a PNG, found: {error}; draw it again") from None
+    source = Path(entry["caption"]).read_text(encoding="utf-8")
+    heading, way = title(Path(entry["png"]).stem, entry["session"] == PLANS)
     html = page.render(
         "report_figure.html",
         name=name,
         size=size,
         heading=heading,
         way=way,
-        caption=captions.render(source, said["wildcards"], said["params"]),
-        places=said["links"],
+        caption=captions.render(source, entry["wildcards"], entry["params"]),
+        places=entry["links"],
     )
     return html, png
 
@@ -100,12 +92,12 @@ def groups(figures: Iterable[dict], sessions: Iterable[str]) -> Groups:
     """
     order = {name: at for at, name in enumerate(sessions)}
 
-    def place(said: dict) -> tuple[int, bool]:
-        return order.get(said["session"], len(order)), bool(said["take"])
+    def place(entry: dict) -> tuple[int, bool]:
+        return order.get(entry["session"], len(order)), bool(entry["take"])
 
     found: Groups = {}
-    for said in sorted(figures, key=place):
-        found.setdefault((said["session"], said["take"]), []).append(said)
+    for entry in sorted(figures, key=place):
+        found.setdefault((entry["session"], entry["take"]), []).append(entry)
     return found
 
 
@@ -114,19 +106,16 @@ def identity(*parts: str) -> str:
     return re.sub(r"[^a-z0-9_.-]+", "-", ".".join(filter(None, parts)).lower())
 
 
-def table(said: dict) -> Markup:
+def table(entry: dict) -> Markup:
     """Return a CSV file as HTML, folded away, without the columns that are empty throughout.
 
-    Parameters
-    ----------
-    said
-        `file` (path), `title`, `words`, `link` (address).
+    `entry` has `file` (path), `title`, `words` and `link` (address).
     """
-    columns, rows = facts.whole_table(said["file"])
-    full = [at for at, _ in enumerate(columns) if any(row[at] for row in rows)]
-    head = [columns[at].replace("_", " ") for at in full]
-    cells = [[_cell(row[at]) for at in full] for row in rows]
-    return page.render("report_table.html", said=said, head=head, rows=cells)
+    found = pd.read_csv(entry["file"], dtype=str, keep_default_na=False)
+    found = found.loc[:, (found != "").any()]
+    head = [name.replace("_", " ") for name in found]
+    cells = [[_cell(value) for value in row] for row in found.to_numpy()]
+    return page.render("report_table.html", entry=entry, head=head, rows=cells)
 
 
 def _cell(value: str) -> tuple[str, bool]:

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from markupsafe import Markup
 
 from courtside.pages import page
+from courtside.study.methods import Calibration, Fusion
 
 SOURCES = {
     "paper": "H. Shishido, I. Kitahara. Camera calibration for markerless 3D pose estimation and "
@@ -23,7 +24,7 @@ SOURCES = {
     "leva": "P. de Leva. Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters. "
     "Journal of Biomechanics 29, 1996.",
 }
-WAYS = {
+CALIBRATED = {  # by the kind of a calibration
     "sfm": "calibrated by one bundle adjustment of structure from motion over the pictures of a "
     "walk and of the clicked court points",
     "sim3": "calibrated by structure from motion over the pictures of a walk, aligned to the court "
@@ -34,23 +35,21 @@ WAYS = {
     "dlt": "calibrated from clicked court points alone, by the linear method (DLT)",
     "file": "taken from a calibration made elsewhere",
 }
-RULES = {
+FUSED = {  # by the rule of a fusion
     "robust": "views are weighted, and those that contradict the others lose their weight",
     "dlt": "all views have the same weight (DLT)",
-    "unsteady": "views are weighted, and camera shake is not corrected",
+    "halfbody": "half of the body from two cameras each",
+    "trc": "3D joints as another program gave them",
 }
+UNSTEADY = "views are weighted, and camera shake is not corrected"
 
 
 def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
     """Return the methods as HTML: paragraphs, then the sources that they cite.
 
-    Parameters
-    ----------
-    parameters
-        The study's steps as configured: `match_images`, `adjust_network`, `triangulate` ...
-    sessions
-        Of the report: `name`, `way` (calibration of its takes), `mapper`, `n_images`, `fusion`,
-        `model`, `virtual`, `overrides` ({step: {key: value}}), `takes`.
+    `parameters` are the study's steps as configured: `match_images`, `adjust_network` ... Each of
+    `sessions` has `name`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`, `model`,
+    `virtual`, `overrides` ({step: {key: value}}), `takes`.
     """
     files = [take["files"] for session in sessions for take in session["takes"]]
     mapped = sorted({(s["mapper"], s["n_images"]) for s in sessions if s["mapper"]})
@@ -65,10 +64,10 @@ def paragraphs(parameters: dict, sessions: Sequence[dict]) -> Markup:
         step=parameters,
         real=[session["name"] for session in sessions if not session["virtual"]],
         simulated=[session["name"] for session in sessions if session["virtual"]],
-        ways=[(way, _way(way), _with(sessions, way)) for way in _different(sessions, "way")],
+        calibrations=[_calibrated(name, sessions) for name in _different(sessions, "calibration")],
         mapped=mapped,
         models=models,
-        fusions=[(fusion, _rule(fusion)) for fusion in _different(sessions, "fusion")],
+        fusions=[(name, _fused(name)) for name in _different(sessions, "fusion")],
         overrides=_overrides(sessions),
         cited=cited,
         sources=[words for name, words in SOURCES.items() if name in cited],
@@ -90,16 +89,15 @@ def _different(sessions: Iterable[dict], key: str) -> list[str]:
     return list(dict.fromkeys(session[key] for session in sessions if session[key]))
 
 
-def _with(sessions: Iterable[dict], way: str) -> list[str]:
-    return [session["name"] for session in sessions if session["way"] == way]
+def _calibrated(name: str, sessions: Iterable[dict]) -> tuple[str, str, list[str]]:
+    """Return a calibration, what it is in words, and the sessions that use it."""
+    users = [session["name"] for session in sessions if session["calibration"] == name]
+    return name, CALIBRATED[Calibration.parse(name).kind], users
 
 
-def _way(way: str) -> str:
-    return WAYS[next((kind for kind in WAYS if way.startswith(kind)), "file")]
-
-
-def _rule(fusion: str) -> str:
-    return RULES.get(fusion.rpartition("-")[2], "half of the body from two cameras each")
+def _fused(name: str) -> str:
+    fusion = Fusion.parse(name)
+    return FUSED[fusion.rule] if fusion.steadied else UNSTEADY
 
 
 def _cut(cutoffs: object) -> str:

@@ -12,29 +12,23 @@ STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "c
 
 
 def session(
-    said: dict,
+    configured: dict,
     facts: dict,
     found: Sequence[warned.Warned],
     takes: Iterable[tuple[dict, dict, Sequence[warned.Warned]]],
 ) -> Markup:
     """Return the quality page of a session as HTML.
 
-    Parameters
-    ----------
-    said
-        `name`, `id`, `way` (the calibration of its takes), `cameras` of the session.
-    facts
-        As `facts.of_session` returns it.
-    takes
-        Each take as configured, its facts and its warnings.
+    `configured` has `name`, `id` and `calibration` (that of its takes), `facts` are of
+    `facts.of_session`, and `takes` are each take as configured, its facts and its warnings.
     """
     return page.render(
         "report_quality.html",
-        said=said,
+        configured=configured,
         level=warned.worst(found),
         found=found,
         model=facts["model"],
-        calibrations=_calibrations(said, facts["quality"]),
+        calibrations=_calibrations(configured, facts["quality"]),
         static=_movement(facts["static"]),
         takes=[_take(*one) for one in takes],
         number=number,
@@ -70,35 +64,29 @@ def _take(take: dict, known: dict, found: Sequence[warned.Warned]) -> dict:
     }
 
 
-def _calibrations(said: dict, quality: dict) -> list[tuple]:
+def _calibrations(configured: dict, quality: dict) -> list[tuple]:
     rows = []
-    for way, content in quality.items():
+    for calibration, content in quality.items():
         left = content.get("left_out")
         points = left.values() if isinstance(left, dict) else ()
         errors = [row["error_cm"] for row in points if row["error_cm"] is not None]
-        rows.append(
-            (
-                f"{way} (takes)" if way == said["way"] else way,
-                number(warned.left_out_cm(content)),
-                number(max(errors, default=None)),
-                number(content.get("expected_volume_rms_cm")),
-                number(content.get("tie_residual_px")),
-                len(content.get("warnings", ())),
-            )
+        values = (
+            warned.left_out_cm(content),
+            max(errors, default=None),
+            content.get("expected_volume_rms_cm"),
+            content.get("tie_residual_px"),
         )
+        name = calibration + (" (takes)" if calibration == configured["calibration"] else "")
+        rows.append((name, *map(number, values), len(content.get("warnings", ()))))
     return rows
 
 
 def _movement(rows: Iterable[dict]) -> list[tuple]:
-    return [
-        (
-            row["camera"],
-            number(math.hypot(row["shift_x_px"], row["shift_y_px"])),
-            number(row["zoom_percent"], 4),
-            row["n_matches"],
-        )
-        for row in rows
-    ]
+    found = []
+    for row in rows:
+        shift = number(math.hypot(row["shift_x_px"], row["shift_y_px"]))
+        found.append((row["camera"], shift, number(row["zoom_percent"], 4), row["n_matches"]))
+    return found
 
 
 def _clocks(known: dict) -> list[tuple]:

@@ -17,11 +17,11 @@ def build(study: dict) -> str:
     ----------
     study
         `title`; `parameters` (the steps as configured); `sessions`, each with `name`,
-        `description`, `virtual`, `way`, `mapper`, `n_images`, `fusion`, `model`, `overrides`,
-        `limits` (`max_shift_px`, `max_zoom_percent`), perhaps `withheld` (lines that say what is
-        missing for lack of consent), `files` (of `facts.of_session`) and `takes`, each with `name`,
-        `fusion`, `links` and `files` (of `facts.of_take`); `figures` as `figures.figure` takes
-        them, with `session` and `take`; `tables` as `figures.table` takes them.
+        `description`, `virtual`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`,
+        `model`, `overrides`, `limits` (`max_shift_px`, `max_zoom_percent`), perhaps `withheld`
+        (lines that say what is missing for lack of consent), `files` (of `facts.of_session`) and
+        `takes`, each with `name`, `fusion`, `links` and `files` (of `facts.of_take`); `figures` as
+        `figures.figure` takes them, with `take`; `tables` as `figures.table` takes them.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def build(study: dict) -> str:
         If a file is missing or has another content.
     """
     known = [_read(session) for session in study["sessions"]]
-    grouped = figures.groups(study["figures"], [one["said"]["name"] for one in known])
+    grouped = figures.groups(study["figures"], [one["configured"]["name"] for one in known])
     drawn, images = _figures(grouped)
     reported = [one for one in known if one["takes"] or one["withheld"]]
     parts = [
@@ -46,14 +46,14 @@ def build(study: dict) -> str:
 def _read(session: dict) -> dict:
     """Return what is known of a session: its facts and warnings, and those of its takes."""
     facts = report_facts.of_session(session["files"])
-    found = warnings.of_session(facts, session["way"], **session["limits"])
+    found = warnings.of_session(facts, session["calibration"], **session["limits"])
     takes = []
     for take in session["takes"]:
         read = report_facts.of_take(take["files"])
-        said = {**take, "id": identity("take", session["name"], take["name"])}
-        takes.append((said, read, warnings.of_take(read, **session["limits"])))
+        configured = {**take, "id": identity("take", session["name"], take["name"])}
+        takes.append((configured, read, warnings.of_take(read, **session["limits"])))
     return {
-        "said": {**session, "id": identity("quality", session["name"])},
+        "configured": {**session, "id": identity("quality", session["name"])},
         "place": identity("session", session["name"]),
         "withheld": session.get("withheld", ()),
         "facts": facts,
@@ -64,7 +64,7 @@ def _read(session: dict) -> dict:
 
 
 def _places(reported: list[dict]) -> list[tuple[str, str]]:
-    return [(one["place"], one["said"]["name"]) for one in reported]
+    return [(one["place"], one["configured"]["name"]) for one in reported]
 
 
 def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) -> Markup:
@@ -73,7 +73,7 @@ def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) 
     for session in reported:
         written = []
         for take, facts, found in session["takes"]:
-            key = (session["said"]["name"], take["name"])
+            key = (session["configured"]["name"], take["name"])
             figures_id = _group_id(key) if key in grouped else None
             written.append(coach.take(take, facts, found, figures_id))
         sessions.append(session | {"written": written})
@@ -84,7 +84,7 @@ def _glance(known: list[dict]) -> list[dict]:
     """Return a row for each person of each take."""
     return [
         {
-            "session": session["said"],
+            "session": session["configured"],
             "take": take,
             "level": max(warnings.worst(found), session["level"]),
             "person": person,
@@ -103,9 +103,9 @@ def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, page.Picture]]:
     images: dict[str, page.Picture] = {}
     for key, group in grouped.items():
         drawn = []
-        for said in group:
+        for entry in group:
             name = f"figure-{len(images)}"
-            html, images[name] = figures.figure(said, name)
+            html, images[name] = figures.figure(entry, name)
             drawn.append(html)
         groups.append({"id": _group_id(key), "name": _group_name(key), "figures": drawn})
     return page.render("report_figures.html", groups=groups), images
@@ -121,6 +121,6 @@ def _group_name(key: tuple[str, str]) -> str:
 
 def _quality(known: list[dict]) -> tuple[Markup, list[tuple[str, str]]]:
     """Return the quality of all sessions as HTML, and where each stands: (id, name)."""
-    sessions = [quality.session(s["said"], s["facts"], s["found"], s["takes"]) for s in known]
+    sessions = [quality.session(s["configured"], s["facts"], s["found"], s["takes"]) for s in known]
     html = page.render("report_qualities.html", sessions=sessions, limits=quality.limits())
-    return html, [(session["said"]["id"], session["said"]["name"]) for session in known]
+    return html, [(session["configured"]["id"], session["configured"]["name"]) for session in known]

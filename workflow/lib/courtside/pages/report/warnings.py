@@ -1,6 +1,7 @@
 """Warnings of a take or a session, in words for readers who were not there."""
 
 import math
+import statistics
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -49,14 +50,9 @@ def worst(warned: Sequence[Warned]) -> int:
 
 
 def of_take(facts: dict, *, max_shift_px: float, max_zoom_percent: float) -> list[Warned]:
-    """Return the warnings of a take, the most serious first.
+    """Return the warnings of a take, the most serious first; `facts` are of `facts.of_take`.
 
-    Parameters
-    ----------
-    facts
-        As `facts.of_take` returns it.
-    max_shift_px, max_zoom_percent
-        How far the configuration lets a fixed camera move.
+    `max_shift_px` and `max_zoom_percent` are how far a fixed camera may move.
     """
     found = [moved(row, max_shift_px, max_zoom_percent) for row in facts["movement"]]
     found += [shaken(line) for line in facts["shake"]]
@@ -71,21 +67,15 @@ def of_take(facts: dict, *, max_shift_px: float, max_zoom_percent: float) -> lis
 
 
 def of_session(
-    facts: dict, way: str | None, *, max_shift_px: float, max_zoom_percent: float
+    facts: dict, used: str | None, *, max_shift_px: float, max_zoom_percent: float
 ) -> list[Warned]:
     """Return the warnings of a session's cameras, the most serious first.
 
-    Parameters
-    ----------
-    facts
-        As `facts.of_session` returns it.
-    way
-        The calibration of its takes, None without one.
-    max_shift_px, max_zoom_percent
-        As for `of_take`.
+    `facts` are of `facts.of_session`, `used` is the calibration of its takes, the limits are as for
+    `of_take`.
     """
     found = [moved(row, max_shift_px, max_zoom_percent) for row in facts["static"]]
-    found += calibration(way, facts["quality"][way]) if way and way in facts["quality"] else []
+    found += calibration(used, facts["quality"][used]) if used and used in facts["quality"] else []
     found += [registered(facts["model"])] if facts["model"] else []
     return sorted(filter(None, found), key=lambda item: -item.level)
 
@@ -98,14 +88,14 @@ def moved(row: dict, max_shift_px: float, max_zoom_percent: float) -> Warned | N
         text = "the picture shows too little background to tell whether it moved"
         return Warned(LOOK, f"Camera {row['camera']}: {text}.")
     level = level_of("moved", share)
-    said = f"it moved by {shift:.2g} px and zoomed by {row['zoom_percent']:.2g} %"
-    return Warned(level, f"Camera {row['camera']}: {said}.") if level else None
+    text = f"it moved by {shift:.2g} px and zoomed by {row['zoom_percent']:.2g} %"
+    return Warned(level, f"Camera {row['camera']}: {text}.") if level else None
 
 
 def shaken(line: str) -> Warned:
     """Return what a line about the shake of a camera says, now that the shake is corrected."""
-    said = line.rpartition("): ")[0] + ")" if "): " in line else line
-    text = said[:1].upper() + said[1:]
+    text = line.rpartition("): ")[0] + ")" if "): " in line else line
+    text = text[:1].upper() + text[1:]
     if "too little" in line or "no frame" in line:
         return Warned(LOOK, f"{text}.")
     if "knocked" in line or "stood" in line:
@@ -143,23 +133,23 @@ def device(row: dict) -> Warned | None:
     return Warned(min(level, LOOK), text) if level else None
 
 
-def calibration(way: str, quality: dict) -> list[Warned]:
+def calibration(name: str, quality: dict) -> list[Warned]:
     """Return the warnings of a calibration; `quality` is the content of its quality.json."""
     found = [Warned(LOOK, f"Calibration: {text}.") for text in quality.get("warnings", ())]
     error, expected = left_out_cm(quality), quality.get("expected_volume_rms_cm")
     ties = quality.get("tie_residual_px")
-    for quantity, value, said in (
+    for quantity, value, words in (
         ("left_out_cm", error, "the median error of court points left out in turn is {:.1f} cm"),
         ("expected_cm", expected, "the expected error over the playing volume is {:.1f} cm"),
         ("tie_px", ties, "the residual of tie points between pictures of the walk is {:.1f} px"),
     ):
         if value is not None and level_of(quantity, value):
-            text = f"Calibration {way}: {said.format(value)}."
+            text = f"Calibration {name}: {words.format(value)}."
             found.append(Warned(level_of(quantity, value), text))
     if isinstance(quality.get("left_out"), str):
-        found.append(Warned(LOOK, f"Calibration {way}: {quality['left_out']}."))
+        found.append(Warned(LOOK, f"Calibration {name}: {quality['left_out']}."))
     if error is None and expected is None:
-        made = "made elsewhere" if way == "file" else way
+        made = "made elsewhere" if name == "file" else name
         text = "its accuracy is unknown, so that the error bars do not include its error"
         found.append(Warned(LOOK, f"Calibration {made}: {text}."))
     return found
@@ -169,8 +159,8 @@ def left_out_cm(quality: dict) -> float | None:
     """Return the median error (cm) of the court points, each left out in turn; None if unknown."""
     table = quality.get("left_out")
     errors = [row["error_cm"] for row in table.values()] if isinstance(table, dict) else []
-    errors = sorted(error for error in errors if error is not None)
-    return errors[len(errors) // 2] if errors else None
+    known = [error for error in errors if error is not None]
+    return statistics.median_high(known) if known else None
 
 
 def registered(model: dict) -> Warned | None:
@@ -204,7 +194,7 @@ def joints(found: dict) -> list[Warned]:
         worst_one = f"most often the {name.replace('_', ' ')} ({row['missing']:.0%})"
         made.append(Warned(level, f"{missing:.0%} of the joints are missing, {worst_one}."))
     if few and level_of("two_views", alone):
-        text = f"only two cameras see {alone:.0%} of the joints, so that no third checks them."
+        text = f"only two cameras see {alone:.0%} of the joints: no third camera can confirm these."
         made.append(Warned(min(level_of("two_views", alone), LOOK), text))
     return made
 
@@ -226,10 +216,9 @@ def true_path(row: dict) -> Warned | None:
     off, sigma = row["distance_error_percent"], row["distance_sigma_percent"]
     if row["point"] != "neck" or math.isnan(off) or abs(off) <= NINE_IN_TEN * sigma:
         return None
-    way = "smaller" if off > 0 else "larger"
-    text = f"the true distance of this simulated take is {abs(off):.1f} % {way}"
-    text += ", outside the error bar"
-    return Warned(LOOK, f"{row['person']}: {text}.")
+    side = "smaller" if off > 0 else "larger"
+    text = f"the true distance of this simulated take is {abs(off):.1f} % {side}"
+    return Warned(LOOK, f"{row['person']}: {text}, outside the error bar.")
 
 
 def frames(person: str, lost: int, total: int, why: dict[str, int]) -> Warned | None:

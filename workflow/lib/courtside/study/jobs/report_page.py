@@ -140,7 +140,7 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "name": session.name,
         "description": session.description,
         "virtual": bool(session.virtual),
-        "way": way,
+        "calibration": way,
         "mapper": variant.mapper if mapped else None,
         "n_images": variant.n_images,
         "fusion": next(iter(session.fusions()), None),
