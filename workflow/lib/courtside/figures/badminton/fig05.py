@@ -12,7 +12,8 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from courtside.figures.style import picture_crops, style
+from courtside.evaluation.tables import calibration
+from courtside.figures.style import bars, picture_crops, style
 from courtside.statistics import autocorrelation
 
 ALL, STROKE, TOGETHER = "all joints", "all joints, stroke", "together"
@@ -34,14 +35,9 @@ def table(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> 
     `COLUMNS`: the share of placed joints over the frames in whose picture all the person's joints
     lie, its 95 % interval (Wilson, on the effective number of frames), and the share in which only
     the sides are exchanged. Joint ALL: all joints in one frame; STROKE: the same in the frames of a
-    stroke. Camera TOGETHER: all joints in all cameras of the layout at the same time.
-
-    Parameters
-    ----------
-    rows
-        Of `courtside.evaluation.detection.evaluate`, with session, take and model.
-    layouts
-        For each layout its session and the cameras that reconstruct together.
+    stroke. Camera TOGETHER: all joints in all cameras of the layout at the same time. `rows` are of
+    `courtside.evaluation.detection.evaluate`, with session, take and model; `layouts` are by name
+    the session and the cameras that reconstruct together.
     """
     found = []
     for layout, (session, cameras) in layouts.items():
@@ -117,17 +113,10 @@ def examples(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) 
         best = frames[frames["count"] == frames["count"].max()].sort_values("worst")
         bad = frames[frames["count"] == frames["count"].min()].sort_values("mean")
         for works, (person, frame) in ((True, best.index[len(best) // 2]), (False, bad.index[-1])):
-            one = (part.camera == camera) & (part.person == person) & (part.frame_idx == frame)
+            where = {"camera": camera, "person": person, "frame_idx": int(frame)}
+            one = calibration.pick(part, **where)
             found.append(
-                {
-                    "layout": layout,
-                    "session": session,
-                    "camera": camera,
-                    "person": person,
-                    "frame_idx": int(frame),
-                    "works": works,
-                    "rows": part[one],
-                }
+                {"layout": layout, "session": session, **where, "works": works, "rows": one}
             )
     return found
 
@@ -177,11 +166,9 @@ def _draw_shares(axis: Axes, part: pd.DataFrame, cameras: Sequence[str]) -> None
     axis.axhspan(
         -0.5, joints.index(STROKE) + 0.5 if STROKE in joints else 0.5, color="#eeeeee", zorder=0
     )
-    labels = [joint.replace("_", " ") for joint in joints]
-    axis.set(yticks=np.arange(len(joints)), yticklabels=labels, ylim=(len(joints) - 0.5, -0.5))
+    bars.name_rows(axis, joints)
     axis.set(xlim=(-2, 102), xlabel="placed in % of the frames (95 % interval)")
-    axis.grid(axis="x", color="#dddddd", linewidth=0.5)
-    axis.set_axisbelow(True)
+    axis.grid(axis="x")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, fontsize=7)
 
 

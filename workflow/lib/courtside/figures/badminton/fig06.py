@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
@@ -21,7 +22,21 @@ FAR_M = 60.0  # from the court's centre: what lies beyond does not widen the pan
 SHOWN = 3  # percentile of the points that tie: the panels reach from there to its counterpart
 ROOM_M = 1.5
 LARGEST_MM = 75  # width of a panel
-TIE = "#999999"
+LOOKS: dict[str, tuple[str, dict]] = {  # kind of point: words, look
+    "bridging": (
+        "bridging images, in order of filming",
+        {"marker": ".", "linewidth": 0.8, "color": style.LEFT, "markersize": 2.5, "zorder": 3},
+    ),
+    "fixed": (
+        "fixed cameras",
+        {"marker": "s", "linewidth": 0, "color": style.RIGHT, "markersize": 4, "zorder": 4},
+    ),
+    "tie": (
+        "points that tie the images",
+        {"marker": "o", "linewidth": 0, "color": "#999999", "markersize": 1.2, "zorder": 0}
+        | {"markeredgewidth": 0, "rasterized": True},
+    ),
+}
 TEXT_WIDTH = 26  # characters of an outcome in its panel
 
 
@@ -73,7 +88,10 @@ def draw(rows: pd.DataFrame, court: Court, n_images: dict[int, int] | None = Non
     for axis in axes.flat[len(counts) - columns : len(counts)]:
         axis.xaxis.set_tick_params(labelbottom=True)
         axis.set_xlabel("x (m)")
-    drawing.legend(*_legend(axes.flat[0]), loc="outside lower center", ncols=3)
+    marks = [
+        Line2D([], [], label=words, **{**look, "markersize": 4}) for words, look in LOOKS.values()
+    ]
+    drawing.legend(handles=marks, loc="outside lower center", ncols=3)
     return drawing
 
 
@@ -105,25 +123,8 @@ def _draw_panel(axis: Axes, rows: pd.DataFrame, court: Court, n_images: int | No
         axis.text(0.5, 0.5, text, bbox={"facecolor": "white", "edgecolor": "#999999"}, **look)
         axis.set_title(f"N = {count}: no result")
         return
-    of = {kind: part for kind, part in rows.groupby("kind")}
-    ties = of.get("tie", rows[:0])
-    look = {"color": TIE, "markersize": 1.2, "markeredgewidth": 0, "zorder": 0, "rasterized": True}
-    axis.plot(ties["x_m"], ties["y_m"], "o", **look)
-    path = of.get("bridging", rows[:0])
-    axis.plot(
-        path["x_m"], path["y_m"], ".-", color=style.LEFT, markersize=2.5, linewidth=0.8, zorder=3
-    )
-    fixed = of.get("fixed", rows[:0])
-    axis.plot(fixed["x_m"], fixed["y_m"], "s", color=style.RIGHT, markersize=4, zorder=4)
-    found = len(path) + len(fixed)
+    for kind, (_, look) in LOOKS.items():
+        part = rows[rows["kind"] == kind]
+        axis.plot(part["x_m"], part["y_m"], **look)
+    found = (rows["kind"] != "tie").sum()
     axis.set_title(f"N = {count}: {found}{f' of {n_images}' if n_images else ''} images")
-
-
-def _legend(axis: Axes) -> tuple[list, list[str]]:
-    looks = [
-        (".-", style.LEFT, "bridging images, in order of filming"),
-        ("s", style.RIGHT, "fixed cameras"),
-        (".", TIE, "points that tie the images"),
-    ]
-    handles = [axis.plot([], [], form, color=colour, markersize=4)[0] for form, colour, _ in looks]
-    return handles, [words for *_, words in looks]

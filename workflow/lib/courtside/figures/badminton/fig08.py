@@ -111,14 +111,15 @@ def draw(numbers: pd.DataFrame, title: str, layout: str = "") -> Figure:
     for name in ("xy_cm", "volume_rms_cm", "angle"):
         bars.plain_log(axes[name])
     axes["volume_rms_cm"].sharey(axes["xy_cm"])
-    _draw_solved(axes["solved"], numbers)
+    for quantity, form in (("solved_share", "o-"), ("registered_share", "x:")):
+        _draw_mappers(axes["solved"], numbers, quantity, form, factor=100)
+    axes["solved"].set(ylim=(-5, 105), ylabel="solved, registered (%)")
     _draw_angles(axes["angle"], numbers, layout)
     counts = sorted(numbers["n_bridging"].dropna().astype(int).unique())
     for axis in axes.values():
         bars.ticks_at(axis, counts)
         axis.set(xlabel="bridging images N", xlim=(counts[0] / 1.3, counts[-1] * 1.3))
-        axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
-        axis.set_axisbelow(True)
+        axis.grid(axis="y")
     for name in ERRORS:
         axes[name].set_xlim(right=counts[-1] * STRONG * 1.25)
         axes[name].set_xticks([*counts, STRONG * counts[-1]], [*map(str, counts), "strong"])
@@ -172,12 +173,6 @@ def _mark_published(axis: Axes, numbers: pd.DataFrame) -> None:
     axis.plot(beside, strong["median"], "*", **look)
 
 
-def _draw_solved(axis: Axes, numbers: pd.DataFrame) -> None:
-    for quantity, line, marker in (("solved_share", "-", "o"), ("registered_share", ":", "x")):
-        _draw_mappers(axis, numbers, quantity, marker + line, factor=100)
-    axis.set(ylim=(-5, 105), ylabel="solved, registered (%)")
-
-
 def _draw_angles(axis: Axes, numbers: pd.DataFrame, layout: str) -> None:
     for quantity, form in (("neighbour_deg_median", "o-"), ("neighbour_deg_max", "^:")):
         _draw_mappers(axis, numbers, quantity, form)
@@ -206,16 +201,17 @@ def _legend(numbers: pd.DataFrame) -> list[Line2D]:
     for label, _, level in levels(numbers, "xy_cm"):
         handles.append(bars.mark(level.colour, marker=level.marker, line=level.line, label=label))
     grey = "#555555"
-    handles.append(bars.mark(grey, label="filled: scored points left out"))
-    handles.append(bars.mark(grey, filled=False, label="hollow: in-sample"))
-    handles.append(bars.mark(grey, marker="x", label="no result"))
-    handles.append(bars.mark("black", marker="*", label="published"))
-    handles.append(bars.mark("black", marker=r"$\downarrow$", label="published: below"))
-    there = [mapper for mapper in MAPPERS if (numbers["mapper"] == mapper).any()]
-    for mapper in there:
-        handles.append(
-            bars.mark(MAPPERS[mapper], line="-", label=f"{mapper} mapper: solved; median angle")
-        )
+    handles += [
+        bars.mark(grey, label="filled: scored points left out"),
+        bars.mark(grey, filled=False, label="hollow: in-sample"),
+        bars.mark(grey, marker="x", label="no result"),
+        bars.mark("black", marker="*", label="published"),
+        bars.mark("black", marker=r"$\downarrow$", label="published: below"),
+    ]
+    for mapper, colour in MAPPERS.items():
+        if (numbers["mapper"] == mapper).any():
+            label = f"{mapper} mapper: solved; median angle"
+            handles.append(bars.mark(colour, line="-", label=label))
     handles.append(bars.mark(grey, marker="x", line=":", label="the same: registered images"))
     handles.append(bars.mark(grey, marker="^", line=":", label="the same: largest angle"))
     return handles

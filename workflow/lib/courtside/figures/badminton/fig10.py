@@ -67,14 +67,9 @@ def draw(
 ) -> Figure:
     """Draw a row for each instant: each camera's picture with its detections, then the 3D skeleton.
 
-    Parameters
-    ----------
-    frames
-        The trails begin at its first frame.
-    shown : sequence of int, length N
-        Frames of `points`.
-    pictures : list of dict of str to ((H, W, 3) uint8, (P, K, 2) float)
-        For each instant and camera the picture (BGR) and the detected joints of the figure, px.
+    The trails begin at the first of `frames`; `shown` are the instants' frames of `points`.
+    `pictures` are for each instant by camera the picture (H, W, 3) BGR and the detected joints
+    (P, K, 2) px of the figure.
     """
     names = list(pictures[0])
     width = style.WIDTH_MM * (1 - SPACE_SHARE) / len(names)

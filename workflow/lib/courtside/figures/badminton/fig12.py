@@ -98,8 +98,7 @@ def _group_ticks(axis: Axes) -> None:
     axis.set_xticks(range(len(WORDS)), list(WORDS.values()))
     axis.set_xlim(-0.5, len(WORDS) - 0.5)
     axis.tick_params(axis="x", length=0)
-    axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
-    axis.set_axisbelow(True)
+    axis.grid(axis="y")
 
 
 def _box(axis: Axes, place: float, row: pd.Series, colour: str, filled: bool = True) -> None:
@@ -116,10 +115,14 @@ def _mark_published(axis: Axes, published: pd.DataFrame) -> None:
     for at, name in enumerate(WORDS):
         places = at + _places(len(WAYS))
         for family, (first, last) in PUBLISHED.items():
-            value = published.loc[name, family]
             reach = [places[first] - WIDTH / 2, places[last] + WIDTH / 2]
-            axis.plot(reach, [value, value], color="black", linewidth=0.9, zorder=5)
-            axis.plot(np.mean(reach), value, "*", color="black", markersize=7, zorder=6)
+            _star(axis, reach, np.mean(reach), published.loc[name, family])
+
+
+def _star(axis: Axes, reach: list[float], at: float, value: float) -> None:
+    """Draw a published value as a line with a star."""
+    axis.plot(reach, [value, value], color="black", linewidth=0.9, zorder=5)
+    axis.plot(at, value, "*", color="black", markersize=7, zorder=6)
 
 
 def _draw_differences(axis: Axes, numbers: pd.DataFrame, published: pd.DataFrame) -> None:
@@ -130,8 +133,7 @@ def _draw_differences(axis: Axes, numbers: pd.DataFrame, published: pd.DataFrame
             _box(axis, place, of.loc[(reference, tips)], colour, filled)
         value = published.loc[name, "SfM"] - published.loc[name, "8-point"]
         reach = [at + places[0] - WIDTH, at + places[-1] + WIDTH]
-        axis.plot(reach, [value, value], color="black", linewidth=0.9, zorder=5)
-        axis.plot(reach[0], value, "*", color="black", markersize=7, zorder=6)
+        _star(axis, reach, reach[0], value)
     axis.axhline(0, color="#777777", linestyle="--", linewidth=0.8, zorder=1)
     axis.set_yscale("symlog", linthresh=3, linscale=1.5)
     axis.set_yticks([-100, -30, -10, -3, 0, 3, 10, 30], minor=False)
@@ -165,8 +167,7 @@ def _draw_volume(axis: Axes, numbers: pd.DataFrame) -> None:
     axis.set_xlim(-2 * WIDTH, 3 * len(shown) * WIDTH)
     axis.set_xticks([])
     bars.plain_log(axis)
-    axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
-    axis.set_axisbelow(True)
+    axis.grid(axis="y")
 
 
 def _legend() -> list:

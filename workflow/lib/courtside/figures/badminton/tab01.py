@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
-from courtside.figures.style import style
+from courtside.figures.style import bars, style
 
 ALL = "all"
 PANELS = (  # row of the table, title, filled marks
@@ -33,20 +32,10 @@ def table(rows: pd.DataFrame, published: pd.DataFrame, person: str | None = None
     mean_mm, sd_mm, n_frames, source.
     """
     own = rows[rows["person"] == (person or rows["person"].iloc[0])]
-    theirs = pd.DataFrame(
-        {
-            "person": "",
-            "n_cameras": 2,
-            "cameras": published["source"],
-            "row": "published",
-            "joint": published["joint"],
-            "unit": "mm",
-            "mean": published["mean_mm"],
-            "sd": published["sd_mm"],
-            "n": published["n_frames"],
-            "over": published["n_frames"].map("{} frames".format),
-        }
-    )
+    names = {"source": "cameras", "mean_mm": "mean", "sd_mm": "sd", "n_frames": "n"}
+    theirs = published.rename(columns=names)[["joint", *names.values()]]
+    theirs = theirs.assign(person="", n_cameras=2, row="published", unit="mm")
+    theirs["over"] = theirs["n"].map("{} frames".format)
     means = theirs.iloc[:1].assign(
         joint=ALL,
         mean=theirs["mean"].mean(),
@@ -74,7 +63,7 @@ def draw(rows: pd.DataFrame, title: str = "") -> Figure:
                 shift = SPREAD * ((at + 0.5) / len(sets) - 0.5)
                 _marks(axis, part, joints, shift, COLOURS[at % len(COLOURS)], name not in HOLLOW)
         axis.set_title(heading)
-        axis.grid(axis="x", color="#dddddd", linewidth=0.5)
+        axis.grid(axis="x")
     theirs = rows[rows["row"] == "published"].set_index("joint").reindex(joints)
     place = np.arange(len(joints)) - SPREAD / 2 - 0.08
     look = {"fmt": "*", "color": "black", "markersize": 5, "linewidth": 0.8}
@@ -82,9 +71,7 @@ def draw(rows: pd.DataFrame, title: str = "") -> Figure:
     for axis, (names, _) in zip(axes, PANELS, strict=True):
         _scale(axis, rows.loc[rows["row"].isin(names), "mean"])
     _without_truth(axes[-1], rows)
-    labels = [joint.replace("_", " ") for joint in joints]
-    axes[0].set(yticks=np.arange(len(joints)), yticklabels=labels)
-    axes[0].invert_yaxis()
+    bars.name_rows(axes[0], joints)
     _explain(drawing, axes[0], sets)
     drawing.suptitle(f"{title}\n{_identity(rows)}".strip(), fontsize=8)
     return drawing
@@ -103,8 +90,7 @@ def _marks(
 def _scale(axis: Axes, means: pd.Series) -> None:
     if means.max() > WIDE * means[means > 0].min():
         axis.set_xlim(left=0.5 * means[means > 0].min())
-        axis.set_xscale("log")
-        axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        bars.plain_log(axis, "x")
     else:
         axis.set_xlim(left=0)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from courtside.evaluation.tables import players
@@ -87,40 +87,40 @@ def draw(rows: pd.DataFrame, cameras: dict[str, Sequence[str]]) -> Figure:
     return drawing
 
 
-def _places(way: str, ways: list[str]) -> NDArray:
-    return np.arange(len(ROWS)) + SPREAD * ((ways.index(way) + 0.5) / len(ways) - 0.5)
-
-
 def _errors(axis: Axes, rows: pd.DataFrame, ways: list[str]) -> None:
     if rows.empty:
         axis.text(0.5, 0.5, "no estimate of\njoint offsets", transform=axis.transAxes, ha="center")
     for way in ways:
-        part = rows[rows["fusion"] == way].set_index("joint").reindex(ROWS)
-        _, colour, marker, filled = WAYS[way]
-        look = {"color": colour, "mfc": colour if filled else "white", "markersize": 3.2}
-        place = _places(way, ways)
+        part, place = _mark(axis, rows, ways, way, "median_mm")
+        colour = WAYS[way][1]
         axis.hlines(place, part["median_mm"], part["p95_mm"], color=colour, linewidth=0.9)
         axis.plot(part["p95_mm"], place, "|", color=colour, markersize=3)
-        axis.plot(part["median_mm"], place, marker, **look)
+
+
+def _mark(
+    axis: Axes, rows: pd.DataFrame, ways: list[str], way: str, column: str
+) -> tuple[pd.DataFrame, NDArray]:
+    """Mark a column of one fusion; return its rows by joint, and their places."""
+    part = rows[rows["fusion"] == way].set_index("joint").reindex(ROWS)
+    place = np.arange(len(ROWS)) + SPREAD * ((ways.index(way) + 0.5) / len(ways) - 0.5)
+    _, colour, marker, filled = WAYS[way]
+    look = {"color": colour, "mfc": colour if filled else "white", "markersize": 3.2}
+    axis.plot(part[column], place, marker, **look)
+    return part, place
 
 
 def _missing(axis: Axes, rows: pd.DataFrame, ways: list[str]) -> None:
     for way in ways:
-        part = rows[rows["fusion"] == way].set_index("joint").reindex(ROWS)
-        _, colour, marker, filled = WAYS[way]
-        look = {"color": colour, "mfc": colour if filled else "white", "markersize": 3.2}
-        axis.plot(part["missing_percent"], _places(way, ways), marker, **look)
+        _mark(axis, rows, ways, way, "missing_percent")
     most = rows["missing_percent"].max()
     axis.set(title="missing", xlabel="of frames (%)")
     axis.set_xlim(-0.5, max(5.0, 1.1 * most) if np.isfinite(most) else 5.0)
 
 
 def _logarithmic(axis: Axes, limits: tuple[float, float]) -> None:
-    axis.set_xscale("log")
+    bars.plain_log(axis, "x")
     axis.set_xlim(*limits)
     axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
     axis.xaxis.set_minor_locator(NullLocator())
 
 
@@ -129,8 +129,7 @@ def _names(axes: Sequence[Axes]) -> None:
     axes[0].set_yticks(np.arange(len(ROWS)), [words[joint] for joint in ROWS])
     axes[0].set_ylim(len(ROWS) - 0.4, -0.6)
     for axis in axes:
-        axis.grid(axis="x", color="#dddddd", linewidth=0.5)
-        axis.set_axisbelow(True)
+        axis.grid(axis="x")
         for at, joint in enumerate(ROWS):
             if joint in CLAIMED:
                 axis.axhspan(at - 0.5, at + 0.5, color=BAND, linewidth=0, zorder=0)
@@ -150,8 +149,8 @@ def _title(key: tuple[str, str, str, str], rows: pd.DataFrame) -> str:
         for joint in ("right half", "left half", *POINTS)
         if joint in two.index
     ]
-    said = "2 cameras, ours, raw; median (95 % quantile) in mm: "
-    return f"{title}\n{said}{', '.join(found)}" if found else title
+    what = "2 cameras, ours, raw; median (95 % quantile) in mm"
+    return f"{title}\n{what}: {', '.join(found)}" if found else title
 
 
 def _explain(drawing: Figure, ways: list[str], cameras: dict[str, Sequence[str]]) -> None:

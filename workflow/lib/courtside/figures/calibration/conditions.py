@@ -59,11 +59,11 @@ def draw(numbers: pd.DataFrame, x: str, group: str | None = None, title: str = "
         _draw_way(axis, part, settings, x, group)
         scored = "in-sample" if part["in_sample"].any() else "scored points left out"
         axis.set_title(f"{way} ({scored})")
-        axis.set_xticks(range(len(settings)), [_said(value) for value in settings])
+        axis.set_xticks(range(len(settings)), [_words(value) for value in settings])
         bars.plain_log(axis)
         axis.set_xlabel(WORDS.get(x, x))
         axis.set_xlim(-0.5, len(settings) - 0.5)
-        axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
+        axis.grid(axis="y")
     axes[0].set_ylabel("error over the volume, RMS (cm)")
     low, high = axes[0].get_ylim()
     axes[0].set_ylim(low, high * (high / low) ** 0.18)  # room for the counts of failures
@@ -84,7 +84,7 @@ def _draw_way(axis: Axes, part: pd.DataFrame, settings: list, x: str, group: str
         rows = rows.sort_values(x, key=lambda column: column.map(_place))
         place = np.array([settings.index(each) for each in rows[x]], dtype=float)
         place += DODGE * (at - (len(values) - 1) / 2)
-        label = None if group is None else f"{WORDS.get(group, group)} {_said(value)}"
+        label = None if group is None else f"{WORDS.get(group, group)} {_words(value)}"
         known = rows["median"].notna().to_numpy()
         look: dict = {"colour": style.CYCLE[at], "marker": MARKERS[at], "label": label}
         bars.draw(axis, place[known], rows[known], filled=not rows["in_sample"].any(), **look)
@@ -109,7 +109,7 @@ def _place(value: str | float) -> float:
     return float(number.group()) if number else 0.0
 
 
-def _said(value: str | float | bool) -> str:
+def _words(value: str | float | bool) -> str:
     if isinstance(value, bool | np.bool_):
         return "on" if value else "off"
     return f"{value:g}" if isinstance(value, int | float | np.number) else str(value)

@@ -140,11 +140,8 @@ def _draw_net(axis: Axes, court: Court, net: dict) -> None:
         colour = style.RIGHT if height > 0 else style.LEFT
         axis.plot(at, height, "o", color=colour, markersize=4, zorder=4)
         side = -1 if at < (left + right) / 2 else 1
-        where = {
-            "textcoords": "offset points",
-            "va": "center",
-            "ha": "right" if side < 0 else "left",
-        }
+        where = {"textcoords": "offset points", "va": "center"}
+        where["ha"] = "right" if side < 0 else "left"
         away = (AWAY_PT * side, 0 if height > 0 else -AWAY_PT)
         axis.annotate(court.points[n], (at, height), away, fontsize=7.5, **where)
     axis.text((left + right) / 2, middle - 0.12, f"{middle:g} m", ha="center", va="top", fontsize=7)

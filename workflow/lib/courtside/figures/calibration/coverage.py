@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from courtside.evaluation.joints import WANTED_90
 from courtside.evaluation.tables import calibration
 from courtside.figures.style import bars, style
 
@@ -14,7 +15,6 @@ LEVELS = {
     "coverage90": (90, style.CYCLE[0], "o"),
     "coverage95": (95, style.CYCLE[1], "s"),
 }
-WANTED = (80, 97)  # ASSUME: %, the coverage of 90 % ellipsoids that the study asks for
 ACROSS = 4  # sessions in a row
 
 
@@ -68,7 +68,7 @@ def draw(numbers: pd.DataFrame) -> Figure:
 
 def _draw_shares(axis: Axes, part: pd.DataFrame) -> None:
     axis.set_visible(True)
-    axis.axhspan(*WANTED, color=LEVELS["coverage90"][1], alpha=0.1, linewidth=0)
+    axis.axhspan(*WANTED_90, color=LEVELS["coverage90"][1], alpha=0.1, linewidth=0)
     for name, (level, colour, marker) in LEVELS.items():
         axis.axhline(level, color=colour, linestyle="--", linewidth=0.8)
         look = {"marker": marker, "color": colour, "markersize": 4, "linewidth": 1}

@@ -73,6 +73,6 @@ def draw(rows: pd.DataFrame, title: str = "") -> Figure:
     bars.ticks_at(axis, counts)
     bars.plain_log(axis)
     axis.set(xlabel="bridging images N", ylabel="time (s)", title=title)
-    axis.grid(axis="y", color="#e5e5e5", linewidth=0.5)
+    axis.grid(axis="y")
     drawing.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return drawing

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from courtside.calibration.planning.prediction import Prediction
-from courtside.figures.style import style
+from courtside.figures.style import bars, style
 
 COLUMNS = (
     "n_images", "neighbour_deg", "n_ties", "least_ties", "error_median_cm", "error_p05_cm",
@@ -21,12 +21,12 @@ def table(predictions: list[Prediction], chosen: Prediction | None) -> pd.DataFr
     (of a fixed camera), quantiles of the root mean square error over the volume, `enough` (1 for
     the one chosen and all with more images), `fault`.
     """
-    rows = [
-        (p.n_images, p.neighbour_deg, p.n_ties, p.least_ties,
-         p.error_cm[1], p.error_cm[0], p.error_cm[2],
-         int(chosen is not None and p.n_images >= chosen.n_images), p.fault)
-        for p in sorted(predictions, key=lambda p: p.n_images)
-    ]  # fmt: skip
+    rows = []
+    for p in sorted(predictions, key=lambda p: p.n_images):
+        low, middle, high = p.error_cm
+        enough = int(chosen is not None and p.n_images >= chosen.n_images)
+        walk = p.n_images, p.neighbour_deg, p.n_ties, p.least_ties
+        rows.append((*walk, middle, low, high, enough, p.fault))
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
@@ -61,9 +61,8 @@ def draw(
     above.legend(loc="upper right", ncols=2)
     _draw_limit(angle, n, walked["neighbour_deg"], widest_deg, "neighbours\n(degrees)")
     _draw_limit(ties, n, walked["least_ties"], min_points, "fewest ties")
-    ties.set(xlabel="bridging images", xscale="log")
-    ties.set_xticks(n, [f"{count:d}" for count in n], minor=False)
-    ties.set_xticks([], minor=True)
+    bars.ticks_at(ties, n)
+    ties.set_xlabel("bridging images")
     drawing.suptitle(title, fontsize=8)
     return drawing
 

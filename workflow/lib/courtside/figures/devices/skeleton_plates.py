@@ -17,9 +17,10 @@ N_COLUMNS = 2
 PLATE_MM, LINE_MM = 76, 4.2
 ASIDE = 1.75  # units: the side view stands that far to the right of the front view
 ARM_UNITS = 0.25  # numbers of joints higher than that stand above them, of others outwards
-WIDE, TOP = (-1.3, 2.2), 1.12
+LEFT, RIGHT, TOP = -1.3, 2.2, 1.12  # shown at least to the right
 LOWEST, ROOM = -1.45, 0.25  # of the feet, at least; below them, for words
 AXES = (((0, 1), 0.0, "from the front"), ((2, 1), ASIDE, "from the right"))
+COLUMNS = ["source", "skeleton", "number", "joint", "device_name", "x", "y", "z", "stands_for"]
 WORDS = {  # of derived joints, in the table
     "head_centre": "centre of the head",
     "head_mass": "mass of the head",
@@ -83,23 +84,16 @@ def table(found: list[Plate], rows: pd.DataFrame) -> pd.DataFrame:
     parts: dict[tuple[str, int], list[str]] = {}
     for _, row in rows.iterrows():
         for number, weight in zip(row["numbers"], row["weights"], strict=True):
-            said = f"{row['common']} {weight:g}"
-            parts.setdefault((row["skeleton"], number), []).append(said)
+            part = f"{row['common']} {weight:g}"
+            parts.setdefault((row["skeleton"], number), []).append(part)
     lines = []
     for plate in found:
         called = plate.skeleton.device_names()
         for number, joint in enumerate(plate.skeleton.joints):
-            about = {
-                "source": plate.source or "schematic",
-                "skeleton": plate.skeleton.name,
-                "number": number,
-                "joint": joint,
-                "device_name": called[number],
-                **dict(zip("xyz", plate.xyz[number], strict=True)),
-                "stands_for": "; ".join(parts.get((plate.skeleton.name, number), [])),
-            }
-            lines.append(about)
-    return pd.DataFrame(lines)
+            stands_for = "; ".join(parts.get((plate.skeleton.name, number), []))
+            about = plate.source or "schematic", plate.skeleton.name, number, joint, called[number]
+            lines.append((*about, *plate.xyz[number], stands_for))
+    return pd.DataFrame(lines, columns=COLUMNS)
 
 
 def draw(found: list[Plate], rows: pd.DataFrame) -> Figure:
@@ -113,8 +107,9 @@ def draw(found: list[Plate], rows: pd.DataFrame) -> Figure:
     for axis in axes:
         axis.set_axis_off()
     low = min(LOWEST, *(np.nanmin(plate.xyz[:, 1]) for plate in found)) - ROOM
+    right = max(RIGHT, *(ASIDE + np.nanmax(plate.xyz[:, 2]) + ROOM / 2 for plate in found))
     for axis, plate in zip(axes, found, strict=False):
-        axis.set(xlim=WIDE, ylim=(low, TOP))
+        axis.set(xlim=(LEFT, right), ylim=(low, TOP))
         _draw_plate(axis, plate, numbered.get(plate.skeleton.name, ()))
     _draw_map(below.subplots(), rows)
     return drawing
@@ -140,8 +135,8 @@ def _draw_plate(axis: Axes, plate: Plate, numbered: Sequence[int]) -> None:
         look |= {"textcoords": "offset points", "fontsize": 6, "color": "#333333"}
         axis.annotate(f"{number}", (x, y), **look)
     axis.set_aspect("equal")
-    said = f"{plate.skeleton.name}, {len(plate.skeleton.joints)} joints"
-    axis.set_title(f"{plate.source or 'no recording, schematic'}: {said}", pad=2)
+    size = f"{plate.skeleton.name}, {len(plate.skeleton.joints)} joints"
+    axis.set_title(f"{plate.source or 'no recording, schematic'}: {size}", pad=2)
 
 
 def _draw_map(axis: Axes, rows: pd.DataFrame) -> None:
@@ -164,5 +159,5 @@ def _draw_map(axis: Axes, rows: pd.DataFrame) -> None:
         for _, row in own.iterrows():
             cell = joint_map.cell(row)
             axis.text(left[row["skeleton"]], y + 0.5, cell, va="center", fontsize=6.5)
-    said = "* computed from several joints    † defined as another point in each skeleton"
-    axis.text(0, len(common) + 0.4, said, va="center", fontsize=6.5)
+    notes = "* computed from several joints    † defined as another point in each skeleton"
+    axis.text(0, len(common) + 0.4, notes, va="center", fontsize=6.5)

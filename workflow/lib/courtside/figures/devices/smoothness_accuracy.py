@@ -31,24 +31,16 @@ def table(
     unaligned, of all joints; sparc_true: of the true wrists, mean of both. The last two are empty
     if no truth is known.
 
-    Parameters
-    ----------
-    distortion
-        Of `courtside.kinematics.wrist_arcs`, with session, take, source, unit_m and sparc.
-    errors
-        Of `courtside.evaluation.sources`, with session, take and source, of the takes with a truth.
-    truth
-        In the form of `distortion`, of the true wrists; source is the one they are compared with.
+    `distortion` is of `courtside.kinematics.wrist_arcs`, with session, take, source, unit_m and
+    sparc; `errors` are of `courtside.evaluation.sources`, with session, take and source, of the
+    takes with a truth; `truth` has the form of `distortion`, of the true wrists: source is the one
+    that they are compared with.
     """
-    mm = MM * distortion["mean_distance"] * distortion["unit_m"]
-    rows = distortion.assign(distortion_mm=mm).groupby([*TAKE, "source"], sort=False)
-    rows = rows.agg(
-        sparc=("sparc", "mean"),
-        sparc_low=("sparc", "min"),
-        sparc_high=("sparc", "max"),
-        distortion_mm=("distortion_mm", "mean"),
-    ).reset_index()
     key = [*TAKE, "source"]
+    mm = MM * distortion["mean_distance"] * distortion["unit_m"]
+    groups = distortion.assign(distortion_mm=mm).groupby(key, sort=False)
+    rows = groups["sparc"].agg(sparc="mean", sparc_low="min", sparc_high="max")
+    rows = rows.assign(distortion_mm=groups["distortion_mm"].mean()).reset_index()
     if errors is None:
         rows = rows.assign(median_error_mm=np.nan)
     else:
@@ -102,7 +94,7 @@ def draw(rows: pd.DataFrame, *, kinds: dict[str, str] | None = None) -> Figure:
         axis.set_xlabel(PANELS[name])
     axes[0].set_ylabel("SPARC of the wrists' speed\n(nearer to 0 is smoother)")
     _draw_best(axes[0])
-    marks = [bars.mark(look.colour, marker=look.marker, label=name) for name, look in looks.items()]
+    marks = source_styles.marks(looks)
     marks.append(bars.mark("#bbbbbb", marker="", line="-", label="one minimum-jerk reach"))
     if rows["sparc_true"].notna().any():
         marks.append(bars.mark(TRUE, marker="_", label="the true wrists, same time"))

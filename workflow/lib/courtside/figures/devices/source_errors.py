@@ -80,16 +80,13 @@ def _draw_errors(
             axis.plot(own["median_mm"], y, look.marker, color=look.colour, markersize=3.5)
         axis.set_title(words)
         axis.axhline(len(joints) - 1.5, color="#bbbbbb", linewidth=0.6)
-        axis.grid(axis="x", color="#eeeeee", linewidth=0.6)
-        axis.set_axisbelow(True)
-        axis.set_xscale("log")  # sources differ by more than a hundred times
-        axis.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    axes[0].set_yticks(range(len(joints)), [name.replace("_", " ") for name in joints])
-    axes[0].set_ylim(len(joints) - 0.5, -0.5)
+        axis.grid(axis="x")
+        bars.plain_log(axis, "x")  # sources differ by more than a hundred times
+    bars.name_rows(axes[0], joints)
     axes[len(SHOWN) // 2].set_xlabel(
         "distance to the truth (mm): median, line to the 95 % quantile"
     )
-    marks = [bars.mark(look.colour, marker=look.marker, label=name) for name, look in looks.items()]
+    marks = source_styles.marks(looks)
     part.legend(handles=marks, loc="outside upper center", ncols=min(4, len(marks)))
 
 
@@ -130,5 +127,5 @@ def _draw_bar(axis: Axes, y: float, own: pd.DataFrame) -> None:
     values = own["value"].mul(pd.Series({"time": MS}), fill_value=1)
     fitted = [form.format(values[name]) for name, form in VALUES.items()]
     size = np.sqrt(own.loc["all", "mean_square_mm2"])
-    said = f"{size:.0f} mm rms; {', '.join(fitted[:2])}\n{', '.join(fitted[2:])}"
-    axis.text(0.5, y + 0.13, said.replace("-", "−"), va="top", fontsize=6, linespacing=1.05)
+    text = f"{size:.0f} mm rms; {', '.join(fitted[:2])}\n{', '.join(fitted[2:])}"
+    axis.text(0.5, y + 0.13, text.replace("-", "−"), va="top", fontsize=6, linespacing=1.05)

@@ -151,10 +151,10 @@ def _title(own: pd.DataFrame, off: pd.DataFrame) -> str:
     time_s = own["time_s"]
     mm = MM * off["mean_distance"] * off["unit_m"]
     pairs = zip(off["side"], off["mean_distance"], mm, strict=True)
-    said = ", ".join(f"{side} {units:.3f} ({mm:.0f} mm)" for side, units, mm in pairs)
+    arcs = ", ".join(f"{side} {units:.3f} ({mm:.0f} mm)" for side, units, mm in pairs)
     return (
         f"{time_s.nunique()} frames in {time_s.max() - time_s.min():.2f} s from T-pose to clap\n"
-        f"mean distance to the own arc: {said}; to the circle: {off['mean_off_circle'].mean():.3f}"
+        f"mean distance to the own arc: {arcs}; to the circle: {off['mean_off_circle'].mean():.3f}"
     )
 
 

@@ -44,16 +44,13 @@ def table(wrists: pd.DataFrame, events: pd.DataFrame, *, aligned: bool = True) -
     is shown by itself.
     """
     rows = events.assign(panel=np.nan, floor_m=np.nan, note="")
-    order = {source: at for at, source in enumerate(dict.fromkeys(wrists["source"]))}
-    key = rows["source"].map(order)
-    rows = rows.assign(key=key).sort_values(["key", "time_s"], kind="stable", ignore_index=True)
-    rows = rows.drop(columns="key")
+    place = rows["source"].map({name: at for at, name in enumerate(wrists["source"].unique())})
+    rows = rows.iloc[np.lexsort([rows["time_s"], place])].reset_index(drop=True)
     shown = rows[rows["event"].isin(["clap", "none"]) & rows["time_s"].notna()]
     for at, row in shown.iterrows():
         own = wrists[wrists["source"] == row["source"]]
-        later = own["time_s"] - row["time_s"]
-        held = own.loc[later.between(*HELD_S), "distance_m"]
-        rows.loc[at, "floor_m"] = held.median()
+        held = (own["time_s"] - row["time_s"]).between(*HELD_S)
+        rows.loc[at, "floor_m"] = own.loc[held, "distance_m"].median()
     for number, members in enumerate(_together(shown, aligned), 1):
         rows.loc[members, "panel"] = number
     missed = shown.index[shown["event"] == "none"]
@@ -123,10 +120,10 @@ def _notes(events: pd.DataFrame) -> list[str]:
     missed = events[events["event"] == "none"]
     lines = []
     for row in missed.head(MOST_NOTES).itertuples():
-        said = f"{row.note} ({row.source}, {row.time_s:.2f} s): {row.why}"
+        note = f"{row.note} ({row.source}, {row.time_s:.2f} s): {row.why}"
         if not np.isfinite(row.time_s):
-            said = row.why if row.why.startswith(row.source) else f"{row.source}: {row.why}"
-        lines += textwrap.wrap(said, WRAP, subsequent_indent="    ")
+            note = row.why if row.why.startswith(row.source) else f"{row.source}: {row.why}"
+        lines += textwrap.wrap(note, WRAP, subsequent_indent="    ")
     if len(missed) > MOST_NOTES:
         lines.append(f"and {len(missed) - MOST_NOTES} more, in the CSV")
     return lines
@@ -206,14 +203,12 @@ def _draw_contact(axis: Axes, row, centre_s, colour: str) -> None:
 
 
 def _title(members: pd.DataFrame, claps: pd.DataFrame, centre_s: float, aligned: bool) -> str:
-    said = f"{centre_s:.2f} s" if aligned else f"{members['source'].iloc[0]}, {centre_s:.2f} s"
+    when = f"{centre_s:.2f} s" if aligned else f"{members['source'].iloc[0]}, {centre_s:.2f} s"
     if claps.empty:
-        return f"{said}: no clap ({', '.join(members['note'])})"
+        return f"{when}: no clap ({', '.join(members['note'])})"
     numbers = "/".join(f"{number:.0f}" for number in sorted(set(claps["number"])))
-    said = f"clap {numbers}, {said}"
-    if len(claps) > 1:
-        said += f": within {MS * np.ptp(claps['time_s']):.0f} ms"
-    return said
+    spread = f": within {MS * np.ptp(claps['time_s']):.0f} ms" if len(claps) > 1 else ""
+    return f"clap {numbers}, {when}{spread}"
 
 
 def _marks() -> list:

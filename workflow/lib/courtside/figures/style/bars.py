@@ -1,10 +1,9 @@
-"""Medians with their 5-95 % ranges."""
+"""Medians with their 5-95 % ranges, their marks in legends, and the axes that they stand on."""
 
 from collections.abc import Mapping, Sequence
 
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ def draw(
     filled: bool = True,
     line: str = "-",
     label: str | None = None,
-) -> Figure:
+) -> None:
     """Draw medians with bars from the 5 to the 95 % quantile.
 
     `rows` have `p05`, `median` and `p95` at each of `x` (n,). `line` is the style of the line that
@@ -49,11 +48,18 @@ def ticks_at(axis: Axes, values: Sequence[float]) -> None:
     axis.set_xticks([], minor=True)
 
 
-def plain_log(axis: Axes) -> None:
-    """Make the y axis logarithmic, with numbers written out."""
-    axis.set_yscale("log")
-    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.yaxis.set_minor_formatter(NullFormatter())
+def plain_log(axis: Axes, which: str = "y") -> None:
+    """Make the y or x axis logarithmic, with numbers written out."""
+    axis.set(**{f"{which}scale": "log"})
+    scale = axis.yaxis if which == "y" else axis.xaxis
+    scale.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    scale.set_minor_formatter(NullFormatter())
+
+
+def name_rows(axis: Axes, joints: Sequence[str]) -> None:
+    """Name the rows of an axis after joints, 0 at the top."""
+    axis.set_yticks(range(len(joints)), [joint.replace("_", " ") for joint in joints])
+    axis.set_ylim(len(joints) - 0.5, -0.5)
 
 
 def mark(

@@ -51,8 +51,7 @@ def figures(
     """Draw stick figures (P, K, 3) m, each line in the colour of its side; `width` in points."""
     for person in xyz:
         for start, stop in stick.bones:
-            colours = {style.side_colour(stick.joints[at]) for at in (start, stop)}
-            colour = colours.pop() if len(colours) == 1 else style.MIDDLE
+            colour = style.side_colour(stick.joints[start], stick.joints[stop])
             look: dict = {"color": colour, "linewidth": width, "alpha": opacity}
             line(axis, sight, person[[start, stop]], solid_capstyle="round", zorder=3, **look)
 
@@ -111,14 +110,12 @@ def camera(axis: Axes, sight: Sight, one: Camera, depth_m: float, colour: str = 
     axis.annotate(one.name, place, (0, -4), color=colour, **look)
 
 
-def limits(xyz: NDArray) -> tuple[NDArray, NDArray]:
-    """Return the corners of the box on half metres that holds all known points, (3,), (3,) m."""
+def limits(xyz: NDArray, percentiles: tuple[float, float] = (0, 100)) -> tuple[NDArray, NDArray]:
+    """Return the corners (3,), (3,) m of the box on half metres that holds the known points."""
     known = np.reshape(xyz, (-1, 3))
     known = known[np.isfinite(known).all(axis=1)]
-    if not len(known):
-        known = np.zeros((1, 3))
-    low, high = known.min(axis=0) - ROOM_M, known.max(axis=0) + ROOM_M
-    return np.floor(2 * low) / 2, np.ceil(2 * high) / 2
+    low, high = np.percentile(known if len(known) else np.zeros((1, 3)), percentiles, axis=0)
+    return np.floor(2 * (low - ROOM_M)) / 2, np.ceil(2 * (high + ROOM_M)) / 2
 
 
 def finish(axis: Axes, sight: Sight, corner: NDArray, length_m: float = 0.5) -> None:

@@ -3,7 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from courtside.figures.style import style
+from matplotlib.lines import Line2D
+
+from courtside.figures.style import bars, style
 
 COLOURS = {
     "inertial": style.CYCLE[0],
@@ -34,21 +36,20 @@ class Look:
 
 
 def kind_of(source: str, kinds: dict[str, str] | None = None) -> str:
-    """Return the kind of a source, `other` if it is unknown.
+    """Return the kind of a source such as `mocopi-corrected`, `other` if it is unknown.
 
-    Parameters
-    ----------
-    source
-        As in the tables: `mocopi`, `d415-rgb`, `d415-depth`, `mocopi-corrected`, `cameras`,
-        `truth`.
-    kinds
-        As the session states them, by source or by device. Endings of names come first: a device of
-        kind `rgbd` also gives a source of kind `rgb`.
+    `kinds` are by source or by device, as the session states them. Endings of names come first: a
+    device of kind `rgbd` also gives a source of kind `rgb`.
     """
     for ending, kind in ENDINGS.items():
         if source.endswith(ending):
             return kind
     return (kinds or {}).get(source) or WHOLE.get(source, "other")
+
+
+def marks(shown: dict[str, Look]) -> list[Line2D]:
+    """Return the marks of sources for a legend."""
+    return [bars.mark(one.colour, marker=one.marker, label=name) for name, one in shown.items()]
 
 
 def looks(sources: Iterable[str], kinds: dict[str, str] | None = None) -> dict[str, Look]:

@@ -23,6 +23,9 @@ SETTINGS = {
     "axes.titlesize": 8,
     "axes.spines.top": False,
     "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.5,
     "legend.frameon": False,
     "pdf.fonttype": 42,
     "svg.hashsalt": "courtside",
@@ -58,11 +61,10 @@ def figure(height_mm: float) -> Figure:
     return Figure(figsize=size, dpi=DOTS_PER_INCH, layout=RoundedLayout())
 
 
-def side_colour(joint: str) -> str:
-    """Return the colour of a joint's body side."""
-    if joint.startswith("left_"):
-        return LEFT
-    return RIGHT if joint.startswith("right_") else MIDDLE
+def side_colour(*joints: str) -> str:
+    """Return the colour of the body side that all joints are on, else that of the middle."""
+    sides = {joint.partition("_")[0] for joint in joints}
+    return {"left": LEFT, "right": RIGHT}.get(sides.pop(), MIDDLE) if len(sides) == 1 else MIDDLE
 
 
 def save(

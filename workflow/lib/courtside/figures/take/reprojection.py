@@ -3,9 +3,8 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from courtside.figures.style import style
+from courtside.figures.style import bars, style
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 SMALLEST_PX = 0.5  # where the logarithmic axis begins
@@ -23,21 +22,11 @@ def table(points: Keypoints3D) -> pd.DataFrame:
             error = points.reproj_error_px[:, :, at, view].ravel()
             known = np.isfinite(error)
             used = error[known & points.accepted[:, :, at, view].ravel()]
-            rows.append(
-                (joint, camera, known.sum(), len(used), *_spread(error[known]), _median(used))
-            )
+            every, accepted = pd.Series(error[known]), pd.Series(used)
+            spread = *every.quantile([0.05, 0.5, 0.95]), every.mean(), accepted.median()
+            rows.append((joint, camera, len(every), len(accepted), *spread))
     names = ["p05_px", "median_px", "p95_px", "mean_px", "accepted_median_px"]
     return pd.DataFrame(rows, columns=["joint", "camera", "n", "n_accepted", *names])
-
-
-def _spread(values: NDArray) -> tuple:
-    if not len(values):
-        return (np.nan,) * 4
-    return (*np.percentile(values, [5, 50, 95]), values.mean())
-
-
-def _median(values: NDArray) -> float:
-    return np.median(values) if len(values) else np.nan
 
 
 def draw(rows: pd.DataFrame) -> Figure:
@@ -56,10 +45,9 @@ def draw(rows: pd.DataFrame) -> Figure:
         look = {"color": style.LEFT, "markersize": 7, "label": "median of accepted"}
         axis.plot(part.accepted_median_px, place, "|", **look)
         axis.set_title(f"{camera}: {100 * share:.0f} % accepted")
-        axis.set(yticks=place, yticklabels=[joint.replace("_", " ") for joint in joints])
         axis.set_xlabel("reprojection error (px)")
-        axis.grid(axis="x", color="#dddddd", linewidth=0.5)
-    axes[0].invert_yaxis()
+        axis.grid(axis="x")
+    bars.name_rows(axes[0], joints)
     axes[0].set(xscale="log", xlim=(SMALLEST_PX, None))
     handles, labels = axes[0].get_legend_handles_labels()
     drawing.legend(handles, labels, loc="outside lower center", ncols=3)

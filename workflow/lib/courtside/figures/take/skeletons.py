@@ -9,13 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from courtside.figures.style import style
+from courtside.figures.style import oblique_view, style
 from courtside.geometry.camera import Camera
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 
 PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
-ROOM_M = 0.2  # shown around the skeletons
+PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown: without gross outliers
 ARROW_M = 0.6
 
 
@@ -63,8 +63,7 @@ def _bones(
             xyz = points.xyz[person, frame]
             for start, stop in skeleton.bones:
                 ends = xyz[[skeleton.index(start), skeleton.index(stop)]]
-                colours = {style.side_colour(start), style.side_colour(stop)}
-                yield ends, colours.pop() if len(colours) == 1 else style.MIDDLE, opacity
+                yield ends, style.side_colour(start, stop), opacity
 
 
 def _paths(points: Keypoints3D) -> Iterator[tuple[NDArray, str]]:
@@ -74,17 +73,8 @@ def _paths(points: Keypoints3D) -> Iterator[tuple[NDArray, str]]:
             yield points.xyz[person, :, at], style.side_colour(joint)
 
 
-def _limits(points: Keypoints3D) -> tuple[NDArray, NDArray]:
-    known = points.xyz.reshape(-1, 3)
-    known = known[np.isfinite(known).all(axis=1)]
-    if not len(known):
-        known = np.zeros((1, 3))
-    low, high = np.percentile(known, [0.5, 99.5], axis=0)
-    return np.floor(2 * (low - ROOM_M)) / 2, np.ceil(2 * (high + ROOM_M)) / 2
-
-
 def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton, n_poses: int) -> None:
-    low, high = _limits(points)
+    low, high = oblique_view.limits(points.xyz, PERCENTILES)
     for ends, colour, opacity in _bones(points, skeleton, n_poses):
         axis.plot(*ends.T, color=colour, alpha=opacity, linewidth=1.2)
     for path, colour in _paths(points):
@@ -127,5 +117,4 @@ def _draw_above(
     axis.set(xlabel="x (m)", ylabel="y (m)", title="From above, with the cameras")
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.12)
-    axis.grid(color="#dddddd", linewidth=0.5)
-    axis.set_axisbelow(True)
+    axis.grid()
