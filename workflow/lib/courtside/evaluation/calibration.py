@@ -50,18 +50,9 @@ def of_ties(
 ) -> list[dict]:
     """Evaluate the ways that start from structure from motion: `sfm`, `sim3` and `paper`.
 
-    Rows with the keys `COLUMNS`; `paper` with its three points only, which cannot be left out.
-
-    Parameters
-    ----------
-    record
-        Without an outcome.
-    clicks : dict of str to (P, 2) float
-        Of this trial, by camera.
-    sets
-        Of court points.
-    **settings
-        `click_sigma_px` and `click_loss` of `joint_adjustment.solve`.
+    Rows with the keys `COLUMNS`; `paper` with its three points only, which cannot be left out. The
+    record has no outcome; `clicks` are those of this trial by camera, (P, 2) px; `sets` are of
+    court points; `settings` are `click_sigma_px` and `click_loss` of `joint_adjustment.solve`.
     """
     rows, sfm = [], record.sfm_cameras
     xyz_in_sfm = sfm_alignment.reconstruct(sfm, clicks)

@@ -28,22 +28,9 @@ def compare(records: dict[str, Keypoints3D], reference: str) -> pd.DataFrame:
     exchanged_percent, in the row of all limbs: share of frames in which the limbs are nearer to the
     reference's limbs of the other side, by the mean distance.
 
-    Parameters
-    ----------
-    records
-        By the name of their views and rule; of one take, at the same times.
-    reference
-        The one that the others are compared with.
-
-    Raises
-    ------
-    ValueError
-        If the records differ in times, joints or persons.
-
-    Notes
-    -----
-    A distance is not an error: the reference rests on the same keypoints and cameras among others,
-    so that shared errors cancel, and the reference has errors of its own.
+    `records` are of one take, by the name of their views and rule; `ValueError` if they differ in
+    times, joints or persons. A distance is not an error: the reference rests on the same keypoints
+    and cameras among others, so that shared errors cancel, and the reference has errors of its own.
     """
     _same(records)
     base = records[reference]
@@ -83,17 +70,9 @@ def gains(
     The intervals resample blocks of this take; they are empty for a take of less than four blocks.
     They do not cover other players, motions and halls.
 
-    Parameters
-    ----------
-    distance_mm : dict of str to (P, T, J) float
-        Distances from the truth of the joints to be pooled, NaN where missing; of one take, at the
-        same times.
-    pairs
-        Ours, and what it is compared with.
-    rate_hz
-        Frames per second.
-    block_s
-        Length of the blocks that are resampled: errors of neighbouring frames are much alike.
+    `distance_mm` holds the distances (P, T, J) from the truth of the joints to be pooled, NaN where
+    missing; of one take, at the same times. `pairs` are ours, and what it is compared with.
+    Errors of neighbouring frames are much alike, therefore blocks of `block_s` are resampled.
 
     Notes
     -----

@@ -37,20 +37,11 @@ class FilmedTruth(pose_errors.Truth, Protocol):
 
 
 def torso_px(camera: Camera, joints: Sequence[str] | NDArray, xyz: NDArray) -> NDArray:
-    """Return the length of the torso in the picture as if it were seen square-on.
+    """Return the length (...) px of the torso in the picture as if it were seen square-on.
 
-    Parameters
-    ----------
-    joints : sequence of str, length J
-    xyz : (..., J, 3) float
-        World, metres.
-
-    Returns
-    -------
-    length : (...) float
-        Px: the distance from the middle of the shoulders to the middle of the hips, at its place
-        but turned parallel to the picture's columns. Otherwise a torso that leans towards the
-        camera would be shorter, and the tolerance of that camera stricter.
+    The distance from the middle of the shoulders to the middle of the hips of `xyz` (..., J, 3) m,
+    at its place but turned parallel to the picture's columns. Otherwise a torso that leans towards
+    the camera would be shorter, and the tolerance of that camera stricter.
     """
     at = [list(joints).index(name) for name in TRUNK]
     shoulders, hips = (xyz[..., at[part : part + 2], :].mean(axis=-2) for part in (0, 2))
@@ -76,18 +67,9 @@ def evaluate(
     exchanged: not placed, but the keypoint of the other side would be, so that only the sides are
     mixed up; in_stroke: the person is playing a stroke.
 
-    Parameters
-    ----------
-    camera
-        The true one.
-    view
-        Of that camera; its tracklets are not assigned to persons yet.
-    clock
-        The camera's true one.
-    joints
-        Those that are compared; the trunk's must be among the truth's.
-    tolerance
-        As a share of the torso's length, see `torso_px`.
+    Camera and clock are the true ones. The view's tracklets are not assigned to persons yet.
+    `joints` are compared; the trunk's must be among the truth's. `tolerance` is a share of the
+    torso's length, see `torso_px`.
 
     Notes
     -----

@@ -22,6 +22,7 @@ from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.study.errors import InputError
 
 LEVELS = (0.5, 0.9, 0.95)  # of the ellipsoids whose coverage is counted
+WANTED_90 = (80, 97)  # ASSUME: percent, the coverage of 90 % ellipsoids that the study asks for
 SETS = {  # joints taken together, by the start of their names
     "limbs": ("left_", "right_"),
     "left half": ("left_",),
@@ -69,12 +70,8 @@ def errors(
 ) -> tuple[list[str], NDArray, NDArray]:
     """Return the differences of a record from the truth, joint by joint.
 
-    Parameters
-    ----------
-    joints
-        Names of the joints of the truth; joints of both are compared.
-    true_xyz : (P, T, K, 3) float
-        At the record's times, persons in the record's order.
+    `joints` name those of the truth, `true_xyz` (P, T, K, 3) m: at the record's times, persons in
+    the record's order.
 
     Returns
     -------
@@ -85,12 +82,17 @@ def errors(
     covariance : (P, T, M, 3, 3) float
         Stated by the record, square metres: of keypoints, and of cameras where known.
     """
-    names = [name for name in points.joints.tolist() if name in set(joints)]
-    own = [points.joints.tolist().index(name) for name in names]
-    other = [list(joints).index(name) for name in names]
+    names, own, other = _of_both(points, joints)
     error = points.xyz[:, :, own] - true_xyz[:, :, other]
     covariance = points.covariance_2d[:, :, own]
     return names, error, covariance + np.nan_to_num(points.covariance_camera[:, :, own])
+
+
+def _of_both(points: Keypoints3D, joints: Sequence[str]) -> tuple[list[str], list[int], list[int]]:
+    """Return the names of joints of both, and their indices in the record and in `joints`."""
+    own, other = points.joints.tolist(), list(joints)
+    names = [name for name in own if name in other]
+    return names, [own.index(name) for name in names], [other.index(name) for name in names]
 
 
 def table(
@@ -160,9 +162,7 @@ def identity_percent(points: Keypoints3D, joints: Sequence[str], true_xyz: NDArr
     That is the share of the frames with that person in which no other true person is nearer, by the
     mean distance over the joints; NaN for a person without frames. Parameters as for `errors`.
     """
-    names = [name for name in points.joints.tolist() if name in set(joints)]
-    own = [points.joints.tolist().index(name) for name in names]
-    other = [list(joints).index(name) for name in names]
+    _, own, other = _of_both(points, joints)
     found, true = points.xyz[:, None, :, own], true_xyz[None, :, :, other]
     apart = np.linalg.norm(found - true, axis=-1)  # (P measured, P true, T, M)
     seen = np.isfinite(apart)
@@ -227,15 +227,10 @@ def left_out(
     xy = np.where((np.array(at) >= 0)[:, None], xy[:, :, at], np.nan)
     projected = camera_models.project(camera, points.xyz)
     apart = np.linalg.norm(xy[None] - projected[:, None], axis=-1)
-    middle = np.array([[_median(tracklet) for tracklet in person] for person in apart])
+    middle = np.array([[pd.Series(one.ravel()).median() for one in person] for person in apart])
     error = np.full(points.xyz.shape[:-1], np.nan)
     closest = np.nan_to_num(middle, nan=np.inf).min(axis=0)
     for tracklet in np.argsort(closest)[: np.isfinite(closest).sum()]:
         person = int(np.nanargmin(middle[:, tracklet]))
         error[person] = np.where(np.isnan(error[person]), apart[person, tracklet], error[person])
     return error
-
-
-def _median(values: NDArray) -> float:
-    known = values[np.isfinite(values)]
-    return np.median(known) if len(known) else np.nan

@@ -24,14 +24,8 @@ def table(
 
     person, point (neck, centre, mass), n frames, seconds; position errors of the filtered path;
     errors of speed in space and on the ground, and the share of frames in which the speed lies
-    within its stated 90 % interval; the distances are left to `distances`.
-
-    Parameters
-    ----------
-    frames
-        As `courtside.exports.measures.frames` writes them.
-    sex_of
-        "m", "f" or None by person.
+    within its stated 90 % interval; the distances are left to `distances`. `frames` are of
+    `courtside.exports.measures`, `sex_of` is "m", "f" or None by person.
     """
     rows = []
     for person, part in frames.groupby("person", sort=False):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.calibration.court import joint_adjustment, known_points, quality, sfm_alignment
@@ -24,27 +25,16 @@ COLUMNS = ("method", "n_clicks", "outcome", "volume_rms_cm", "n_frames", *ERRORS
 class Way:
     """Cameras calibrated in one way.
 
-    Attributes
-    ----------
-    method
-        `dlt` and `known`: from court points alone, linear and by least squares; `paper`: structure
-        from motion in the published frame; `sfm`: structure from motion adjusted with court points;
-        `perfect`: the true cameras.
-    n_clicks
-        Court points that were to be clicked in each picture.
-    outcome
-        Empty, or in one line why there is no calibration.
-    place
-        Points (N, 3) m from pixels (N, 2) by camera, NaN where missing.
-    volume_rms_cm
-        Error of points in the playing volume from exact pixels; NaN without calibration.
+    Methods: `dlt` and `known`: from court points alone, linear and by least squares; `paper`:
+    structure from motion in the published frame; `sfm`: structure from motion adjusted with court
+    points; `perfect`: the true cameras.
     """
 
     method: str
-    n_clicks: int
-    outcome: str
-    place: Callable | None
-    volume_rms_cm: float
+    n_clicks: int  # court points that were to be clicked in each picture
+    outcome: str  # empty, or in one line why there is no calibration
+    place: Callable | None  # points (N, 3) m from pixels (N, 2) by camera, NaN where missing
+    volume_rms_cm: float  # of points in the playing volume from exact pixels; NaN if uncalibrated
 
 
 def calibrate(
@@ -59,18 +49,9 @@ def calibrate(
 ) -> list[Way]:
     """Calibrate cameras in every way, from the same clicks.
 
-    Parameters
-    ----------
-    record
-        Its fixed cameras include those of `truth`.
-    truth
-        The true cameras that see the racket.
-    court
-        With the sets "three" and "eight".
-    clicks : dict of str to (P, 2) float
-        By camera, px; NaN where not clicked.
-    click_sigma_px, click_bias_px, click_loss
-        As for `joint_adjustment.solve`.
+    `truth` are the true cameras that see the racket; the fixed cameras of the record include them.
+    The court has the sets "three" and "eight". `clicks` are (P, 2) px by camera, NaN where not
+    clicked. The keywords are those of `joint_adjustment.solve`.
     """
     eight, points = court.indices(EIGHT), court.indices(ALL)
     known: dict = {"court": court, "clicks": clicks, "sigma_px": click_sigma_px, "truth": truth}
@@ -173,23 +154,14 @@ def score(length_m: NDArray, true_m: float, below: NDArray) -> dict[str, float]:
 
     # ASSUME: the published standard deviations divide by n - 1, which the paper does not say.
     """
-    there = np.isfinite(length_m)
-    off_mm = 1000 * (length_m - true_m)
+    off_mm = pd.Series(1000 * (length_m - true_m))  # whose statistics leave out NaN
     return {
-        "n_frames": int(there.sum()),
-        "mean_abs_mm": _mean(np.abs(off_mm[there])),
-        "bias_mm": _mean(off_mm[there]),
-        "std_below_mm": _std(off_mm[there & below]),
-        "std_above_mm": _std(off_mm[there & ~below]),
+        "n_frames": int(off_mm.count()),
+        "mean_abs_mm": off_mm.abs().mean(),
+        "bias_mm": off_mm.mean(),
+        "std_below_mm": off_mm[below].std(),
+        "std_above_mm": off_mm[~below].std(),
     }
-
-
-def _mean(values: NDArray) -> float:
-    return float(np.mean(values)) if len(values) else np.nan
-
-
-def _std(values: NDArray) -> float:
-    return float(np.std(values, ddof=1)) if len(values) > 1 else np.nan
 
 
 def rows(ways: list[Way], seen: dict[str, NDArray], true_m: float, below: NDArray) -> list[dict]:

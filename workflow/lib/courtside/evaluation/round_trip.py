@@ -36,22 +36,10 @@ def distance_after(
 ) -> NDArray:
     """Return how far points move when they are projected into all views and triangulated again.
 
-    Parameters
-    ----------
-    cameras : list of Camera, length C
-    xyz : (..., 3) float
-        Metres; NaN where missing.
-    step_px : (C,) float
-        Rounds the projections to the centres of square cells of this size in each picture; exact if
-        None.
+    The distance (...) mm of points (..., 3) m, NaN where missing or not seen by two views.
+    `step_px` (C,) rounds the projections to the centres of square cells of this size in each
+    picture; they are exact if None.
 
-    Returns
-    -------
-    distance_mm : (...) float
-        NaN where missing or not seen by two views.
-
-    Notes
-    -----
     Projection and triangulation use the same cameras, so that errors of these cancel. The
     triangulation is the linear one with equal weights (Hartley & Zisserman 2004, sec. 12.2), as in
     the paper's table 1.
@@ -80,12 +68,8 @@ def round_to_grid(xy: NDArray, step_px: float) -> NDArray:
 def span(points: Keypoints3D, n_frames: int | None, start_s: float | None = None) -> Span:
     """Choose `n_frames` consecutive frames of a table; all if None or if the take has fewer.
 
-    They start at `start_s`, or are the middle of the take.
-
-    Raises
-    ------
-    InputError
-        If fewer than `n_frames` follow `start_s`.
+    They start at `start_s`, or are the middle of the take. `InputError` if too few follow
+    `start_s`.
     """
     total = len(points.time_s)
     count = total if n_frames is None else min(n_frames, total)
@@ -120,18 +104,10 @@ def table(
     `sd` are over the values that `over` names, and `n` is their number; for joint `all`, they are
     means over the joints.
 
-    Parameters
-    ----------
-    points
-        From the views `points.cameras`.
-    cameras
-        At least these views.
-    joints
-        Rows are for those that `points` has.
-    published_width
-        Longer side, px, of the picture whose pixel grid the row `rounded_published` uses.
-    others
-        Views that `points` does not rest on; without a clock, on that of `points`.
+    `cameras` are at least the views that `points` rests on, `others` views that it does not rest
+    on; without a clock, they are on that of `points`. Rows are for those `joints` that `points`
+    has. `published_width` is the longer side, px, of the picture whose pixel grid the row
+    `rounded_published` uses.
 
     Raises
     ------
@@ -140,7 +116,14 @@ def table(
     ValueError
         If the exact round trip moves a point: projection and triangulation are then inconsistent.
     """
-    used = [_camera(cameras, name) for name in points.cameras]
+    known = {camera.name: camera for camera in cameras}
+    for name in points.cameras:
+        if name not in known:
+            raise InputError(
+                f"camera {name}: expected one of the calibrated cameras {list(known)}, found none "
+                "of that name; triangulate and evaluate with the same calibration"
+            )
+    used = [known[name] for name in points.cameras]
     at = [list(points.joints).index(joint) for joint in joints if joint in points.joints]
     part = _part(points, chosen.frames, at)
     values = round_trips(used, part.xyz, published_width)
@@ -166,12 +149,8 @@ def round_trips(
 ) -> dict[str, tuple[str, NDArray]]:
     """Return the rows `exact`, `rounded` and `rounded_published`: (unit, distances (...)) by name.
 
-    `xyz` (..., 3) in metres, `published_width` in px.
-
-    Raises
-    ------
-    ValueError
-        If an exact round trip moves a point by more than `IDENTITY_MM`.
+    `xyz` is (..., 3) m. `ValueError` if an exact round trip moves a point by more than
+    `IDENTITY_MM`.
     """
     exact = distance_after(cameras, xyz)
     largest = float(np.nanmax(exact, initial=0.0))
@@ -189,27 +168,10 @@ def round_trips(
     }
 
 
-def _camera(cameras: list[Camera], name: str) -> Camera:
-    for camera in cameras:
-        if camera.name == name:
-            return camera
-    known = [camera.name for camera in cameras]
-    raise InputError(
-        f"camera {name}: expected one of the calibrated cameras {known}, found none of that name; "
-        "triangulate and evaluate with the same calibration"
-    )
-
-
 def _part(points: Keypoints3D, frames: slice, at: list[int]) -> Keypoints3D:
-    return replace(
-        points,
-        joints=points.joints[at],
-        time_s=points.time_s[frames],
-        xyz=points.xyz[:, frames][:, :, at],
-        covariance_2d=points.covariance_2d[:, frames][:, :, at],
-        covariance_camera=points.covariance_camera[:, frames][:, :, at],
-        reproj_error_px=points.reproj_error_px[:, frames][:, :, at],
-    )
+    keys = ("xyz", "covariance_2d", "covariance_camera", "reproj_error_px")
+    cut = {key: getattr(points, key)[:, frames][:, :, at] for key in keys}
+    return replace(points, joints=points.joints[at], time_s=points.time_s[frames], **cut)
 
 
 def _statistics(values: NDArray, joints: NDArray, words: str) -> Iterator[tuple]:
@@ -221,12 +183,5 @@ def _statistics(values: NDArray, joints: NDArray, words: str) -> Iterator[tuple]
         mean = known.mean() if len(known) else np.nan
         found.append((mean, known.std(ddof=1) if len(known) > 1 else np.nan))
         yield str(joint), *found[-1], len(known), over
-    columns = np.array(found).reshape(-1, 2).T
-    there = np.isfinite(columns[0])
-    means = [_mean(column) for column in columns]
-    yield ALL, *means, int(there.sum()), f"joints, each: {over}"
-
-
-def _mean(values: NDArray) -> float:
-    known = values[np.isfinite(values)]
-    return known.mean() if len(known) else np.nan
+    columns = pd.DataFrame(found, columns=["mean", "sd"])
+    yield ALL, *columns.mean(), columns["mean"].count(), f"joints, each: {over}"

@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.stats import median_abs_deviation
 
 from courtside.depth.lifting import SKIN_TO_JOINT_M, by_joint
 from courtside.evaluation.joints import at_times
@@ -20,7 +21,6 @@ from courtside.records.keypoints import skeleton
 from courtside.records.truth.take_truth import TakeTruth
 
 COLUMNS = ["joint", "skin_m", "sd_m", "n", "beyond_m", "beyond_sd_m"]
-NORMAL_SPREAD = 1.4826  # standard deviation over median absolute deviation, of normal errors
 
 
 def in_camera(truth: TakeTruth, device: str, person: str, time_s: NDArray) -> NDArray:
@@ -47,20 +47,12 @@ def estimate(
 
     `COLUMNS`: for each joint, both sides together, the median depth behind the skin along the
     viewing ray and its robust standard deviation, metres; their number n; and the distance beyond
-    the end of the limb (`skeleton.PARENT`), NaN for shoulder and hip.
+    the end of the limb (`skeleton.PARENT`), NaN for shoulder and hip. `ValueError` if a joint is
+    never seen.
 
-    Parameters
-    ----------
-    pairs : list of ((T, J, 3) float, (T, K, 3) float)
-        Lifted and true skeletons of clips, in the axes of the camera, metres; NaN where missing.
-        `joints` and `true_joints` are the names of the J and of the K joints.
-    skin_m, beyond_m
-        Used for lifting; by default `lifting.SKIN_TO_JOINT_M`, and 0.
-
-    Raises
-    ------
-    ValueError
-        If a joint is never seen.
+    `pairs` are the lifted (T, J, 3) and true (T, K, 3) skeletons of clips, in the axes of the
+    camera, metres, NaN where missing; `joints` and `true_joints` name the J and the K joints.
+    `skin_m` and `beyond_m` were used for lifting; by default `lifting.SKIN_TO_JOINT_M`, and 0.
     """
     used_m = by_joint(skeleton.LIMBS, SKIN_TO_JOINT_M if skin_m is None else skin_m)
     rows = []
@@ -87,5 +79,4 @@ def _spread(parts: list[NDArray]) -> tuple[float, float, int]:
     values = values[np.isfinite(values)]
     if not len(values):
         return np.nan, np.nan, 0
-    middle = np.median(values)
-    return middle, NORMAL_SPREAD * np.median(np.abs(values - middle)), len(values)
+    return np.median(values), median_abs_deviation(values, scale="normal"), len(values)

@@ -99,22 +99,16 @@ def _row(
     found = limits(part["subject"], part["second"] - part["first"])
     change, interval, _ = smallest_detectable_change(part["subject"], part["first"])
     second, _, _ = smallest_detectable_change(part["subject"], part["second"])
-    row |= {
-        "bias": found.bias,
-        "lower": found.lower,
-        "lower_from": found.lower_interval[0],
-        "lower_to": found.lower_interval[1],
-        "upper": found.upper,
-        "upper_from": found.upper_interval[0],
-        "upper_to": found.upper_interval[1],
-        "sd_between": found.sd_between,
-        "sd_within": found.sd_within,
-        "detectable": change,
-        "detectable_from": interval[0],
-        "detectable_to": interval[1],
-        "detectable_second": second,
-    }
+    row |= {"bias": found.bias}
+    row |= _with_interval("lower", found.lower, found.lower_interval)
+    row |= _with_interval("upper", found.upper, found.upper_interval)
+    row |= {"sd_between": found.sd_between, "sd_within": found.sd_within}
+    row |= _with_interval("detectable", change, interval) | {"detectable_second": second}
     return row | verdict(row, networks)
+
+
+def _with_interval(name: str, value: float, ends: tuple[float, float]) -> dict[str, float]:
+    return {name: value, f"{name}_from": ends[0], f"{name}_to": ends[1]}
 
 
 def verdict(row: Mapping[str, Any], networks: tuple[str, str]) -> dict[str, str]:
@@ -136,16 +130,12 @@ def verdict(row: Mapping[str, Any], networks: tuple[str, str]) -> dict[str, str]
     )
     if max(-row["lower"], row["upper"]) > row["detectable"]:
         return {"verdict": NO, "sentence": f"not for {what}: {span} exceed {change}{mark}"}
+    words, within = f"{both} may be exchanged for {what}", f"{span} lie within {change}"
     reach = max(-row["lower_from"], row["upper_to"])
     if reach > row["detectable"]:
-        words = f"{both} may be exchanged for {what} as far as {row['n_subjects']} subjects tell: "
-        words += (
-            f"{span} lie within {change}, but their 95 % intervals reach {reach:.3g} {unit}{mark}"
-        )
-        return {"verdict": UNSURE, "sentence": words}
-    words = f"{both} may be exchanged for {what}: {span} lie within {change}, with their 95 % "
-    words += f"intervals{mark}"
-    return {"verdict": YES, "sentence": words}
+        words += f" as far as {row['n_subjects']} subjects tell: {within}, but their 95 % intervals"
+        return {"verdict": UNSURE, "sentence": f"{words} reach {reach:.3g} {unit}{mark}"}
+    return {"verdict": YES, "sentence": f"{words}: {within}, with their 95 % intervals{mark}"}
 
 
 @dataclass(frozen=True)

@@ -108,15 +108,10 @@ def against(
 def upper_limit(difference: NDArray, scene: NDArray, structure: NDArray, *, seed: int = 0) -> float:
     """Return the 95 % upper confidence limit of a mean difference, by bootstrap of nested clusters.
 
-    Parameters
-    ----------
-    difference : (n,) float
-        NaN are left out; the limit is NaN for fewer than two differences.
-    scene, structure : (n,) array_like
-        Labels: trials of one scene share its effects, trials of one structure its images.
+    Of the differences (n,) NaN are left out; the limit is NaN for fewer than two. `scene` and
+    `structure` (n,) are labels: trials of one scene share its effects, trials of one structure its
+    images.
 
-    Notes
-    -----
     Scenes, then the structures within each, then the draws within each are resampled with
     replacement; all scenes have equal weight, and all structures within a scene (Davison & Hinkley
     1997, sec. 3.8). With one scene the limit holds for that scene only.
@@ -127,15 +122,11 @@ def upper_limit(difference: NDArray, scene: NDArray, structure: NDArray, *, seed
     rng = np.random.default_rng(seed)
     table = pd.DataFrame({"scene": np.asarray(scene), "structure": np.asarray(structure)})
     table = table.assign(value=np.asarray(difference, dtype=float))[known]
-    means = [
-        _resampled_mean(
-            rng, [_resampled_mean(rng, part["value"].to_numpy()[:, None]) for _, part in of_scene]
-        )
-        for of_scene in (
-            group.groupby("structure", dropna=False)
-            for _, group in table.groupby("scene", dropna=False)
-        )
-    ]
+    means = []
+    for _, group in table.groupby("scene", dropna=False):
+        parts = [part["value"].to_numpy() for _, part in group.groupby("structure", dropna=False)]
+        of_structures = [_resampled_mean(rng, values[:, None]) for values in parts]
+        means.append(_resampled_mean(rng, of_structures))
     return float(np.quantile(_resampled_mean(rng, means), 0.95))
 
 
@@ -172,14 +163,7 @@ def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
     the volume error, each as number of pairs, mean, 95 % upper confidence limit of the mean, and 95
     % quantile of the pairs: `vs_reference_...` to `n_reference` images (same draw, offset 0),
     `vs_known_...` to calibration from all known points (same session, draw and choice of scored
-    points).
-
-    Parameters
-    ----------
-    rows
-        Of `tidy`.
-    n_reference
-        Number of bridging images that the others are compared with.
+    points). `rows` are of `tidy`.
     """
     rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=_to_known(rows))
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]

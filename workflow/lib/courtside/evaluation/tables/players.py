@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from courtside.evaluation import joints
 from courtside.records.keypoints import skeleton
 from courtside.study.methods import Fusion
 
@@ -15,7 +16,6 @@ TEXT = (*KEY, "stage", "person", "joint", "point", "camera", "status")
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 LEVELS = (50, 90, 95)
 POINTS = ("neck", "centre", "mass")
-WANTED = (80, 97)  # ASSUME: percent, the coverage of 90 % ellipsoids that the study asks for
 OTHERS = {"two": ("dlt",), "three": ("dlt", "halfbody"), "all": ("dlt",)}  # compared with ours
 GAIN = ["median_mm", "p95_mm"]
 ENDS = [f"{name}_{end}_mm" for name in ("median", "p95") for end in ("from", "to")]
@@ -50,19 +50,17 @@ def table(
 
     Over the 12 limb joints: n values, missing_percent, median_mm, p95_mm, sigma_mm and coverage in
     percent, with the least and the most of any joint and the number of joints whose coverage at 90
-    % is within `WANTED`. On rows of the robust rule, its gain: `vs_dlt_...` over the linear
-    transformation with the same cameras, `vs_halfbody_...` over the half-body rule: ours minus the
-    other, negative if ours is nearer. Those without `paired` in their name are differences of the
-    two summaries; the paired ones are over the joints that both have, with the ends of their 95 %
-    interval. `beats_others`: whether ours has the smaller median and p95 than all of them in the
-    paired comparison, or in the plain one if there is no paired one. On raw rows, the kinematics
-    (from the raw joints) of the person with the largest errors, and the clocks of the take.
+    % is within `joints.WANTED_90`. On rows of the robust rule, its gain: `vs_dlt_...` over the
+    linear transformation with the same cameras, `vs_halfbody_...` over the half-body rule: ours
+    minus the other, negative if ours is nearer. Those without `paired` in their name are
+    differences of the two summaries; the paired ones are over the joints that both have, with the
+    ends of their 95 % interval. `beats_others`: whether ours has the smaller median and p95 than
+    all of them in the paired comparison, or in the plain one if there is no paired one. On raw
+    rows, the kinematics (from the raw joints) of the person with the largest errors, and the clocks
+    of the take.
 
-    Parameters
-    ----------
-    errors, kinematics, clocks, gains
-        Of `read`: tables of `evaluate_take`, `evaluate_kinematics`, `evaluate_clocks` and
-        `evaluate_fusions`; all but the first may be empty.
+    The arguments are of `read`: tables of `evaluate_take`, `evaluate_kinematics`, `evaluate_clocks`
+    and `evaluate_fusions`; all but the first may be empty.
     """
     rows = together(errors)
     in_one = rows[rows["joint"] == "limbs"].set_index([*KEY, "stage"])
@@ -92,7 +90,7 @@ def _over_joints(rows: pd.DataFrame) -> pd.DataFrame:
         column = f"coverage_{level}_percent"
         found[f"coverage_{level}_least_percent"] = groups[column].min()
         found[f"coverage_{level}_most_percent"] = groups[column].max()
-    within = rows.assign(within=rows["coverage_90_percent"].between(*WANTED))
+    within = rows.assign(within=rows["coverage_90_percent"].between(*joints.WANTED_90))
     found["joints_within"] = within.groupby([*KEY, "stage"])["within"].sum()
     found["joints_stated"] = groups["coverage_90_percent"].count()
     return pd.DataFrame(found)
@@ -120,13 +118,10 @@ def _gains(rows: pd.DataFrame, gains: pd.DataFrame) -> pd.DataFrame:
             nearer += [best.get(name, plain[name]) < 0 for name in GAIN]
         gained["beats_others"] = ("yes" if all(nearer) else "no") if nearer else ""
         found.append(gained)
-    columns = [f"vs_{other}_{kind}" for other in ("dlt", "halfbody") for kind in _kinds()]
+    kinds = [*GAIN, *(f"paired_{name}" for name in [*GAIN, *ENDS])]
+    columns = [f"vs_{other}_{kind}" for other in ("dlt", "halfbody") for kind in kinds]
     whole = pd.DataFrame(found, index=rows.index).reindex(columns=[*columns, "beats_others"])
     return rows.join(whole.astype(dict.fromkeys(columns, float)))
-
-
-def _kinds() -> list[str]:
-    return [*GAIN, *(f"paired_{name}" for name in [*GAIN, *ENDS])]
 
 
 def _kinematics(rows: pd.DataFrame) -> pd.DataFrame:

@@ -108,7 +108,7 @@ def _differences(part: pd.DataFrame) -> Iterator[dict]:
 def _shares(off: dict[str, pd.Series]) -> dict:
     """Return how often runs differ as published: in sign, and at least as far; and reversed."""
     values = pd.DataFrame(off).dropna()
-    published = pd.Series({name: _published_difference(name) for name in off})
+    published = pd.Series({n: PUBLISHED_MM[n]["SfM"] - PUBLISHED_MM[n]["8-point"] for n in off})
     along = values * np.sign(published)
     far = published.abs()
     return {
@@ -118,10 +118,6 @@ def _shares(off: dict[str, pd.Series]) -> dict:
         "share_as_far": (along >= far).all(axis=1).mean(),
         "share_as_far_reversed": (along <= -far).all(axis=1).mean(),
     }
-
-
-def _published_difference(name: str) -> float:
-    return PUBLISHED_MM[name]["SfM"] - PUBLISHED_MM[name]["8-point"]
 
 
 def _lengths(of: pd.DataFrame) -> Iterator[dict]:
@@ -134,7 +130,10 @@ def _lengths(of: pd.DataFrame) -> Iterator[dict]:
         return
     run = part[part["draw"] == ours["draw"].iloc[(len(ours) - 1) // 2]]
     for name in [column for column in part if column.startswith("length_")]:
+        about = {
+            "quantity": "length_mm",
+            "tip_sigma_px": sigma_px,
+            "frame": int(name.split("_")[1]),
+        }
         for way, value in zip(run["way"], run[name], strict=True):
-            frame = int(name.split("_")[1])
-            about = {"quantity": "length_mm", "way": way, "tip_sigma_px": sigma_px}
-            yield {**about, "frame": frame, "median": value}
+            yield {**about, "way": way, "median": value}
