@@ -42,6 +42,9 @@ def build(
 ) -> str:
     """Return the content of a page, to be written by `write`.
 
+    `ValueError` if a name has characters other than letters, digits, _ . and -, or a picture is
+    missing.
+
     Parameters
     ----------
     title
@@ -60,17 +63,13 @@ def build(
         `body_html` does not show by `courtside.image(name)`, as a data address.
     evaluates
         Whether a script makes code from text, as some plotting libraries do.
-
-    Raises
-    ------
-    ValueError
-        If a name has characters other than letters, digits, _ . and -, or a picture is missing.
     """
     data, images = dict(data or {}), dict(images or {})
     for name in [*data, *images]:
         if not NAME.fullmatch(name):
             raise ValueError(f"expected a name of letters, digits, _ . and -, found {name!r}")
-    addresses = {name: data_uri(*_with_type(picture)) for name, picture in images.items()}
+    typed = {name: (one, PNG) if isinstance(one, bytes) else one for name, one in images.items()}
+    addresses = {name: data_uri(*picture) for name, picture in typed.items()}
     shown = set(PICTURE.findall(body_html))
     if shown - set(addresses):
         raise ValueError(f"pictures shown but not given: {', '.join(sorted(shown - set(images)))}")
@@ -80,7 +79,7 @@ def build(
         "page.html",
         evaluates=evaluates,
         title=title,
-        styles=[_safe_css(_read(item)) for item in [f"{ALWAYS}.css", *css]],
+        styles=[Markup(_read(item).replace("</", "<\\/")) for item in [f"{ALWAYS}.css", *css]],
         body=Markup(PICTURE.sub(lambda match: f'src="{addresses[match.group(1)]}"', body_html)),
         stores={name: _safe_json(value) for name, value in stores.items()},
         scripts=[_safe_js(_read(item)) for item in [f"{ALWAYS}.js", *js]],
@@ -109,17 +108,9 @@ def data_uri(content: bytes, mime: str = PNG) -> str:
     return f"data:{mime};base64,{base64.b64encode(content).decode('ascii')}"
 
 
-def _with_type(picture: Picture) -> tuple[bytes, str]:
-    return (picture, PNG) if isinstance(picture, bytes) else picture
-
-
 def _read(item: str | os.PathLike) -> str:
     path = item if isinstance(item, Path) else ASSETS / item
     return path.read_text(encoding="utf-8")
-
-
-def _safe_css(css: str) -> Markup:
-    return Markup(css.replace("</", "<\\/"))
 
 
 def _safe_js(js: str) -> Markup:

@@ -18,6 +18,7 @@ from courtside.pages import page
 from courtside.video import images
 
 SCRIPTS = [f"clicking{part}.js" for part in ("_table", "_fit", "_court", "_view", "")]
+FRAME_KEYS = ("camera", "take", "frame_idx", "size", "clicks", "proposals")  # that scripts get
 ENDS = {
     "top": "tip of the racket's head: the outermost point of its frame",
     "butt": "end of the handle: the middle of the butt cap",
@@ -28,28 +29,17 @@ ENDS = {
 class Frame:
     """One picture to click in.
 
-    Attributes
-    ----------
-    size
-        Width and height of the video and of the picture, px.
-    image
-        PNG or JPEG of that size.
-    take
-        None for the static picture, in which court points are clicked; else racket ends are.
-    clicks
-        Earlier clicks (x, y) by point or end, px.
-    proposals
-        By point: `x`, `y` and `sigma_px`; shown hollow, to be confirmed.
+    `take` is None for the static picture, in which court points are clicked; else racket ends are.
     """
 
     camera: str
-    size: tuple[int, int]
-    image: bytes
+    size: tuple[int, int]  # width and height of the video and of the picture, px
+    image: bytes  # PNG or JPEG
     mime: str = page.PNG
     take: str | None = None
     frame_idx: int = 0
-    clicks: dict[str, Sequence[float]] = field(default_factory=dict)
-    proposals: dict[str, dict] = field(default_factory=dict)
+    clicks: dict[str, Sequence[float]] = field(default_factory=dict)  # (x, y) px by point or end
+    proposals: dict[str, dict] = field(default_factory=dict)  # by point: x, y, sigma_px; hollow
 
     @property
     def identity(self) -> str:
@@ -68,23 +58,10 @@ def frame(
     proposals: dict | None = None,
     **which: Any,
 ) -> Frame:
-    """Read a picture to click in.
+    """Read a picture to click in, a PNG or JPEG without recognisable faces, else `InputError`.
 
-    Parameters
-    ----------
-    path
-        PNG or JPEG, without recognisable faces.
-    jpeg_quality
-        1 to 100 to make the page smaller; None to take the file as it is.
-    clicks, proposals
-        As `Frame` has them.
-    **which
-        `take` and `frame_idx` of a picture of a take.
-
-    Raises
-    ------
-    InputError
-        If the file is not a picture.
+    `jpeg_quality` from 1 to 100 makes the page smaller; None takes the file as it is. `clicks` and
+    `proposals` are as in `Frame`, `which` are `take` and `frame_idx` of a picture of a take.
     """
     path = Path(path)
     content = path.read_bytes() if path.is_file() else b""
@@ -110,19 +87,9 @@ def by_point(xy: NDArray | None, points: Sequence[str]) -> dict[str, list[float]
 def build(session: str, court: Court, frames: list[Frame], *, targets: dict[str, str]) -> str:
     """Return the page, to be written by `page.write`.
 
-    Parameters
-    ----------
-    session
-        Shown as the title.
-    frames
-        One picture of each fixed camera, then those of takes, in the order of their tabs.
-    targets
-        Where the workflow reads "court_points.csv" and "racket.csv"; shown beside the save button.
-
-    Raises
-    ------
-    ValueError
-        If there is no picture, or two of one camera and time.
+    `frames` are one picture of each fixed camera, then those of takes, in the order of their tabs;
+    `ValueError` if there is none, or two of one camera and time. `targets` say where the workflow
+    reads "court_points.csv" and "racket.csv", shown beside the save button.
     """
     names = [frame.identity for frame in frames]
     if not frames or len(set(names)) < len(names):
@@ -132,7 +99,10 @@ def build(session: str, court: Court, frames: list[Frame], *, targets: dict[str,
         "stamp": _stamp(session, court, frames),
         "court": _court(court),
         "ends": [{"name": name, "edges": words} for name, words in ENDS.items()],
-        "frames": [_frame(frame) for frame in frames],
+        "frames": [
+            {"id": frame.identity, **{key: getattr(frame, key) for key in FRAME_KEYS}}
+            for frame in frames
+        ],
         "targets": {name: targets.get(name, name) for name in ("court_points.csv", "racket.csv")},
     }
     return page.build(
@@ -143,11 +113,6 @@ def build(session: str, court: Court, frames: list[Frame], *, targets: dict[str,
         data={"clicking": shown},
         images={frame.identity: (frame.image, frame.mime) for frame in frames},
     )
-
-
-def _frame(frame: Frame) -> dict:
-    keys = ("camera", "take", "frame_idx", "size", "clicks", "proposals")
-    return {"id": frame.identity, **{key: getattr(frame, key) for key in keys}}
 
 
 def _court(court: Court) -> dict:

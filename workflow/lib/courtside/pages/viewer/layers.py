@@ -24,42 +24,20 @@ NOT_FINITE = 255  # reason of a joint that is missing although its method calls 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """The skeletons of one method for a take, on the reference clock, in the world.
+    """The skeletons of one method for a take, on the reference clock, in the world."""
 
-    Attributes
-    ----------
-    name
-        Of its switch in the page.
-    joints : tuple of str, length J person_id : tuple of str, length P
-    time_s : (T,) float
-        Strictly increasing.
-    xyz : (P, T, J, 3) float
-        Metres; NaN where missing.
-    covariance : (P, T, J, 3, 3) float or None
-        Square metres; NaN where unknown.
-    error_px : (P, T, J) float or None
-        Reprojection error: root mean square over the views that were used.
-    reason : (P, T, J) int or None
-        `courtside.records.keypoints.missing_reason`.
-    n_views : (P, T, J) int or None
-    covers
-        What the covariance includes, in words, for the legend.
-    shown
-        Whether it is drawn when the page opens.
-    """
-
-    name: str
-    joints: tuple[str, ...]
+    name: str  # of its switch in the page
+    joints: tuple[str, ...]  # length J
     bones: tuple[tuple[str, str], ...]
-    person_id: tuple[str, ...]
-    time_s: NDArray
-    xyz: NDArray
-    covariance: NDArray | None = None
-    error_px: NDArray | None = None
-    reason: NDArray | None = None
-    n_views: NDArray | None = None
-    covers: str = ""
-    shown: bool = True
+    person_id: tuple[str, ...]  # length P
+    time_s: NDArray  # (T,): strictly increasing
+    xyz: NDArray  # (P, T, J, 3): metres; NaN where missing
+    covariance: NDArray | None = None  # (P, T, J, 3, 3): square metres; NaN where unknown
+    error_px: NDArray | None = None  # (P, T, J): root mean square over the views that were used
+    reason: NDArray | None = None  # (P, T, J) int: `missing_reason`
+    n_views: NDArray | None = None  # (P, T, J) int
+    covers: str = ""  # what the covariance includes, in words, for the legend
+    shown: bool = True  # when the page opens
 
     def __post_init__(self) -> None:
         shape = (len(self.person_id), len(self.time_s), len(self.joints))
@@ -139,23 +117,10 @@ def read(
     clock: Clock | None = None,
     shown: bool = True,
 ) -> Layer:
-    """Read a layer from a file of triangulated points or of a device's motion.
+    """Read a layer from a file of triangulated points or of a device's motion, else `InputError`.
 
-    A device's layer is in the device's own frame; see `placed`.
-
-    Parameters
-    ----------
-    skeleton
-        Whose bones are drawn.
-    person
-        Of a device: who wears or faces it.
-    clock
-        Of a device; None if its times are on the reference clock.
-
-    Raises
-    ------
-    InputError
-        If the file is neither.
+    A device's layer is in the device's own frame; see `placed`. `person` wears or faces it; its
+    `clock` is None if its times are on the reference clock.
     """
     if _form(path) != device_motion.FORM:
         return of_points(name, keypoints.read_3d(path), skeleton, shown=shown)
@@ -176,12 +141,8 @@ def placed(layer: Layer, onto: Layer) -> Layer:
     """Move a device's skeleton onto the same person in another layer, rotated and translated once.
 
     The lengths of the skeleton stay the same. The rotation is the least-squares one (Kabsch 1976)
-    between joints of the same name over the whole take.
-
-    Raises
-    ------
-    InputError
-        If the two have no person, time or three joints in common.
+    between joints of the same name over the whole take. `InputError` if the two have no person,
+    time or three joints in common.
     """
     persons = [name for name in layer.person_id if name in onto.person_id]
     joints = [name for name in layer.joints if name in onto.joints]
@@ -218,17 +179,13 @@ def _bones(joints: NDArray, skeleton: Skeleton) -> tuple[tuple[str, str], ...]:
 
 
 def packed(layer: Layer, middle: NDArray, every: int = 1) -> dict:
-    """Return a layer as JSON-able content that `viewer_data.js` unpacks.
+    """Return a layer as JSON-able content that `viewer_data.js` unpacks, every n-th frame.
 
-    Parameters
-    ----------
-    middle : (3,) float
-        Metres; positions are stored relative to it.
-    every
-        Keep every n-th frame.
+    Positions are stored relative to `middle` (3,) m.
     """
     text, known = packing.positions(layer.xyz[:, ::every], middle)
-    reason = np.zeros(known.shape, int) if layer.reason is None else layer.reason[:, ::every]
+    shape = layer.xyz.shape[:-1]
+    reason = (np.zeros(shape, int) if layer.reason is None else layer.reason)[:, ::every]
     absent = np.where(reason == missing_reason.OK, NOT_FINITE, reason)
     content = {
         "name": layer.name,

@@ -17,17 +17,8 @@ def integers(values: NDArray) -> str:
     """Pack integers that change little along the last axis.
 
     Base64 of a zlib stream of the differences along the last axis, modulo 2^16, as two planes: all
-    low bytes, then all high ones. The first value of each row is a difference from 0.
-
-    Parameters
-    ----------
-    values : (..., T) int
-        Within the range of int16.
-
-    Raises
-    ------
-    ValueError
-        If a value is beyond int16.
+    low bytes, then all high ones. The first value of each row is a difference from 0. `values` are
+    (..., T); `ValueError` if one is beyond int16.
     """
     values = np.asarray(values)
     if values.size and (values.min() < -(1 << 15) or values.max() >= 1 << 15):
@@ -39,14 +30,7 @@ def integers(values: NDArray) -> str:
 
 
 def positions(xyz: NDArray, middle: NDArray) -> tuple[str, NDArray]:
-    """Pack positions in whole millimetres relative to a point.
-
-    Parameters
-    ----------
-    xyz : (P, T, J, 3) float
-        Metres; NaN where missing.
-    middle : (3,) float
-        Metres.
+    """Pack positions (P, T, J, 3) m, NaN where missing, in whole millimetres from `middle` (3,) m.
 
     Returns
     -------
@@ -70,18 +54,10 @@ def _held(values: NDArray, known: NDArray) -> NDArray:
 
 
 def sizes(values: NDArray) -> NDArray:
-    """Quantise positive numbers on a logarithmic scale.
+    """Quantise positive numbers, clipped to 1e-5 ... 10, on a logarithmic scale.
 
-    Parameters
-    ----------
-    values : (...) float
-        Clipped to 1e-5 ... 10.
-
-    Returns
-    -------
-    levels : (...) int
-        1 to 255: `LEAST * (MOST / LEAST) ** ((level - 1) / 254)`, within 2.8 % of the value; 0 for
-        NaN.
+    Levels 1 to 255 are `LEAST * (MOST / LEAST) ** ((level - 1) / 254)`, within 2.8 % of the value;
+    0 is NaN.
     """
     values = np.asarray(values, dtype=float)
     known = np.isfinite(values)
@@ -92,20 +68,11 @@ def sizes(values: NDArray) -> NDArray:
 def ellipsoids(covariance: NDArray) -> NDArray:
     """Quantise covariances into six small integers that always give a valid covariance back.
 
-    Parameters
-    ----------
-    covariance : (..., 3, 3) float
-        Square metres; NaN where unknown.
+    From (..., 3, 3) m2, NaN where unknown, to (..., 6): `sizes` of the standard deviations along x,
+    y, z (metres), then three angles in steps of pi / 255. With a, b, c these angles, the rows
+    (1, 0, 0), (cos a, sin a, 0) and (cos b, sin b cos c, sin b sin c) are the Cholesky factor of
+    the correlations. All 0 where unknown.
 
-    Returns
-    -------
-    levels : (..., 6) int
-        `sizes` of the standard deviations along x, y, z (metres), then three angles in steps of pi
-        / 255. With a, b, c these angles, the rows (1, 0, 0), (cos a, sin a, 0) and (cos b, sin b
-        cos c, sin b sin c) are the Cholesky factor of the correlations. All 0 where unknown.
-
-    Notes
-    -----
     The angles of Rapisarda, Brigo & Mercurio 2007, Parameterizing correlations: the result is
     positive semidefinite whatever the rounding.
     """

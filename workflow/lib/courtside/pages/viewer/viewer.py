@@ -44,25 +44,11 @@ def build(
 ) -> str:
     """Return the page of a take, to be written by `page.write`.
 
-    Layers larger than 7.5 MB in total are thinned to every second, fourth ... frame, and the page
-    says so.
-
-    Parameters
-    ----------
-    title
-        Such as session and take; any text.
-    layers
-        Methods to overlay, in the order of their switches. Slider and keys step through the frames
-        of the first.
-    court
-        None: a grid of 1 m is drawn.
-    notes
-        Lines below the picture, such as what a layer is.
-
-    Raises
-    ------
-    ValueError
-        If there is no layer, or two have one name.
+    `layers` are the methods to overlay, in the order of their switches; `ValueError` if there is
+    none, or two have one name. Slider and keys step through the frames of the first. Layers larger
+    than 7.5 MB in total are thinned to every second, fourth ... frame, and the page says so.
+    Without a court a grid of 1 m is drawn. `notes` are lines below the picture, such as what a
+    layer is.
     """
     names = [layer.name for layer in layers]
     if not names or len(set(names)) < len(names):
@@ -159,17 +145,17 @@ def _net(net: dict) -> list[dict]:
     post, mid = net["post_height_m"], net["mid_height_m"]
     middle = (left + right) / 2
     top = [[left, y, post], [middle, y, mid], [right, y, post]]
-    drawn = [{"points": top, "width": 2.5, "alpha": 0.8}]
-    drawn += [
-        {"points": [[x, y, 0], [x, y, post]], "width": 3, "alpha": 0.8} for x in (left, right)
-    ]
-    for share in np.linspace(0.25, 0.75, 3).tolist():
-        row = [[x, y, share * z] for x, y, z in top]
-        drawn.append({"points": row, "width": 0.7, "alpha": 0.3})
+    posts = [[[x, y, 0], [x, y, post]] for x in (left, right)]
+    mesh = [[[x, y, share * z] for x, y, z in top] for share in (0.25, 0.5, 0.75)]
     for x in np.linspace(left, right, 14)[1:-1].tolist():
         height = mid + (post - mid) * abs(x - middle) / (right - middle)
-        drawn.append({"points": [[x, y, 0], [x, y, height]], "width": 0.7, "alpha": 0.3})
-    return drawn
+        mesh.append([[x, y, 0], [x, y, height]])
+    groups = (([top], 2.5, 0.8), (posts, 3, 0.8), (mesh, 0.7, 0.3))
+    return [
+        {"points": points, "width": width, "alpha": alpha}
+        for lines, width, alpha in groups
+        for points in lines
+    ]
 
 
 def grid(low: NDArray, high: NDArray) -> list:
