@@ -157,8 +157,7 @@ def _explain(drawing: Figure, ways: list[str], cameras: dict[str, Sequence[str]]
     marks = []
     for way in ways:
         words, colour, marker, filled = WAYS[way]
-        names = ", ".join(cameras[way])
-        label = f"{len(cameras[way])} cameras ({names}), {words}"
+        label = f"{len(cameras[way])} cameras ({', '.join(cameras[way])}), {words}"
         marks.append(bars.mark(colour, marker=marker, filled=filled, label=label))
     title = "mark: median; line: to the 95 % quantile; "
     title += "shaded: stable with two cameras, says the paper"

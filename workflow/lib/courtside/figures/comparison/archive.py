@@ -52,7 +52,12 @@ def draw(rows: pd.DataFrame, subject: str) -> Figure:
         axis.set_xlim(sessions["order"].min() - 0.4, sessions["order"].max() + 0.4)
     for axis in axes[len(measures) :]:
         axis.set_axis_off()
-    _explain(drawing, rows)
+    marks = [
+        bars.mark(colour, marker=marker, filled=filled, label=words)
+        for verdict, (colour, marker, filled, words) in LOOKS.items()
+        if (rows["verdict"] == verdict).any()
+    ]
+    drawing.legend(handles=marks, loc="outside lower center", ncols=3)
     drawing.suptitle(f"subject {subject}", fontsize=8)
     return drawing
 
@@ -75,12 +80,3 @@ def _panel(axis: Axes, part: pd.DataFrame) -> None:
         look = {"fmt": marker, "color": colour, "markersize": 4.5, "linewidth": 0.8}
         look["markerfacecolor"] = colour if filled else "white"
         axis.errorbar(own["order"], own["value"], yerr=own["sd_takes"], **look)
-
-
-def _explain(drawing: Figure, rows: pd.DataFrame) -> None:
-    shown = [name for name in LOOKS if (rows["verdict"] == name).any()]
-    marks = []
-    for name in shown:
-        colour, marker, filled, words = LOOKS[name]
-        marks.append(bars.mark(colour, marker=marker, filled=filled, label=words))
-    drawing.legend(handles=marks, loc="outside lower center", ncols=3)

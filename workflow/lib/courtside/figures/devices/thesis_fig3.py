@@ -164,17 +164,15 @@ def _short(off: pd.DataFrame) -> str:
 
 
 def _marks(colour: str, true: pd.DataFrame | None) -> list[Line2D]:
-    def mark(label: str, **look) -> Line2D:
-        return Line2D([], [], label=label, **look)
-
     hollow = {"color": colour, "linestyle": "none", "mfc": "white", "ms": 6}
-    marks = [
-        mark("wrist, every frame", color=colour, marker=".", lw=0.9, ms=4),
-        mark("end of the T-pose", marker="s", **hollow),
-        mark("clap", marker="o", **hollow),
-        mark("shoulder in the T-pose", color=ARC, marker="^", linestyle="none", ms=5),
-        mark("own arc, about the shoulder", color=ARC, linestyle="--", lw=0.9),
-        mark("circle of radius 1 about the origin", color=CIRCLE, lw=1.2),
-    ]
-    drawn = true is not None and len(true)
-    return marks + ([mark("truth", color=TRUE, lw=0.8)] if drawn else [])
+    looks: dict[str, dict] = {
+        "wrist, every frame": {"color": colour, "marker": ".", "lw": 0.9, "ms": 4},
+        "end of the T-pose": {"marker": "s", **hollow},
+        "clap": {"marker": "o", **hollow},
+        "shoulder in the T-pose": {"color": ARC, "marker": "^", "linestyle": "none", "ms": 5},
+        "own arc, about the shoulder": {"color": ARC, "linestyle": "--", "lw": 0.9},
+        "circle of radius 1 about the origin": {"color": CIRCLE, "lw": 1.2},
+    }
+    if true is not None and len(true):
+        looks["truth"] = {"color": TRUE, "lw": 0.8}
+    return [Line2D([], [], label=label, **look) for label, look in looks.items()]

@@ -30,13 +30,8 @@ class Sight:
         """Return points (..., 3) m of the world on the drawing, (..., 2) m: right and up."""
         azimuth, elevation = np.radians([self.azimuth_deg, self.elevation_deg])
         right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
-        towards = np.array(
-            [
-                np.cos(azimuth) * np.cos(elevation),
-                np.sin(azimuth) * np.cos(elevation),
-                np.sin(elevation),
-            ]
-        )
+        level, up = np.cos(elevation), np.sin(elevation)
+        towards = np.array([np.cos(azimuth) * level, np.sin(azimuth) * level, up])
         return np.asarray(xyz, dtype=float) @ np.column_stack([right, np.cross(towards, right)])
 
 

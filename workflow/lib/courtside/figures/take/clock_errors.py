@@ -77,20 +77,12 @@ def _edge(rows: pd.DataFrame) -> float:
 def _beyond(axis: Axes, at: float, error_ms: float, edge: float, colour: str) -> None:
     if not np.isfinite(error_ms):
         return
-    side = np.sign(error_ms)
-    where = "right" if side > 0 else "left"
+    side, marker, where = (1, ">", "right") if error_ms > 0 else (-1, "<", "left")
     face = "white" if colour == COLOURS["unused"] else colour
-    axis.plot(side * edge, at, ">" if side > 0 else "<", color=colour, mfc=face, markersize=4)
-    axis.annotate(
-        f"{error_ms:.0f} ms".replace("-", "\N{MINUS SIGN}"),
-        (side * edge, at),
-        xytext=(-5 * side, 0),
-        textcoords="offset points",
-        ha=where,
-        va="center",
-        fontsize=6.5,
-        color=colour,
-    )
+    axis.plot(side * edge, at, marker, color=colour, mfc=face, markersize=4)
+    text = f"{error_ms:.0f} ms".replace("-", "\N{MINUS SIGN}")
+    look = {"textcoords": "offset points", "va": "center", "fontsize": 6.5, "color": colour}
+    axis.annotate(text, (side * edge, at), (-5 * side, 0), ha=where, **look)
 
 
 def _names(rows: pd.DataFrame) -> list[str]:

@@ -45,15 +45,8 @@ def draw(rows: pd.DataFrame, skeleton: Skeleton) -> Figure:
     times = counts.columns.to_numpy()
     step = np.median(np.diff(times)) if len(times) > 1 else 1.0
     extent = (times[0] - step / 2, times[-1] + step / 2, len(joints) - 0.5, -0.5)
-    image = lower.imshow(
-        counts,
-        aspect="auto",
-        extent=extent,
-        vmin=0,
-        vmax=len(names),
-        cmap="viridis",
-        interpolation="nearest",
-    )
+    look = {"aspect": "auto", "cmap": "viridis", "interpolation": "nearest"}
+    image = lower.imshow(counts, extent=extent, vmin=0, vmax=len(names), **look)
     lower.set(yticks=range(len(joints)), yticklabels=[joint.replace("_", " ") for joint in joints])
     lower.tick_params(axis="y", labelsize=6)
     lower.set(xlabel="time (s)", title="Views that each joint rests on (0: missing)")
