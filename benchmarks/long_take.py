@@ -94,12 +94,18 @@ def steps(folder, given):
     yield "associate_people", (paths, made["people"]), {"persons": given.persons}
     fusion = {"persons": given.persons, "fusion": {"used": names, "rule": "robust"}}
     yield "triangulate", (paths, made["raw"]), {**fusion, **parameters["triangulate"]}
-    yield "filter_motion", (made["raw"], shape, made["filtered"]), parameters["filter_motion"]
+    tables = {key: folder / "made" / f"{key}.csv" for key in ("cutoffs", "frames", "summary")}
+    filtering = parameters["filter_motion"]
+    yield "filter_motion", (made["raw"], shape, made["filtered"], tables["cutoffs"]), filtering
     offsets = ROOT / "config" / "joint_offsets" / f"{given.model}.csv"
     yield "correct_joints", (made["filtered"], offsets, made["last"]), {}
-    tables = [folder / "made" / f"{name}.csv" for name in ("frames", "summary", "cutoffs")]
-    measured = {**parameters["measure_kinematics"], "sex_of": dict.fromkeys(given.persons, "m")}
-    yield "measure_kinematics", (made["raw"], shape, table, *tables), measured
+    paths = Paths(
+        skeletons=made["last"], raw=made["raw"], cutoffs=tables["cutoffs"],
+        skeleton=shape, derived=table,
+    )  # fmt: skip
+    sex_of = dict.fromkeys(given.persons, "m")
+    measured = {"max_gap_s": filtering["max_gap_s"], "stage": "corrected", "sex_of": sex_of}
+    yield "measure_kinematics", (paths, tables["frames"], tables["summary"]), measured
 
 
 def measure(given, views, minutes):

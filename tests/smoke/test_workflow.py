@@ -33,7 +33,12 @@ TAKE_FIGURES = ("overlay", "skeletons", "reprojection", "visibility", "kinematic
 PAPER_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11", "badminton_tab01")
 DOWNSTREAM_OF_FILTER = {
     "correct_joints": FILTERED,
+    "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
     "evaluate_take": 2,
+    "evaluate_kinematics": 6,
+    "compare_sessions": 1,
+    "draw_kinematics": 1,
+    "draw_badminton_fig09": 1,
     "draw_three_cameras": 1,
     "tabulate_players": 1,
     "build_viewer": 3,
@@ -42,12 +47,9 @@ DOWNSTREAM_OF_3D = {
     **DOWNSTREAM_OF_FILTER,
     "filter_motion": FILTERED,
     "export_take": 3,
-    "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
-    "evaluate_kinematics": 6,
     "evaluate_fusions": 4,
     "evaluate_round_trip": 1,
     "compare_views": 1,
-    "compare_sessions": 1,
     "export_overlay_video": 4,
     **{f"draw_{name}": 1 for name in TAKE_FIGURES + PAPER_FIGURES},
 }

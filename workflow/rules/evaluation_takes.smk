@@ -53,7 +53,7 @@ rule evaluate_kinematics:
         "results/{session}/logs/evaluate_kinematics/{take}.{calibration}.{fusion}.{model}.log",
     params:
         code=code("evaluate_kinematics.py"),
-        labels=lambda w: dict(w.items()),
+        labels=of_job(lambda job: {**job.wildcards, "stage": job.stages()[-1]}),
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/evaluate_kinematics.py"

@@ -92,6 +92,7 @@ rule filter_motion:
         skeleton_yaml=of_job(Job.skeleton_file),
     output:
         filtered_npz=paths.POSE3D_FILTERED,
+        cutoffs_csv=paths.CUTOFFS,
     log:
         f"results/{{session}}/logs/filter_motion/{paths.OF_FUSED}.log",
     params:
@@ -133,20 +134,22 @@ rule export_take:
 
 rule measure_kinematics:
     input:
-        raw_npz=paths.POSE3D,
-        skeleton_yaml=of_job(Job.skeleton_file),
-        derived_yaml=paths.derived_joints(CONFIG),
+        skeletons=of_job(takes.measured),
+        raw=paths.POSE3D,
+        cutoffs=paths.CUTOFFS,
+        skeleton=of_job(Job.skeleton_file),
+        derived=paths.derived_joints(CONFIG),
     output:
         frames_csv=paths.FRAME_MEASURES,
         summary_csv=paths.MEASURES,
-        cutoffs_csv=paths.CUTOFFS,
     log:
         f"results/{{session}}/logs/measure_kinematics/{paths.OF_FUSED}.log",
     benchmark:
         f"results/{{session}}/benchmarks/measure_kinematics/{paths.OF_FUSED}.tsv"
     params:
         code=code("measure_kinematics.py"),
-        step=step("measure_kinematics"),
+        step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
+        stage=of_job(takes.measured_stage),
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/measure_kinematics.py"

@@ -1,28 +1,26 @@
-"""Measure one take.
+"""Measure one take on the skeletons that are exported.
 
-Reads raw 3D keypoints; writes speeds, distances, accelerations and angles with uncertainty.
+Reads them, the raw keypoints for their noise, and the cut-offs that were used; writes speeds,
+distances, accelerations and angles with uncertainty.
 """
 
 from courtside.exports import measures
-from courtside.kinematics import cutoffs, filtering
+from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.kinematics import measures as kinematics
 from courtside.records import tables
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
 
 
-def main(raw_npz, skeleton_yaml, derived_yaml, frames_csv, summary_csv, cutoffs_csv, **step):
-    points = filtering.leave_out_uncertain(keypoints.read_3d(raw_npz))
-    points = filtering.fill_gaps(points, step["max_gap_s"])
-    shape = skeleton.read(skeleton_yaml)
-    choices = cutoffs.by_group(points, shape, step["cutoff_hz"], step["order"])
-    chosen = {group: choice.cutoff_hz for group, choice in choices.items()}
-    how = kinematics.Filter(shape.by_group(chosen), step["order"], step["distance_cutoff_hz"])
-    table = derived_joints.read(derived_yaml)
-    people = kinematics.measure(points, table, shape.name, how, step["sex_of"])
+def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
+    points = keypoints.read_3d(paths.skeletons)
+    raw = skeleton_filter.prepare(keypoints.read_3d(paths.raw), max_gap_s)
+    shape, (chosen, order) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
+    how = kinematics.Filter(shape.by_group(chosen), order)
+    table = derived_joints.read(paths.derived)
+    people = kinematics.measure(points, raw, table, shape.name, how, sex_of)
     tables.write(frames_csv, measures.frames(people))
-    tables.write(summary_csv, measures.summary(people))
-    tables.write(cutoffs_csv, measures.cutoffs(choices))
+    tables.write(summary_csv, measures.summary(people, stage))
 
 
 if __name__ == "__main__":

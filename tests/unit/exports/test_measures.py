@@ -3,13 +3,11 @@
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from courtside.exports import measures
-from courtside.kinematics import cutoffs, joint_angles
+from courtside.kinematics import joint_angles, skeleton_filter
 from courtside.kinematics import measures as kinematics
-from courtside.records import tables
 from courtside.records.keypoints import derived_joints, missing_reason
 from fixtures.people import footwork, walker
 
@@ -24,7 +22,12 @@ def people():
     record.xyz[0, 50:80, 11], record.reason[0, 50:80, 11] = np.nan, missing_reason.REJECTED
     record.covariance_2d[0, 50:80, 11] = np.nan
     how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
-    return kinematics.measure(record, TABLE, "blazepose33", how, {"p1": "f"})
+    return of_raw(record, how, {"p1": "f"})
+
+
+def of_raw(record, how, sexes=None):
+    smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
+    return kinematics.measure(smooth, record, TABLE, "blazepose33", how, sexes)
 
 
 DESCRIBED = {  # in the data dictionary of config/README.md
@@ -44,7 +47,7 @@ def test_every_column_is_described(people):
             plain = plain.replace(f"{angle}_", "ANGLE_", 1) if plain.startswith(angle) else plain
         plain = plain.replace("POINT_y_m", "POINT_x_m").replace("POINT_z_m", "POINT_x_m")
         assert plain in DESCRIBED, column
-    assert measures.summary(people).columns.tolist() == list(measures.SUMMARY_COLUMNS)
+    assert measures.summary(people, "filtered").columns.tolist() == list(measures.SUMMARY_COLUMNS)
 
 
 def test_a_row_for_every_frame(people):
@@ -64,7 +67,7 @@ def test_a_row_for_every_frame(people):
 
 
 def test_the_summary_is_that_of_the_frames(people):
-    rows = measures.summary(people).set_index("measure")
+    rows = measures.summary(people, "filtered").set_index("measure")
     frames = measures.frames(people)
     assert rows.loc["neck_speed_max", "value"] == pytest.approx(
         frames.neck_speed_m_s.max(), abs=1e-4
@@ -80,11 +83,12 @@ def test_the_summary_is_that_of_the_frames(people):
     assert rows.loc["mass_speed_mean", "value"] == pytest.approx(found.value / seconds)
     assert rows.loc["mass_speed_mean", "sigma"] == pytest.approx(found.sigma / seconds)
     assert "women" in found.definition
+    assert rows["definition"].str.endswith("; filtered joints").all()
     assert not rows.index.duplicated().any()
 
 
 def test_the_calibration_bounds_a_distance_by_its_share_of_the_extent(people):
-    rows = measures.summary(people).set_index("measure")
+    rows = measures.summary(people, "filtered").set_index("measure")
     neck = people[0].points["neck"]
     known = neck.position[np.isfinite(neck.position).all(axis=1)]
     extent = np.linalg.norm(known.max(axis=0) - known.min(axis=0))
@@ -94,26 +98,14 @@ def test_the_calibration_bounds_a_distance_by_its_share_of_the_extent(people):
     )
 
 
-def test_cutoffs_say_how_they_were_chosen(tmp_path):
-    stated = cutoffs.Choice(6.0, np.zeros(0), np.zeros(0), float("nan"))
-    found = cutoffs.Choice(4.5, np.array([4.0, 5.0]), np.array([0.011, 0.009]), 0.01)
-    path = tmp_path / "cutoffs.csv"
-    tables.write(path, measures.cutoffs({"head": stated, "trunk": found}))
-    rows = pd.read_csv(path)
-    assert rows.group.tolist() == ["head", "trunk", "trunk"]
-    assert rows.cutoff_hz.tolist() == [6.0, 4.5, 4.5]
-    assert np.isnan(rows.residual_mm.iloc[0])
-    assert rows.residual_mm.iloc[1] == pytest.approx(11.0)
-
-
 def test_nobody_seen_is_a_table_of_missing_values():
     time_s, neck = footwork.neck(30, 2)
     xyz, _ = footwork.body(neck, time_s)
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
     record.xyz[:], record.covariance_2d[:], record.reason[:] = np.nan, np.nan, missing_reason.UNSEEN
     how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
-    people = kinematics.measure(record, TABLE, "blazepose33", how)
-    rows = measures.summary(people).set_index("measure")
+    people = of_raw(record, how)
+    rows = measures.summary(people, "filtered").set_index("measure")
     assert np.isnan(rows.loc["neck_speed_max", "value"])
     assert rows.loc["neck_distance", "n"] == 0
     assert measures.frames(people).neck_speed_m_s.isna().all()

@@ -3,9 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from courtside.kinematics import cutoffs, filtering
+from courtside.records import tables
 from courtside.study.errors import InputError
 from fixtures.people import footwork, walker
 
@@ -80,3 +82,24 @@ def test_a_group_is_chosen_for_or_has_its_number():
     still[:, :, legs] += 1.0
     moved = cutoffs.by_group(replace(record, xyz=still), walker.SKELETON, wanted)
     assert moved["legs"].cutoff_hz == pytest.approx(found["legs"].cutoff_hz, rel=1e-3)
+
+
+def test_cutoffs_say_how_they_were_chosen(tmp_path):
+    stated = cutoffs.Choice(6.0, np.zeros(0), np.zeros(0), float("nan"))
+    found = cutoffs.Choice(4.5, np.array([4.0, 5.0]), np.array([0.011, 0.009]), 0.01)
+    path = tmp_path / "cutoffs.csv"
+    tables.write(path, cutoffs.table({"head": stated, "trunk": found}, 4))
+    rows = pd.read_csv(path)
+    assert rows.group.tolist() == ["head", "trunk", "trunk"]
+    assert rows.cutoff_hz.tolist() == [6.0, 4.5, 4.5]
+    assert np.isnan(rows.residual_mm.iloc[0])
+    assert rows.residual_mm.iloc[1] == pytest.approx(11.0)
+    assert cutoffs.read(path) == ({"head": 6.0, "trunk": 4.5}, 4)
+
+
+@pytest.mark.parametrize("text", ["", "group,cutoff_hz\nhead,6\n", "damaged"])
+def test_a_damaged_table_of_cutoffs_is_one_line(tmp_path, text):
+    path = tmp_path / "cutoffs.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match="a table of cut-offs"):
+        cutoffs.read(path)

@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.kinematics import filtering, measures
+from courtside.kinematics import filtering, measures, skeleton_filter
 from courtside.kinematics.noise_propagation import Noise
+from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import derived_joints, missing_reason
 from fixtures.people import footwork, walker
 
-TABLE = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
+CONFIG = Path(__file__).parents[3] / "config"
+TABLE = derived_joints.read(CONFIG / "derived_joints.yaml")
 CUTOFFS_HZ = np.array(walker.SKELETON.by_group({"head": 6, "trunk": 6, "arms": 10, "legs": 8}))
 TINY_M = 1e-7
 
@@ -25,9 +27,14 @@ def circling(rate_hz=60.0, seconds=12.0, radius_m=2.0, turn_s=4.0):
     return time_s, body + round_trip[:, None]
 
 
+def of_raw(record, how, sexes):
+    """Measure raw skeletons after the one filter, all persons."""
+    smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
+    return measures.measure(smooth, record, TABLE, "blazepose33", how, sexes)
+
+
 def measured(record, how=None, sex="m"):
-    how = how or measures.Filter(CUTOFFS_HZ)
-    return measures.measure(record, TABLE, "blazepose33", how, {"p1": sex})[0]
+    return of_raw(record, how or measures.Filter(CUTOFFS_HZ), {"p1": sex})[0]
 
 
 def test_a_circle_has_its_speed_acceleration_and_length():
@@ -131,8 +138,11 @@ def test_gaps_are_missing_with_their_reason_and_not_differentiated_across():
     assert (neck.reason[100:130] == missing_reason.ONE_VIEW).all()
     assert (neck.reason[200:203] == missing_reason.INTERPOLATED).all()
     others = np.delete(np.arange(len(time_s)), np.arange(100, 130))
-    for values in (neck.position, neck.velocity, neck.acceleration, *neck.covariance):
+    for values in (neck.position, neck.velocity, neck.acceleration, *neck.covariance[1:]):
         assert np.isfinite(values[others]).all()
+    stated = np.isfinite(neck.covariance[0]).all(axis=(1, 2))
+    assert not stated[200:203].any()  # how far a filled-in place is off is not known
+    assert stated[np.setdiff1d(others, np.arange(200, 203))].all()
     assert np.linalg.norm(neck.velocity[others], axis=1).max() < 4.5
     assert np.isfinite(person.angles["left_knee_flexion"].degrees).all()
     assert np.isnan(person.angles["left_elbow_flexion"].degrees[100:130]).all()
@@ -178,8 +188,47 @@ def test_two_people_are_measured_as_each_alone():
         **{name: np.concatenate([getattr(one, name), getattr(other, name)]) for name in names},
     )
     how = measures.Filter(CUTOFFS_HZ)
-    people = measures.measure(both, TABLE, "blazepose33", how, {"p1": "m", "p2": "m"})
+    people = of_raw(both, how, {"p1": "m", "p2": "m"})
     assert [person.person for person in people] == ["p1", "p2"]
     np.testing.assert_allclose(
         people[1].points["mass"].velocity, measured(other).points["mass"].velocity, atol=1e-9
     )
+
+
+@pytest.mark.parametrize("memory_s", [0.0, 0.08])
+def test_noise_of_corrected_skeletons_is_at_most_what_is_stated(memory_s):
+    offsets = joint_correction.read(CONFIG / "joint_offsets" / "blazepose-full.csv")
+    rate_hz, sigma_m, how = 30.0, 0.015, measures.Filter(CUTOFFS_HZ)
+    time_s, neck = footwork.neck(rate_hz, 20, seed=21)
+    xyz, _ = footwork.body(neck, time_s)
+
+    def corrected(record):
+        smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
+        last = joint_correction.keep(joint_correction.correct(smooth, offsets, {"p1": "m"}))
+        return measures.measure(last, record, TABLE, "blazepose33", how, {"p1": "m"})[0].points
+
+    record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(0))
+    clean = corrected(replace(record, xyz=xyz[None].copy()))
+    ratios = {}
+    for seed in range(4):
+        record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(seed))
+        for name, point in corrected(record).items():
+            for at, key in ((1, "velocity"), (2, "acceleration")):
+                off = np.var(getattr(point, key) - getattr(clean[name], key), axis=0).sum()
+                stated = np.trace(point.covariance[at], axis1=1, axis2=2).mean()
+                ratios.setdefault((name, key), []).append(off / stated)
+    # Limbs of constant length and offsets along the trunk take a little of the noise away.
+    found = {key: np.sqrt(np.mean(values)) for key, values in ratios.items()}
+    assert all(0.8 < ratio < 1.05 for ratio in found.values()), found
+
+
+def test_nothing_is_filtered_again():
+    time_s, xyz = circling(rate_hz=30.0)
+    record = footwork.record(xyz, time_s, 0.015, 0.05, np.random.default_rng(0))
+    smooth = skeleton_filter.smooth(record, CUTOFFS_HZ, 4)
+    point = measured(record).points["neck"]
+    shoulders = [walker.SKELETON.index(f"{side}_shoulder") for side in ("left", "right")]
+    np.testing.assert_allclose(point.position, smooth.xyz[0][:, shoulders].mean(axis=1))
+    speed = np.linalg.norm(point.velocity, axis=1)
+    integral = np.sum((speed[1:] + speed[:-1]) / 2) / 30.0
+    assert point.distance.measured_m == pytest.approx(integral)

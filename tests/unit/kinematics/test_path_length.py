@@ -14,6 +14,12 @@ def covariance(n_frames, sigma_m):
     return np.broadcast_to(np.eye(3) * sigma_m**2, (n_frames, 3, 3))
 
 
+def measure(xyz, stated, rate_hz, noise, cutoff_hz, order, *axes):
+    """Measure a raw path after one filter."""
+    path = filtering.zero_lag(xyz, rate_hz, cutoff_hz, order)
+    return path_length.measure(path, {cutoff_hz: stated}, rate_hz, noise, order, *axes)
+
+
 def arc(xyz):
     return np.linalg.norm(np.diff(xyz, axis=0), axis=1).sum()
 
@@ -41,7 +47,7 @@ def test_a_circle_without_noise():
     t = np.arange(0, 20, 1 / 60)
     xyz = np.stack([2 * np.cos(t), 2 * np.sin(t), 1 + 0 * t], axis=1)
     for axes in (path_length.SPACE, path_length.GROUND):
-        found = path_length.measure(xyz, covariance(len(t), 1e-6), 60.0, Noise(0.0), 6.0, 4, axes)
+        found = measure(xyz, covariance(len(t), 1e-6), 60.0, Noise(0.0), 6.0, 4, axes)
         assert found.measured_m == pytest.approx(2 * t[-1], rel=1e-3)
         assert found.corrected_m == pytest.approx(2 * t[-1], rel=1e-3)
         assert found.seconds == pytest.approx(t[-1])
@@ -63,10 +69,10 @@ def test_a_player_goes_the_true_distance_within_one_percent(rate_hz, sigma_m, me
         noisy = path + footwork.noise(len(path), rate_hz, sigma_m, memory_s, rng)
     stated = covariance(len(path), sigma_m)
     noise = noise_propagation.estimate(noisy, stated, rate_hz)
-    found = path_length.measure(noisy, stated, rate_hz, noise, 6.0, 4)
+    found = measure(noisy, stated, rate_hz, noise, 6.0, 4)
     assert found.corrected_m == pytest.approx(truth, rel=0.01)
     # The filtered path without noise is what the bias is counted from.
-    clean = path_length.measure(path, stated, rate_hz, noise, 6.0, 4).measured_m
+    clean = measure(path, stated, rate_hz, noise, 6.0, 4).measured_m
     assert found.measured_m - clean < found.bias_most_m + 3 * found.sigma_m
     assert found.bias_m <= found.bias_most_m + 1e-9
     assert abs(found.corrected_m - clean) < 3 * found.sigma_m
@@ -77,7 +83,7 @@ def test_the_sigma_is_the_scatter_of_the_length():
     _, path = footwork.neck(rate_hz, SECONDS, seed=3)
     stated = covariance(len(path), sigma_m)
     found = [
-        path_length.measure(
+        measure(
             path + footwork.noise(len(path), rate_hz, sigma_m, 0.1, np.random.default_rng(seed)),
             stated, rate_hz, noise, 6.0, 4,
         )
@@ -91,7 +97,7 @@ def test_the_sigma_is_the_scatter_of_the_length():
 def test_a_person_at_rest_goes_nearly_nowhere():
     sigma_m = 0.02
     noisy = np.random.default_rng(0).normal(0, sigma_m, (900, 3))
-    found = path_length.measure(noisy, covariance(900, sigma_m), 30.0, Noise(0.0), 6.0, 4)
+    found = measure(noisy, covariance(900, sigma_m), 30.0, Noise(0.0), 6.0, 4)
     assert found.measured_m > 8
     assert abs(found.corrected_m) < 0.25 * found.measured_m
     assert abs(found.corrected_m) < 3 * found.sigma_m
@@ -101,7 +107,7 @@ def test_open_gaps_are_in_neither_distance_nor_time():
     t = np.arange(301) / 30
     xyz = np.stack([2 * t, 0 * t, 0 * t], axis=1)
     xyz[100:150] = np.nan
-    found = path_length.measure(xyz, covariance(301, 1e-4), 30.0, Noise(0.0), 6.0, 4)
+    found = measure(xyz, covariance(301, 1e-4), 30.0, Noise(0.0), 6.0, 4)
     seconds = 99 / 30 + 150 / 30
     assert found.seconds == pytest.approx(seconds)
     assert found.measured_m == pytest.approx(2 * seconds, rel=1e-3)
@@ -110,10 +116,10 @@ def test_open_gaps_are_in_neither_distance_nor_time():
 def test_without_a_covariance_the_length_is_given_and_its_bias_unknown():
     _, path = footwork.neck(30, 5)
     unknown = np.full((len(path), 3, 3), np.nan)
-    found = path_length.measure(path, unknown, 30.0, Noise(0.0), 6.0, 4)
+    found = measure(path, unknown, 30.0, Noise(0.0), 6.0, 4)
     smooth = filtering.zero_lag(path, 30.0, 6.0, 4)
     assert found.measured_m == pytest.approx(arc(smooth), rel=0.005)
     assert np.isnan([found.bias_m, found.corrected_m, found.sigma_m]).all()
-    none = path_length.measure(np.full((50, 3), np.nan), unknown[:50], 30.0, Noise(0.0), 6.0, 4)
+    none = measure(np.full((50, 3), np.nan), unknown[:50], 30.0, Noise(0.0), 6.0, 4)
     assert (none.measured_m, none.seconds) == (0.0, 0.0)
     assert np.isnan(none.corrected_m)

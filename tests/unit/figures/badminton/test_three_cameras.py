@@ -91,15 +91,17 @@ def test_marks_stand_at_the_medians_of_raw_and_corrected():
             x, y = drawn[way].get_xydata()[at]
             assert x == pytest.approx(1000 * offset_m / share) and round(y) == at
     assert raw.get_xlim() == corrected.get_xlim()
-    of_neck = marks(corrected)[0].get_xdata()[three_cameras.ROWS.index("neck")]
-    assert np.isnan(of_neck)
+    neck = three_cameras.ROWS.index("neck")
+    assert np.isnan(marks(raw)[0].get_xdata()[neck])
+    assert marks(corrected)[0].get_xdata()[neck] == 8
     assert marks(missing)[0].get_xdata()[at] == 0
 
 
 def test_the_title_states_the_errors_of_two_cameras():
     drawing = three_cameras.draw(made(), CAMERAS)
     title = drawing.subfigs[0].get_suptitle()
-    assert "right half 60 (60), left half 120 (120), neck 8 (24), centre of gravity 8 (24)" in title
+    assert "2 cameras, ours, filtered, joint offsets removed" in title
+    assert "right half 30 (30), left half 60 (60), neck 8 (24), centre of gravity 8 (24)" in title
 
 
 def test_takes_have_panels_of_their_own_and_no_offsets_are_said_to_be_none():

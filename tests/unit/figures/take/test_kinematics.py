@@ -10,6 +10,7 @@ from courtside.calibration.court import court
 from courtside.exports import measures
 from courtside.figures.take import kinematics as speeds
 from courtside.kinematics import measures as kinematics
+from courtside.kinematics import skeleton_filter
 from courtside.records.keypoints import derived_joints
 from fixtures.people import footwork, walker
 
@@ -23,8 +24,9 @@ def tables():
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
     how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
     table = derived_joints.read(CONFIG / "derived_joints.yaml")
-    people = kinematics.measure(record, table, "blazepose33", how)
-    return measures.frames(people), measures.summary(people)
+    smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
+    people = kinematics.measure(smooth, record, table, "blazepose33", how)
+    return measures.frames(people), measures.summary(people, "filtered")
 
 
 def twice(rows):

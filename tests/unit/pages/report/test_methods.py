@@ -27,8 +27,7 @@ def test_methods_state_the_configuration(study):
         "<code>all-robust</code>: views are weighted",
         "within 15 px",
         "6 Hz (head), 10 Hz (arms)",
-        "7 Hz (head)",
-        "paths filtered at 5 Hz",
+        "nothing is filtered again",
     ):
         assert words in html, words
 

@@ -190,6 +190,8 @@ def test_a_session_may_not_be_named_like_a_folder_of_results(folder, name):
     ("override", "part"),
     [
         ({"filter_motion": {"cutoff_hz": {"head": 6, "trunk": 6, "arms": 6, "legs": 600}}}, "600"),
+        ({"filter_motion": {"distance_cutoff_hz": 6}}, "found 'distance_cutoff_hz'"),
+        ({"measure_kinematics": {"order": 4}}, "are those of filter_motion"),
         ({"filter_motion": {"max_gap_s": float("nan")}}, "type number, found nan"),
         ({"filter_motion": {"max_gap_s": float("inf")}}, "type number, found inf"),
         ({"filter_motion": {"max_gap_s": 10**400}}, "type number, found 1000"),
@@ -208,7 +210,7 @@ def test_an_override_obeys_the_rules_of_its_step(folder, override, part):
 
 
 def test_an_override_of_all_cut_offs_is_taken(folder):
-    cutoff_hz = {"head": 1, "trunk": 2, "arms": 3, "legs": 4}
+    cutoff_hz = {"head": 1, "trunk": 2, "arms": "residual", "legs": 4}
     study = load(folder, SESSION | {"override": {"filter_motion": {"cutoff_hz": cutoff_hz}}})
     common = study.parameters["filter_motion"]
     ours = study.sessions["hall"].parameters["filter_motion"]

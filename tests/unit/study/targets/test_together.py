@@ -33,7 +33,7 @@ def test_takes_of_one_subject_are_compared_over_sessions(study, studies):
     found = together.archived_takes(study)
     assert [row.labels["take"] for row in found] == ["shot", "rally"]
     assert found[0].measures == f"{SHOT}/kinematics/known18/all-robust/blazepose-full.summary.csv"
-    assert found[0].pose3d == f"{SHOT}/pose3d_filtered/known18/all-robust/blazepose-full.npz"
+    assert found[0].pose3d == f"{SHOT}/pose3d_corrected/known18/all-robust/blazepose-full.npz"
     assert found[0].labels == {
         "session": "players-tiny",
         "take": "shot",

@@ -1,7 +1,7 @@
 """Files for other programs: TRC, C3D, BVH, CSV, Pose2Sim and OpenSim, videos.
 
 trc, c3d, bvh, tidy: `write`: one person or body in that form (`tidy`: CSV); `trc.read`.
-measures: `frames`, `summary`, `cutoffs`: tables of kinematics.
+measures: `frames`, `summary`: tables of kinematics.
 pose2sim, opensim, markers: `write_project`, `read_takes`, `write_markers`: for Pose2Sim and
     OpenSim, with their joint names.
 overlay_video: `track`, `pictures`: a take's video with skeletons drawn in.

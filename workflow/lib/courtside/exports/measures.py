@@ -1,6 +1,6 @@
-"""CSV of kinematics: a row per frame and person, a row per measure, and the choice of cut-offs."""
+"""CSV of kinematics: a row per frame and person, a row per measure."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.kinematics import measures, path_length
-from courtside.kinematics.cutoffs import Choice
 from courtside.kinematics.joint_angles import Angle
 from courtside.records.keypoints import missing_reason
 
@@ -58,11 +57,12 @@ def _columns(point: measures.Point) -> dict[str, NDArray]:
     }
 
 
-def summary(people: Sequence[measures.Person]) -> pd.DataFrame:
+def summary(people: Sequence[measures.Person], stage: str) -> pd.DataFrame:
     """Return the measures of the whole take, in `SUMMARY_COLUMNS`.
 
-    Largest values are those of one frame, with its sigma: of many noisy frames the largest lies
-    above the true one, by one to three sigma.
+    `stage` says in each definition which joints were measured: `filtered` or `corrected`. Largest
+    values are those of one frame, with its sigma: of many noisy frames the largest lies above the
+    true one, by one to three sigma.
     """
     rows = []
     for person in people:
@@ -73,7 +73,8 @@ def summary(people: Sequence[measures.Person]) -> pd.DataFrame:
             ]
         for name, angle in person.angles.items():
             rows += [(person.person, *row) for row in _angle_rows(name, angle)]
-    return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
+    table = pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
+    return table.assign(definition=table["definition"] + f"; {stage} joints")
 
 
 def _camera_share(point: measures.Point) -> float:
@@ -136,20 +137,3 @@ def _angle_rows(name: str, angle: Angle) -> Iterator[tuple[Any, ...]]:
         at, n_frames = _largest(sign * angle.degrees)
         value, sigma = angle.degrees[at], angle.sigma_deg[at]
         yield f"{name}_{what}", value, sigma, unknown, "degrees", n_frames, words
-
-
-def cutoffs(choices: Mapping[str, Choice]) -> pd.DataFrame:
-    """Return how the cut-offs of each group were chosen.
-
-    `noise_mm`, per axis, was found by the analysis; it and the candidates' columns are empty in
-    the one row of a group whose cut-off was stated.
-    """
-    rows = []
-    for group, choice in choices.items():
-        pairs = list(zip(choice.candidates_hz, choice.residual_m, strict=True))
-        for candidate, residual in pairs or [(float("nan"), float("nan"))]:
-            rows.append(
-                (group, choice.cutoff_hz, 1000 * choice.noise_m, candidate, 1000 * residual)
-            )
-    names = ["group", "cutoff_hz", "noise_mm", "candidate_hz", "residual_mm"]
-    return pd.DataFrame(rows, columns=names).round(4)

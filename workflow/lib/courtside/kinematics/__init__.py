@@ -1,7 +1,8 @@
 """Measures of motion: filtering, speeds, distances, joint angles, centre of mass, smoothness.
 
-filtering: `fill_gaps`, `leave_out_uncertain`, `smooth`, `zero_lag`, `runs`
-cutoffs: `by_group`, `choose_cutoff`
+filtering: `fill_gaps`, `leave_out_uncertain`, `zero_lag`, `runs`
+skeleton_filter: `prepare`, `smooth` (of a take)
+cutoffs: `by_group`, `choose_cutoff`, `table`, `read`
 noise_propagation: `Noise`, `estimate`, `filtered_covariance`, `differentiate`
 path_length: `measure`, `mean_norm`
 joint_angles: `measure`, `between`, `trunk`

@@ -1,12 +1,15 @@
 """Cut-off frequencies for groups of joints: by residual analysis, or as stated."""
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.kinematics import filtering
+from courtside.records import tables
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError
@@ -16,6 +19,7 @@ TAIL = 0.5  # ASSUME: above this share of the highest candidate the residual is 
 HIGHEST = 0.45  # of the frame rate; the filter needs less than half
 STEP_HZ = 0.5  # ASSUME: fine enough, as the result is interpolated between candidates
 MIN_FRAMES = 30  # ASSUME: fewer give no steady residual
+COLUMNS = ["group", "cutoff_hz", "order", "noise_mm", "candidate_hz", "residual_mm"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +113,8 @@ def by_group(
 ) -> dict[str, Choice]:
     """Return the cut-off of each group of joints: the stated number, or `RESIDUAL`'s choice.
 
-    `points` are raw, short gaps filled. `wanted` maps groups of the skeleton to Hz or `RESIDUAL`.
+    `points` are of `skeleton_filter.prepare`. `wanted` maps groups of the skeleton to Hz or
+    `RESIDUAL`.
     """
     choices = {}
     for group, value in wanted.items():
@@ -122,3 +127,32 @@ def by_group(
         else:
             choices[group] = Choice(float(value), np.zeros(0), np.zeros(0), float("nan"))
     return choices
+
+
+def table(choices: Mapping[str, Choice], order: int) -> pd.DataFrame:
+    """Return how the cut-offs of each group were chosen, and the filter's effective order.
+
+    `COLUMNS`: group, cutoff_hz, order, noise_mm (found by the analysis, per axis), candidate_hz,
+    residual_mm; one row with the last three empty if the cut-off was stated.
+    """
+    rows = []
+    for group, choice in choices.items():
+        pairs = list(zip(choice.candidates_hz, choice.residual_m, strict=True))
+        for candidate, residual in pairs or [(float("nan"), float("nan"))]:
+            about = (group, choice.cutoff_hz, order, 1000 * choice.noise_m)
+            rows.append((*about, candidate, 1000 * residual))
+    return pd.DataFrame(rows, columns=COLUMNS).round(4)
+
+
+def read(path: str | os.PathLike) -> tuple[dict[str, float], int]:
+    """Read a `table`: the cut-off of each group (Hz), and the effective order of the filter."""
+    rows = tables.read(path, "a table of cut-offs", _fault).drop_duplicates("group")
+    chosen = dict(zip(rows["group"], rows["cutoff_hz"].astype(float), strict=True))
+    return chosen, int(rows["order"].iloc[0])
+
+
+def _fault(rows: pd.DataFrame) -> str:
+    if list(rows.columns) != COLUMNS:
+        return f"columns {list(rows.columns)}"
+    numbers = rows[["cutoff_hz", "order"]].to_numpy(dtype=float)
+    return "" if len(rows) and (numbers > 0).all() else "a row without a cut-off"

@@ -1,4 +1,4 @@
-"""Fill short gaps in 3D keypoints and remove noise without delay.
+"""Fill short gaps in 3D keypoints, leave out uncertain frames, filter series without delay.
 
 Every function returns a new record; the raw one is not changed.
 """
@@ -6,13 +6,12 @@ Every function returns a new record; the raw one is not changed.
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy import signal
 from scipy.interpolate import PchipInterpolator
 
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError
 
 UNCERTAIN_TIMES = 4.0  # ASSUME: times the usual standard deviation
 PAD_PERIODS = 1.0  # ASSUME: mirrored padding at both ends, in periods of the cut-off
@@ -89,41 +88,6 @@ def corrected_cutoff(cutoff_hz: float, rate_hz: float, order: int) -> float:
     return float(np.arctan(corrected) * rate_hz / np.pi)
 
 
-def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D:
-    """Remove noise with a zero-lag Butterworth low-pass filter, each joint with its own cut-off.
-
-    Times are uniform; runs of finite values are filtered one by one, and the same values stay
-    missing. `covariance_2d` is scaled by the share of white noise that the filter passes;
-    correlated noise passes more (`noise_propagation`).
-
-    Parameters
-    ----------
-    cutoff_hz : (J,) float
-        -3 dB frequency of the whole, forwards and backwards, filter: below half the frame rate,
-        else InputError.
-    order : int
-        Effective order of the whole filter; each pass has half of it. Even, else InputError.
-    """
-    if order < 2 or order % 2:
-        raise InputError(
-            f"filter_motion.order: expected an even number of 2 or more, found {order}"
-        )
-    if np.max(cutoff_hz) >= points.rate_hz / 2:
-        raise InputError(
-            f"filter_motion.cutoff_hz: expected less than half the frame rate ({points.rate_hz:g} "
-            f"Hz), found {np.max(cutoff_hz):g} Hz; lower it for this session"
-        )
-    xyz, covariance = points.xyz.copy(), points.covariance_2d.copy()
-    for cutoff in np.unique(cutoff_hz):
-        joints = np.flatnonzero(np.asarray(cutoff_hz) == cutoff)
-        covariance[:, :, joints] *= _noise_passed(_sections(cutoff, points.rate_hz, order // 2))
-        for person in range(len(xyz)):
-            xyz[person][:, joints] = zero_lag_points(
-                xyz[person][:, joints], points.rate_hz, cutoff, order
-            )
-    return replace(points, xyz=xyz, covariance_2d=covariance)
-
-
 def zero_lag_points(xyz: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
     """Apply `zero_lag` to points (T, n, 3), those that are known in the same frames at once."""
     known = np.isfinite(xyz).all(axis=2)
@@ -159,9 +123,3 @@ def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> ND
 def _sections(cutoff_hz: float, rate_hz: float, order: int) -> NDArray:
     one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order)
     return signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")
-
-
-def _noise_passed(sections: NDArray) -> float:
-    """Return the variance of filtered white noise of variance 1."""
-    _, response = signal.sosfreqz(sections, worN=4096)
-    return float(np.mean(np.abs(response) ** 4))

@@ -6,13 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.kinematics import (
-    centre_of_mass,
-    filtering,
-    joint_angles,
-    noise_propagation,
-    path_length,
-)
+from courtside.kinematics import centre_of_mass, joint_angles, noise_propagation, path_length
 from courtside.kinematics.joint_angles import Angle
 from courtside.kinematics.noise_propagation import Noise
 from courtside.kinematics.path_length import Distance
@@ -31,11 +25,10 @@ MODEL_BIAS = 0.7, 0.4
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """How a take is filtered."""
+    """How a take was filtered."""
 
     cutoff_hz: NDArray  # (J,): -3 dB frequency of the whole zero-lag filter for each joint
     order: int = 4  # its effective order
-    distance_cutoff_hz: float = 6.0  # for distances, of all points (`path_length.measure`)
     noise: Noise | None = None  # of the keypoints; estimated from each path where None
 
 
@@ -48,7 +41,9 @@ class Point:
     position: NDArray
     velocity: NDArray
     acceleration: NDArray
-    covariance: tuple[NDArray, ...]  # of these three, (T, 3, 3), from the keypoints' noise
+    # Of these three, (T, 3, 3): of the position as stated for the skeleton, NaN in filled gaps; of
+    # the others from the keypoints' noise.
+    covariance: tuple[NDArray, ...]
     # (T,): sigma of the position from the calibration, root of the sum over the axes: one error for
     # all frames, which changes slowly over the hall and hardly affects speeds.
     camera_sigma_m: NDArray
@@ -72,12 +67,16 @@ class Person:
 
 @dataclass(frozen=True, eq=False)
 class _Take:
-    """One person's raw and filtered joints, and how they are filtered."""
+    """One person's joints, filtered and before, and how they were filtered."""
 
+    skeletons: Keypoints3D
     raw: Keypoints3D
-    filtered: NDArray
     person: int
     how: Filter
+
+    def of(self, points: Keypoints3D, key: str) -> NDArray:
+        """Return a value of this person's joints (T, J, ...)."""
+        return getattr(points, key)[self.person]
 
 
 def size(
@@ -119,53 +118,65 @@ def definitions(
 
 
 def measure(
-    points: Keypoints3D,
+    skeletons: Keypoints3D,
+    raw: Keypoints3D,
     table: DerivedJoints,
     skeleton: str,
     how: Filter,
     sex_of: Mapping[str, str | None] | None = None,
 ) -> list[Person]:
-    """Measure all persons of a take.
+    """Measure all persons of a take on its filtered skeletons.
 
-    `points` are raw, short gaps filled (`filtering.fill_gaps`), of the named skeleton. `sex_of`
-    maps persons to "m", "f" or None.
+    Parameters
+    ----------
+    skeletons : Keypoints3D
+        Filtered as `how` says (`skeleton_filter.smooth`), then corrected or not: the ones that are
+        exported. Of the named `skeleton`.
+    raw : Keypoints3D
+        What was filtered (`skeleton_filter.prepare`): its noise is that of the measures.
+    sex_of : dict of str to {"m", "f"} or None, optional
+        Of persons.
 
-    All joints are filtered first; points are means of filtered joints, speeds and accelerations the
-    derivatives of their cubic splines. The joints' errors are taken to be independent; what the
-    filter removes of the motion is in no uncertainty.
+    Notes
+    -----
+    Nothing is filtered again. Points are means of the skeletons' joints, speeds and accelerations
+    the derivatives of their cubic splines, distances the integrals of the speeds. Uncertainties of
+    positions and angles are those stated for the skeletons; those of derivatives come from the raw
+    noise that passes the filter. The joints' errors are taken to be independent. In no uncertainty
+    of a derivative: what the filter removes of the motion, and how the error of a corrected joint
+    changes with the posture.
     """
-    smooth = filtering.smooth(points, how.cutoff_hz, how.order).xyz
     made = []
-    for at, person in enumerate(points.person_id):
+    for at, person in enumerate(skeletons.person_id):
         sex = (sex_of or {}).get(str(person))
-        weights, words = definitions(table, skeleton, points.joints, sex)
-        take = _Take(points, smooth[at], at, how)
+        weights, words = definitions(table, skeleton, skeletons.joints, sex)
+        take = _Take(skeletons, raw, at, how)
         found = {name: _point(take, weights[name], words[name]) for name in weights}
-        made.append(Person(str(person), points.time_s, found, _angles(take)))
+        made.append(Person(str(person), skeletons.time_s, found, _angles(take)))
     return made
 
 
 def _point(take: _Take, weights: NDArray, words: str) -> Point:
-    raw, how, used = take.raw, take.how, np.flatnonzero(weights)
-    xyz, covariance, reason = derived_joints.combine(
-        raw.xyz[take.person], raw.covariance_2d[take.person], raw.reason[take.person], weights
-    )
-    noise = _noise(xyz, covariance, take)
-    position = np.einsum("j,tjk->tk", weights[used], take.filtered[:, used])
-    velocity = noise_propagation.differentiate(position, raw.rate_hz)
-    camera = np.trace(raw.covariance_camera[take.person][:, used], axis1=-2, axis2=-1)
+    position, covariance, reason = _combined(take, take.skeletons, weights)
+    noise, rate_hz, used = _noise(take, weights), take.raw.rate_hz, np.flatnonzero(weights)
+    parts = _parts(take, weights)
+    known = np.isfinite(position).all(axis=1)
+    velocity = noise_propagation.differentiate(position, rate_hz)
+    camera = np.trace(take.of(take.skeletons, "covariance_camera")[:, used], axis1=-2, axis2=-1)
+    spreads = [
+        noise_propagation.summed_covariance(parts, known, noise, rate_hz, take.how.order, at)
+        for at in (1, 2)
+    ]
     distances = [
-        path_length.measure(
-            xyz, covariance, raw.rate_hz, noise, how.distance_cutoff_hz, how.order, axes, MODEL_BIAS
-        )
+        path_length.measure(position, parts, rate_hz, noise, take.how.order, axes, MODEL_BIAS)
         for axes in (path_length.SPACE, path_length.GROUND)
     ]
     return Point(
         words,
         position,
         velocity,
-        noise_propagation.differentiate(velocity, raw.rate_hz),
-        tuple(_spread(take, weights, noise, derivative) for derivative in (0, 1, 2)),
+        noise_propagation.differentiate(velocity, rate_hz),
+        (covariance, *spreads),
         np.sqrt(camera @ np.abs(weights[used])),
         noise,
         reason,
@@ -173,37 +184,32 @@ def _point(take: _Take, weights: NDArray, words: str) -> Point:
     )
 
 
-def _noise(xyz: NDArray, covariance: NDArray, take: _Take) -> Noise:
+def _combined(
+    take: _Take, points: Keypoints3D, weights: NDArray
+) -> tuple[NDArray, NDArray, NDArray]:
+    xyz, covariance, reason = (take.of(points, key) for key in ("xyz", "covariance_2d", "reason"))
+    return derived_joints.combine(xyz, covariance, reason, weights)
+
+
+def _noise(take: _Take, weights: NDArray) -> Noise:
     if take.how.noise is not None:
         return take.how.noise
+    xyz, covariance, _ = _combined(take, take.raw, weights)
     return noise_propagation.estimate(xyz, covariance, take.raw.rate_hz)
 
 
-def _spread(take: _Take, weights: NDArray, noise: Noise, derivative: int) -> NDArray:
-    """Return the covariance of a filtered mean of joints, or of a derivative."""
-    total = np.zeros(())
-    known = np.isfinite(take.filtered[:, weights != 0]).all(axis=(1, 2))
-    for cutoff_hz in np.unique(np.asarray(take.how.cutoff_hz)[weights != 0]):
-        share = np.where(take.how.cutoff_hz == cutoff_hz, weights, 0.0)
-        used = np.flatnonzero(share)
-        raw = np.einsum(
-            "j,tjkl->tkl", share[used] ** 2, take.raw.covariance_2d[take.person][:, used]
-        )
-        total = total + noise_propagation.filtered_covariance(
-            raw, known, noise, take.raw.rate_hz, float(cutoff_hz), take.how.order, derivative
-        )
-    return total
+def _parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
+    """Return the raw covariance (T, 3, 3) of the joints of a mean that share a cut-off, by it."""
+    cutoffs_hz = np.asarray(take.how.cutoff_hz)
+    raw, parts = take.of(take.raw, "covariance_2d"), {}
+    for cutoff_hz in np.unique(cutoffs_hz[weights != 0]):
+        used = np.flatnonzero((cutoffs_hz == cutoff_hz) & (weights != 0))
+        parts[float(cutoff_hz)] = np.einsum("j,tjkl->tkl", weights[used] ** 2, raw[:, used])
+    return parts
 
 
 def _angles(take: _Take) -> dict[str, Angle]:
-    joints = [joint for joint in take.raw.joints if joint in limbs.JOINTS]
-    at = [take.raw.joints.tolist().index(joint) for joint in joints]
-    spreads = []
-    for index in at:
-        xyz, covariance = (
-            getattr(take.raw, key)[take.person][:, index] for key in ("xyz", "covariance_2d")
-        )
-        noise = _noise(xyz, covariance, take)
-        one = (np.arange(len(take.raw.joints)) == index).astype(float)
-        spreads.append(_spread(take, one, noise, 0))
-    return joint_angles.measure(take.filtered[:, at], np.stack(spreads, axis=1), joints)
+    joints = [joint for joint in take.skeletons.joints if joint in limbs.JOINTS]
+    at = [take.skeletons.joints.tolist().index(joint) for joint in joints]
+    xyz, covariance = (take.of(take.skeletons, key)[:, at] for key in ("xyz", "covariance_2d"))
+    return joint_angles.measure(xyz, covariance, joints)

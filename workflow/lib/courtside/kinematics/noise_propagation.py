@@ -8,6 +8,7 @@ order of the zero-lag filter, and `derivative` 0 for the path, 1 for the velocit
 acceleration.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -153,6 +154,28 @@ def filtered_covariance(
     for start, stop in filtering.runs(known):
         gain[start:stop] = gains(stop - start, rate_hz, cutoff_hz, order, noise, derivative)
     return mean * gain[:, None, None]
+
+
+def summed_covariance(
+    parts: Mapping[float, NDArray],
+    known: NDArray,
+    noise: Noise,
+    rate_hz: float,
+    order: int,
+    derivative: int = 0,
+) -> NDArray:
+    """Return the covariance (T, 3, 3) of a sum of filtered paths, or of its derivative.
+
+    `parts` maps each cut-off in Hz to the raw covariance (T, 3, 3) of all that is filtered at it;
+    the noise of different parts is independent. The rest is as for `filtered_covariance`.
+    """
+    return np.sum(
+        [
+            filtered_covariance(part, known, noise, rate_hz, cutoff_hz, order, derivative)
+            for cutoff_hz, part in parts.items()
+        ],
+        axis=0,
+    )
 
 
 @lru_cache(maxsize=64)

@@ -1,6 +1,7 @@
 """Length of a noisy path, its bias, and the uncertainty of both."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,27 +58,29 @@ class Distance:
     seconds: float
 
 
+UNKNOWN = Distance(*(float("nan") for _ in fields(Distance)))
+
+
 def measure(
-    xyz: NDArray,
-    covariance: NDArray,
+    position: NDArray,
+    parts: Mapping[float, NDArray],
     rate_hz: float,
     noise: Noise,
-    cutoff_hz: float,
     order: int,
     axes: slice = SPACE,
     model_bias: tuple[float, float] = MODEL_BIAS,
 ) -> Distance:
-    """Return the length of a path.
+    """Return the length of a filtered path.
 
     Parameters
     ----------
-    xyz : (T, 3) float
-        Raw, metres, short gaps filled; NaN in open gaps.
-    covariance : (T, 3, 3) float
-        Of the raw points; NaN where unknown.
-    cutoff_hz, order : float, int
-        Of the zero-lag filter. High enough to keep the motion: the noise that passes is known and
-        subtracted, what is cut from the motion is not known.
+    position : (T, 3) float
+        Filtered, metres; NaN in open gaps.
+    parts : dict of float to (T, 3, 3) float
+        For each cut-off (Hz) of the zero-lag filter, the raw covariance of the joints that were
+        filtered at it, weighted as in the path; NaN where unknown.
+    order : int
+        Of that filter.
     axes : slice
         `SPACE`, or `GROUND` for the path's projection on the floor.
     model_bias : (float, float)
@@ -87,57 +90,65 @@ def measure(
     -----
     The length is the integral of the speed by the trapezoidal rule. Noise e with covariance S
     lengthens a velocity v to E|v + e|, by about the variance across v over 2 |v| where the noise is
-    small and by E|e| at rest. |v| is not known: the speed of the path filtered at half the cut-off,
-    where the velocity's noise is several times smaller, stands for it. Half of that noise's
-    variance is subtracted from its square. None would leave too much speed in rests, and all of it
-    too little, for negative squares are cut at 0; a half left 0.1 % of the length on made-up
-    footwork where noise had added 4 %.
+    small and by E|e| at rest. |v| is not known: the speed of the path filtered again at half the
+    lowest cut-off, where the velocity's noise is several times smaller, stands for it. Half of that
+    noise's variance is subtracted from its square. None would leave too much speed in rests, and
+    all of it too little, for negative squares are cut at 0; a half left 0.1 % of the length on
+    made-up footwork where noise had added 4 %.
     """
-    known = np.isfinite(xyz).all(axis=1)
-    velocity, spread = _velocity(xyz, covariance, known, rate_hz, noise, cutoff_hz, order)
-    slow = _velocity(xyz, covariance, known, rate_hz, noise, cutoff_hz / SLOWER, order)
+    known = np.isfinite(position).all(axis=1)
+    velocity = noise_propagation.differentiate(position, rate_hz)
     weight_s = _weights_s(known, rate_hz)
     used = weight_s > 0
-    velocity, spread, weight_s = (
-        velocity[used][:, axes],
-        spread[used][:, axes, axes],
-        weight_s[used],
-    )
-    measured = float(np.linalg.norm(velocity, axis=1) @ weight_s)
+    weight_s = weight_s[used]
+    measured = float(np.linalg.norm(velocity[used][:, axes], axis=1) @ weight_s)
+    spreads = {
+        cutoff_hz: noise_propagation.filtered_covariance(
+            part, known, noise, rate_hz, cutoff_hz, order, 1
+        )[used]
+        for cutoff_hz, part in parts.items()
+    }
+    spread = np.sum(list(spreads.values()), axis=0)[:, axes, axes]
     if not used.any() or not np.isfinite(spread).any():
-        nan, seconds = float("nan"), float(weight_s.sum())
-        return Distance(measured, nan, nan, nan, nan, nan, seconds)
+        return replace(UNKNOWN, measured_m=measured, seconds=float(weight_s.sum()))
     spread = _filled(spread)
-    true = true_velocity(slow[0][used][:, axes], _filled(slow[1][used][:, axes, axes]))
+    slow, slow_spread = _slower(position, parts, known, rate_hz, noise, order)
+    true = true_velocity(slow[used][:, axes], _filled(slow_spread[used][:, axes, axes]))
     bias, bias_sigma = float(_lengthening(true, spread) @ weight_s) * np.array(model_bias)
-    most = _largest_variance_ratio(rate_hz, noise, cutoff_hz, order)
-    lags = _correlation(len(true), rate_hz, noise, cutoff_hz, order)
-    sigma = np.hypot(np.sqrt(variance(true, spread, weight_s, lags)), bias_sigma)
+    filters = _Filters(_shares(spreads), rate_hz, order)
+    scatter = variance(true, spread, weight_s, filters.correlation(len(true), noise))
+    most = spread * filters.largest_variance_ratio(noise)
     return Distance(
         measured,
         float(bias),
         float(bias_sigma),
-        float(_lengthening(true, spread * most) @ weight_s),
+        float(_lengthening(true, most) @ weight_s),
         float(measured - bias),
-        float(sigma),
+        float(np.hypot(np.sqrt(scatter), bias_sigma)),
         float(weight_s.sum()),
     )
 
 
-def _velocity(
-    xyz: NDArray,
-    covariance: NDArray,
+def _slower(
+    position: NDArray,
+    parts: Mapping[float, NDArray],
     known: NDArray,
     rate_hz: float,
     noise: Noise,
-    cutoff_hz: float,
     order: int,
 ) -> tuple[NDArray, NDArray]:
-    path = filtering.zero_lag(xyz, rate_hz, cutoff_hz, order)
-    spread = noise_propagation.filtered_covariance(
-        covariance, known, noise, rate_hz, float(cutoff_hz), order, 1
-    )
+    """Return the velocity of the path filtered at half its lowest cut-off, and its covariance."""
+    slow_hz = min(parts) / SLOWER
+    path = filtering.zero_lag(position, rate_hz, slow_hz, order)
+    whole = np.sum(list(parts.values()), axis=0)
+    spread = noise_propagation.filtered_covariance(whole, known, noise, rate_hz, slow_hz, order, 1)
     return noise_propagation.differentiate(path, rate_hz), spread
+
+
+def _shares(spreads: Mapping[float, NDArray]) -> dict[float, float]:
+    """Return the share of each part's variance in that of the sum."""
+    found = {at: float(np.nanmean(np.trace(s, axis1=1, axis2=2))) for at, s in spreads.items()}
+    return {at: value / sum(found.values()) for at, value in found.items()}
 
 
 def _weights_s(known: NDArray, rate_hz: float) -> NDArray:
@@ -160,23 +171,40 @@ def _lengthening(velocity: NDArray, spread: NDArray) -> NDArray:
     return mean_norm(velocity, spread) - np.linalg.norm(velocity, axis=1)
 
 
-def _correlation(
-    n_frames: int, rate_hz: float, noise: Noise, cutoff_hz: float, order: int
-) -> NDArray:
-    """Return the velocity noise's correlation at 0, 1, ... frames, for as long as it lasts."""
-    seconds = noise_propagation.EDGE_PERIODS / cutoff_hz + INDEPENDENT_AFTER * noise.memory_s
-    n_lags = min(n_frames, int(np.ceil(seconds * rate_hz)) + 1)
-    return noise_propagation.autocorrelation(n_lags, rate_hz, float(cutoff_hz), order, noise, 1)
+@dataclass(frozen=True)
+class _Filters:
+    """The filters of a path's parts."""
 
+    shares: Mapping[float, float]  # of the variance of the velocity's noise, by cut-off in Hz
+    rate_hz: float
+    order: int
 
-def _largest_variance_ratio(rate_hz: float, noise: Noise, cutoff_hz: float, order: int) -> float:
-    """Return the largest variance of the velocity's noise for any memory, over that for its own."""
-    others = [Noise(float(memory), scale=noise.scale) for memory in MEMORIES_S]
-    found = [
-        noise_propagation.gains(10**3, rate_hz, float(cutoff_hz), order, one, 1)[500]
-        for one in (noise, *others)
-    ]
-    return max(found) / found[0]
+    def correlation(self, n_frames: int, noise: Noise) -> NDArray:
+        """Return the velocity noise's correlation at 0, 1, ... frames, for as long as it lasts."""
+        seconds = noise_propagation.EDGE_PERIODS / min(self.shares)
+        seconds += INDEPENDENT_AFTER * noise.memory_s
+        n_lags = min(n_frames, int(np.ceil(seconds * self.rate_hz)) + 1)
+        total = np.zeros(n_lags)
+        for cutoff_hz, share in self.shares.items():
+            total += share * noise_propagation.autocorrelation(
+                n_lags, self.rate_hz, cutoff_hz, self.order, noise, 1
+            )
+        return total
+
+    def largest_variance_ratio(self, noise: Noise) -> float:
+        """Return the velocity noise's largest variance for any memory, over that for its own."""
+        others = [Noise(float(memory), scale=noise.scale) for memory in MEMORIES_S]
+        return max(
+            sum(
+                share * self._gain(cutoff_hz, one) / self._gain(cutoff_hz, noise)
+                for cutoff_hz, share in self.shares.items()
+            )
+            for one in (noise, *others)
+        )
+
+    def _gain(self, cutoff_hz: float, noise: Noise) -> float:
+        found = noise_propagation.gains(10**3, self.rate_hz, cutoff_hz, self.order, noise, 1)
+        return float(found[500])
 
 
 def true_velocity(velocity: NDArray, spread: NDArray) -> NDArray:

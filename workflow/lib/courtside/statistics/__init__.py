@@ -1,6 +1,7 @@
 """Statistics of measures: agreement of two ways, change over sessions, dependent samples.
 
 agreement: `pair`, `compare`, `verdict`, `limits`, `smallest_detectable_change`
-longitudinal: `read`, `of_subject`, `over_sessions`, `errors_of_measurement`, `changes`, `labelled`, `check_single`
+longitudinal: `read`, `of_subject`, `over_sessions`, `errors_of_measurement`, `changes`,
+    `labelled`, `check_single`
 autocorrelation: `share`, `interval`, `frames_per_trial`, `covariance_of_sum`, `distinct`
 """

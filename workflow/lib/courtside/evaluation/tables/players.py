@@ -55,9 +55,9 @@ def table(
     minus the other, negative if ours is nearer. Those without `paired` in their name are
     differences of the two summaries; the paired ones are over the joints that both have, with the
     ends of their 95 % interval. `beats_others`: whether ours has the smaller median and p95 than
-    all of them in the paired comparison, or in the plain one if there is no paired one. On raw
-    rows, the kinematics (from the raw joints) of the person with the largest errors, and the clocks
-    of the take.
+    all of them in the paired comparison, or in the plain one if there is no paired one. On rows of
+    the stage that is measured, the kinematics of the person with the largest errors; on raw rows,
+    the clocks of the take.
 
     The arguments are of `read`: tables of `evaluate_take`, `evaluate_kinematics`, `evaluate_clocks`
     and `evaluate_fusions`; all but the first may be empty.
@@ -69,12 +69,10 @@ def table(
     found = in_one.reindex(columns=[*names, *covered, "identity_percent"])
     found = found.join(_over_joints(rows[rows["joint"].isin(skeleton.JOINTS)])).reset_index()
     found = _gains(found, gains)
-    raw = found["stage"] == "pose3d"
-    for part, on in ((_kinematics(kinematics), KEY), (_clocks(clocks), TAKE)):
+    clocked = _clocks(clocks).assign(stage="pose3d")
+    for part, on in ((_kinematics(kinematics), KEY), (clocked, TAKE)):
         if len(part):
-            whole = found[on].merge(part, on=on, how="left", validate="many_to_one")
-            for column in part.columns.difference(on, sort=False):
-                found[column] = whole[column].where(raw)
+            found = found.merge(part, on=[*on, "stage"], how="left", validate="many_to_one")
     counts = [name for name in found if name.startswith("n_clocks")]
     found = found.astype(dict.fromkeys(counts, "Int64"))
     order = found["stage"].map({stage: at for at, stage in enumerate(STAGES)})
@@ -128,9 +126,10 @@ def _kinematics(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the worst of each number over the persons of a take, points side by side."""
     if rows.empty:
         return rows
-    found = {"kinematics_seconds": rows.groupby(KEY)["seconds"].min()}
+    key = [*KEY, "stage"]
+    found = {"kinematics_seconds": rows.groupby(key)["seconds"].min()}
     for point in POINTS:
-        groups = rows[rows["point"] == point].groupby(KEY)
+        groups = rows[rows["point"] == point].groupby(key)
         furthest = groups["distance_error_percent"].agg(_furthest)
         found[f"{point}_distance_error_percent"] = furthest
         found[f"{point}_speed_rmse_m_s"] = groups["speed_rmse_m_s"].max()

@@ -22,6 +22,7 @@ ROWS = (*SETS, *JOINTS, *POINTS)
 NOTHING_MM = 1.0, 1000.0  # limits of the axis when nobody was placed
 CLAIMED = ("right half", *(joint for joint in JOINTS if joint.startswith("right_")), *POINTS)
 PANELS = {"pose3d": "as triangulated (raw)", "pose3d_corrected": "filtered, joint offsets removed"}
+NO_OFFSETS = "no estimate of\njoint offsets"
 WAYS = {  # fusion: words, colour, mark, filled
     "two-dlt": ("plain, as in the paper", "#777777", "o", False),
     "two-robust": ("ours", "#777777", "o", True),
@@ -41,7 +42,7 @@ def table(errors: pd.DataFrame, kinematics: pd.DataFrame) -> pd.DataFrame:
 
     session, take, calibration, model, fusion, stage, joint, person, n, missing_percent, median_mm,
     p95_mm, claimed (called stable with two cameras by the paper). Several persons are pooled; for
-    neck and centre, which are measured from the raw joints by a filter of their own (stage
+    neck and centre, which are measured on the skeletons of the last stage (here called
     `kinematics`), the person with the larger median counts. `errors` and `kinematics` are of
     `players.read`; kinematics may be empty.
     """
@@ -76,8 +77,11 @@ def draw(rows: pd.DataFrame, cameras: dict[str, Sequence[str]]) -> Figure:
     for part, (key, block) in zip(parts, blocks, strict=True):
         axes = part.subplots(1, 3, sharey=True, width_ratios=[4, 4, 1.6])
         for axis, (stage, heading) in zip(axes[:2], PANELS.items(), strict=True):
-            stages = [stage, "kinematics"] if stage == "pose3d" else [stage]
+            stages = [stage] if stage == "pose3d" else [stage, "kinematics"]
             _errors(axis, block[block["stage"].isin(stages)], ways)
+            if stage not in set(block["stage"]):
+                heading = "filtered"
+                axis.text(0.5, 0.5, NO_OFFSETS, transform=axis.transAxes, ha="center")
             axis.set(title=heading, xlabel="distance from the truth (mm)")
             _logarithmic(axis, limits)
         _missing(axes[2], block[block["stage"] == "pose3d"], ways)
@@ -88,8 +92,6 @@ def draw(rows: pd.DataFrame, cameras: dict[str, Sequence[str]]) -> Figure:
 
 
 def _errors(axis: Axes, rows: pd.DataFrame, ways: list[str]) -> None:
-    if rows.empty:
-        axis.text(0.5, 0.5, "no estimate of\njoint offsets", transform=axis.transAxes, ha="center")
     for way in ways:
         part, place = _mark(axis, rows, ways, way, "median_mm")
         colour = WAYS[way][1]
@@ -141,7 +143,8 @@ def _title(key: tuple[str, str, str, str], rows: pd.DataFrame) -> str:
     session, take, calibration, model = key
     n = rows.loc[rows["joint"].isin(JOINTS), "n"].max()
     title = f"{session}, take {take}, {calibration}, {model}; a joint's mark: up to {n:.0f} values"
-    two = rows[(rows["fusion"] == "two-robust") & rows["stage"].isin(["pose3d", "kinematics"])]
+    stage = "pose3d_corrected" if "pose3d_corrected" in set(rows["stage"]) else "pose3d"
+    two = rows[(rows["fusion"] == "two-robust") & rows["stage"].isin([stage, "kinematics"])]
     two = two.dropna(subset=["median_mm"]).set_index("joint")
     words = {**SETS, **POINTS}
     found = [
@@ -149,7 +152,7 @@ def _title(key: tuple[str, str, str, str], rows: pd.DataFrame) -> str:
         for joint in ("right half", "left half", *POINTS)
         if joint in two.index
     ]
-    what = "2 cameras, ours, raw; median (95 % quantile) in mm"
+    what = f"2 cameras, ours, {PANELS[stage]}; median (95 % quantile) in mm"
     return f"{title}\n{what}: {', '.join(found)}" if found else title
 
 

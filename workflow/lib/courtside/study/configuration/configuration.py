@@ -41,6 +41,10 @@ TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
         ),
     }
 )
+REPLACED = {  # keys of former versions: what to use now
+    "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
+    "filter and cut-offs are those of filter_motion",
+}
 VALIDATOR = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=TYPES)
 
 
@@ -233,6 +237,7 @@ def _key_lines(error: Any, where: str) -> Iterator[str]:
         if key not in known:
             close = difflib.get_close_matches(key, known, n=1)
             advice = f"did you mean {close[0]!r}?" if close else "remove it"
+            advice = REPLACED.get(key, advice)
             yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
 
 

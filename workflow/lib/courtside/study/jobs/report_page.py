@@ -20,7 +20,6 @@ STEPS = (
     "synchronise_cameras",
     "triangulate",
     "filter_motion",
-    "measure_kinematics",
 )
 TABLES = {
     paths.CALIBRATION_TABLE: (

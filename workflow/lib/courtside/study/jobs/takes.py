@@ -70,6 +70,16 @@ def exported(job: Job) -> str:
     return job.fill(paths.SKELETONS, stage=job.wildcards.get("stage", "pose3d"))
 
 
+def measured(job: Job) -> str:
+    """Return the skeletons that are measured: those of the last stage."""
+    return job.fill(paths.SKELETONS, stage=job.stages()[-1])
+
+
+def measured_stage(job: Job) -> str:
+    """Return in a word what these skeletons are: filtered or corrected."""
+    return job.stages()[-1].removeprefix("pose3d_")
+
+
 def blur_faces(job: Job) -> bool:
     """Return whether faces are blurred in pictures of a take, where pictures are agreed to."""
     job.demand("pictures")

@@ -17,7 +17,7 @@ class MeasuredTake:
     """A take measured with one calibration and one network."""
 
     measures: str  # the file of its summary of measures
-    pose3d: str  # the file of its filtered skeletons
+    pose3d: str  # the file of the skeletons that were measured
     labels: dict[str, str]  # session, take, calibration and model
 
     @property
@@ -67,7 +67,8 @@ def measured_takes(
         for take, way, model in product(session.takes, session.take_calibrations(), models):
             labels = {"session": session.name, "take": take, "calibration": way, "model": model}
             known = {**labels, "fusion": session.fusions()[0]}
-            measures, pose3d = (p.format(**known) for p in (paths.MEASURES, paths.POSE3D_FILTERED))
+            measures = paths.MEASURES.format(**known)
+            pose3d = paths.SKELETONS.format(stage=study.stages(model)[-1], **known)
             found.append(MeasuredTake(measures, pose3d, labels))
     return found
 

@@ -1,0 +1,84 @@
+"""The filtered skeleton of a take: it is exported, and all kinematics are measured on it."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from courtside.kinematics import filtering, noise_propagation
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.study.errors import InputError
+
+
+def prepare(raw: Keypoints3D, max_gap_s: float) -> Keypoints3D:
+    """Return what is filtered: raw keypoints without uncertain frames, short gaps filled.
+
+    See `filtering.leave_out_uncertain` and `filtering.fill_gaps`.
+    """
+    return filtering.fill_gaps(filtering.leave_out_uncertain(raw), max_gap_s)
+
+
+def check_cutoff(highest_hz: float, rate_hz: float) -> None:
+    """Raise `InputError` if a filter has its cut-off at half the frame rate or above."""
+    if highest_hz >= rate_hz / 2:
+        raise InputError(
+            f"filter_motion.cutoff_hz: expected less than half the frame rate ({rate_hz:g} Hz), "
+            f"found {highest_hz:g} Hz; lower it for this session, under override in its file"
+        )
+
+
+def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D:
+    """Remove noise with a zero-lag Butterworth low-pass filter, each joint with its own cut-off.
+
+    `points` are of `prepare`, with uniform times. Runs of finite values are filtered one by one,
+    and the same values stay missing; runs of one or two frames stay as they are. `covariance_2d` is
+    that of the filtered noise, by the noise model of each joint's own path
+    (`noise_propagation.estimate`); it stays unknown where it was, as in filled gaps.
+
+    Parameters
+    ----------
+    cutoff_hz : (J,) float
+        -3 dB frequency of the whole, forwards and backwards, filter: below half the frame rate,
+        else InputError.
+    order : int
+        Effective order of the whole filter; each pass has half of it. Even, else InputError.
+    """
+    if order < 2 or order % 2:
+        raise InputError(
+            f"filter_motion.order: expected an even number of 2 or more, found {order}"
+        )
+    if len(points.time_s) < 2:
+        return points
+    each_hz = np.broadcast_to(np.asarray(cutoff_hz, dtype=float), points.joints.shape)
+    check_cutoff(float(each_hz.max()), points.rate_hz)
+    xyz, covariance = points.xyz.copy(), points.covariance_2d.copy()
+    for one_hz in np.unique(each_hz):
+        joints = np.flatnonzero(each_hz == one_hz)
+        for person in range(len(xyz)):
+            xyz[person][:, joints] = filtering.zero_lag_points(
+                points.xyz[person][:, joints], points.rate_hz, float(one_hz), order
+            )
+    for person, joint in np.ndindex(xyz.shape[0], xyz.shape[2]):
+        covariance[person, :, joint] = _covariance(
+            points.xyz[person, :, joint],
+            points.covariance_2d[person, :, joint],
+            points.rate_hz,
+            float(each_hz[joint]),
+            order,
+        )
+    return replace(points, xyz=xyz, covariance_2d=covariance)
+
+
+def _covariance(
+    xyz: NDArray, covariance: NDArray, rate_hz: float, cutoff_hz: float, order: int
+) -> NDArray:
+    """Return the covariance (T, 3, 3) of one joint's filtered path, from its raw path."""
+    stated = np.isfinite(covariance).all(axis=(1, 2))
+    if not stated.any():
+        return covariance
+    known = np.isfinite(xyz).all(axis=1)
+    noise = noise_propagation.estimate(xyz, covariance, rate_hz)
+    found = noise_propagation.filtered_covariance(
+        covariance, known, noise, rate_hz, cutoff_hz, order
+    )
+    return np.where(stated[:, None, None], found, np.nan)
