@@ -237,7 +237,9 @@ def _key_lines(error: Any, where: str) -> Iterator[str]:
         if key not in known:
             close = difflib.get_close_matches(key, known, n=1)
             advice = f"did you mean {close[0]!r}?" if close else "remove it"
-            advice = REPLACED.get(key, advice)
+            if key in REPLACED:
+                yield f"{where}: expected no key {key!r} any more, found it; {REPLACED[key]}"
+                continue
             yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
 
 
