@@ -98,7 +98,12 @@ def steps(folder, given):
     filtering = parameters["filter_motion"]
     yield "filter_motion", (made["raw"], shape, made["filtered"], tables["cutoffs"]), filtering
     offsets = ROOT / "config" / "joint_offsets" / f"{given.model}.csv"
-    yield "correct_joints", (made["filtered"], offsets, made["last"]), {}
+    paths = Paths(
+        raw=made["raw"], filtered=made["filtered"], cutoffs=tables["cutoffs"],
+        skeleton=shape, offsets=offsets,
+    )  # fmt: skip
+    about = {"max_gap_s": filtering["max_gap_s"], "sex_of": {}}
+    yield "correct_joints", (paths, made["last"]), about
     paths = Paths(
         skeletons=made["last"], raw=made["raw"], cutoffs=tables["cutoffs"],
         skeleton=shape, derived=table,

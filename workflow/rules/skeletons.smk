@@ -104,14 +104,18 @@ rule filter_motion:
 
 rule correct_joints:
     input:
-        filtered_npz=paths.POSE3D_FILTERED,
-        offsets_csv=lambda w: paths.joint_offsets(CONFIG, w.model),
+        raw=paths.POSE3D,
+        filtered=paths.POSE3D_FILTERED,
+        cutoffs=paths.CUTOFFS,
+        skeleton=of_job(Job.skeleton_file),
+        offsets=lambda w: paths.joint_offsets(CONFIG, w.model),
     output:
         corrected_npz=paths.POSE3D_CORRECTED,
     log:
         f"results/{{session}}/logs/correct_joints/{paths.OF_FUSED}.log",
     params:
         code=code("correct_joints.py"),
+        step=of_job(lambda job: job.some("filter_motion", ["max_gap_s"])),
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/correct_joints.py"

@@ -1,14 +1,18 @@
-"""Take joint offsets off, keep limb lengths: filtered 3D keypoints, offsets -> corrected ones."""
+"""Correct joints, then filter: 3D keypoints, joint offsets, cut-offs -> corrected keypoints."""
 
+from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.reconstruction import joint_correction
-from courtside.records.keypoints import keypoints
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
 
 
-def main(filtered_npz, offsets_csv, corrected_npz, *, sex_of):
-    table = joint_correction.read(offsets_csv)
-    corrected = joint_correction.correct(keypoints.read_3d(filtered_npz), table, sex_of)
-    keypoints.write_3d(corrected_npz, joint_correction.keep(corrected))
+def main(paths, corrected_npz, *, max_gap_s, sex_of):
+    raw = skeleton_filter.prepare(keypoints.read_3d(paths.raw), max_gap_s)
+    filtered, table = keypoints.read_3d(paths.filtered), joint_correction.read(paths.offsets)
+    chosen, order = cutoffs.read(paths.cutoffs)
+    per_joint = skeleton.read(paths.skeleton).by_group(chosen)
+    corrected = joint_correction.correct_then_filter(raw, filtered, table, sex_of, per_joint, order)
+    keypoints.write_3d(corrected_npz, corrected)
 
 
 if __name__ == "__main__":

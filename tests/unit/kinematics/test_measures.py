@@ -204,7 +204,9 @@ def test_noise_of_corrected_skeletons_is_at_most_what_is_stated(memory_s):
 
     def corrected(record):
         smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
-        last = joint_correction.keep(joint_correction.correct(smooth, offsets, {"p1": "m"}))
+        last = joint_correction.correct_then_filter(
+            record, smooth, offsets, {"p1": "m"}, how.cutoff_hz, how.order
+        )
         return measures.measure(last, record, TABLE, "blazepose33", how, {"p1": "m"})[0].points
 
     record = footwork.record(xyz, time_s, sigma_m, memory_s, np.random.default_rng(0))

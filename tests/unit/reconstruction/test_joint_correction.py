@@ -1,16 +1,19 @@
 """Joint offsets: known shares of known vectors are found, and removed from other bodies."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from courtside.kinematics import skeleton_filter
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.errors import InputError
-from fixtures.people import walker
+from fixtures.people import footwork, walker
 
+CONFIG = Path(__file__).parents[3] / "config"
 JOINTS = list(skeleton.JOINTS)
 SHARES = {"up": 0.05, "out": -0.03, "forward": 0.02}
 ALONG_THIGH = 0.1
@@ -271,3 +274,26 @@ def test_the_turn_of_the_world_does_not_matter():
     np.testing.assert_allclose(
         joint_correction.keep(record_limb_lengths(noisy @ turn.T)).xyz, straight, atol=1e-9
     )
+
+
+def test_corrected_skeletons_are_filtered_last():
+    rate_hz, cutoff_hz = 30.0, np.full(33, 6.0)
+    offsets = joint_correction.read(CONFIG / "joint_offsets" / "blazepose-full.csv")
+    time_s, neck = footwork.neck(rate_hz, 10, seed=3)
+    xyz, _ = footwork.body(neck, time_s)
+    raw = footwork.record(xyz, time_s, 0.02, 0.0, np.random.default_rng(0))
+    filtered = skeleton_filter.smooth(raw, cutoff_hz, 4)
+    sex_of = {"p1": "m"}
+    done = joint_correction.correct_then_filter(raw, filtered, offsets, sex_of, cutoff_hz, 4)
+    before = joint_correction.keep(joint_correction.correct(filtered, offsets, sex_of))
+
+    def fast(points):  # power above twice the cut-off, of the limbs' joints
+        limbs = [list(points.joints).index(name) for name in JOINTS]
+        change = np.diff(points.xyz[0][:, limbs], n=2, axis=0)[30:-30]
+        spectrum = np.fft.rfft(change * np.hanning(len(change))[:, None, None], axis=0)
+        hz = np.fft.rfftfreq(len(change), 1 / rate_hz)
+        return np.mean(np.abs(spectrum[hz > 12]) ** 2)
+
+    assert fast(done) < 0.2 * fast(before)
+    np.testing.assert_allclose(done.xyz, before.xyz, atol=0.04)  # and otherwise the same
+    np.testing.assert_array_equal(done.covariance_2d, before.covariance_2d)

@@ -130,10 +130,10 @@ def measure(
     Parameters
     ----------
     skeletons : Keypoints3D
-        Filtered as `how` says (`skeleton_filter.smooth`), then corrected or not: the ones that are
-        exported. Of the named `skeleton`.
+        The ones that are exported, corrected or not: filtered last, as `how` says
+        (`skeleton_filter.smooth`). Of the named `skeleton`.
     raw : Keypoints3D
-        What was filtered (`skeleton_filter.prepare`): its noise is that of the measures.
+        What they were made from (`skeleton_filter.prepare`): its noise is that of the measures.
     sex_of : dict of str to {"m", "f"} or None, optional
         Of persons.
 
