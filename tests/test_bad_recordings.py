@@ -19,6 +19,7 @@ import pytest
 import yaml
 
 from courtside.calibration.court import court as court_files
+from courtside.calibration.court import quality
 from courtside.calibration.records import tie_points
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
@@ -90,6 +91,7 @@ class Session:
         run(
             "adjust_network",
             self.summary,
+            self.folder / "sfm" / "matches.db",
             points,
             court,
             out,
@@ -279,6 +281,20 @@ def test_a_wrong_click_is_named(good, clicked, tmp_path):
     marked["back"][COURT.indices(["p06"])] += (12, 9)
     (warning,) = calibrated(good, tmp_path, marked).warnings
     assert_says(warning, ["camera back: point p06:", "click it again or delete it"])
+
+
+def test_of_a_doubtful_map_nothing_else_is_said(good, clicked, tmp_path, monkeypatch):
+    """Neither of a wrong click nor of a mirrored court: the map cannot tell."""
+    marked = {camera: xy.copy() for camera, xy in clicked.items()}
+    marked["back"][COURT.indices(["p06"])] += (12, 9)
+    monkeypatch.setattr(quality, "SUPPORTED", 1.0)
+    found = calibrated(good, tmp_path, mirrored(clicked))
+    assert_says(found.error, ["map doubtful:", "take more bridging images"])
+    assert not found.is_written
+    found = calibrated(good, tmp_path, marked)
+    (warning,) = found.warnings
+    assert_says(warning, ["map doubtful:", "100 % or more", ".png", "take more bridging images"])
+    assert found.error == "" and found.is_written
 
 
 def noise(size=SETTINGS.size_px, seed=0):

@@ -75,6 +75,7 @@ def tied(folder):
         ties=joint_adjustment.Ties(("side", "back"), sizes, known),
         images=np.array(["static/side.png", "static/back.png", "frames/walk/000000.png"]),
         centres=np.arange(9.0).reshape(3, 3), xyz=np.ones((4, 3)), residual_px=0.4, n_maps=(2, 2),
+        support=tie_points.Support(0.9, "a", 0.8, ("a", "b"), 0.7),
     )  # fmt: skip
     tie_points.write(folder / "ties.npz", record)
 

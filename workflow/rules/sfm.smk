@@ -80,6 +80,7 @@ rule adjust_network:
     input:
         model=paths.MODEL,
         summary_json=paths.SFM_SUMMARY,
+        matches_db=paths.MATCHES,
         clicks_csv=lambda w: session_of(w).court_points or [],
         court_yaml=of_job(Job.court_file),
     output:

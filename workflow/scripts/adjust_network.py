@@ -10,13 +10,15 @@ from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
 from courtside.records.cameras import clicks, image_names
-from courtside.sfm import model, registration
+from courtside.sfm import model, registration, two_views
 from courtside.study.errors import InputError
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options):
+def main(
+    summary_json, matches_db, clicks_csv, court_yaml, ties_npz, *, cameras, min_points, **options
+):
     network, images, sizes = model.read(Path(summary_json).parent)
     summary = json.loads(Path(summary_json).read_text(encoding="utf-8"))
     fixed = {camera: image_names.static(camera) for camera in cameras}
@@ -28,18 +30,23 @@ def main(summary_json, clicks_csv, court_yaml, ties_npz, *, cameras, min_points,
     found = selection.fixed_cameras(network, placed, size_of)
     known, fault, residual_px = None, "", np.nan
     centres, points = selection.centres(network), network.xyz
+    support = tie_points.Support(**summary["explained"])
     if not outcome:
         try:
             known, parts = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
             centres, points = walk_parts.centres(parts), walk_parts.points(parts)
             residual_px = walk_parts.residual_spread(parts)
+            every = list(fixed.values()) + summary["bridging_images"]
+            views = walk_parts.views(parts, images, sizes)
+            adjusted = two_views.explained(two_views.read(matches_db, every), views)
+            support = max(support, adjusted, key=lambda each: each.pair_share)
         except InputError as error:
             fault = str(error)
     log.logger.info("%s", outcome or fault or f"ties fit to {residual_px:.2f} px")
     seen = [registration.n_seen(network, images, fixed[camera]) for camera in placed]
     n_maps = summary["n_agreeing"], summary["n_attempts"]
     record = tie_points.Record(
-        outcome, fault, found, seen, known, images, centres, points, residual_px, n_maps
+        outcome, fault, found, seen, known, images, centres, points, residual_px, n_maps, support
     )
     tie_points.write(ties_npz, record)
 

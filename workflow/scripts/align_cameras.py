@@ -43,7 +43,9 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
 
 
 def warnings_of(court, record, marked, **options):
-    """Return what is wrong with clicks or court; the bend that stays in this model is not."""
+    """Return what is wrong with map, clicks or court; the bend that stays in this model is not."""
+    if doubt := quality.doubt(record.support):
+        return [doubt]
     try:
         if record.fault:
             raise InputError(record.fault)

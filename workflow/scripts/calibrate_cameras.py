@@ -25,16 +25,15 @@ def main(
     **options,
 ):
     record = tie_points.read(ties_npz)
-    if record.outcome or record.fault:
-        raise InputError(record.outcome or record.fault)
+    found, checked = calibrate(record, clicks_csv, court_yaml, **options)
     names = list(record.ties.cameras)
-    found, checked = solve(record, clicks_csv, court_yaml, **options)
     report = {
         "calibration": calibration,
         "tie_residual_px": round(record.residual_px, 4),
         "n_images": len(record.images),
         "n_maps_agreeing": record.n_maps[0],
         "n_maps": record.n_maps[1],
+        "explained": record.support._asdict(),
         "n_points_seen": dict(zip(names, map(int, record.n_points_seen), strict=True)),
         **checked,
     }
@@ -44,6 +43,22 @@ def main(
     covariance = camera_covariance.of_network(names, found.covariance)
     camera_covariance.write(covariance_npz, covariance)
     write_json(quality_json, report)
+
+
+def calibrate(record, clicks_csv, court_yaml, **options):
+    """Return what `solve` does; of a doubtful map nothing is said of clicks, court or names."""
+    doubt = quality.doubt(record.support)
+    if record.outcome:
+        raise InputError(record.outcome)
+    try:
+        if record.fault:
+            raise InputError(record.fault)
+        found, checked = solve(record, clicks_csv, court_yaml, **options)
+    except InputError as error:
+        raise InputError(doubt or str(error)) from error
+    if doubt:
+        checked["warnings"] = [doubt] if court_yaml else [*checked["warnings"], doubt]
+    return found, checked
 
 
 def solve(record, clicks_csv, court_yaml, **options):

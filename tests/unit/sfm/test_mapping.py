@@ -261,6 +261,7 @@ def test_of_models_that_differ_the_one_with_most_observations_is_kept(
         return bent(found, 0.1 * number)
 
     monkeypatch.setattr(mapping, "SOUND_PX", np.inf)
+    monkeypatch.setattr(mapping, "KNOWN", {})  # not again
     asked = spoil(monkeypatch, poorer)
     names, options = sorted(sfm_made.centres(truth)), {"mapper": "global", "seed": 7}
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=3)
@@ -275,6 +276,7 @@ def test_from_the_third_attempt_on_lenses_are_held(synthetic, tmp_path, monkeypa
     def failing(number, found):
         return found._replace(model=pycolmap.Reconstruction()) if number < 4 else found
 
+    monkeypatch.setattr(mapping, "KNOWN", {})  # not again
     asked = spoil(monkeypatch, failing)
     names, options = sorted(sfm_made.centres(truth)), {"min_num_matches": 14}
     summary = mapping.map_images(
@@ -313,3 +315,45 @@ def test_a_model_that_the_disk_cuts_short_is_refused(synthetic, tmp_path, monkey
         monkeypatch.setattr(mapping, "_map", then_the_disk_is_full)
         with pytest.raises(InputError, match=r"images.bin: expected \d+ bytes, found \d+: free"):
             mapping.map_images(path, names, tmp_path / "cut", mapper="global", seed=0)
+
+
+@pytest.fixture
+def guessed(synthetic, tmp_path, monkeypatch):
+    """Return a way to map with `attempts` whose found models are changed, and what was asked."""
+    path, truth = synthetic
+    names = sorted(sfm_made.centres(truth))
+    monkeypatch.setattr(mapping, "SOUND_PX", np.inf)
+
+    def run(change, **options):
+        asked = spoil(monkeypatch, change)
+        arguments = {"mapper": "global", "seed": 7, "attempts": 2, **options}
+        summary = mapping.map_images(path, names, tmp_path / "a", **arguments)
+        return summary, asked, pycolmap.Reconstruction(str(tmp_path / "a"))
+
+    return run, truth
+
+
+def test_a_model_that_explains_too_little_is_mapped_again_with_known_lenses(guessed):
+    run, truth = guessed
+    summary, asked, found = run(lambda number, found: bent(found, 0.5) if number < 3 else found)
+    known = mapping.KNOWN["global"]
+    assert asked == [(7, {}), (8, {}), (7, known), (8, known)]
+    assert (summary["held"], summary["n_attempts"], summary["n_agreeing"]) == (known, 4, 2)
+    assert summary["explained"]["image_share"] > 0.99 and len(summary["explained"]["image"]) > 0
+    assert_placed(sfm_made.centres(found), sfm_made.centres(truth), 1e-3)
+
+
+def test_a_second_model_that_explains_less_is_not_kept(guessed):
+    run, _ = guessed
+    summary, asked, _ = run(lambda number, found: bent(found, 0.5 if number < 3 else 2.0))
+    assert len(asked) == 4 and summary["held"] == {}
+    assert summary["explained"]["image_share"] < mapping.DOUBTED
+    assert (summary["n_attempts"], summary["n_agreeing"]) == (4, 2)
+
+
+def test_a_model_that_explains_enough_is_not_mapped_again(guessed):
+    run, _ = guessed
+    summary, asked, _ = run(lambda number, found: found)
+    assert asked == [(7, {}), (8, {})] and summary["explained"]["image_share"] == 1.0
+    summary, asked, _ = run(lambda number, found: bent(found, 0.5), mapper="incremental")
+    assert summary["explained"]["image_share"] < mapping.DOUBTED and len(asked) == 2

@@ -54,6 +54,20 @@ def test_put_together_every_image_has_its_place_and_fixed_ones_that_of_the_first
     np.testing.assert_array_equal(walk_parts.points(parts)[10:], whole.xyz)
 
 
+def test_images_are_cameras_by_name_those_of_fixed_ones_of_the_first_part():
+    whole = networks_made.make(6, 10)
+    first, second = walk_parts.split(whole, [0, 1], 3)
+    second.network.cam_from_world[second.fixed, :, 3] += 0.5
+    names = [f"{at}.png" for at in range(8)]
+    sizes = [(100 + at, 90) for at in range(len(whole.lens))]
+    views = walk_parts.views([first, second], names, sizes)
+    assert [view.name for view in views] == names
+    for at, view in enumerate(views):
+        np.testing.assert_array_equal(view.cam_from_world, whole.cam_from_world[at])
+        lens = whole.lens_of_image[at]
+        assert view.size == sizes[lens] and view.K[1, 1] == whole.lens[lens, 0]
+
+
 def test_the_spread_of_residuals_is_that_of_the_parts():
     whole = networks_made.make(40, 100, noise_px=0.5)
     parts = walk_parts.split(whole, [0, 1], 20)

@@ -10,6 +10,7 @@ from scipy import stats
 from scipy.spatial.transform import Rotation
 
 from courtside.calibration.court import court, quality
+from courtside.calibration.records.tie_points import Support
 from courtside.geometry import camera as camera_models
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
@@ -107,6 +108,16 @@ def test_without_a_court_maps_that_disagree_are_a_warning():
     assert len(quality.check_maps(1, 1)["warnings"]) == 1
     _, warning = quality.check_maps(1, 6)["warnings"]
     assert "found 6 that all differ" in warning and "\n" not in warning
+
+
+@pytest.mark.parametrize("above", [0.0, 0.2])
+def test_a_map_that_contradicts_a_pair_is_doubtful(above):
+    pair = "static/side.png", "frames/walk/000003.png"
+    support = Support(0.8, pair[1], 0.6, pair, quality.SUPPORTED + above)
+    assert quality.doubt(support) == ""
+    warning = quality.doubt(support._replace(pair_share=0.244))
+    assert warning.startswith("map doubtful: expected 30 % or more of the matches of static/side")
+    assert "000003.png" in warning and warning.endswith("found 24 %; take more bridging images")
 
 
 # ---- errors against the truth

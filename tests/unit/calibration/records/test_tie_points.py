@@ -16,6 +16,7 @@ from fixtures.cameras.scene import opencv_projection
 NAMES = ("side", "back")
 SIZES = [(1280, 720), (960, 540)]
 IMAGES = np.array(["static/side.png", "static/back.png", "frames/walk/000000.png"])
+SUPPORT = tie_points.Support(0.9, "static/back.png", 0.7, ("static/side.png", "walk/3.png"), 0.4)
 
 
 def cameras():
@@ -41,6 +42,7 @@ def record(**changes):
         "xyz": np.ones((4, 3)),
         "residual_px": 0.4,
         "n_maps": (2, 3),
+        "support": SUPPORT,
     }
     return tie_points.Record(**{**fields, **changes})
 
@@ -54,7 +56,7 @@ def test_what_is_written_is_read(tmp_path):
     made = record()
     found = through(tmp_path, made)
     assert (found.outcome, found.fault, found.residual_px) == ("", "", 0.4)
-    assert found.n_maps == (2, 3)
+    assert found.n_maps == (2, 3) and found.support == SUPPORT
     assert [c.name for c in found.sfm_cameras] == list(NAMES)
     assert [c.size for c in found.sfm_cameras] == SIZES
     for camera, known in zip(found.sfm_cameras, made.sfm_cameras, strict=True):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court
-from courtside.calibration.records.tie_points import Record
+from courtside.calibration.records.tie_points import Record, Support
 from courtside.figures.badminton import fig06
 from courtside.figures.style import style
 
@@ -27,6 +27,7 @@ def record(outcome="", fault=""):
         xyz=np.random.default_rng(0).uniform(-5, 25, (50, 3)),
         residual_px=0.5,
         n_maps=(2, 2),
+        support=Support(0.9, "", 0.8, ("", ""), 0.7),
     )
 
 

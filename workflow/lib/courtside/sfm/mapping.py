@@ -10,8 +10,9 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
+from courtside.calibration.records.tie_points import Support
 from courtside.geometry import similarity
-from courtside.sfm import database
+from courtside.sfm import database, model, two_views
 from courtside.study.errors import InputError
 
 # An image with fewer points has no reliable pose (6 unknowns), but COLMAP calls it registered.
@@ -20,9 +21,28 @@ LEAST_POINTS = 6
 HELD = {"global": {"mapper.bundle_adjustment.refine_extra_params": False}}
 HELD_FROM = 2  # ASSUME: attempts as usual before its distortion is held
 SOUND_PX = 2.0  # ASSUME: a model with a larger mean reprojection error has folded or wrong lenses
+# With known lenses from the start and throughout: see `two_views.with_known_lenses`.
+KNOWN = {
+    "global": {
+        "mapper.bundle_adjustment.refine_focal_length": False,
+        "mapper.bundle_adjustment.refine_extra_params": False,
+    }
+}
+# Of an image's verified matches, as its model explains them. Chosen on small halls with ten
+# images (docs/measured.md): a wrong map had 0.55, and mapping again costs little.
+DOUBTED = 0.65
 # Of the extent of the images, root mean square: models of good sessions differ by 0 to 0.5 % from
 # seed to seed, one whose focal lengths have diverged to two thirds or to twice by more.
 AGREE = 0.01
+
+
+class _Attempt(NamedTuple):
+    """The largest model of one run of a mapper."""
+
+    model: pycolmap.Reconstruction
+    n_models: int
+    seed: int
+    held: Mapping[str, Any]
 
 
 def map_images(
@@ -45,6 +65,12 @@ def map_images(
     whole. The model with most images is kept; of those, one that fits, then one that most others
     confirm, then the one with most observations.
 
+    Maps can agree on a wrong shape: the global mapper starts from two-view geometries of unknown
+    lenses, which pictures of mostly one plane do not determine, and its focal lengths run away.
+    Where no whole models agree, or the model explains less than `DOUBTED` of any image's verified
+    matches, all is mapped again with the first guess of every lens. The model whose worst image is
+    explained better is kept. The adjustment that follows frees the lenses.
+
     Parameters
     ----------
     matches_db : as `matching.match` made it; it is read only
@@ -59,22 +85,12 @@ def map_images(
     -------
     summary : of the model: pycolmap's version, the seed that gave it, which of COLMAP's options
         were `held` against a diverging lens, n_models, n_images, n_registered, n_points3d,
-        reprojection_px, track_length; n_attempts, and n_agreeing, the number of whole models that
-        agree with it, itself included
+        reprojection_px, track_length; `explained`, how much of the verified matches it
+        explains, as `tie_points.Support`; n_attempts, and n_agreeing, the number of whole models
+        that agree with it, itself included
     """
-    tried: list[_Attempt] = []
-    options = dict(options or {})
-    for at in range(max(attempts, 1)):
-        held = _held(tried, images, mapper, options)
-        found = _map(matches_db, images, mapper, seed + at, options | held)._replace(held=held)
-        confirmed = any(_confirms(each, found, images) for each in tried)
-        tried.append(found)
-        if confirmed and _is_whole(found, images):
-            break
-    agreeing = [1 + sum(_confirms(each, found, images) for each in tried) for found in tried]
-    ranks = [_rank(*each) for each in zip(tried, agreeing, strict=True)]
-    chosen = ranks.index(max(ranks))  # the first of equals
-    n_agreeing, best = agreeing[chosen], tried[chosen]
+    arguments = matches_db, images, mapper, seed, dict(options or {}), attempts
+    best, support, n_agreeing, n_attempts = _explaining(*arguments)
     Path(folder).mkdir(parents=True, exist_ok=True)
     best.model.write_binary(str(folder))
     _check_whole(best.model, Path(folder))
@@ -89,9 +105,58 @@ def map_images(
         "n_points3d": best.model.num_points3D(),
         "reprojection_px": _error_px(best),
         "track_length": best.model.compute_mean_track_length(),
-        "n_attempts": len(tried),
+        "explained": support._asdict(),
+        "n_attempts": n_attempts,
         "n_agreeing": n_agreeing,
     }
+
+
+def _explaining(
+    matches_db, images, mapper, seed, options, attempts
+) -> tuple[_Attempt, Support, int, int]:
+    """Map, and again with known lenses where the best model is doubtful; return the better one.
+
+    With it what it explains, how many models agree with it, and how many were tried in all.
+    """
+    verified = two_views.read(matches_db, images)
+    best, n_agreeing, n_attempts = _agreed(matches_db, images, mapper, seed, options, attempts)
+    support = _explained(verified, best)
+    doubtful = support.image_share < DOUBTED or n_agreeing == 1 < n_attempts
+    if not (doubtful and mapper in KNOWN and _is_whole(best, images)):
+        return best, support, n_agreeing, n_attempts
+    known = {name: on for name, on in KNOWN[mapper].items() if name not in options}
+    with two_views.with_known_lenses(matches_db, images, seed=seed) as copy:
+        again, n_others, n_more = _agreed(copy, images, mapper, seed, options | known, attempts)
+    others = _explained(verified, again)
+    if _is_better(again, others, best, support):
+        best, support, n_agreeing = again._replace(held=known | dict(again.held)), others, n_others
+    return best, support, n_agreeing, n_attempts + n_more
+
+
+def _agreed(matches_db, images, mapper, seed, options, attempts) -> tuple[_Attempt, int, int]:
+    """Map until two whole models agree; return the best, how many agree with it, how many tried."""
+    tried: list[_Attempt] = []
+    for at in range(max(attempts, 1)):
+        held = _held(tried, images, mapper, options)
+        found = _map(matches_db, images, mapper, seed + at, options | held)._replace(held=held)
+        confirmed = any(_confirms(each, found, images) for each in tried)
+        tried.append(found)
+        if confirmed and _is_whole(found, images):
+            break
+    agreeing = [1 + sum(_confirms(each, found, images) for each in tried) for found in tried]
+    ranks = [_rank(*each) for each in zip(tried, agreeing, strict=True)]
+    chosen = ranks.index(max(ranks))  # the first of equals
+    return tried[chosen], agreeing[chosen], len(tried)
+
+
+def _explained(verified, attempt) -> Support:
+    return two_views.explained(verified, model.views(attempt.model))
+
+
+def _is_better(again, others, best, support) -> bool:
+    """Return whether another model has as many images and explains the worst of them better."""
+    ranks = [(len(_places(each)), _error_px(each) <= SOUND_PX) for each in (again, best)]
+    return (*ranks[0], others.image_share) > (*ranks[1], support.image_share)
 
 
 def _held(tried, images, mapper, options) -> dict[str, Any]:
@@ -116,15 +181,6 @@ def _check_whole(model: pycolmap.Reconstruction, folder: Path) -> None:
                 f"{folder / name}: expected {expected} bytes, found {found}: free or allow the "
                 "space"
             )
-
-
-class _Attempt(NamedTuple):
-    """The largest model of one run of a mapper."""
-
-    model: pycolmap.Reconstruction
-    n_models: int
-    seed: int
-    held: Mapping[str, Any]
 
 
 def _map(matches_db, images, mapper, seed, options) -> _Attempt:

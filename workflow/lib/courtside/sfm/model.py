@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import LENS, Network
+from courtside.geometry.camera import Camera
 from courtside.sfm import model_files
 from courtside.study.errors import reading
 
@@ -55,6 +56,19 @@ def _network(found: pycolmap.Reconstruction) -> tuple[Network, list[str], list[t
     xyz = np.array([track.xyz for track in tracks]).reshape(-1, 3)
     network = problem.with_points(network, xyz, image_idx, point_idx, xy)
     return network, [image.name for image in images], sizes
+
+
+def views(found: pycolmap.Reconstruction) -> list[Camera]:
+    """Return the registered images of a model as cameras, with the images' names, in its frame."""
+    images = [found.images[at] for at in sorted(found.reg_image_ids())]
+    return [_view(image, found.cameras[image.camera_id]) for image in images]
+
+
+def _view(image: pycolmap.Image, camera: pycolmap.Camera) -> Camera:
+    fx, fy, cx, cy, *dist = camera.params
+    K = np.array([[fx, 0, cx - HALF_PIXEL], [0, fy, cy - HALF_PIXEL], [0, 0, 1]])
+    size, pose = (camera.width, camera.height), image.cam_from_world().matrix()
+    return Camera(image.name, size, K, np.array([*dist, 0.0]), pose)
 
 
 def lens_prior(sizes: Sequence[tuple[int, int]]) -> tuple[NDArray, NDArray]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.bundle import selection
 from courtside.calibration.bundle.problem import PER_IMAGE, Network
+from courtside.geometry.camera import Camera
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +54,21 @@ def centres(parts: Sequence[Part]) -> NDArray:
     for part in reversed(parts):
         found[part.images] = selection.centres(part.network)
     return found
+
+
+def views(
+    parts: Sequence[Part], names: Sequence[str], sizes: Sequence[tuple[int, int]]
+) -> list[Camera]:
+    """Return all images as cameras with the images' `names`; of fixed images, the first part's.
+
+    `sizes` (width, height), px, are of the pictures of each lens.
+    """
+    found: dict[str, Camera] = {}
+    for part in reversed(parts):
+        of_part = [names[at] for at in part.images]
+        of_lenses = [sizes[lens] for lens in part.network.lens_of_image]
+        found |= {c.name: c for c in selection.cameras(part.network, of_part, of_lenses)}
+    return [found[name] for name in names]
 
 
 def points(parts: Sequence[Part]) -> NDArray:

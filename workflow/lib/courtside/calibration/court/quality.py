@@ -11,9 +11,13 @@ from scipy.spatial.transform import Rotation
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.point_covariance import mahalanobis
+from courtside.calibration.records.tie_points import Support
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
+# Of the verified matches of a pair of images. Chosen on small halls with ten images
+# (docs/measured.md): wrong maps explained 0.24 or less of one pair, good ones 0.36 or more of all.
+SUPPORTED = 0.3
 # ASSUME: heights of a match, from the floor to a player's reach; the grid is about 2 m wide on a
 # badminton court.
 HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
@@ -95,6 +99,21 @@ def check_maps(n_agreeing: int, n_maps: int) -> dict[str, Any]:
             "bridging images, or name a court"
         )
     return {"warnings": warnings}
+
+
+def doubt(support: Support) -> str:
+    """Return in one line why a map is doubtful, empty if it is not.
+
+    A doubtful map says nothing about clicks, court or names of cameras.
+    """
+    if support.pair_share >= SUPPORTED:
+        return ""
+    one, other = support.pair
+    return (
+        f"map doubtful: expected {100 * SUPPORTED:.0f} % or more of the matches of {one} with "
+        f"{other} to agree with it, found {100 * support.pair_share:.0f} %; take more bridging "
+        "images"
+    )
 
 
 def leave_one_out_errors(

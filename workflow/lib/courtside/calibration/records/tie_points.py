@@ -3,6 +3,7 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +15,7 @@ from courtside.geometry.camera import Camera
 from courtside.records import npz
 from courtside.study.errors import reading
 
-FORM = "courtside ties 2"
+FORM = "courtside ties 3"
 SPEC = {
     "outcome": ("str", ()),
     "fault": ("str", ()),
@@ -32,7 +33,27 @@ SPEC = {
     "xyz": ("float", ("N", "3")),
     "residual_px": ("float", ()),
     "n_maps": ("int", ("2",)),
+    "explained": ("float", ("3",)),
+    "doubted": ("str", ("3",)),
 }
+
+
+class Support(NamedTuple):
+    """How much of the verified matches of some images a map explains.
+
+    Attributes
+    ----------
+    share : of all, 0..1; 1 without any
+    image, image_share : the image whose matches are explained least
+    pair, pair_share : of the pairs with many matches the one that is explained least; two empty
+        names and 1 without any
+    """
+
+    share: float
+    image: str
+    image_share: float
+    pair: tuple[str, str]
+    pair_share: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,13 +73,14 @@ class Record:
     # Number of maps of the same matches that place the images as this one does, itself included,
     # and number of all maps made.
     n_maps: tuple[int, int]
+    support: Support
 
 
 def write(path: str | os.PathLike, record: Record) -> None:
     """Write a `Record` to an npz file."""
     sfm = selection.of_cameras(record.sfm_cameras)
     reference = record.ties.knowledge.reference if record.ties else None
-    knowledge = record.ties.knowledge if record.ties else None
+    knowledge, s = record.ties.knowledge if record.ties else None, record.support
     arrays = {
         "outcome": np.array(record.outcome),
         "fault": np.array(record.fault),
@@ -76,6 +98,8 @@ def write(path: str | os.PathLike, record: Record) -> None:
         "xyz": _stack(record.xyz, (3,)),
         "residual_px": np.array(float(record.residual_px)),
         "n_maps": np.array(record.n_maps, dtype=int),
+        "explained": np.array([s.share, s.image_share, s.pair_share]),
+        "doubted": np.array([s.image, *s.pair], dtype=str),
     }
     npz.write(path, FORM, SPEC, arrays)
 
@@ -109,7 +133,13 @@ def _record(found: Mapping[str, NDArray]) -> Record:
         found["xyz"],
         float(found["residual_px"]),
         (int(found["n_maps"][0]), int(found["n_maps"][1])),
+        _support(found["explained"], found["doubted"]),
     )
+
+
+def _support(shares: NDArray, names: NDArray) -> Support:
+    (share, image_share, pair_share), (image, one, other) = map(float, shares), map(str, names)
+    return Support(share, image, image_share, (one, other), pair_share)
 
 
 def _stack(values: ArrayLike, shape: tuple[int, ...]) -> NDArray:
