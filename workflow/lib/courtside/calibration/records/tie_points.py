@@ -73,7 +73,7 @@ class Record:
     # Number of maps of the same matches that place the images as this one does, itself included,
     # and number of all maps made.
     n_maps: tuple[int, int]
-    support: Support
+    support: Support  # as mapped or as adjusted with the clicks, whichever is better
 
 
 def write(path: str | os.PathLike, record: Record) -> None:
