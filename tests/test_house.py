@@ -23,6 +23,7 @@ RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
 SCHEMAS = sorted((ROOT / "workflow" / "schemas").glob("*.yaml"))
 UNTESTED = {"__init__", "errors", "missing_reason"}  # names and constants only
 TESTED_THROUGH = {  # parts of one thing: the tests of the whole cover them
+    "courtside/calibration/records/support": "test_tie_points.py",
     "courtside/pose/conversion/onnx_writer": "test_tflite_onnx.py",
     "courtside/pose/conversion/tflite_operators": "test_tflite_onnx.py",
     "courtside/pose/conversion/tflite_tensors": "test_tflite_graph.py",

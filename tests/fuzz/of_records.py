@@ -7,6 +7,7 @@ from courtside.calibration.bundle import selection
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.calibration.records import tie_points
+from courtside.calibration.records.support import Support
 from courtside.pages.viewer import layers
 from courtside.records.cameras import frame_table, frame_times, shake_table
 from courtside.records.devices import device_motion
@@ -75,7 +76,7 @@ def tied(folder):
         ties=joint_adjustment.Ties(("side", "back"), sizes, known),
         images=np.array(["static/side.png", "static/back.png", "frames/walk/000000.png"]),
         centres=np.arange(9.0).reshape(3, 3), xyz=np.ones((4, 3)), residual_px=0.4, n_maps=(2, 2),
-        support=tie_points.Support(0.9, "a", 0.8, ("a", "b"), 0.7),
+        support=Support(0.9, "a", 0.8, ("a", "b"), 0.7),
     )  # fmt: skip
     tie_points.write(folder / "ties.npz", record)
 

@@ -9,6 +9,7 @@ from courtside.calibration.bundle import selection, walk_parts
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import tie_points
+from courtside.calibration.records.support import Support
 from courtside.records.cameras import clicks, image_names
 from courtside.sfm import model, registration, two_views
 from courtside.study.errors import InputError
@@ -30,7 +31,7 @@ def main(
     found = selection.fixed_cameras(network, placed, size_of)
     known, fault, residual_px = None, "", np.nan
     centres, points = selection.centres(network), network.xyz
-    support = tie_points.Support(**summary["explained"])
+    support = Support(**summary["explained"])
     if not outcome:
         try:
             known, parts = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)

@@ -10,7 +10,7 @@ from scipy import stats
 from scipy.spatial.transform import Rotation
 
 from courtside.calibration.court import court, quality
-from courtside.calibration.records.tie_points import Support
+from courtside.calibration.records.support import Support
 from courtside.geometry import camera as camera_models
 from courtside.study.errors import InputError
 from fixtures.cameras import scene

@@ -9,6 +9,7 @@ from courtside.calibration.bundle import problem as networks
 from courtside.calibration.bundle import selection, solver
 from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records import covariance, tie_points
+from courtside.calibration.records.support import Support
 from courtside.study.errors import InputError
 from fixtures.cameras import networks_made
 from fixtures.cameras.scene import opencv_projection
@@ -16,7 +17,7 @@ from fixtures.cameras.scene import opencv_projection
 NAMES = ("side", "back")
 SIZES = [(1280, 720), (960, 540)]
 IMAGES = np.array(["static/side.png", "static/back.png", "frames/walk/000000.png"])
-SUPPORT = tie_points.Support(0.9, "static/back.png", 0.7, ("static/side.png", "walk/3.png"), 0.4)
+SUPPORT = Support(0.9, "static/back.png", 0.7, ("static/side.png", "walk/3.png"), 0.4)
 
 
 def cameras():

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court
-from courtside.calibration.records.tie_points import Record, Support
+from courtside.calibration.records.support import Support
+from courtside.calibration.records.tie_points import Record
 from courtside.figures.badminton import fig06
 from courtside.figures.style import style
 

@@ -10,7 +10,7 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
-from courtside.calibration.records.tie_points import Support
+from courtside.calibration.records.support import Support
 from courtside.geometry import similarity
 from courtside.sfm import database, model, two_views
 from courtside.study.errors import InputError
@@ -86,7 +86,7 @@ def map_images(
     summary : of the model: pycolmap's version, the seed that gave it, which of COLMAP's options
         were `held` against a diverging lens, n_models, n_images, n_registered, n_points3d,
         reprojection_px, track_length; `explained`, how much of the verified matches it
-        explains, as `tie_points.Support`; n_attempts, and n_agreeing, the number of whole models
+        explains, as a `Support`; n_attempts, and n_agreeing, the number of whole models
         that agree with it, itself included
     """
     arguments = matches_db, images, mapper, seed, dict(options or {}), attempts

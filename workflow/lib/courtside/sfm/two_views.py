@@ -12,7 +12,7 @@ import numpy as np
 import pycolmap
 from numpy.typing import NDArray
 
-from courtside.calibration.records.tie_points import Support
+from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera, undistort
 from courtside.sfm import database
 from courtside.sfm.model import HALF_PIXEL

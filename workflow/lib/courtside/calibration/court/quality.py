@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.calibration.point_covariance import mahalanobis
-from courtside.calibration.records.tie_points import Support
+from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 

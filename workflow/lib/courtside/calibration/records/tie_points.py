@@ -3,7 +3,6 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from courtside.calibration.bundle import problem, selection, solver
 from courtside.calibration.bundle.problem import LENS
 from courtside.calibration.court import joint_adjustment
+from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera
 from courtside.records import npz
 from courtside.study.errors import reading
@@ -36,24 +36,6 @@ SPEC = {
     "explained": ("float", ("3",)),
     "doubted": ("str", ("3",)),
 }
-
-
-class Support(NamedTuple):
-    """How much of the verified matches of some images a map explains.
-
-    Attributes
-    ----------
-    share : of all, 0..1; 1 without any
-    image, image_share : the image whose matches are explained least
-    pair, pair_share : of the pairs with many matches the one that is explained least; two empty
-        names and 1 without any
-    """
-
-    share: float
-    image: str
-    image_share: float
-    pair: tuple[str, str]
-    pair_share: float
 
 
 @dataclass(frozen=True, eq=False)
