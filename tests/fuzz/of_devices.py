@@ -95,7 +95,7 @@ def suits(folder):
 
 def read_suit(path):
     """Read a mocopi recording."""
-    found, _ = mocopi.read(path, MOCOPI)
+    found = mocopi.read(path, MOCOPI)
     require(found.xyz.shape == (len(found.time_s), 27, 3), "shape")
     return found
 

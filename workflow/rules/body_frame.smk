@@ -8,7 +8,7 @@ Steps: correct_inertial, choose_tpose (for all sources of a take), align_bodies,
 
 rule correct_inertial:
     input:
-        bvh_file=lambda w: device_of(w).file,
+        device_npz=paths.DEVICE,
         skeleton_yaml=paths.skeleton(CONFIG, "mocopi27"),
         vision_npz=of_job(devices.vision_file),
         sync_json=paths.DEVICE_CLOCKS,

@@ -1,12 +1,11 @@
 """Correct a mocopi recording by vision.
 
-Reads BVH, a camera's skeleton and clocks; writes corrected BVH, joints and report.
+Reads its motion, a camera's skeleton and clocks; writes corrected BVH, motion and report.
 """
 
 from dataclasses import replace
 from math import hypot
 
-from courtside.devices import mocopi
 from courtside.exports import bvh
 from courtside.inertial import correction
 from courtside.records.devices import clocks as sync
@@ -20,7 +19,7 @@ ABSENT = sync.Clock(status="unknown", note="not in the file")
 
 
 def main(
-    bvh_file,
+    device_npz,
     skeleton_yaml,
     vision_npz,
     sync_json,
@@ -33,15 +32,14 @@ def main(
     sigma_m,
 ):
     names = skeleton.read(skeleton_yaml)
-    motion, posed = mocopi.read(bvh_file, names, source=device)
-    vision = device_motion.read(vision_npz)
+    motion, vision = device_motion.read(device_npz), device_motion.read(vision_npz)
     _, clocks = sync.read(sync_json)
     used = {name: clocks.get(name, ABSENT) for name in (device, vision_device)}
     if fault := sync.fault_line(sync_json, used):
         raise InputError(fault)
     own, theirs = used[device], used[vision_device]
     corrected, report = correction.correct(
-        replace(posed, time_s=own.to_reference(posed.time_s)),
+        replace(motion.posed, time_s=own.to_reference(motion.time_s)),
         replace(vision, time_s=theirs.to_reference(vision.time_s)),
         sigma_m=sigma_m,
         lag_s=hypot(own.uncertainty_s, theirs.uncertainty_s),
@@ -51,7 +49,7 @@ def main(
     corrected = replace(corrected, time_s=time_s)
     order = [corrected.hierarchy.joints.index(joint) for joint in motion.joints]
     xyz = forward(corrected)[0][:, order]
-    motion = replace(motion, source=f"{device}-corrected", time_s=time_s, xyz=xyz)
+    motion = replace(motion, source=f"{device}-corrected", time_s=time_s, xyz=xyz, posed=corrected)
     device_motion.write(motion_npz, motion)
     bvh.write(corrected_bvh, _renamed(corrected, names))
     report.write(report_json)

@@ -12,7 +12,7 @@ from courtside.study.execution.script import run
 def main(recording, skeleton_yaml, motion_npz, *, device, kind):
     joints = skeleton.read(skeleton_yaml)
     if kind == "inertial":
-        motion, _ = mocopi.read(recording, joints, source=device)
+        motion = mocopi.read(recording, joints, source=device)
     else:
         motion = nuitrack.read(recording, joints.joints, device)
     device_motion.write(motion_npz, motion)

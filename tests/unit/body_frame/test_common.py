@@ -121,7 +121,7 @@ def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
 @pytest.mark.parametrize("name", ["jump", "mocopi-mobile-arm-raise-turn"])
 def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(name):
     joints = skeleton.read(CONFIG / "skeletons" / "mocopi27.yaml")
-    motion, _ = mocopi.read(REAL / "mocopi" / f"{name}.bvh", joints)
+    motion = mocopi.read(REAL / "mocopi" / f"{name}.bvh", joints)
     happened = detect.shown([motion], {"mocopi": "mocopi"})
     assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
     clocks = {"mocopi": Clock(status="reference")}

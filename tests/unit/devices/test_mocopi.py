@@ -59,7 +59,8 @@ def test_the_skeleton_is_a_tree_from_the_root():
 @pytest.mark.parametrize(("name", "n_frames", "rate_hz"), REAL_FILES)
 def test_a_real_file_has_the_study_s_joints(name, n_frames, rate_hz):
     path = REAL / "mocopi" / f"{name}.bvh"
-    motion, posed = mocopi.read(path, MOCOPI)
+    motion = mocopi.read(path, MOCOPI)
+    posed = motion.posed
     assert (motion.source, motion.kind) == ("mocopi", "inertial")
     assert motion.joints.tolist() == list(posed.hierarchy.joints) == list(MOCOPI.joints)
     assert motion.xyz.shape == (n_frames, 27, 3)
@@ -76,7 +77,7 @@ def test_a_real_file_has_the_study_s_joints(name, n_frames, rate_hz):
 @needs_real
 @pytest.mark.parametrize("name", [name for name, _, _ in REAL_FILES])
 def test_a_real_body_stands_upright_in_metres(name):
-    motion, posed = mocopi.read(REAL / "mocopi" / f"{name}.bvh", MOCOPI)
+    motion = mocopi.read(REAL / "mocopi" / f"{name}.bvh", MOCOPI)
     place = {joint: motion.joint(joint) for joint in MOCOPI.joints}
     rest = {joint: path[0] for joint, path in place.items()}
     assert 0.85 < rest["root"][1] < 1.05
@@ -91,7 +92,7 @@ def test_a_real_body_stands_upright_in_metres(name):
         length = np.linalg.norm(place[end] - place[start], axis=1)
         assert np.ptp(length) < 1e-6
         assert 0.2 < length[0] < 0.5
-    assert set(posed.hierarchy.ends) == {
+    assert set(motion.posed.hierarchy.ends) == {
         "head",
         "left_wrist",
         "right_wrist",
@@ -103,24 +104,24 @@ def test_a_real_body_stands_upright_in_metres(name):
 @pytest.mark.parametrize(("written_s", "rate_hz"), [(0.033333, 30), (0.02, 50), (0.016667, 60)])
 def test_the_app_s_rates_are_exact(tmp_path, written_s, rate_hz):
     recorded(tmp_path / "a.bvh", n_frames=1001, period_s=written_s)
-    motion, posed = mocopi.read(tmp_path / "a.bvh", MOCOPI, source="suit")
+    motion = mocopi.read(tmp_path / "a.bvh", MOCOPI, source="suit")
     assert motion.source == "suit"
     assert motion.time_s[-1] == pytest.approx(1000 / rate_hz, abs=1e-9)
-    np.testing.assert_array_equal(posed.time_s, motion.time_s)
+    np.testing.assert_array_equal(motion.posed.time_s, motion.time_s)
 
 
 def test_another_rate_is_as_written(tmp_path):
     recorded(tmp_path / "a.bvh", period_s=0.0167)
-    assert mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].time_s[4] == pytest.approx(4 * 0.0167)
+    assert mocopi.read(tmp_path / "a.bvh", MOCOPI).time_s[4] == pytest.approx(4 * 0.0167)
 
 
 def test_only_a_first_row_without_any_rotation_is_the_rest_pose(tmp_path):
     recorded(tmp_path / "a.bvh")
-    assert mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].performed.tolist() == [False] + [True] * 4
+    assert mocopi.read(tmp_path / "a.bvh", MOCOPI).performed.tolist() == [False] + [True] * 4
     recorded(tmp_path / "a.bvh", rest=False)
-    assert mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].performed.all()
+    assert mocopi.read(tmp_path / "a.bvh", MOCOPI).performed.all()
     recorded(tmp_path / "a.bvh", n_frames=0)
-    assert len(mocopi.read(tmp_path / "a.bvh", MOCOPI)[0].performed) == 0
+    assert len(mocopi.read(tmp_path / "a.bvh", MOCOPI).performed) == 0
 
 
 def test_joints_in_another_order_come_out_in_the_skeleton_s(tmp_path):
@@ -133,8 +134,8 @@ def test_joints_in_another_order_come_out_in_the_skeleton_s(tmp_path):
     rows = np.hstack([rows[:, : 19 * 6], rows[:, 23 * 6 :], rows[:, 19 * 6 : 23 * 6]])
     table = "\n".join(" ".join(map(str, row)) for row in rows)
     (tmp_path / "a.bvh").write_text(f"{head}0.016667\n{table}\n")
-    motion, found = mocopi.read(tmp_path / "a.bvh", MOCOPI)
-    assert found.hierarchy.joints[19] == "right_hip"
+    motion = mocopi.read(tmp_path / "a.bvh", MOCOPI)
+    assert motion.posed.hierarchy.joints[19] == "right_hip"
     assert motion.joints.tolist() == list(MOCOPI.joints)
     np.testing.assert_allclose(motion.xyz, forward(posed)[0], atol=1e-6)
 
@@ -163,3 +164,4 @@ def test_the_script_hands_the_motion_on(tmp_path):
     assert (found.source, found.kind) == ("suit", "inertial")
     assert found.performed.tolist() == [False] + [True] * 4
     np.testing.assert_allclose(found.joint("left_wrist"), forward(posed)[0][:, 14], atol=1e-6)
+    np.testing.assert_array_equal(forward(found.posed)[0], found.xyz)

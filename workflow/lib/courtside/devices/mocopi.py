@@ -27,9 +27,7 @@ WRITTEN_TO_S = 0.6e-6  # the app writes its frame time with six decimals: 0.0166
 NO_TURN = 1e-6  # rounding: largest entry by which a rotation may differ from the identity
 
 
-def read(
-    path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi"
-) -> tuple[DeviceMotion, PosedHierarchy]:
+def read(path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi") -> DeviceMotion:
     """Read a BVH file of the app.
 
     Parameters
@@ -43,9 +41,8 @@ def read(
     -------
     motion : DeviceMotion
         Joints in the skeleton's order; metres in the app's axes; the clock starts at zero with the
-        first row. The rest pose in the first row is kept, as not performed.
-    posed : PosedHierarchy
-        The same motion as rotations, joints in the file's order by the study's names.
+        first row. The rest pose in the first row is kept, as not performed. `posed` has the joints
+        in the file's order, by the study's names.
 
     Raises
     ------
@@ -65,7 +62,7 @@ def read(
     )
     xyz, _ = hierarchy.forward(posed)
     order = [posed.hierarchy.joints.index(joint) for joint in skeleton.joints]
-    motion = DeviceMotion(
+    return DeviceMotion(
         source=source,
         kind=KIND,
         joints=np.array(skeleton.joints),
@@ -73,8 +70,8 @@ def read(
         xyz=xyz[:, order],
         reason=np.full(xyz.shape[:2], missing_reason.OK, dtype=np.uint8),
         performed=~_rest_rows(posed),
+        posed=posed,
     )
-    return motion, posed
 
 
 def _check_joints(

@@ -109,7 +109,7 @@ def rest(motion: DeviceMotion, *, limits: Mapping[str, float] | None = None) -> 
     first, stop = runs[0]
     held = np.repeat(motion.xyz[first : first + 1], HELD, axis=0)
     performed = np.ones(HELD, dtype=bool)
-    still = replace(motion, time_s=np.arange(HELD) * 0.1, xyz=held, performed=performed)
+    still = replace(motion, time_s=np.arange(HELD) * 0.1, xyz=held, performed=performed, posed=None)
     middle = {key: float(values[HELD // 2]) for key, values in measure(still).items()}
     over = [key for key, limit in limits.items() if not middle[key] <= limit]
     if over:

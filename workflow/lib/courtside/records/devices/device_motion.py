@@ -8,10 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.records import npz
+from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, reading
 
-FORM = "courtside device motion 1"
+FORM = "courtside device motion 2"
+# Of `posed` in the file; no joints where there is none.
+ROTATIONS = {
+    "hierarchy": ("str", ("H",)),
+    "parents": ("int", ("H",)),
+    "offsets": ("float", ("H", "3")),
+    "end_joints": ("str", ("E",)),
+    "ends": ("float", ("E", "3")),
+    "translation": ("float", ("T", "H", "3")),
+    "parent_from_joint": ("float", ("T", "H", "3", "3")),
+}
+NO_JOINTS = Hierarchy((), np.empty(0, int), np.empty((0, 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +38,9 @@ class DeviceMotion:
     reason: Annotated[NDArray, "int T J"]  # uint8: codes of `missing_reason`
     # False for frames that nobody performed, like the rest pose in the first row of a mocopi file
     performed: Annotated[NDArray, "bool T"]
+    # The same motion as rotations, where the device gives them: same times, joints by the same names
+    # in the device's own order. Stored as `ROTATIONS`.
+    posed: Annotated[PosedHierarchy | None, "posed"] = None
 
     def joint(self, name: str) -> NDArray:
         """Return the path (T, 3) of a joint, metres; raise `ValueError` if there is none."""
@@ -61,9 +76,39 @@ def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> Devi
 
 def write(path: str | PathLike, motion: DeviceMotion) -> None:
     """Write a `DeviceMotion` to an npz file."""
-    npz.write_record(path, FORM, motion)
+    arrays, n_frames = dict(vars(motion)), len(motion.time_s)
+    none = PosedHierarchy(
+        NO_JOINTS, motion.time_s, np.empty((n_frames, 0, 3)), np.empty((n_frames, 0, 3, 3))
+    )
+    posed = arrays.pop("posed") or none
+    if not np.array_equal(posed.time_s, motion.time_s):
+        raise ValueError(f"{motion.source}: expected rotations at the times of the joints")
+    tree = posed.hierarchy
+    arrays |= {
+        "hierarchy": np.array(tree.joints, dtype=str),
+        "parents": tree.parents,
+        "offsets": tree.offsets,
+        "end_joints": np.array(list(tree.ends), dtype=str),
+        "ends": np.reshape(list(tree.ends.values()), (-1, 3)),
+        "translation": posed.translation,
+        "parent_from_joint": posed.parent_from_joint,
+    }
+    npz.write(path, FORM, _spec(), arrays)
 
 
 def read(path: str | PathLike) -> DeviceMotion:
     """Read a `DeviceMotion` from an npz file; raise `InputError` if it is not one."""
-    return npz.read_record(path, FORM, DeviceMotion)
+    found = npz.read(path, FORM, _spec())
+    names, parents, offsets = (found.pop(key) for key in ("hierarchy", "parents", "offsets"))
+    ends = dict(zip(found.pop("end_joints").tolist(), found.pop("ends"), strict=True))
+    moved = [found.pop(key) for key in ("translation", "parent_from_joint")]
+    with reading(path, "joints whose parents come before them"):
+        tree = Hierarchy(tuple(names.tolist()), parents, offsets, ends)
+    posed = PosedHierarchy(tree, found["time_s"], *moved) if len(names) else None
+    values = {key: value if value.ndim else value.item() for key, value in found.items()}
+    return DeviceMotion(**values, posed=posed)
+
+
+def _spec() -> npz.Spec:
+    own = npz.spec_of(DeviceMotion)
+    return {key: own[key] for key in own if key != "posed"} | ROTATIONS
