@@ -85,10 +85,9 @@ PLAYERS_FUSED = {
 # The take of devices once any of its sources is new: clocks come from all of them, all else from
 # the clocks.
 DEVICES_ALIGNED = {
+    "detect_events": 1,
     "synchronise_devices": 1,
-    "list_events": 1,
     "correct_inertial": 1,
-    "choose_tpose": 1,
     "align_bodies": 4,  # colour, depth, suit, corrected suit
     "measure_arcs": 1,
     "evaluate_sources": 1,

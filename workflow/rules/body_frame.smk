@@ -2,7 +2,8 @@
 
 Inputs: device motions and clocks. Outputs: results/{session}/takes/{take}/ devices (corrected),
 body.
-Steps: correct_inertial, choose_tpose (for all sources of a take), align_bodies, measure_arcs.
+Steps: correct_inertial, align_bodies (at the T-pose that all sources of a take show best),
+measure_arcs.
 """
 
 
@@ -15,6 +16,7 @@ rule correct_inertial:
     output:
         corrected_bvh=paths.CORRECTED_BVH,
         motion_npz=paths.CORRECTED_SOURCE,
+        events_json=paths.CORRECTED_EVENTS,
         report_json=paths.CORRECTION_REPORT,
     log:
         "results/{session}/logs/correct_inertial/{take}.{device}.{model}.log",
@@ -27,26 +29,11 @@ rule correct_inertial:
         "../scripts/correct_inertial.py"
 
 
-rule choose_tpose:
-    input:
-        device_npz=of_job(devices.source_files),
-        sync_json=paths.DEVICE_CLOCKS,
-    output:
-        chosen_json=paths.TPOSE,
-    log:
-        "results/{session}/logs/choose_tpose/{take}.{model}.log",
-    params:
-        code=code("choose_tpose.py"),
-        step=of_job(devices.tpose),
-    script:
-        "../scripts/choose_tpose.py"
-
-
 rule align_bodies:
     input:
         device_npz=of_job(lambda job: devices.sources(job)[job["source"]].file),
         sync_json=paths.DEVICE_CLOCKS,
-        chosen_json=paths.TPOSE,
+        events_json=of_job(devices.event_files),
         derived_yaml=paths.derived_joints(CONFIG),
     output:
         body_npz=paths.BODY,

@@ -2,7 +2,7 @@
 
 Inputs: recordings of devices. Outputs: results/{session}/takes/{take}/ devices, sync.
 Steps: import_device, extract_colour, convert_landmarks, lift_depth, select_person (of the fixed
-cameras), synchronise_devices, list_events (whatever happens to the clocks).
+cameras), detect_events (whatever happens to the clocks), synchronise_devices.
 """
 
 
@@ -91,9 +91,25 @@ rule select_person:
         "../scripts/select_person.py"
 
 
+rule detect_events:
+    input:
+        device_npz=of_job(devices.source_files, corrected=False),
+    output:
+        events_json=paths.EVENTS,
+        wrists_csv=paths.part(paths.WRISTS, clocks="events"),
+        events_csv=paths.OWN_EVENTS,
+    log:
+        "results/{session}/logs/detect_events/{take}.{model}.log",
+    params:
+        code=code("detect_events.py"),
+    script:
+        "../scripts/detect_events.py"
+
+
 rule synchronise_devices:
     input:
         device_npz=of_job(devices.source_files, corrected=False),
+        events_json=paths.EVENTS,
     output:
         sync_json=paths.DEVICE_CLOCKS,
         wrists_csv=paths.part(paths.WRISTS, clocks="devices"),
@@ -108,17 +124,3 @@ rule synchronise_devices:
         step=step("synchronise_devices"),
     script:
         "../scripts/synchronise_devices.py"
-
-
-rule list_events:
-    input:
-        device_npz=of_job(devices.source_files, corrected=False),
-    output:
-        wrists_csv=paths.part(paths.WRISTS, clocks="events"),
-        events_csv=paths.OWN_EVENTS,
-    log:
-        "results/{session}/logs/list_events/{take}.{model}.log",
-    params:
-        code=code("list_events.py"),
-    script:
-        "../scripts/list_events.py"

@@ -1,24 +1,39 @@
-"""Put a take's source into the common body frame: motion, clock, T-pose -> body motion, frame."""
-
-import json
-from pathlib import Path
+"""Put a take's source into the common body frame: motion, clocks, events -> body motion, frame."""
 
 from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
-from courtside.events.tpose import TPose
-from courtside.records.devices import clocks, device_motion
+from courtside.events import detect
+from courtside.records.devices import clocks as sync
+from courtside.records.devices import device_motion, events
 from courtside.records.keypoints import body_motion, derived_joints
 from courtside.study.execution import log
 from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
 
 
-def main(device_npz, sync_json, chosen_json, derived_yaml, body_npz, frame_json, *, skeleton, like):
-    motion, clock = device_motion.read(device_npz), clocks.read(sync_json)[1][like]
-    chosen = json.loads(Path(chosen_json).read_text(encoding="utf-8"))[motion.source]
+def main(
+    device_npz,
+    sync_json,
+    events_json,
+    derived_yaml,
+    body_npz,
+    frame_json,
+    *,
+    skeleton,
+    devices,
+    stated,
+):
+    motion, (reference, found) = device_motion.read(device_npz), sync.read(sync_json)
+    of_device = {devices[name]: clock for name, clock in found.items()}
+    clocks = {name: of_device[device] for name, device in devices.items()}
+    happened = detect.of_devices(events.read(events_json), devices, stated)
+    happened = {reference: happened[reference], **happened}
+    spell = common.common(happened, clocks)[motion.source]
+    log.logger.info("%s: T-pose %.2f to %.2f s", motion.source, spell.start_s, spell.stop_s)
     anchors = bodyframe.anchors(derived_joints.read(derived_yaml), skeleton, motion.joints)
-    frame = bodyframe.at_tpose(motion, anchors, TPose(**chosen["tpose"]))
-    body = common.aligned(motion, frame, clock, chosen["clap_s"])
+    frame = bodyframe.at_tpose(motion, anchors, spell)
+    claps_s = common.claps_of(motion.source, happened, clocks)
+    body = common.aligned(motion, frame, clocks[motion.source], claps_s)
     log.logger.info("%s: unit %.4f m, %s", motion.source, body.unit_m, frame.residuals)
     body_motion.write(body_npz, body)
     write_json(frame_json, frame.as_dict())

@@ -1,15 +1,16 @@
 """Correct a mocopi recording by vision.
 
-Reads its motion, a camera's skeleton and clocks; writes corrected BVH, motion and report.
+Reads its motion, a camera's skeleton and clocks; writes corrected BVH, motion, events and report.
 """
 
 from dataclasses import replace
 from math import hypot
 
+from courtside.events import detect
 from courtside.exports import bvh
 from courtside.inertial import correction
 from courtside.records.devices import clocks as sync
-from courtside.records.devices import device_motion
+from courtside.records.devices import device_motion, events
 from courtside.records.devices.hierarchy import forward
 from courtside.records.keypoints import skeleton
 from courtside.study.errors import InputError
@@ -25,6 +26,7 @@ def main(
     sync_json,
     motion_npz,
     corrected_bvh,
+    events_json,
     report_json,
     *,
     device,
@@ -51,6 +53,7 @@ def main(
     xyz = forward(corrected)[0][:, order]
     motion = replace(motion, source=f"{device}-corrected", time_s=time_s, xyz=xyz, posed=corrected)
     device_motion.write(motion_npz, motion)
+    events.write(events_json, detect.detect([motion]))
     bvh.write(corrected_bvh, _renamed(corrected, names))
     report.write(report_json)
 

@@ -8,6 +8,7 @@ import pandas as pd
 from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
 from courtside.evaluation import sources
+from courtside.events import tpose
 from courtside.kinematics import smoothness, wrist_arcs
 from courtside.records import tables
 from courtside.records.devices import device_motion
@@ -31,11 +32,12 @@ def main(
     sparc_rate_hz,
 ):
     true = device_motion.of_truth(take_truth.read(truth_npz), person)
+    spells = tpose.find(true)
     table = derived_joints.read(derived_yaml)
     carried_by = bodyframe.anchors(table, derived_joints.RIG, true.joints)
     errors, parts, paths, distortion = [], [], [], []
     for body in map(body_motion.read, body_npz):
-        frame = common.counterpart(true, carried_by, body.tpose_s)
+        frame = common.counterpart(true, spells, carried_by, body.tpose_s)
         reference = common.aligned(true, frame, Clock())
         names, found = sources.errors(body, reference)
         _, expected = sources.matched(body, reference)

@@ -1,30 +1,43 @@
-"""Find the devices' clocks of one take: motions -> clocks, wrist distance, T-poses, claps."""
+"""Find the devices' clocks of one take: motions, events -> clocks, wrist distance, events."""
 
 from courtside.events import detect
 from courtside.records import tables
 from courtside.records.devices import clocks as sync
-from courtside.records.devices import device_motion
+from courtside.records.devices import device_motion, events
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 from courtside.synchronisation import devices as device_sync
 
 
-def main(device_npz, sync_json, wrists_csv, events_csv, checks_csv, *, devices, stated, latency_s):
-    motions = [device_motion.read(path) for path in device_npz]
-    happened = detect.shown(motions, devices, stated)
+def main(
+    device_npz,
+    events_json,
+    sync_json,
+    wrists_csv,
+    events_csv,
+    checks_csv,
+    *,
+    devices,
+    stated,
+    latency_s,
+):
+    motions, own = [device_motion.read(path) for path in device_npz], events.read([events_json])
+    happened = detect.of_devices(own, devices, stated)
     # The reference must clap: the first source of the first device that does.
     first = devices[motions[0].source]
     motions.sort(key=lambda m: (devices[m.source] != first, not happened[m.source].claps))
     by_device = sync.stated(stated)
     known = {name: by_device[owner] for name, owner in devices.items() if owner in by_device}
-    clocks = {"devices": devices, "known": known, "latency": latency_s}
-    found = device_sync.synchronise(motions, happened, **clocks)
+    found = device_sync.synchronise(
+        motions, happened, devices=devices, known=known, latency=latency_s
+    )
     clocks = {source: one.clock for source, one in found.items()}
     report(clocks)
     sync.write(sync_json, motions[0].source, clocks)
     tables.write(wrists_csv, detect.wrists(motions, clocks))
-    tables.write(events_csv, detect.events(motions, clocks))
-    tables.write(checks_csv, detect.checks(found))
+    own = {motion.source: own[motion.source] for motion in motions}
+    tables.write(events_csv, detect.events(own, clocks))
+    tables.write(checks_csv, device_sync.checks(found))
 
 
 def report(clocks):

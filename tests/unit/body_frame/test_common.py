@@ -1,5 +1,6 @@
 """All sources of a take lie in one body frame, on one clock."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from courtside.body_frame import frame as bodyframe
 from courtside.devices import mocopi
 from courtside.events import detect
 from courtside.records.devices.clocks import Clock
+from courtside.records.devices.events import Events
 from courtside.records.keypoints import derived_joints, skeleton
 from courtside.study.errors import InputError
 from fixtures.recordings import device_takes
@@ -28,7 +30,7 @@ def take(seed=0):
         device_takes.device(rng, truth),
         device_takes.mocopi(rng, truth, clock=CLOCKS["mocopi"], scale=0.9, cutoff_hz=None),
     ]
-    return truth, made, detect.shown(made, device_takes.each_its_own(made))
+    return truth, made, detect.detect(made)
 
 
 def test_exact_devices_agree_in_space_and_time():
@@ -64,7 +66,7 @@ def test_one_t_pose_is_chosen_for_all_although_each_likes_another_best():
         costs["d415-rgb"][best] = 0.0
         costs["mocopi"][1 - best] = 0.05
         happened = {
-            source: detect.Events(
+            source: Events(
                 [
                     type(s)(**{**vars(s), "cost": c})
                     for s, c in zip(spells, costs[source], strict=True)
@@ -86,18 +88,26 @@ def test_no_common_t_pose_is_an_error_with_the_times():
     assert "\n" not in str(caught.value)
 
 
+def test_a_source_without_a_t_pose_stops_the_take_with_the_times_of_the_others():
+    _, _, happened = take()
+    happened["mocopi"] = Events([], [])
+    with pytest.raises(InputError, match=r"found T-poses at .*: d415-rgb \d\.\d\d, .*; mocopi ;"):
+        common.common(happened, CLOCKS)
+
+
 def test_the_counterpart_has_the_frame_of_the_same_t_pose():
-    truth, made, _ = take()
+    truth, made, happened = take()
+    spells = happened["d415-rgb"].tposes
     for number in (1, 2):
         span = [truth[2][f"tpose_{number}_{end}"] for end in ("start", "stop")]
-        frame = common.counterpart(made[0], CARRIED_BY, span)
+        frame = common.counterpart(made[0], spells, CARRIED_BY, span)
         body = common.aligned(made[0], frame, CLOCKS["d415-rgb"])
         assert body.tpose_s[0] == pytest.approx(span[0], abs=0.15)
         held = (body.time_s > span[0] + 0.1) & (body.time_s < span[1] - 0.1)
         wrist = np.median(body.joint("left_wrist")[held], axis=0)
         assert wrist[0] == pytest.approx(1.0, abs=0.03)
     with pytest.raises(InputError, match="check the clocks"):
-        common.counterpart(made[0], CARRIED_BY, [100.0, 101.0])
+        common.counterpart(made[0], spells, CARRIED_BY, [100.0, 101.0])
 
 
 def test_frames_that_nobody_performed_are_left_out():
@@ -112,7 +122,7 @@ def test_frames_that_nobody_performed_are_left_out():
 def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
     truth, _, happened = take()
     rgb = happened["d415-rgb"]
-    happened["d415-rgb"] = detect.Events(rgb.tposes, rgb.claps[1:])
+    happened["d415-rgb"] = Events(rgb.tposes, rgb.claps[1:])
     found = common.claps_of("d415-rgb", happened, CLOCKS)
     np.testing.assert_allclose(found, [truth[2]["clap_1"], truth[2]["clap_2"]], atol=0.006)
 
@@ -122,12 +132,14 @@ def test_a_source_without_a_clap_of_its_own_takes_that_of_another():
 def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(name):
     joints = skeleton.read(CONFIG / "skeletons" / "mocopi27.yaml")
     motion = mocopi.read(REAL / "mocopi" / f"{name}.bvh", joints)
-    happened = detect.shown([motion], {"mocopi": "mocopi"})
+    happened = detect.detect([motion])
     assert (happened["mocopi"].tposes, happened["mocopi"].claps) == ([], [])
     clocks = {"mocopi": Clock(status="reference")}
+    chosen = common.common(happened, clocks)["mocopi"]
+    assert chosen == happened["mocopi"].rest
+    performed = {"mocopi": replace(happened["mocopi"], rest=None)}
     with pytest.raises(InputError, match="T-pose"):
-        common.common(happened, clocks)
-    chosen = common.common(happened, clocks, {"mocopi": motion})["mocopi"]
+        common.common(performed, clocks)
     carried_by = bodyframe.anchors(TABLE, "mocopi27", motion.joints)
     body = common.aligned(motion, bodyframe.at_tpose(motion, carried_by, chosen), clocks["mocopi"])
     assert len(body.time_s) == motion.performed.sum()

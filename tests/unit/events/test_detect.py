@@ -8,10 +8,13 @@ import pytest
 from courtside.events import detect
 from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
-from courtside.synchronisation import devices as device_sync
 from fixtures.recordings import device_takes
 
 DEVICES = {"d415-rgb": "d415", "mocopi": "mocopi", "d415-depth": "d415"}
+
+
+def shown(motions, devices, stated=()):
+    return detect.of_devices(detect.detect(motions), devices, stated)
 
 
 def take():
@@ -25,7 +28,7 @@ def take():
 
 def test_a_source_without_a_clap_is_borne_with_where_its_device_claps_in_another():
     truth, rgb, mocopi, depth = take()
-    found = detect.shown([rgb, mocopi, depth], DEVICES)
+    found = shown([rgb, mocopi, depth], DEVICES)
     assert found["d415-depth"].claps == []
     assert len(found["d415-rgb"].claps) == len(found["mocopi"].claps) == 2
     assert found["d415-rgb"].claps[0].time_s == pytest.approx(truth[2]["clap_1"], abs=0.02)
@@ -39,9 +42,9 @@ def test_a_source_with_its_own_t_poses_has_the_claps_of_its_device():
     elbows = [rgb.joints.tolist().index(f"{side}_elbow") for side in ("left", "right")]
     xyz[np.ix_(later, elbows, [1])] += 0.35
     depth = replace(rgb, source="d415-depth", xyz=xyz)
-    alone = detect.shown([depth], {"d415-depth": "d415"})["d415-depth"]
+    alone = shown([depth], {"d415-depth": "d415"})["d415-depth"]
     assert (len(alone.tposes), alone.claps) == (1, [])
-    found = detect.shown([depth, mocopi, rgb], DEVICES)
+    found = shown([depth, mocopi, rgb], DEVICES)
     (clap,) = found["d415-depth"].claps
     assert clap == found["d415-rgb"].claps[0]
     assert clap.tpose == 0
@@ -55,9 +58,7 @@ def test_a_t_pose_in_two_spells_has_each_clap_once():
     elbows = [rgb.joints.tolist().index(f"{side}_elbow") for side in ("left", "right")]
     bent = (np.abs(rgb.time_s - middle_s) < 0.2) | (rgb.time_s > events["tpose_1_stop"] + 0.05)
     xyz[np.ix_(bent, elbows, [1])] += 0.35
-    found = detect.shown([replace(rgb, source="d415-depth", xyz=xyz), mocopi, rgb], DEVICES)[
-        "d415-depth"
-    ]
+    found = shown([replace(rgb, source="d415-depth", xyz=xyz), mocopi, rgb], DEVICES)["d415-depth"]
     assert len(found.tposes) == 2
     assert [clap.tpose for clap in found.claps] == [1]
 
@@ -65,14 +66,14 @@ def test_a_t_pose_in_two_spells_has_each_clap_once():
 def test_a_device_among_others_must_clap():
     _, _, mocopi, depth = take()
     with pytest.raises(InputError, match="d415-depth: expected a T-pose"):
-        detect.shown([mocopi, depth], DEVICES)
-    found = detect.shown([mocopi, depth], DEVICES, stated=["d415"])
+        shown([mocopi, depth], DEVICES)
+    found = shown([mocopi, depth], DEVICES, stated=["d415"])
     assert (len(found["mocopi"].claps), found["d415-depth"].claps) == (2, [])
 
 
 def test_a_device_that_is_alone_need_not():
     *_, depth = take()
-    found = detect.shown([depth], {"d415-depth": "d415"})["d415-depth"]
+    found = shown([depth], {"d415-depth": "d415"})["d415-depth"]
     assert (found.tposes, found.claps) == ([], [])
 
 
@@ -87,7 +88,7 @@ def devices():
 
 def test_events_are_on_the_reference_clock():
     take, motions = devices()
-    rows = detect.events(motions, {"mocopi": CLOCK})
+    rows = detect.events(detect.detect(motions), {"mocopi": CLOCK})
     for source in ("d415-rgb", "mocopi"):
         own = rows[(rows.source == source) & (rows.event == "clap")]
         assert own.number.tolist() == [1, 2]
@@ -103,7 +104,7 @@ def test_events_are_on_the_reference_clock():
 
 def test_a_device_that_shows_nothing_has_a_row_that_says_so():
     still = device_takes.of(np.tile(devices()[1][0].xyz[:1], (90, 1, 1)), np.arange(90) / 30)
-    (row,) = detect.events([still]).to_dict("records")
+    (row,) = detect.events(detect.detect([still])).to_dict("records")
     assert row["event"] == "none" and not row["used"]
     assert "expected a T-pose" in row["why"]
 
@@ -119,14 +120,3 @@ def test_wrists_are_as_far_apart_as_they_are():
     apart = np.linalg.norm(xyz[:, left] - xyz[:, right], axis=1)
     true = np.interp(rgb.time_s[5:], times, apart)
     np.testing.assert_allclose(rgb.distance_m[5:], true, atol=0.01)
-
-
-def test_checks_have_a_row_per_source():
-    _, motions = devices()
-    happened = detect.shown(motions, device_takes.each_its_own(motions))
-    found = device_sync.synchronise(motions, happened, latency={"mocopi": (0.02, 0.005)})
-    rows = detect.checks(found).set_index("source")
-    assert rows.status.to_dict() == {"d415-rgb": "reference", "mocopi": "found"}
-    assert rows.n_claps["mocopi"] == 2
-    assert rows.latency_s["mocopi"] == 0.02
-    assert rows.offset_s["mocopi"] == found["mocopi"].clock.offset_s

@@ -104,12 +104,6 @@ def test_a_device_without_elbows_is_refused():
         tpose.find(motion)
 
 
-def test_the_best_is_the_one_of_least_cost():
-    take = device_takes.truth(0)
-    found = tpose.find(device_takes.blazepose(np.random.default_rng(3), take))
-    assert tpose.best(found).cost == min(spell.cost for spell in found)
-
-
 def test_a_rest_pose_that_nobody_performed_gives_a_t_pose_of_its_own():
     hanging = figure(left_arm=(0, -0.58, 0), right_arm=(0, -0.58, 0)).xyz
     xyz = np.concatenate([figure(bend=0.2, n=1).xyz, hanging])

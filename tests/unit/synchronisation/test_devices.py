@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from courtside.events import detect
-from courtside.events.claps import Clap
 from courtside.records.devices.clocks import Clock
+from courtside.records.devices.events import Clap
 from courtside.study.errors import InputError
 from courtside.synchronisation import devices
 from courtside.synchronisation import devices as device_sync
@@ -15,8 +15,12 @@ LONG = {"between_s": 46.0, "fine_hz": 120.0}
 CAMERAS = {"source": "cameras", "kind": "cameras", "noise_m": (0.004,) * 3, "axes": np.eye(3)}
 
 
+def shown(motions, owners):
+    return detect.of_devices(detect.detect(motions), owners)
+
+
 def solve(*motions, **options):
-    happened = detect.shown(motions, device_takes.each_its_own(motions))
+    happened = shown(motions, device_takes.each_its_own(motions))
     return device_sync.synchronise(list(motions), happened, **options)
 
 
@@ -107,7 +111,7 @@ def test_a_device_without_a_clap_is_refused_by_name():
         np.tile(mocopi.xyz[:1], (300, 1, 1)), np.arange(300) / 60, "mocopi", "inertial"
     )
     with pytest.raises(InputError, match="mocopi: expected a T-pose"):
-        detect.shown([mocopi, still], {"mocopi": "suit", "mocopi-2": "suit-2"})
+        shown([mocopi, still], {"mocopi": "suit", "mocopi-2": "suit-2"})
 
 
 def test_other_peoples_claps_do_not_pair_silently():
@@ -166,3 +170,17 @@ def test_surer_claps_count_more():
     pairs = [*zip(claps(0.0), claps(1.0), strict=True)]
     pairs += zip(claps(9.0, uncertainty_s=0.0), claps(10.05, uncertainty_s=0.001), strict=True)
     assert devices.offset_s(pairs) == pytest.approx(1.049, abs=0.001)
+
+
+def test_checks_have_a_row_per_source():
+    take, rng = device_takes.truth(0), np.random.default_rng(0)
+    motions = [
+        device_takes.device(rng, take),
+        device_takes.mocopi(rng, take, clock=Clock(2.0, 50.0)),
+    ]
+    found = solve(*motions, latency={"mocopi": (0.02, 0.005)})
+    rows = devices.checks(found).set_index("source")
+    assert rows.status.to_dict() == {"d415-rgb": "reference", "mocopi": "found"}
+    assert rows.n_claps["mocopi"] == 2
+    assert rows.latency_s["mocopi"] == 0.02
+    assert rows.offset_s["mocopi"] == found["mocopi"].clock.offset_s

@@ -76,12 +76,15 @@ def test_clocks_belong_to_devices_and_a_corrected_source_has_that_of_its_own(job
     owners = {"d415-depth": "d415", "d415-rgb": "d415", "mocopi": "mocopi"}
     assert devices.clocks(job(**CLAPS), corrected=False) == owners
     corrected = job(**CLAPS, source="mocopi-corrected")
-    assert devices.clock_source(corrected) == "mocopi"
-    assert devices.alignment(corrected) == {"skeleton": "mocopi27", "like": "mocopi"}
-    assert devices.tpose(job(**CLAPS)) == {
+    assert devices.alignment(corrected) == {
+        "skeleton": "mocopi27",
         "devices": {**owners, "mocopi-corrected": "mocopi"},
         "stated": [],
     }
+    assert devices.event_files(corrected) == [
+        f"{FOLDER}/sync/events.blazepose-full.json",
+        f"{FOLDER}/devices/mocopi-corrected.blazepose-full.events.json",
+    ]
     assert devices.take_clocks(job(**CLAPS)) == f"{FOLDER}/sync/devices.blazepose-full.json"
 
 

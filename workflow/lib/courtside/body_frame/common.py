@@ -1,58 +1,53 @@
 """All sources of a take in one body frame: the same T-pose for all, on the reference clock."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.body_frame.frame import Anchors, BodyFrame, at_tpose, fixed, following
-from courtside.events import tpose
-from courtside.events.detect import Events
-from courtside.events.tpose import TPose
 from courtside.records.devices.clocks import Clock
 from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.events import Events, TPose
 from courtside.records.keypoints.body_motion import BodyMotion
 from courtside.study.errors import InputError
 
 SAME_S = 0.3  # ASSUME: spells of two devices that overlap this long are one T-pose
 
 
-def common(
-    happened: Mapping[str, Events],
-    clocks: Mapping[str, Clock],
-    motions: Mapping[str, DeviceMotion] | None = None,
-) -> dict[str, TPose]:
+def common(happened: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict[str, TPose]:
     """Choose the T-pose that all sources show best: for each source its own spell of it.
 
-    The first source of `happened` is the reference, which `clocks` are against. Where nobody
-    performs a T-pose, the stored rest poses of `motions` are used, if all have one.
+    The first source of `happened` is the reference, which `clocks` are against. Where no T-pose is
+    common, the rest poses are used, if all sources bring one along.
 
     Raises
     ------
     InputError
         If no T-pose is shown by all.
     """
-    reference = next(iter(happened))
+    reference = next(iter(happened.values()))
     choices = []
-    for spell in happened[reference].tposes:
-        same = [_same(spell, each, clocks[source]) for source, each in happened.items()]
-        shown = [own for own in same if own]
+    for spell in reference.tposes:
+        same = {source: _same(spell, own, clocks[source]) for source, own in happened.items()}
+        shown = {source: own for source, own in same.items() if own}
         if len(shown) == len(same):
-            choices.append(dict(zip(happened, shown, strict=True)))
-    if not choices and motions and not any(motion.performed.all() for motion in motions.values()):
-        return {source: tpose.rest(motion) for source, motion in motions.items()}
-    if not choices:
-        times = "; ".join(
-            f"{source} "
-            + ", ".join(f"{clocks[source].to_reference(s.start_s):.2f}" for s in each.tposes)
-            for source, each in happened.items()
-        )
-        raise InputError(
-            "expected a T-pose that all sources show, found T-poses at (s, reference clock): "
-            f"{times}; film all devices together, or leave one out"
-        )
-    return min(choices, key=lambda choice: sum(spell.cost for spell in choice.values()))
+            choices.append(shown)
+    if choices:
+        return min(choices, key=lambda choice: sum(spell.cost for spell in choice.values()))
+    rests = {source: own.rest for source, own in happened.items() if own.rest}
+    if len(rests) == len(happened):
+        return rests
+    times = "; ".join(
+        f"{source} "
+        + ", ".join(f"{clocks[source].to_reference(s.start_s):.2f}" for s in own.tposes)
+        for source, own in happened.items()
+    )
+    raise InputError(
+        "expected a T-pose that all sources show, found T-poses at (s, reference clock): "
+        f"{times}; film all devices together, or leave one out"
+    )
 
 
 def _same(spell: TPose, happened: Events, clock: Clock) -> TPose | None:
@@ -61,8 +56,8 @@ def _same(spell: TPose, happened: Events, clock: Clock) -> TPose | None:
     def overlap(other: TPose) -> float:
         return _overlap(spell, clock.to_reference([other.start_s, other.stop_s]))
 
-    best = max(happened.tposes, key=overlap)
-    return best if overlap(best) >= SAME_S else None
+    best = max(happened.tposes, key=overlap, default=None)
+    return best if best and overlap(best) >= SAME_S else None
 
 
 def claps_of(source: str, happened: Mapping[str, Events], clocks: Mapping[str, Clock]) -> NDArray:
@@ -102,18 +97,19 @@ def aligned(
     )
 
 
-def counterpart(motion: DeviceMotion, carried_by: Anchors, tpose_s: NDArray) -> BodyFrame:
+def counterpart(
+    motion: DeviceMotion, spells: Sequence[TPose], carried_by: Anchors, tpose_s: NDArray
+) -> BodyFrame:
     """Return the body frame of the true motion at the T-pose of another source.
 
-    The motion, whose joints `carried_by` weighs, and the T-pose's start and end (2,) are on the
-    reference clock.
+    The motion, whose T-poses are `spells` and whose joints `carried_by` weighs, and the other
+    T-pose's start and end (2,) are on the reference clock.
 
     Raises
     ------
     InputError
         If it shows no T-pose then.
     """
-    spells = tpose.find(motion)
     best = max(spells, key=lambda spell: _overlap(spell, tpose_s))
     if _overlap(best, tpose_s) < SAME_S:
         raise InputError(

@@ -6,7 +6,7 @@ the distance of the wrists along x, which is their distance in the x-z plane.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from courtside.events import tpose as tposes
-from courtside.events.tpose import TPose
 from courtside.geometry.rotations import unit
 from courtside.geometry.similarity import Sim3, kabsch
 from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.events import TPose
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.study.errors import InputError
 
@@ -78,7 +78,7 @@ class BodyFrame:
             "scale_per_m": transform.scale,
             "rotation": transform.rotation.tolist(),
             "translation": transform.translation.tolist(),
-            "tpose": self.tpose.as_dict(),
+            "tpose": asdict(self.tpose),
             "residuals": self.residuals,
         }
 

@@ -6,16 +6,14 @@ apart.
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.events import contact_time, tpose
-from courtside.events.tpose import TPose
 from courtside.kinematics import filtering
 from courtside.records.devices.device_motion import DeviceMotion
-from courtside.study.errors import InputError
+from courtside.records.devices.events import Clap, NoClap, TPose
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md). "Span" is the wrist
 # distance in the T-pose.
@@ -42,75 +40,12 @@ SPEEDS_M_S = 0.5, 3.0  # limits of the closing speed of wrists in a clap
 SMOOTHINGS_S = {"rgb": 0.01, "rgbd": 0.01, "cameras": 0.03, "inertial": 0.03}
 
 
-@dataclass(frozen=True)
-class Clap:
-    """One clap.
+def find(motion: DeviceMotion, spells: Sequence[TPose]) -> tuple[list[Clap], list[NoClap]]:
+    """Find every time at which the hands come together: the claps, and the others with a reason.
 
-    Attributes
-    ----------
-    time_s : float
-        First touch of the palms, on the device's own clock.
-    uncertainty_s : float
-        Standard deviation; 90 % of errors should be within 1.645 of it. It excludes a constant
-        delay of the device.
-    tpose : int
-        Number of the T-pose before it, from 0.
-    distance_m : float
-        Of the wrists while the hands are held together, along their line in the T-pose.
-    speed_m_s : float
-        Closing speed of that distance on contact.
-    smoothing_s : float
-        Standard deviation of the smoothing by the device.
-    rebounds : bool
-        Whether the hands part again at once.
+    `spells` are the T-poses of this motion in order of time; each counts its first clap only. Both
+    lists are in order of time.
     """
-
-    time_s: float
-    uncertainty_s: float
-    tpose: int
-    distance_m: float
-    speed_m_s: float
-    smoothing_s: float
-    rebounds: bool
-
-    def as_dict(self) -> dict[str, float]:
-        """Return the numbers for JSON."""
-        return asdict(self)
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A time at which the hands come together: a clap, or why (a text) it does not count."""
-
-    time_s: float
-    clap: Clap | None
-    why: str
-
-
-def find(motion: DeviceMotion, spells: Sequence[TPose]) -> list[Clap]:
-    """Find the claps of a take, one or more, in order of time.
-
-    `spells` are the T-poses of this motion in order of time; each counts its first clap only. Raise
-    InputError if there is no clap; the message lists when hands came together and why these times
-    do not count.
-    """
-    found = candidates(motion, spells)
-    claps = [one.clap for one in found if one.clap]
-    if claps:
-        return claps
-    line = f"{motion.source}: expected a clap with straight arms within {MOST_S:g} s of a T-pose"
-    times = "; ".join(f"{one.time_s:.2f} s ({one.why})" for one in found)
-    seen = (
-        f"hands together only at {times}" if times else "no time at which the hands come together"
-    )
-    raise InputError(
-        f"{line}, found {seen}; clap after the T-pose, or give the device's offset_s under "
-        "clocks of the take"
-    )
-
-
-def candidates(motion: DeviceMotion, spells: Sequence[TPose]) -> list[Candidate]:
-    """Return every time at which the hands come together; `spells` as for `find`."""
     after, taken = [], []
     bend_deg = tpose.measure(motion)["bend_deg"] if spells else np.empty(0)
     for number, spell in enumerate(spells):
@@ -122,11 +57,25 @@ def candidates(motion: DeviceMotion, spells: Sequence[TPose]) -> list[Candidate]
             after.append(judged)
             taken.append((judged.time_s - 0.5, stop_s))
     others = [
-        Candidate(at_s, None, "no T-pose just before it")
+        NoClap(at_s, "no T-pose just before it")
         for at_s in _together(motion, spells)
         if not any(first <= at_s <= last for first, last in taken)
     ]
-    return sorted([*after, *others], key=lambda one: one.time_s)
+    both = sorted([*after, *others], key=lambda one: one.time_s)
+    claps = [one for one in both if isinstance(one, Clap)]
+    return claps, [one for one in both if isinstance(one, NoClap)]
+
+
+def none_counts(source: str, no_claps: Sequence[NoClap]) -> str:
+    """Return in one line that a source shows no clap: when hands came together, and why not."""
+    times = "; ".join(f"{one.time_s:.2f} s ({one.why})" for one in no_claps)
+    seen = (
+        f"hands together only at {times}" if times else "no time at which the hands come together"
+    )
+    return (
+        f"{source}: expected a clap with straight arms within {MOST_S:g} s of a T-pose, found "
+        f"{seen}; clap after the T-pose, or give the device's offset_s under clocks of the take"
+    )
 
 
 def separation(motion: DeviceMotion, spell: TPose) -> NDArray:
@@ -156,8 +105,8 @@ def _together(motion: DeviceMotion, spells: Sequence[TPose]) -> list[float]:
     return starts
 
 
-def _after(motion, spell, number, stop_s, bend_deg) -> Candidate | None:
-    """Return the first candidate after a T-pose, None if the hands do not come together."""
+def _after(motion, spell, number, stop_s, bend_deg) -> Clap | NoClap | None:
+    """Return how hands first meet after a T-pose, None if they do not."""
     apart, time_s = separation(motion, spell), motion.time_s
     span_m = float(np.nanmedian(apart[spell.frames]))
     later = motion.performed & (time_s > spell.stop_s) & (time_s <= stop_s)
@@ -172,7 +121,7 @@ def _after(motion, spell, number, stop_s, bend_deg) -> Candidate | None:
     most_m = floor + HELD_APART * span_m if floor < TOGETHER * span_m else 0.0
     why = _why_not(motion, spell, near, apart, most_m) or _bent(motion, near, bend_deg)
     if why:
-        return Candidate(near_s, None, why)
+        return NoClap(near_s, why)
     return _fitted(motion, spell, number, apart, near_s)
 
 
@@ -212,7 +161,7 @@ def _bent(motion: DeviceMotion, near: int, bend_deg: NDArray) -> str:
     return "" if straight else "the arms are bent"
 
 
-def _fitted(motion, spell, number, apart, near_s) -> Candidate:
+def _fitted(motion, spell, number, apart, near_s) -> Clap | NoClap:
     usual_s = SMOOTHINGS_S.get(motion.kind, contact_time.USUAL_S)
     noise = contact_time.Noise.of(apart[spell.frames])
     least_m = max(REBOUND * np.nanmedian(apart[spell.frames]), REBOUND_NOISE * noise.sd)
@@ -231,11 +180,11 @@ def _fitted(motion, spell, number, apart, near_s) -> Candidate:
             rebounds=parted,
         )
     except ValueError as error:
-        return Candidate(near_s, None, f"{error}")
+        return NoClap(near_s, f"{error}")
     if corner.uncertainty_s > MOST_UNCERTAIN_S:
         why = f"its time is uncertain by {1e3 * corner.uncertainty_s:.0f} ms"
-        return Candidate(corner.time_s, None, why)
-    clap = Clap(
+        return NoClap(corner.time_s, why)
+    return Clap(
         time_s=corner.time_s,
         uncertainty_s=float(np.hypot(corner.uncertainty_s, _never_met_s(corner))),
         tpose=number,
@@ -244,7 +193,6 @@ def _fitted(motion, spell, number, apart, near_s) -> Candidate:
         smoothing_s=corner.smoothing_s,
         rebounds=corner.rises,
     )
-    return Candidate(corner.time_s, clap, "")
 
 
 def _never_met_s(corner: contact_time.Corner) -> float:

@@ -4,8 +4,8 @@ All measures are relative to the body, because devices differ in their up axis. 
 frames is too noisy to tell straight arms: joints are medians over a third of a second.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from courtside.geometry import rotations
 from courtside.kinematics import filtering
 from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.events import TPose
 from courtside.study.errors import InputError
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
@@ -31,78 +32,39 @@ SIDES = ("left", "right")
 JOINTS = tuple(f"{side}_{part}" for part in ("shoulder", "elbow", "wrist", "hip") for side in SIDES)
 
 
-@dataclass(frozen=True)
-class TPose:
-    """One spell of T-pose.
-
-    Attributes
-    ----------
-    start_s, stop_s : float
-        First and last frame, on the device's own clock.
-    first, stop : int
-        Its frames are `first <= frame < stop`.
-    bend_deg : float
-        Of the elbows: 0 with shoulder, elbow and wrist in line; median over the spell, worse arm.
-    level_deg, sideways_deg : float
-        Of the arms from square to the trunk, and, seen along the trunk, from the line of the
-        shoulders; likewise.
-    speed_per_s : float
-        Of the wrists against the trunk, half wrist spans per second, likewise.
-    cost : float
-        Mean square of these four over their limits: the best spell has the least.
-    """
-
-    start_s: float
-    stop_s: float
-    first: int
-    stop: int
-    bend_deg: float
-    level_deg: float
-    sideways_deg: float
-    speed_per_s: float
-    cost: float
-
-    @property
-    def frames(self) -> slice:
-        """The spell as a slice of the device's frames."""
-        return slice(self.first, self.stop)
-
-    def as_dict(self) -> dict[str, float]:
-        """Return the numbers for JSON."""
-        return asdict(self)
-
-
-def find(
-    motion: DeviceMotion, *, least_s: float = LEAST_S, limits: Mapping[str, float] | None = None
-) -> list[TPose]:
+def find(motion: DeviceMotion) -> list[TPose]:
     """Find all T-poses of a take, one or more, in order of time.
 
-    Frames that nobody performed are ignored. A T-pose lasts at least `least_s`; `limits` replace
-    some of `LIMITS`. Raise InputError if there is none; the message tells what came nearest, and
-    when.
+    Frames that nobody performed are ignored. Raise InputError if there is none; the message tells
+    what came nearest, and when.
     """
-    limits = LIMITS | dict(limits or {})
     measures = measure(motion)
-    over = np.stack([measures[key] / limit for key, limit in limits.items()])
+    over = np.stack([measures[key] / limit for key, limit in LIMITS.items()])
     good = np.all(over <= 1, axis=0)
     spells = [
         (first, stop)
         for first, stop in _joined(filtering.runs(good), motion.time_s)
-        if motion.time_s[stop - 1] - motion.time_s[first] >= least_s
+        if motion.time_s[stop - 1] - motion.time_s[first] >= LEAST_S
     ]
     if not spells:
-        raise InputError(_nearest(motion, measures, over, good, limits, least_s))
-    return [_tpose(motion.time_s, measures, limits, *spell) for spell in spells]
+        raise InputError(_nearest(motion, measures, over, good))
+    return [
+        _spell(
+            motion.time_s,
+            *spell,
+            {key: float(np.nanmedian(measures[key][slice(*spell)])) for key in LIMITS},
+        )
+        for spell in spells
+    ]
 
 
-def rest(motion: DeviceMotion, *, limits: Mapping[str, float] | None = None) -> TPose:
+def rest(motion: DeviceMotion) -> TPose:
     """Return the rest pose of a device's own model, from the frames that nobody performed.
 
     It gives unit and axes of a take without a T-pose, in the frame that moves with the trunk, but
-    not where the body stood. The motion must begin with one run of such frames; `limits` replace
-    some of `LIMITS`. Raise InputError if there are no such frames, or they show another pose.
+    not where the body stood. The motion must begin with one run of such frames. Raise InputError if
+    there are no such frames, or they show another pose.
     """
-    limits = LIMITS | dict(limits or {})
     runs = filtering.runs(~motion.performed)
     if not len(runs):
         raise InputError(f"{motion.source}: expected a rest pose, found none; film a T-pose")
@@ -111,18 +73,11 @@ def rest(motion: DeviceMotion, *, limits: Mapping[str, float] | None = None) -> 
     performed = np.ones(HELD, dtype=bool)
     still = replace(motion, time_s=np.arange(HELD) * 0.1, xyz=held, performed=performed, posed=None)
     middle = {key: float(values[HELD // 2]) for key, values in measure(still).items()}
-    over = [key for key, limit in limits.items() if not middle[key] <= limit]
+    over = [key for key, limit in LIMITS.items() if not middle[key] <= limit]
     if over:
         found = ", ".join(f"{key} {middle[key]:.2g}" for key in over)
         raise InputError(f"{motion.source}: expected a rest pose with level arms, found {found}")
-    cost = float(np.mean([(middle[key] / limit) ** 2 for key, limit in limits.items()]))
-    start_s, stop_s = (float(motion.time_s[at]) for at in (first, stop - 1))
-    return TPose(start_s, stop_s, int(first), int(stop), cost=cost, **middle)
-
-
-def best(tposes: Sequence[TPose]) -> TPose:
-    """Return the T-pose of least cost."""
-    return min(tposes, key=lambda tpose: tpose.cost)
+    return _spell(motion.time_s, first, stop, middle)
 
 
 def measure(motion: DeviceMotion) -> dict[str, NDArray]:
@@ -215,23 +170,15 @@ def _joined(runs: Iterable[tuple[int, int]], time_s: NDArray) -> list[tuple[int,
     return joined
 
 
-def _tpose(time_s, measures, limits, first, stop) -> TPose:
-    spell = slice(first, stop)
-    middle = {key: float(np.nanmedian(measures[key][spell])) for key in limits}
-    cost = float(np.mean([(middle[key] / limit) ** 2 for key, limit in limits.items()]))
-    return TPose(
-        start_s=float(time_s[first]),
-        stop_s=float(time_s[stop - 1]),
-        first=int(first),
-        stop=int(stop),
-        cost=cost,
-        **middle,
-    )
+def _spell(time_s: NDArray, first: int, stop: int, middle: Mapping[str, float]) -> TPose:
+    cost = float(np.mean([(middle[key] / limit) ** 2 for key, limit in LIMITS.items()]))
+    start_s, stop_s = float(time_s[first]), float(time_s[stop - 1])
+    return TPose(start_s, stop_s, int(first), int(stop), cost=cost, **middle)
 
 
-def _nearest(motion, measures, over, good, limits, least_s) -> str:
-    words = ", ".join(f"{key} <= {limit:g}" for key, limit in limits.items())
-    line = f"{motion.source}: expected a T-pose ({words}, for {least_s:g} s), found none"
+def _nearest(motion, measures, over, good) -> str:
+    words = ", ".join(f"{key} <= {limit:g}" for key, limit in LIMITS.items())
+    line = f"{motion.source}: expected a T-pose ({words}, for {LEAST_S:g} s), found none"
     worst = np.where(np.isfinite(over).all(axis=0), over.max(axis=0), np.inf)
     if not np.isfinite(worst).any():
         return f"{line}, nor a frame with both arms and the trunk; film a T-pose before the clap"
@@ -242,6 +189,6 @@ def _nearest(motion, measures, over, good, limits, least_s) -> str:
         found = f"the longest lasts {lasts:.2f} s at {motion.time_s[first]:.2f} s"
     else:
         at = int(worst.argmin())
-        nearest = ", ".join(f"{key} {measures[key][at]:.2g}" for key in limits)
+        nearest = ", ".join(f"{key} {measures[key][at]:.2g}" for key in LIMITS)
         found = f"the nearest is at {motion.time_s[at]:.2f} s with {nearest}"
     return f"{line}; {found}; film a T-pose before the clap"

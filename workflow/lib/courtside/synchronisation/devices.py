@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
-from courtside.events.claps import Clap
-from courtside.events.detect import Events
 from courtside.records.devices.clocks import Clock
 from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.events import Clap, Events
 from courtside.study.errors import InputError
 from courtside.synchronisation import clock_adjustment, motion_signals
 from courtside.synchronisation.motion_signals import Signals
@@ -123,6 +123,18 @@ def synchronise(
         source: Found(**(vars(one) | _stated(latency.get(source))))
         for source, one in shared.items()
     }
+
+
+def checks(found: Mapping[str, Found]) -> pd.DataFrame:
+    """Return one row per source: its clock, and the estimates that this rests on."""
+    rows = []
+    for source, one in found.items():
+        clock = {key: getattr(one.clock, key) for key in ("offset_s", "drift_ppm", "uncertainty_s")}
+        rest = {key: value for key, value in vars(one).items() if key not in ("clock", "claps")}
+        about = {"source": source, "status": one.clock.status, **clock}
+        about["drift_uncertainty_ppm"] = one.clock.drift_uncertainty_ppm
+        rows.append(about | {"n_claps": len(one.claps)} | rest)
+    return pd.DataFrame(rows)
 
 
 def _stated(latency: tuple[float, float] | None) -> dict[str, float]:

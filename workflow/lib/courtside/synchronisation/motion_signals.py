@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from courtside.body_frame import frame
 from courtside.events import tpose
-from courtside.events.tpose import TPose
 from courtside.records.devices.device_motion import DeviceMotion
+from courtside.records.devices.events import TPose
 from courtside.synchronisation import smooth_tracks
 
 SMOOTH_S = 0.03  # ASSUME: least standard deviation of the Gaussian

@@ -87,20 +87,15 @@ def clocks(job: Job, corrected: bool = True) -> dict[str, str]:
     return {name: source.device for name, source in sources(job, corrected).items()}
 
 
-def clock_source(job: Job) -> str:
-    """Return the synchronised source with this job's clock: itself, or of the same device."""
-    own = clocks(job)[job["source"]]
-    return next(source for source, device in clocks(job, corrected=False).items() if device == own)
+def event_files(job: Job) -> list[str]:
+    """Return the files of what all sources of a take show."""
+    return [job.fill(paths.EVENTS), *job.of_each(paths.CORRECTED_EVENTS, device=correctable(job))]
 
 
-def tpose(job: Job) -> dict[str, Any]:
-    """Return the devices of all sources, and those whose clock is stated."""
-    return {"devices": clocks(job), "stated": list(job.take.clocks)}
-
-
-def alignment(job: Job) -> dict[str, str]:
-    """Return the skeleton of a source, and the synchronised source with its clock."""
-    return {"skeleton": sources(job)[job["source"]].skeleton, "like": clock_source(job)}
+def alignment(job: Job) -> dict[str, Any]:
+    """Return the skeleton of a source, the devices of all, and those whose clock is stated."""
+    skeleton = sources(job)[job["source"]].skeleton
+    return {"skeleton": skeleton, "devices": clocks(job), "stated": list(job.take.clocks)}
 
 
 def vision(job: Job) -> str | None:
