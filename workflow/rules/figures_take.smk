@@ -62,6 +62,7 @@ rule draw_visibility:
         pose2d=of_job(takes.each_camera, paths.POSE2D),
         people=paths.PEOPLE,
         sync=paths.CAMERA_CLOCKS,
+        cameras=paths.CAMERAS,
         skeleton=of_job(Job.skeleton_file),
     output:
         **figure("visibility"),

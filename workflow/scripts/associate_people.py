@@ -5,31 +5,24 @@ from dataclasses import replace
 import numpy as np
 
 from courtside.calibration.court import court
-from courtside.geometry import camera as cameras
 from courtside.reconstruction import resampling
 from courtside.reconstruction.association import associate
-from courtside.records.devices import clocks as sync
-from courtside.records.keypoints import keypoints, people, skeleton
-from courtside.study.errors import InputError
+from courtside.records.cameras import footage
+from courtside.records.keypoints import people, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
 def main(paths, people_npz, *, persons):
-    views = [keypoints.read_2d(path) for path in paths.pose2d]
-    known = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
-    _, by_camera = sync.read(paths.sync)
-    clocks = [by_camera[view.camera] for view in views]
-    fault = sync.fault_line(paths.sync, by_camera)
-    if fault and len(persons) > 1:
-        raise InputError(fault)
+    seen = footage.read(paths.cameras, paths.pose2d, None, paths.sync, sure_clocks=len(persons) > 1)
+    views, clocks = [one.tracklets for one in seen], [one.clock for one in seen]
     joints = skeleton.read(paths.skeleton)
     names = joints.groups["limbs"]
     chosen = [joints.index(name) for name in names]
     limbs = [replace(v, xy=v.xy[:, :, chosen], score=v.score[:, :, chosen]) for v in views]
     time_s = resampling.common_times(views, clocks)
     found = associate.associate(
-        [known[view.camera] for view in views],
+        [one.camera for one in seen],
         [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)],
         time_s,
         len(persons),

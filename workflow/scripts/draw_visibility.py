@@ -3,16 +3,15 @@
 from courtside.figures.style import style
 from courtside.figures.take import visibility
 from courtside.reconstruction import resampling
-from courtside.records.devices import clocks as sync
-from courtside.records.keypoints import keypoints, people, skeleton
+from courtside.records.cameras import footage
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
 
 
 def main(paths, pdf, png, csv):
-    points, who = keypoints.read_3d(paths.pose3d), people.read(paths.people)
-    _, clocks = sync.read(paths.sync)
-    views = [who.assigned(keypoints.read_2d(path)) for path in paths.pose2d]
-    views = [resampling.nearest(view, points.time_s, clocks[view.camera])[0] for view in views]
+    points = keypoints.read_3d(paths.pose3d)
+    seen = footage.read(paths.cameras, paths.pose2d, paths.people, paths.sync)
+    views = [resampling.nearest(one.view, points.time_s, one.clock)[0] for one in seen]
     rows = visibility.table(points, views)
     style.save(visibility.draw(rows, skeleton.read(paths.skeleton)), rows, pdf, png, csv)
 

@@ -50,13 +50,8 @@ def main(
         paths.append(wrist_arcs.paths(swept).assign(source=body.source))
         row = wrist_arcs.distortion(swept).assign(source=body.source, unit_m=reference.unit_m)
         distortion.append(row.assign(sparc=smoothness.of_arcs(reference, swept, sparc_rate_hz)))
-    made = (
-        (errors_csv, errors),
-        (parts_csv, parts),
-        (paths_csv, paths),
-        (distortion_csv, distortion),
-    )
-    for path, rows in made:
+    files = errors_csv, parts_csv, paths_csv, distortion_csv
+    for path, rows in zip(files, (errors, parts, paths, distortion), strict=True):
         rows = pd.concat(rows, ignore_index=True)
         tables.write(path, rows.set_index("source").reset_index(), labels)
 

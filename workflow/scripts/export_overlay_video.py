@@ -5,11 +5,9 @@ Reads video, 2D keypoints, people, clocks and 3D keypoints; writes MP4.
 
 from courtside.exports import overlay_video
 from courtside.figures.style import style
-from courtside.geometry import camera as cameras
 from courtside.reconstruction import camera_shake
-from courtside.records.cameras import shake_table
-from courtside.records.devices import clocks as sync
-from courtside.records.keypoints import keypoints, people, skeleton
+from courtside.records.cameras import footage, shake_table
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 from courtside.video import reader, writer
@@ -18,20 +16,11 @@ COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
 
 
 def main(paths, mp4, *, camera, blur_faces, trim_s, crf, effort, keep_background):
-    known = {one.name: one for one in cameras.read_toml(paths.cameras)}
-    view, (_, clocks) = keypoints.read_2d(paths.pose2d), sync.read(paths.sync)
-    turns = None
-    if paths.shake:
-        table = shake_table.read_all(paths.shake)[camera]
-        turns = camera_shake.frame_turns(known[camera], table, view.time_s)
+    seen = footage.read(paths.cameras, [paths.pose2d], paths.people, paths.sync)
+    (one,) = camera_shake.put_back(seen, shake_table.read_all(paths.shake))
+    points, joints = keypoints.read_3d(paths.pose3d), skeleton.read(paths.skeleton)
     track = overlay_video.track(
-        known[camera],
-        view,
-        people.read(paths.people).assigned(view),
-        clocks[camera],
-        keypoints.read_3d(paths.pose3d),
-        skeleton.read(paths.skeleton),
-        turns,
+        one.camera, one.tracklets, one.view, one.clock, points, joints, one.turns
     )
     start_s, stop_s = trim_s or (None, None)
     rate_hz = reader.probe(paths.video, stop_s=stop_s).rate_hz

@@ -3,41 +3,32 @@
 import numpy as np
 
 from courtside.calibration.records import covariance
-from courtside.geometry import camera as cameras
 from courtside.reconstruction import fusion as camera_error
 from courtside.reconstruction import resampling
-from courtside.records.devices import clocks as sync
-from courtside.records.keypoints import keypoints, people, skeleton
-from courtside.study.errors import InputError
+from courtside.records.cameras import footage
+from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
 def main(paths, pose3d_npz, *, persons, fusion, **options):
-    known = {camera.name: camera for camera in cameras.read_toml(paths.cameras)}
-    used, rule = fusion["used"], fusion["rule"]
-    views, joints = {}, skeleton.read(paths.skeleton)
-    _, clocks = sync.read(paths.sync)
-    if fault := sync.fault_line(paths.sync, clocks):
-        raise InputError(fault)
-    who = people.read(paths.people)
-    for path in paths.pose2d:
-        view = keypoints.read_2d(path)
-        cameras.check_size(known[view.camera], tuple(map(int, view.size)), path)
-        views[view.camera] = who.assigned(view)
-    time_s = resampling.common_times(list(views.values()), [clocks[name] for name in views])
-
+    used, rule, joints = fusion["used"], fusion["rule"], skeleton.read(paths.skeleton)
+    seen = footage.read(paths.cameras, paths.pose2d, paths.people, paths.sync, sure_clocks=True)
+    seen = {one.camera.name: one for one in seen}
+    all_views = [one.view for one in seen.values()]
+    time_s = resampling.common_times(all_views, [one.clock for one in seen.values()])
     shared = covariance.read(paths.covariance) if paths.covariance else None
 
     def fuse(names, rule):
-        own = [known[name] for name in names], [views[name] for name in names]
-        clock = [clocks[name] for name in names]
+        own = [seen[name] for name in names]
+        cameras, views = [one.camera for one in own], [one.view for one in own]
+        clocks = [one.clock for one in own]
         found = camera_error.triangulate_take(
-            *own, joints, persons, clocks=clock, time_s=time_s, rule=rule, **options
+            cameras, views, joints, persons, clocks=clocks, time_s=time_s, rule=rule, **options
         )
         report(found)
         if shared:
-            found = camera_error.with_cameras(found, own[0], shared.of(names).of_columns())
+            found = camera_error.with_cameras(found, cameras, shared.of(names).of_columns())
         return found
 
     halves = [fuse((used[0], side), "dlt") for side in used[1:]] if rule == "halfbody" else []

@@ -26,7 +26,8 @@ def moved(*changes):
         views[camera][0, frame, AT(joint), 0] += dx_px
         error[0, frame, AT(joint), camera] = dx_px
     seen = [
-        replace(one, view=replace(one.view, xy=xy)) for one, xy in zip(seen, views, strict=True)
+        replace(one, tracklets=replace(one.view, xy=xy))
+        for one, xy in zip(seen, views, strict=True)
     ]
     return replace(record, reproj_error_px=error), seen
 
@@ -107,7 +108,7 @@ def test_sides_that_the_fusion_exchanged_are_taken_as_it_took_them():
     pair = [AT("left_knee"), AT("right_knee")]
     xy = seen[0].view.xy.copy()
     xy[:, :, pair] = xy[:, :, pair[::-1]]
-    seen[0] = replace(seen[0], view=replace(seen[0].view, xy=xy))
+    seen[0] = replace(seen[0], tracklets=replace(seen[0].view, xy=xy))
     record.swapped[:, FRAME, pair, 0] = True  # and its errors stay 0
     rows = table(record, seen)
     changed = rows.sides_exchanged
@@ -123,7 +124,7 @@ def test_a_keypoint_near_the_other_sides_joint_is_no_exchange_unless_the_fusion_
     pair = [AT("left_knee"), AT("right_knee")]
     xy = seen[0].view.xy.copy()
     xy[:, :, pair] = xy[:, :, pair[::-1]]
-    seen[0] = replace(seen[0], view=replace(seen[0].view, xy=xy))
+    seen[0] = replace(seen[0], tracklets=replace(seen[0].view, xy=xy))
     assert not table(record, seen).sides_exchanged.any()
 
 
@@ -165,7 +166,7 @@ def test_a_knock_of_14_px_is_no_swap_and_no_disagreement():
     record, seen = takes_made.take(n_frames=40)
     camera = seen[1].camera
     vectors = shaken.knock(camera, 40, 5, 14.0, tremor_px=2)
-    seen[1] = replace(seen[1], view=shaken.view(seen[1].view, camera, vectors))
+    seen[1] = replace(seen[1], tracklets=shaken.view(seen[1].view, camera, vectors))
     tables = {camera.name: shaken.table(camera, vectors, seen[1].view.time_s)}
     views = [one.view for one in seen]
     views[1] = camera_shake.steady(views[1], camera, tables[camera.name])

@@ -53,6 +53,39 @@ def test_views_are_by_person_and_in_the_order_asked_for(tmp_path):
     assert len(footage.read(*files)) == 3
 
 
+def test_all_tracklets_stay_beside_the_persons(tmp_path):
+    _, files = written(tmp_path)
+    one = footage.read(*files)[0]
+    np.testing.assert_array_equal(one.view.xy, one.tracklets.xy[::-1])
+    before = footage.read(*files[:2], None, files[3])[0]
+    assert before.people is before.video is None
+    np.testing.assert_array_equal(before.view.xy, one.tracklets.xy)
+
+
+def test_changed_tracklets_are_those_of_the_persons(tmp_path):
+    _, files = written(tmp_path)
+    one = footage.read(*files)[0]
+    moved = replace(one, tracklets=replace(one.tracklets, xy=one.tracklets.xy + 2))
+    np.testing.assert_array_equal(moved.view.xy, one.view.xy + 2)
+
+
+def test_a_doubtful_clock_is_refused_where_it_matters(tmp_path):
+    _, files = written(tmp_path)
+    doubtful = {c.name: sync.Clock(status="unknown", note="too dark") for c in CAMERAS}
+    sync.write(files[3], "c0", doubtful)
+    assert len(footage.read(*files)) == 3
+    with pytest.raises(InputError, match=r"camera c0: .*too dark"):
+        footage.read(*files, sure_clocks=True)
+
+
+def test_keypoints_of_another_picture_size_are_refused(tmp_path):
+    _, files = written(tmp_path)
+    small = [replace(c, size=(c.size[0] // 2, c.size[1])) for c in CAMERAS]
+    camera_models.write_toml(files[0], small, source="made")
+    with pytest.raises(InputError, match="size"):
+        footage.read(*files)
+
+
 def test_frames_are_found_by_the_reference_clock(tmp_path):
     record, files = written(tmp_path)
     for one in footage.read(*files):

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import repeat
 from os import PathLike
 
 import numpy as np
@@ -13,22 +15,29 @@ from courtside.records.devices import clocks
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints, people
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints.people import People
 from courtside.study.errors import InputError
 
 
 @dataclass(frozen=True, eq=False)
 class Footage:
-    """One camera of a take; `view` holds its keypoints by person, as its pictures show them.
+    """One camera of a take; `tracklets` are its keypoints as detected, `people` who is who.
 
     `turns` (T, 3) are rotation vectors, radians, from the camera as calibrated to the camera in
-    each frame of `view`; None if it stood still.
+    each frame; None if it stood still.
     """
 
     camera: camera_models.Camera
-    view: Keypoints2D
+    tracklets: Keypoints2D
     clock: Clock
-    video: str | PathLike
+    video: str | PathLike | None = None
+    people: People | None = None
     turns: NDArray | None = None
+
+    @cached_property
+    def view(self) -> Keypoints2D:
+        """Its keypoints by person; by tracklet where nobody is associated."""
+        return self.people.assigned(self.tracklets) if self.people else self.tracklets
 
     def frame_at(self, time_s: float) -> int:
         """Return the index of the frame nearest to a time of the reference clock."""
@@ -69,20 +78,27 @@ def between(points: Keypoints3D, time_s: float) -> NDArray:
 def read(
     cameras_toml: str | PathLike,
     pose2d_npz: Sequence[str | PathLike],
-    people_npz: str | PathLike,
+    people_npz: str | PathLike | None,
     sync_json: str | PathLike,
-    videos: Sequence[str | PathLike],
+    videos: Sequence[str | PathLike] = (),
     wanted: Sequence[str] | None = None,
+    *,
+    sure_clocks: bool = False,
 ) -> list[Footage]:
     """Read what the cameras of a take gave: `wanted` ones in this order, all by default.
 
-    `pose2d_npz` and `videos` have one file for each camera, in one order. An `InputError` if a
-    camera is not calibrated, has no clock, or none of the files is of a wanted one.
+    `pose2d_npz` and `videos`, where these are needed, have one file for each camera, in one order;
+    there are no people before persons are associated. An `InputError` if a camera is not calibrated
+    for the size of its pictures, has no clock (with `sure_clocks`: or a doubtful one), or none of
+    the files is of a wanted one.
     """
     known = {camera.name: camera for camera in camera_models.read_toml(cameras_toml)}
-    who, (_, by_camera) = people.read(people_npz), clocks.read(sync_json)
+    who, (_, by_camera) = people.read(people_npz) if people_npz else None, clocks.read(sync_json)
+    if sure_clocks and (fault := clocks.fault_line(sync_json, by_camera)):
+        raise InputError(fault)
     found: dict[str, Footage] = {}
-    for path, video in zip(pose2d_npz, videos, strict=True):
+    films = videos or repeat(None, len(pose2d_npz))
+    for path, video in zip(pose2d_npz, films, strict=True):
         view = keypoints.read_2d(path)
         if wanted is not None and view.camera not in wanted:
             continue
@@ -92,7 +108,8 @@ def read(
                     f"{what}: expected camera {view.camera}, found {sorted(there)}; make it again"
                 )
         camera, clock = known[view.camera], by_camera[view.camera]
-        found[view.camera] = Footage(camera, who.assigned(view), clock, video)
+        camera_models.check_size(camera, (int(view.size[0]), int(view.size[1])), path)
+        found[view.camera] = Footage(camera, view, clock, video, who)
     names = list(map(str, found if wanted is None else wanted))
     missing = [name for name in names if name not in found]
     if missing:
