@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from courtside.geometry import interpolation
+
 LONGEST_GAP = 3  # ASSUME: missing frames that are bridged, 0.1 s at 30 Hz
 REACH = 3.0  # standard deviations at which the kernel is cut off: 0.3 % of its weight is beyond
 LONGEST_STEP = 1.5  # in frames: further apart, a frame is missing
+ROUNDING = 1e-6  # of the time between two frames: times that differ by less are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,13 +85,14 @@ def _on_grid(time_s: NDArray, values: NDArray, uniform: NDArray, step_s: float) 
         if known.sum() < 2:
             continue
         at = time_s[known]
-        after = np.clip(np.searchsorted(at, uniform, side="left"), 1, len(at) - 1)
-        share = (uniform - at[after - 1]) / (at[after] - at[after - 1])
-        share = np.where(np.abs(share - np.rint(share)) < 1e-6, np.rint(share), share)
-        bridged = (share == 0) | (share == 1) | (at[after] - at[after - 1] <= longest)
-        share = np.where(bridged & (share >= 0) & (share <= 1), share, np.nan)[:, None]
-        source = values[person, known, joint]
-        result[person, :, joint] = source[after - 1] * (1 - share) + source[after] * share
+        before, share = interpolation.shares(at, uniform)
+        gap_s = at[before + 1] - at[before]
+        inside = np.abs(uniform - np.clip(uniform, at[0], at[-1])) < ROUNDING * gap_s
+        on_frame = np.abs(share - np.rint(share)) < ROUNDING
+        bridged = inside & (on_frame | (gap_s <= longest))
+        wanted_s = np.where(on_frame, at[before + np.rint(share).astype(int)], uniform)
+        found = interpolation.linear(at, values[person, known, joint], wanted_s)
+        result[person, :, joint] = np.where(bridged[:, None], found, np.nan)
     return result
 
 
