@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 
 from courtside.depth import single_view
@@ -46,7 +48,8 @@ def test_nobody_is_unseen():
 def test_landmarks_become_a_motion():
     in_body = np.random.default_rng(0).normal(size=(1, 2, 2, 3))
     in_body[0, 1, 1] = np.nan
-    motion = single_view.landmarks("cam-rgb", view([[NEAR, NEAR]], in_body), [7.0, 7.1])
+    seen = replace(view([[NEAR, NEAR]], in_body), time_s=np.array([7.0, 7.1]))
+    motion = single_view.landmarks("cam-rgb", seen)
     assert (motion.source, motion.kind) == ("cam-rgb", "rgb")
     assert np.array_equal(motion.xyz, in_body[0], equal_nan=True)
     assert motion.reason.tolist() == [[0, 0], [0, missing_reason.UNSEEN]]

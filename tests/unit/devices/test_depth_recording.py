@@ -20,10 +20,6 @@ def recording(**changed):
     )
 
 
-def test_separation_is_the_distance_of_the_cameras():
-    assert recording().separation_m == pytest.approx(np.sqrt(0.0147**2 + 0.0002**2 + 0.0005**2))
-
-
 @pytest.mark.parametrize(
     "changed",
     [

@@ -158,21 +158,6 @@ def test_a_shift_of_the_clock_is_found():
     assert np.allclose(body.time_s, truth().time_s - report.lag_s)
 
 
-def test_known_offsets_are_taken_off_and_not_given_to_bones():
-    away = {
-        f"{side}_wrist": np.array([0.05 * sign, 0, 0])
-        for side, sign in (("left", 1), ("right", -1))
-    }
-    shifted = moved_bodies.stretched(truth(), {joint: 1.2 for joint in away})  # 5 cm of 25
-    vision = moved_bodies.seen(shifted, 5)
-    scales = [
-        correction.correct(truth(), vision, sigma_m=SIGMA_M, offsets_m=known)[1].bone_scale
-        for known in (away, None)
-    ]
-    assert scales[0]["left_wrist"] == pytest.approx(1.0, abs=0.03)
-    assert scales[1]["left_wrist"] > 1.06
-
-
 def test_a_row_that_nobody_performed_keeps_its_pose():
     true = truth()
     first = PosedHierarchy(

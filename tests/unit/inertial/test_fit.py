@@ -22,7 +22,7 @@ def fitted(drift_m):
     body.translation[:, 0] += drift_m * moved_bodies.smooth(rng, len(body.time_s), (3,), 2.0)
     seen = fit.observe(body, moved_bodies.seen(TRUE, 1, sd_m=(0.01,) * 3), 0.01)
     settings = correction.Settings()
-    state = fit.Fit(body, seen, moved_bodies.UP, 0.0, {}, settings)
+    state = fit.Fit(body, seen, moved_bodies.UP, 0.0, settings)
     state.run()
     return state
 

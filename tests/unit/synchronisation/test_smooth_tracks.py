@@ -63,3 +63,34 @@ def test_outside_the_take_nothing_is_known():
     value, velocity, _ = smooth_tracks.sample(track(TIME_S), np.array([-1.0, 0.01, 9.99, 12.0]))
     assert np.isnan(value).all()
     assert np.isnan(velocity).all()
+
+
+def test_counterparts_are_the_nearest_values_by_both_clocks():
+    first = smooth_tracks.Track(10.0, 0.02, np.zeros((1, 6, 1, 2)))
+    second = smooth_tracks.Track(12.01, 0.01, np.zeros((1, 4, 1, 2)))
+    index, inside = smooth_tracks.counterparts(
+        first, np.array([0, 2]), second, np.array([2.0, 1.994])
+    )
+    # 12.00 and 12.04 s, 11.994 and 12.034 s on the second clock, whose values end at 12.04 s.
+    assert index.tolist() == [[-1, -2], [3, 2]]
+    assert inside.tolist() == [[False, False], [True, True]]
+
+
+def test_product_terms_are_derivatives_by_the_offset():
+    """Two sines, split over both clocks: the product's derivatives by finite differences."""
+    at_s, lag_s, step_s = np.linspace(0, 1, 7), 0.03, 1e-4
+
+    def signals(lag):
+        times = at_s - lag / 2, at_s + lag / 2
+        return [(np.sin(w * t), w * np.cos(w * t), -(w**2) * np.sin(w * t))
+                for w, t in zip((3.0, 5.0), times, strict=True)]  # fmt: skip
+
+    def loss(lag):
+        (a, *_), (b, *_) = signals(lag)
+        return -a * b
+
+    slope, curvature, steep = smooth_tracks.product_terms(*signals(lag_s))
+    before, here, after = (loss(lag_s + k * step_s) for k in (-1, 0, 1))
+    np.testing.assert_allclose(slope, (after - before) / (2 * step_s), atol=1e-6)
+    np.testing.assert_allclose(curvature, (after - 2 * here + before) / step_s**2, atol=1e-4)
+    assert (steep >= 0).all()

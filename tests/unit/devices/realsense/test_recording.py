@@ -68,7 +68,7 @@ def test_the_real_recording_has_its_streams_and_lenses():
     found = realsense.read(path, "d435")
     assert found.depth.K[0, 0] == pytest.approx(390.43, abs=0.005)
     assert found.colour.K[0, 0] == pytest.approx(613.20, abs=0.005)
-    assert found.separation_m == pytest.approx(0.0143, abs=5e-5)
+    assert np.linalg.norm(found.colour_from_depth[:, 3]) == pytest.approx(0.0143, abs=5e-5)
     assert found.depth_unit_m == 0.001
     assert found.baseline_m == pytest.approx(0.05017, abs=1e-5)
     assert found.remarks == ()

@@ -83,17 +83,9 @@ class BodyFrame:
         }
 
 
-def anchors(
-    table: DerivedJoints, skeleton: str, joints: Sequence[str] | NDArray, *, top: str = TOP
-) -> Anchors:
-    """Return the anchors of a skeleton that the table names; y points to the derived joint `top`.
-
-    Raises
-    ------
-    InputError
-        If the table has no definition for this skeleton.
-    """
-    return Anchors(table.weights(skeleton, ORIGIN, joints), table.weights(skeleton, top, joints))
+def anchors(table: DerivedJoints, skeleton: str, joints: Sequence[str] | NDArray) -> Anchors:
+    """Return the anchors of a skeleton; raise InputError if the table does not name it."""
+    return Anchors(*(table.weights(skeleton, name, joints) for name in (ORIGIN, TOP)))
 
 
 def axes(

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
@@ -37,12 +36,11 @@ def main_person(view: Keypoints2D) -> Keypoints2D:
     return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in fields})
 
 
-def landmarks(source: str, view: Keypoints2D, time_s: NDArray | None = None) -> DeviceMotion:
+def landmarks(source: str, view: Keypoints2D) -> DeviceMotion:
     """Return the network's own metric body of the main person, as a motion named `source`.
 
     It is relative to the centre of the hips, axes as in cam (x right, y down, z forward), metres.
-    The view has any number of tracklets and `xyz_in_body`; `time_s` (T,) are times on the device's
-    clock, by default the view's.
+    The view has any number of tracklets and `xyz_in_body`.
     """
     person = main_person(view)
     xyz, reason = person.xyz_in_body[0], person.reason[0]
@@ -51,7 +49,7 @@ def landmarks(source: str, view: Keypoints2D, time_s: NDArray | None = None) -> 
         source=source,
         kind="rgb",
         joints=np.asarray(person.joints),
-        time_s=np.asarray(person.time_s if time_s is None else time_s, dtype=float),
+        time_s=np.asarray(person.time_s, dtype=float),
         xyz=np.where(seen[..., np.newaxis], xyz, np.nan),
         reason=np.where(
             seen, missing_reason.OK, np.where(reason == 0, missing_reason.UNSEEN, reason)

@@ -72,8 +72,3 @@ class DepthRecording:
             raise ValueError(f"expected a depth unit between 0 and 1 m, found {self.depth_unit_m}")
         moved.setflags(write=False)
         object.__setattr__(self, "colour_from_depth", moved)
-
-    @property
-    def separation_m(self) -> float:
-        """Distance between the centres of the colour and the depth camera, metres."""
-        return float(np.linalg.norm(self.colour_from_depth[:, 3]))

@@ -41,44 +41,21 @@ NUMBERS += tuple(f"{side}_{joint}" for side in ("left", "right") for joint in LE
 UNITS_M = {".csv": 1.0, ".json": 0.001}
 # ASSUME: no median neck-to-waist distance lies outside; it tells millimetres from metres.
 TRUNK_M = (0.2, 1.0)
+MIN_CONFIDENCE = 0.5  # ASSUME: Nuitrack tells nothing in between; less sure joints are missing
 EXPORT = "export the skeletons from Nuitrack again"
 
 
-def read(
-    path: str | PathLike,
-    joints: Sequence[str],
-    source: str,
-    *,
-    min_confidence: float = 0.5,
-    user: int | None = None,
-    unit_m: float | None = None,
-) -> DeviceMotion:
-    """Read one user's skeleton.
+def read(path: str | PathLike, joints: Sequence[str], source: str) -> DeviceMotion:
+    """Read the skeleton of the user seen in most frames, from a `.csv` or `.json` as above.
 
-    Parameters
-    ----------
-    path : str or Path
-        `.csv` or `.json`, as above.
-    joints : sequence of str
-        Of `config/skeletons/nuitrack19.yaml`; `collar` is the mean of the two that are one.
-    source : str
-        Name of the result.
-    min_confidence : float
-        Joints below it are missing.
-    user : int, optional
-        Default: the user seen in most frames.
-    unit_m : float, optional
-        Of the coordinates. Default: metres in a `.csv`, millimetres in a `.json`.
-
-    Returns
-    -------
-    motion : DeviceMotion
-        In the axes of a camera (x right, y down, z forward), metres; seconds on the sensor's clock.
+    `joints` are those of `config/skeletons/nuitrack19.yaml`; `collar` is the mean of the two that
+    are one. The motion, named `source`, is in the axes of a camera (x right, y down, z forward),
+    metres; seconds on the sensor's clock.
 
     Raises
     ------
     InputError
-        If the file is not such a recording, holds no such user or is not in the unit.
+        If the file is not such a recording, holds no user or is not in the unit.
     """
     path = Path(path)
     kind = path.suffix.lower()
@@ -87,14 +64,14 @@ def read(
             f"{path}: expected a recording of Nuitrack (.csv or .json), found *{kind}; {EXPORT}"
         )
     users, time_us, xyz, confidence = (_csv if kind == ".csv" else _json)(path, list(joints))
-    chosen = _user(path, users, user)
+    chosen = _user(path, users)
     time_us, xyz, confidence = time_us[chosen], xyz[chosen], confidence[chosen]
     # The recorder repeats rows.
     newer = np.concatenate([[True], np.diff(np.maximum.accumulate(time_us)) > 0])
     time_us, confidence = time_us[newer], confidence[newer]
-    xyz = xyz[newer] * (UNITS_M[kind] if unit_m is None else unit_m) * (1.0, -1.0, 1.0)
+    xyz = xyz[newer] * UNITS_M[kind] * (1.0, -1.0, 1.0)
     unseen = ~np.isfinite(xyz).all(axis=-1) | (xyz == 0).all(axis=-1)
-    unsure = confidence < min_confidence
+    unsure = confidence < MIN_CONFIDENCE
     xyz[unseen | unsure] = np.nan
     _check_size(path, xyz, list(joints))
     reason = np.where(
@@ -111,15 +88,12 @@ def read(
     )
 
 
-def _user(path: Path, users: NDArray, user: int | None) -> NDArray:
-    """Return which rows are the user's, (N,) bool."""
+def _user(path: Path, users: NDArray) -> NDArray:
+    """Return which rows are those of the user seen most often, (N,) bool."""
     known, counts = np.unique(users, return_counts=True)
-    if not len(known) or (user is not None and user not in known):
-        raise InputError(
-            f"{path}: expected a skeleton of {'a user' if user is None else f'user {user}'}, found "
-            f"users {known.tolist()}; {EXPORT} or name another"
-        )
-    user = known[counts.argmax()] if user is None else user
+    if not len(known):
+        raise InputError(f"{path}: expected a skeleton of a user, found none; {EXPORT}")
+    user = known[counts.argmax()]
     if len(known) > 1:
         log.logger.info("%s: user %s of %s", path, user, dict(zip(known, counts, strict=True)))
     return users == user
@@ -135,7 +109,7 @@ def _check_size(path: Path, xyz: NDArray, joints: list[str]) -> None:
     if not TRUNK_M[0] <= median_m <= TRUNK_M[1]:
         raise InputError(
             f"{path}: expected {TRUNK_M[0]} to {TRUNK_M[1]} m from neck to waist, found "
-            f"{median_m:.3g} m; say the unit of the coordinates (unit_m)"
+            f"{median_m:.3g} m; export metres as .csv, or millimetres as .json"
         )
 
 

@@ -20,6 +20,7 @@ from courtside.inertial.segments import Frames
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.hierarchy import PosedHierarchy, forward
 
+UP = np.array([0.0, 1.0, 0.0])  # vertical in the suit's world
 FLOOR_PERCENTILE = 5  # ASSUME: of the lower ankle's height: where the floor is
 # Defaults of `Settings`.
 TURN_DEG = {
@@ -83,9 +84,7 @@ def correct(
     *,
     sigma_m: ArrayLike,
     lag_s: float = 0.0,
-    offsets_m: Mapping[str, NDArray] | None = None,
     performed: NDArray | None = None,
-    up: ArrayLike = (0, 1, 0),
     settings: Settings | None = None,
 ) -> tuple[PosedHierarchy, report.CorrectionReport]:
     """Correct an inertial skeleton by vision.
@@ -93,7 +92,7 @@ def correct(
     Parameters
     ----------
     posed : PosedHierarchy
-        Joints named as in the study; times on the reference clock.
+        Joints named as in the study, in axes with y up; times on the reference clock.
     vision : DeviceMotion
         Joints with a place in space, times on the reference clock, any frame; joints that the
         skeleton does not name are not used.
@@ -102,12 +101,8 @@ def correct(
         again from the residuals; what counts is how it differs from frame to frame.
     lag_s : float
         Standard deviation of the offset between both clocks.
-    offsets_m : dict of str to (3,) float, optional
-        Known offset of vision's joint from the skeleton's, in the axes of the joint's parent.
     performed : (T,) bool, optional
         False for frames of `posed` without motion, as mocopi's first row: there only bones change.
-    up : (3,) float
-        Vertical in the device's world.
 
     Returns
     -------
@@ -121,11 +116,10 @@ def correct(
         If vision has too little in common with the skeleton, or nothing to say about place.
     """
     settings = settings or Settings()
-    vertical = np.asarray(up, float) / np.linalg.norm(up)
     performed = np.ones(len(posed.time_s), bool) if performed is None else performed
     moving = _only(posed, performed)
     seen = observe(moving, vision, sigma_m)
-    fit = Fit(moving, seen, vertical, lag_s, offsets_m or {}, settings)
+    fit = Fit(moving, seen, UP, lag_s, settings)
     fit.run()
     corrected = _whole(posed, performed, _applied(fit), fit)
     return corrected, report.describe(fit, moving, _only(corrected, performed))

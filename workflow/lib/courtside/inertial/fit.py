@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -42,8 +41,8 @@ SHORT_S = 0.1  # ASSUME: lag at which the memory is read
 class Fit:
     """State of the fit of one take.
 
-    Made of the performed frames only, on the reference clock; `up` (3,); the standard deviation of
-    the clocks' offset; and known offsets (3,) of vision's joints.
+    Made of the performed frames only, on the reference clock; `up` (3,); and the standard deviation
+    of the clocks' offset.
     """
 
     def __init__(
@@ -52,7 +51,6 @@ class Fit:
         seen: Seen,
         up: NDArray,
         lag_s: float,
-        offsets_m: Mapping[str, NDArray],
         settings: Settings,
     ) -> None:
         self.posed, self.seen, self.up, self.settings = posed, seen, up, settings
@@ -64,8 +62,8 @@ class Fit:
         self.basis = splines.basis_over(start, stop, settings.knot_s)
         self.coefficients = np.zeros((self.basis.n, self.model.n_slow))
         self._slow_prior()
-        self._fixed_prior(lag_s, offsets_m)
-        self.fixed = self.fixed_mean.copy()
+        self._fixed_prior(lag_s)
+        self.fixed = np.zeros(self.model.n_fixed)
         self.rate_hz = 1 / np.median(np.diff(seen.time_s))
         self.rms_change_m: list[float] = []
 
@@ -109,9 +107,9 @@ class Fit:
         band = {tau: splines.precision(self.basis, tau) for tau in set(memory.values())}
         self.band = np.stack([band[memory[name]] for name in names], axis=2)  # (K, 4, P)
 
-    def _fixed_prior(self, lag_s: float, offsets_m: Mapping[str, NDArray]) -> None:
+    def _fixed_prior(self, lag_s: float) -> None:
         settings, layout = self.settings, self.model.fixed
-        deviation, self.fixed_mean = np.zeros(self.model.n_fixed), np.zeros(self.model.n_fixed)
+        deviation = np.zeros(self.model.n_fixed)
         kinds = [self.segments.kind(name) for name in self.segments.names]
         mounts = [settings.mount_deg[kind] for kind in kinds]
         deviation[layout["mount"]] = np.radians(np.repeat(mounts, 3))
@@ -128,8 +126,6 @@ class Fit:
         deviation[layout["tilt"]] = np.radians(settings.tilt_deg)
         deviation[layout["place"]] = settings.place_m
         deviation[layout["lag"]] = max(lag_s, 1e-6)
-        known = [offsets_m.get(joint, np.zeros(3)) for joint in self.seen.joints]
-        self.fixed_mean[layout["offset"]] = np.concatenate(known)
         self.fixed_precision = deviation**-2
 
     def run(self) -> None:
@@ -205,7 +201,7 @@ class Fit:
         blocks[:, :, diagonal, diagonal] += self.band * scale
         right = border[..., -1] - scale * splines.times(self.band, self.coefficients)
         matrix = fixed[:, :-1] + np.diag(self.fixed_precision)
-        rest = fixed[:, -1] - self.fixed_precision * (self.fixed - self.fixed_mean)
+        rest = fixed[:, -1] - self.fixed_precision * self.fixed
         solution = splines.solve(blocks, right, border[..., :-1], matrix, rest)
         self.coefficients = self.coefficients + solution.inner
         self.fixed = self.fixed + solution.border

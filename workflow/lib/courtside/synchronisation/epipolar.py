@@ -53,9 +53,7 @@ class Epipolar:
         every = max(1, track_a.values.shape[1] // SCAN_TIMES)
         at = np.arange(0, track_a.values.shape[1], every)
         lines = epipolar.lines(self.matrix[a, b], track_a.values[:, at]).astype(np.float32)
-        own_b = track_a.start_s + track_a.step_s * at[:, None] + lags_s
-        index = np.rint((own_b - track_b.start_s) / track_b.step_s).astype(int)
-        inside = (index >= 0) & (index < track_b.values.shape[1])
+        index, inside = smooth_tracks.counterparts(track_a, at, track_b, lags_s)
         index = np.where(inside, index, 0)
         window = max(3, round(WINDOW_S / (every * track_a.step_s)))
         losses = np.stack(

@@ -92,11 +92,8 @@ class Signals:
 
     def terms(self, own: NDArray) -> dict[tuple[int, int], tuple[NDArray, ...]]:
         """Return slope, curvature, steepness (T,) of minus the products, by the second's offset."""
-        (value_a, slope_a, bend_a), (value_b, slope_b, bend_b) = self.sampled(own)
-        slope = -0.5 * (value_a * slope_b - slope_a * value_b) @ self.weight
-        curvature = -0.25 * (value_a * bend_b - 2 * slope_a * slope_b + bend_a * value_b)
-        steep = 0.5 * (slope_a**2 + slope_b**2)
-        return {(0, 1): (slope, curvature @ self.weight, steep @ self.weight)}
+        terms = smooth_tracks.product_terms(*self.sampled(own))
+        return {(0, 1): tuple(part @ self.weight for part in terms)}
 
 
 def common_axes(motions: Sequence[DeviceMotion], spells: Sequence[TPose]) -> NDArray:

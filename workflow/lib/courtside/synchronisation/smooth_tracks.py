@@ -1,5 +1,6 @@
 """Smoothed tracks of one camera or device, with velocity and acceleration at any time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -118,3 +119,28 @@ def sample(track: Track, time_s: NDArray) -> tuple[NDArray, NDArray, NDArray]:
     velocity = (3 * cube * share + 2 * square) * share + linear
     acceleration = 6 * cube * share + 2 * square
     return value, velocity / track.step_s, acceleration / track.step_s**2
+
+
+def counterparts(
+    first: Track, at: NDArray, second: Track, lags_s: NDArray
+) -> tuple[NDArray, NDArray]:
+    """Return which values of a second track belong to values `at` (N,) of the first.
+
+    `lags_s` (L,) are offsets of the second clock against the first. The indices (N, L) are of the
+    nearest value; the second result (N, L) tells whether the track has it.
+    """
+    own_s = first.start_s + first.step_s * at[:, None] + lags_s
+    index = np.rint((own_s - second.start_s) / second.step_s).astype(int)
+    return index, (index >= 0) & (index < second.values.shape[1])
+
+
+def product_terms(first: Sequence[NDArray], second: Sequence[NDArray]) -> tuple[NDArray, ...]:
+    """Return slope, curvature and steepness of minus the product, by the second's offset.
+
+    `first` and `second` are value, velocity and acceleration of two signals, of any one shape. With
+    equal values on both sides the curvature is that of the values' own slopes.
+    """
+    (value_a, slope_a, bend_a), (value_b, slope_b, bend_b) = first, second
+    slope = -0.5 * (value_a * slope_b - slope_a * value_b)
+    curvature = -0.25 * (value_a * bend_b - 2 * slope_a * slope_b + bend_a * value_b)
+    return slope, curvature, 0.5 * (slope_a**2 + slope_b**2)

@@ -31,9 +31,7 @@ class Speeds:
         track_a, track_b = self.tracks[a], self.tracks[b]
         first = track_a.values[0].reshape(track_a.values.shape[1], -1)
         at = np.arange(0, len(first), max(1, len(first) // SCAN_TIMES))
-        own_b = track_a.start_s + track_a.step_s * at[:, None] + lags_s
-        index = np.rint((own_b - track_b.start_s) / track_b.step_s).astype(int)
-        inside = (index >= 0) & (index < track_b.values.shape[1])
+        index, inside = smooth_tracks.counterparts(track_a, at, track_b, lags_s)
         second = track_b.values[0].reshape(track_b.values.shape[1], -1)
         seen_a = np.isfinite(first).any(axis=1)[at]
         seen_b = np.isfinite(second).any(axis=1)
@@ -53,7 +51,13 @@ class Speeds:
             [np.nan_to_num(part[0]) for part in smooth_tracks.sample(track, time_s)]
             for track, time_s in zip(self.tracks, own, strict=True)
         ]
-        return {(a, b): _product_terms(sampled[a], sampled[b]) for a, b in self.pairs}
+        return {
+            (a, b): tuple(
+                part.sum(axis=(1, 2))
+                for part in smooth_tracks.product_terms(sampled[a], sampled[b])
+            )
+            for a, b in self.pairs
+        }
 
 
 def _products(first: NDArray, second: NDArray, index: NDArray) -> NDArray:
@@ -66,16 +70,6 @@ def _products(first: NDArray, second: NDArray, index: NDArray) -> NDArray:
             piece = second[low : asked.max() + 1] @ values
             result[row] = piece[np.maximum(places - low, 0)]
     return result
-
-
-def _product_terms(first: list[NDArray], second: list[NDArray]) -> tuple[NDArray, ...]:
-    """Return slope, curvature and steepness (T,) of minus the product, by the second's offset."""
-    (value_a, slope_a, bend_a), (value_b, slope_b, bend_b) = first, second
-    slope = -0.5 * (value_a * slope_b - slope_a * value_b)
-    curvature = -0.25 * (value_a * bend_b - 2 * slope_a * slope_b + bend_a * value_b)
-    # With equal values on both sides the curvature is that of the values' own slopes.
-    steep = 0.25 * (slope_a**2 + slope_b**2) * 2
-    return tuple(part.sum(axis=(1, 2)) for part in (slope, curvature, steep))
 
 
 def _features(track: smooth_tracks.Track) -> smooth_tracks.Track:
