@@ -66,18 +66,14 @@ def lift_take(
         One person (P = 1), its times on the recording's clock, increasing.
     depth_frames : iterable of (float, (h, w) uint16)
         Time and depth, in order of time; one is held at a time.
-    rig : DepthRecording
-        Or anything with the attributes of `DepthRig`.
     bones : sequence of (str, str)
         Pairs of joints whose distance is constant.
     baseline_m : float
         Between the imagers that depth comes from; for the noise.
-    skin_m : dict of str to float, optional
-        Depth of each joint behind the skin, by its name or its name without side; by default
-        `SKIN_TO_JOINT_M`.
-    beyond_m : dict of str to float, optional
-        How far the network places a joint beyond the end of its limb (`skeleton.PARENT`), by the
-        joint's name without side; it is subtracted. By default 0.
+    skin_m, beyond_m : dict of str to float, optional
+        Depth of each joint behind the skin, by default `SKIN_TO_JOINT_M`; and how far the network
+        places a joint beyond the end of its limb (`skeleton.PARENT`), which is subtracted. By the
+        joint's name, or its name without side.
 
     Returns
     -------
@@ -209,12 +205,10 @@ def _chain(names, bones, is_trunk) -> list[tuple[int, int | None]]:
         if a in names and b in names:
             neighbours[names.index(a)].append(names.index(b))
             neighbours[names.index(b)].append(names.index(a))
-    trunk = [int(k) for k in np.flatnonzero(is_trunk)]
-    parents: dict[int, int | None] = dict.fromkeys(trunk)
-    for start in [None, *range(len(names))]:
-        if start is not None:
-            parents.setdefault(start, None)
-        queue = list(parents) if start is None else [start]
+    parents: dict[int, int | None] = {}
+    for starts in ([int(k) for k in np.flatnonzero(is_trunk)], *([k] for k in range(len(names)))):
+        queue = [k for k in starts if k not in parents]
+        parents |= dict.fromkeys(queue)
         while queue:
             joint = queue.pop(0)
             for other in neighbours[joint]:

@@ -34,29 +34,16 @@ class DepthRig(Protocol):
 
 @dataclass(frozen=True)
 class Sampling:
-    """Parameters of depth sampling.
+    """Parameters of depth sampling."""
 
-    Attributes
-    ----------
-    window : float
-        Half the side of the window about a joint, in radii of the limb there.
-    min_pixels, min_share : int, float
-        A surface needs this many depth pixels, and this share of the window's.
-    bandwidth_m : float
-        Depth within which pixels belong to one surface; twice the noise is added.
-    edge_m : float
-        A pixel that differs by more from a neighbour mixes two surfaces and is excluded.
-    disparity_px : float
-        Standard deviation of the disparity: the noise is
-        `z**2 * disparity_px / (focal_px * baseline_m)`.
-    """
-
-    window: float = 0.7
-    min_pixels: int = 4
-    min_share: float = 0.2
-    bandwidth_m: float = 0.02
-    edge_m: float = 0.06
-    # ASSUME: as makers of stereo depth cameras state for textured surfaces ("RMS subpixel").
+    window: float = 0.7  # half the side of the window about a joint, in radii of the limb there
+    min_pixels: int = 4  # depth pixels that a surface needs
+    min_share: float = 0.2  # of the window's pixels that a surface needs
+    bandwidth_m: float = 0.02  # depth of one surface; twice the noise is added
+    edge_m: float = 0.06  # a pixel that differs by more from a neighbour mixes two surfaces
+    # Standard deviation of the disparity: the noise is `z**2 * disparity_px / (focal_px *
+    # baseline_m)`. ASSUME: as makers of stereo depth cameras state for textured surfaces ("RMS
+    # subpixel").
     disparity_px: float = 0.1
 
 

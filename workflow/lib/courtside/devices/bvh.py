@@ -138,18 +138,7 @@ def shown(word: str) -> str:
 
 
 def read_rows(path: str | PathLike, text: str, at: int, n_frames: int, n_channels: int) -> NDArray:
-    """Read the rows of motion, (T, C) float.
-
-    Parameters
-    ----------
-    path : str or Path
-        For the errors.
-    text : str
-        The whole file.
-    at : int
-        Where in it the rows begin.
-    n_frames, n_channels : int
-        Expected rows and columns.
+    """Read the rows of motion, (T, C) float, which begin at `at` of the whole file's text.
 
     Raises
     ------
@@ -226,27 +215,13 @@ FRAME_TIME = re.compile(r"\s*frame\s+time\s*:[^\S\n]*(\S*)[^\S\n]*(?:\n|\Z)", re
 
 @dataclass(frozen=True, eq=False)
 class BvhText:
-    """The checked content of a BVH file.
+    """The checked content of a BVH file, in its unit and degrees."""
 
-    Attributes
-    ----------
-    hierarchy : str
-        The hierarchy as bvhio reads it: capitals, one item a line; names percent-encoded to ASCII.
-    offsets : (J, 3) float
-        OFFSET of each joint in the file's order, in the file's unit.
-    ends : dict of int to (3,) float
-        End Site of the joints that have one, by the joint's index, in the file's unit.
-    frame_time_s : float
-        Seconds from row to row.
-    rows : (T, C) float
-        The motion, a column for each channel, in the file's unit and degrees.
-    """
-
-    hierarchy: str
-    offsets: NDArray
-    ends: dict[int, NDArray]
-    frame_time_s: float
-    rows: NDArray
+    hierarchy: str  # as bvhio reads it: capitals, one item a line; names percent-encoded to ASCII
+    offsets: NDArray  # (J, 3): OFFSET of each joint in the file's order
+    ends: dict[int, NDArray]  # (3,) each: End Site of the joints that have one, by their index
+    frame_time_s: float  # from row to row
+    rows: NDArray  # (T, C): the motion, a column for each channel
 
 
 class _Words:

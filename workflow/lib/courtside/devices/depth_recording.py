@@ -19,44 +19,22 @@ Frames = Callable[[], Iterator[tuple[float, NDArray]]]
 class DepthRecording:
     """Colour and depth of one device, on its own clock.
 
-    Attributes
-    ----------
-    name : str
-        Of the device in the study.
-    colour, depth : Camera
-        Their `cam_from_world` is the identity: the world of each is its own view.
-    colour_from_depth : (3, 4) float
-        From the depth camera's axes to the colour camera's, both x right, y down, z forward;
-        metres.
-    depth_unit_m : float
-        Metres of one step of the depth pictures; 0 in them is a hole.
-    colour_frames : callable
-        Returns a new iterator of (time_s, (H, W, 3) uint8 BGR), in order of time.
-    depth_frames : callable
-        Returns a new iterator of (time_s, (h, w) uint16), in order of time.
-    colour_index : callable
-        Returns the `FrameTimes` of the colour frames, without decoding a picture.
-    baseline_m : float
-        Between the two imagers that the depth comes from; NaN where the recording does not say.
-    remarks : tuple of str
-        What was assumed because the recording does not say, one line each.
-
-    Raises
-    ------
-    ValueError
-        If `colour_from_depth` or `depth_unit_m` is impossible.
+    Cameras have x right, y down, z forward; the `cam_from_world` of each is the identity. Raise
+    ValueError if `colour_from_depth` or `depth_unit_m` is impossible.
     """
 
-    name: str
+    name: str  # of the device in the study
     colour: Camera
     depth: Camera
-    colour_from_depth: NDArray
-    depth_unit_m: float
-    colour_frames: Frames
-    depth_frames: Frames
-    colour_index: Callable[[], FrameTimes]
-    baseline_m: float = math.nan
-    remarks: tuple[str, ...] = ()
+    colour_from_depth: (
+        NDArray  # (3, 4): from the depth camera's axes to the colour camera's, metres
+    )
+    depth_unit_m: float  # metres of one step of the depth pictures; 0 in them is a hole
+    colour_frames: Frames  # a new iterator of (time_s, (H, W, 3) uint8 BGR), in order of time
+    depth_frames: Frames  # a new iterator of (time_s, (h, w) uint16), in order of time
+    colour_index: Callable[[], FrameTimes]  # of the colour frames, without decoding a picture
+    baseline_m: float = math.nan  # between the imagers of depth; NaN where nothing says it
+    remarks: tuple[str, ...] = ()  # what was assumed where the recording says nothing, a line each
 
     def __post_init__(self) -> None:
         moved = np.array(self.colour_from_depth, dtype=float)

@@ -30,19 +30,10 @@ NO_TURN = 1e-6  # rounding: largest entry by which a rotation may differ from th
 def read(path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi") -> DeviceMotion:
     """Read a BVH file of the app.
 
-    Parameters
-    ----------
-    skeleton : Skeleton
-        `config/skeletons/mocopi27.yaml`: its `names` are the file's names of the joints.
-    source : str
-        Name of the device in the take.
-
-    Returns
-    -------
-    motion : DeviceMotion
-        Joints in the skeleton's order; metres in the app's axes; the clock starts at zero with the
-        first row. The rest pose in the first row is kept, as not performed. `posed` has the joints
-        in the file's order, by the study's names.
+    The `names` of the skeleton, `config/skeletons/mocopi27.yaml`, are the file's. The motion, named
+    `source`, has the joints in the skeleton's order; metres in the app's axes; its clock starts at
+    zero with the first row. The rest pose in the first row is kept, as not performed. `posed` has
+    the joints in the file's order, by the study's names.
 
     Raises
     ------

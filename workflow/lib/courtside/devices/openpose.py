@@ -42,14 +42,10 @@ def read(
         Files `*.json`; the last number in a name counts the frames, the lowest is the first frame.
     skeleton : Skeleton
         Joints in the order of the files.
-    camera, model : str
-        Names for the result.
     size : (int, int)
         Width and height of the video, px.
-    time_s : (T,) float, optional
-        Times of the video's frames. Frames without a file are unseen.
-    rate_hz : float, optional
-        In place of times: frames per second.
+    time_s, rate_hz : (T,) float or float
+        Times of the video's frames, those without a file unseen; or frames per second.
     trim_s : (start, stop), optional
         Only frames from start to before stop.
 
@@ -183,15 +179,8 @@ LEAST_SIZE_PX = 30.0
 def link(people: Sequence[NDArray]) -> NDArray:
     """Follow persons through the frames of one camera.
 
-    Parameters
-    ----------
-    people : list of (K, J, 3) float, length T
-        Persons in each frame: x, y in px, NaN where unseen, and score.
-
-    Returns
-    -------
-    tracks : (P, T, J, 3) float
-        NaN where a person is not in a frame; in the order in which they appear.
+    `people` holds for each frame its persons (K, J, 3): x, y in px, NaN where unseen, and score.
+    The tracks (P, T, J, 3) are in the order in which they appear, NaN where a person is not there.
 
     Notes
     -----

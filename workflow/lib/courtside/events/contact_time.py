@@ -44,29 +44,14 @@ class Noise:
 
 @dataclass(frozen=True)
 class Corner:
-    """The corner of a hinge.
-
-    Attributes
-    ----------
-    time_s : float
-    uncertainty_s : float
-        Standard deviation; 90 % of errors should be within 1.645 of it.
-    floor : float
-        Distance at contact.
-    slope : float
-        Closing speed at contact, per second.
-    smoothing_s : float
-        Standard deviation of the Gaussian that smooths the corner, averaged over the likelihood.
-    rises : bool
-        The distance rises again at once: a rebound.
-    """
+    """The corner of a hinge."""
 
     time_s: float
-    uncertainty_s: float
-    floor: float
-    slope: float
-    smoothing_s: float
-    rises: bool
+    uncertainty_s: float  # standard deviation; 90 % of errors should be within 1.645 of it
+    floor: float  # distance at contact, metres
+    slope: float  # closing speed at contact, m/s
+    smoothing_s: float  # standard deviation of the Gaussian that smooths the corner, on average
+    rises: bool  # whether the distance rises again at once: a rebound
 
 
 def fit(

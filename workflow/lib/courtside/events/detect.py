@@ -41,21 +41,11 @@ def _rest(motion: DeviceMotion) -> TPose | None:
 def of_devices(
     found: Mapping[str, Events], devices: Mapping[str, str], stated: Collection[str] = ()
 ) -> dict[str, Events]:
-    """Give the sources of a take the claps that their devices show.
+    """Give the sources of a take the claps that their devices show; `devices` by source.
 
-    Parameters
-    ----------
-    devices : dict of str to str
-        The device of each source.
-    stated : collection of str
-        Devices whose clock is known: they need no clap.
-
-    Returns
-    -------
-    happened : dict of str to Events
-        By source. One source of each device must show a clap, because they share a clock. A source
-        with T-poses but without a clap gets the claps of its device's first source with claps. A
-        device that is alone needs none.
+    One source of each device must show a clap, because they share a clock. A source with T-poses
+    but without a clap gets the claps of its device's first source with claps. A device that is
+    alone, or whose clock is `stated`, needs none.
 
     Raises
     ------
@@ -93,16 +83,8 @@ def _with_claps(source: str, found: Mapping[str, Events], devices: Mapping[str, 
     return replace(own, claps=claps)
 
 
-EVENT_COLUMNS = [
-    "source",
-    "event",
-    "number",
-    "time_s",
-    "own_time_s",
-    "uncertainty_s",
-    "used",
-    "why",
-]
+EVENT_COLUMNS = ["source", "event", "number", "time_s", "own_time_s", "uncertainty_s"]
+EVENT_COLUMNS += ["used", "why"]
 
 
 def wrists(

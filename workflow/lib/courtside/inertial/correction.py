@@ -89,6 +89,9 @@ def correct(
 ) -> tuple[PosedHierarchy, report.CorrectionReport]:
     """Correct an inertial skeleton by vision.
 
+    The corrected skeleton is in the device's world; its times are those of `posed`, less the
+    clock's shift found.
+
     Parameters
     ----------
     posed : PosedHierarchy
@@ -103,12 +106,6 @@ def correct(
         Standard deviation of the offset between both clocks.
     performed : (T,) bool, optional
         False for frames of `posed` without motion, as mocopi's first row: there only bones change.
-
-    Returns
-    -------
-    corrected : PosedHierarchy
-        In the device's world; its times are those of `posed`, less the clock's shift found.
-    report : CorrectionReport
 
     Raises
     ------

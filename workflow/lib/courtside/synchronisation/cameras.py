@@ -39,21 +39,10 @@ def synchronise(
 ) -> dict[str, Clock]:
     """Find the clock of every camera against the first one's.
 
-    Parameters
-    ----------
-    views : list of Keypoints2D, length C
-        Their tracklets may differ in number, order and persons.
-    cameras : list of Camera, length C, optional
-        In the order of `views`. Without them only the rhythm of the motion is compared.
-    max_offset_s : float
-        Larger offsets are not tried.
-    min_score : float
-        Keypoints below it are not used.
-
-    Returns
-    -------
-    clocks : dict of str to Clock
-        By camera; `records.devices.clocks.fault_line` tells whether they may be used.
+    Tracklets of the views may differ in number, order and persons. `cameras` are in the order of
+    the views; without them only the rhythm of the motion is compared. Offsets larger than
+    `max_offset_s` are not tried, keypoints below `min_score` not used. Whether the clocks may be
+    used tells `records.devices.clocks.fault_line`.
 
     Raises
     ------

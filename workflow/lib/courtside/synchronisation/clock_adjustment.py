@@ -24,20 +24,12 @@ Terms = Callable[[NDArray], Mapping[tuple[int, int], tuple[NDArray, ...]]]
 
 @dataclass(frozen=True, eq=False)
 class Adjusted:
-    """Clocks as `own = t + offset + drift * (t - centre_s)`.
+    """Clocks as `own = t + offset + drift * (t - centre_s)`."""
 
-    Attributes
-    ----------
-    offset_s, drift : (C,) float
-        At `centre_s` of the reference clock; the drift without unit.
-    covariance : (2 C, 2 C) float
-        Of offset 0, drift 0, offset 1, ...; zero for fixed parameters, infinite for undetermined
-        ones.
-    centre_s : float
-    """
-
-    offset_s: NDArray
-    drift: NDArray
+    offset_s: NDArray  # (C,): at `centre_s` of the reference clock
+    drift: NDArray  # (C,): without unit
+    # (2 C, 2 C), of offset 0, drift 0, offset 1, ...: zero for fixed parameters, infinite for
+    # undetermined ones.
     covariance: NDArray
     centre_s: float
 

@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -30,40 +30,24 @@ Pairs = list[tuple[Clap, Clap]]
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Clock of one source and the estimates that it combines.
+    """Clock of one source and the estimates that it combines."""
 
-    Attributes
-    ----------
-    clock : Clock
-        Against the reference source, by the times of the same events. It includes the device's
-        delay.
-    claps : list of (Clap, Clap)
-        Pairs, of the reference and of this source.
-    clap_offset_s, clap_uncertainty_s : float
-        By the claps alone with this clock's drift, at their mean time.
-    clap_drift_ppm, clap_drift_uncertainty_ppm : float
-        By the claps alone; NaN with fewer than two.
-    motion_offset_s, motion_uncertainty_s : float
-        By the motion alone, at the middle of what both recorded.
-    motion_drift_ppm, motion_drift_uncertainty_ppm : float
-    disagree_s : float
-        Offset by the motion minus offset by the claps, at one time.
-    latency_s, latency_uncertainty_s : float
-        The device's stated delay. The offset of the clock itself is `clock.offset_s` minus this
-        delay (if the reference has none).
-    """
-
-    clock: Clock
-    claps: Pairs
+    clock: Clock  # against the reference, by the times of the same events: with the device's delay
+    claps: Pairs  # of the reference and of this source
+    # By the claps alone: the offset with this clock's drift, at their mean time; the drift NaN with
+    # fewer than two.
     clap_offset_s: float = np.nan
     clap_uncertainty_s: float = np.nan
     clap_drift_ppm: float = np.nan
     clap_drift_uncertainty_ppm: float = np.nan
+    # By the motion alone, at the middle of what both recorded.
     motion_offset_s: float = np.nan
     motion_uncertainty_s: float = np.nan
     motion_drift_ppm: float = np.nan
     motion_drift_uncertainty_ppm: float = np.nan
-    disagree_s: float = np.nan
+    disagree_s: float = np.nan  # offset by the motion minus offset by the claps, at one time
+    # The device's stated delay: the offset of the clock itself is `clock.offset_s` minus this (if
+    # the reference has none).
     latency_s: float = 0.0
     latency_uncertainty_s: float = 0.0
 
@@ -78,25 +62,10 @@ def synchronise(
 ) -> dict[str, Found]:
     """Find the clock of every source against the first one's.
 
-    Parameters
-    ----------
-    motions : list of DeviceMotion
-        The first is the reference.
-    happened : dict of str to Events
-        Of each source, reference included.
-    devices : dict of str to str, optional
-        The device of each source; sources of one device share its clock. By default each is its
-        own.
-    known : dict of str to Clock, optional
-        Clocks against the reference that are used as they are.
-    latency : dict of str to (float, float), optional
-        Stated delay of a source and its standard deviation, s. It is reported, not subtracted:
-        places must be compared at the times of the same event.
-
-    Returns
-    -------
-    found : dict of str to Found
-        By source; the clock of the reference has the status `reference`.
+    `happened` holds the events of every source, `devices` its device: sources of one device share
+    its clock, and without `devices` each is its own. Clocks `known` against the reference are used
+    as they are. The stated delay of a source (`latency`, with its standard deviation, s) is
+    reported, not subtracted: places must be compared at the times of the same event.
 
     Raises
     ------
@@ -119,10 +88,11 @@ def synchronise(
         else:
             found[motion.source] = _against(reference, motion, happened)
     shared = _shared(found, [m for m in others if m.source not in known], devices)
-    return {
-        source: Found(**(vars(one) | _stated(latency.get(source))))
-        for source, one in shared.items()
-    }
+    for source, (delay_s, sigma_s) in latency.items():
+        if source in shared:
+            one = shared[source]
+            shared[source] = replace(one, latency_s=delay_s, latency_uncertainty_s=sigma_s)
+    return shared
 
 
 def checks(found: Mapping[str, Found]) -> pd.DataFrame:
@@ -135,10 +105,6 @@ def checks(found: Mapping[str, Found]) -> pd.DataFrame:
         about["drift_uncertainty_ppm"] = one.clock.drift_uncertainty_ppm
         rows.append(about | {"n_claps": len(one.claps)} | rest)
     return pd.DataFrame(rows)
-
-
-def _stated(latency: tuple[float, float] | None) -> dict[str, float]:
-    return dict(zip(("latency_s", "latency_uncertainty_s"), latency or (0.0, 0.0), strict=True))
 
 
 def _device(devices: Mapping[str, str], motion: DeviceMotion) -> str:
@@ -220,9 +186,8 @@ def _joined(pairs, moved, reference, where) -> Found:
     centre_s = moved.centre_s if moved else float(at_s.mean())
     rows = np.column_stack([np.ones(len(pairs)), np.zeros(len(pairs)), at_s - centre_s])
     information = np.diag([0.0, MOTION_BIAS_S**-2, PRIOR_DRIFT**-2])
-    moments = np.zeros(3)
     information += (rows / sigma_s[:, None] ** 2).T @ rows
-    moments += rows.T @ (apart_s / sigma_s**2)
+    moments = rows.T @ (apart_s / sigma_s**2)
     if moved:
         rows = np.array([[1.0, 1, 0], [0, 0, 1]])
         inverse = np.linalg.inv(moved.covariance[2:, 2:])
@@ -296,20 +261,10 @@ BETTER = 0.15  # correlation by which the motion must prefer one pairing
 def pair(
     first: Sequence[Clap], second: Sequence[Clap], likeness: Callable[[float], float], where: str
 ) -> Pairs:
-    """Pair the claps of two devices.
+    """Pair the claps of two devices: the most pairs that one offset explains.
 
-    Parameters
-    ----------
-    likeness : callable
-        Correlation of the motions of both with an offset in seconds.
-    where : str
-        Start of an error message.
-
-    Returns
-    -------
-    pairs : list of (Clap, Clap)
-        The most that one offset explains; of several such offsets, the one with the more similar
-        motions.
+    Of several such offsets, the one with the more similar motions is taken: `likeness` returns
+    their correlation with an offset in seconds. `where` begins an error message.
 
     Raises
     ------

@@ -35,20 +35,10 @@ class Track:
 def build(time_s: NDArray, values: NDArray, sigma_s: float) -> Track:
     """Smooth tracks with a Gaussian.
 
-    Parameters
-    ----------
-    time_s : (T,) float
-        Frame times; increasing, perhaps with dropped frames.
-    values : (P, T, J, K) float
-        NaN where missing.
-    sigma_s : float
-        Standard deviation of the kernel, at least 0.8 frames: see Notes.
-
-    Returns
-    -------
-    track : Track
-        With two values per frame. Up to `LONGEST_GAP` missing frames are bridged linearly; longer
-        gaps stay NaN, with the kernel's reach about them.
+    Frame times (T,) increase, perhaps with dropped frames; values (P, T, J, K) are NaN where
+    missing; the standard deviation of the kernel is at least 0.8 frames: see Notes. The track has
+    two values per frame. Up to `LONGEST_GAP` missing frames are bridged linearly; longer gaps stay
+    NaN, with the kernel's reach about them.
 
     Notes
     -----

@@ -28,21 +28,9 @@ def five_coefficients(
 ) -> NDArray:
     """Return OpenCV's k1 k2 p1 p2 k3 for a lens as a recording describes it.
 
-    Parameters
-    ----------
-    where : str
-        File and stream: begins messages.
-    model : str
-        As the recording names it.
-    coefficients : (5,) array_like
-        k1 k2 p1 p2 k3 of that model.
-    K : (3, 3) array_like
-    size : (int, int)
-
-    Returns
-    -------
-    dist : (5,) float
-        Unchanged if the model is OpenCV's or all are 0; else fitted to within half a pixel.
+    `where`, file and stream, begins messages; `coefficients` are k1 k2 p1 p2 k3 of the model, as
+    the recording names it. They stay if the model is OpenCV's or all are 0, else they are fitted to
+    within half a pixel.
 
     Raises
     ------

@@ -42,12 +42,7 @@ def number_in(message: Any, key: str) -> float:
 def lens(where: str, info: Any) -> tuple[list[int], NDArray, str, NDArray]:
     """Return size, matrix (3, 3), name of the lens model and its coefficients.
 
-    Parameters
-    ----------
-    where : str
-        File and stream: begins messages.
-    info : message
-        `sensor_msgs/CameraInfo` or text.
+    `info` is a `sensor_msgs/CameraInfo` or text; `where`, file and stream, begins messages.
     """
     found = pairs(info)
     coefficients: Any

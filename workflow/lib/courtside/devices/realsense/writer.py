@@ -34,23 +34,12 @@ DEPTH, COLOUR = "/device_0/sensor_0/Depth_0", "/device_0/sensor_1/Color_0"
 
 @dataclass(frozen=True)
 class Device:
-    """What a recording says of its camera.
+    """What a recording says of its camera."""
 
-    Attributes
-    ----------
-    model : str
-        As the camera names itself.
-    serial : str
-    baseline_m : float
-        Between the imagers that depth comes from; not written if NaN.
-    rate_hz : int
-        Nominal.
-    """
-
-    model: str = "Intel RealSense D415"
+    model: str = "Intel RealSense D415"  # as the camera names itself
     serial: str = "000000000000"
-    baseline_m: float = math.nan
-    rate_hz: int = 30
+    baseline_m: float = math.nan  # between the imagers that depth comes from; not written if NaN
+    rate_hz: int = 30  # nominal
 
 
 def write(
@@ -65,22 +54,10 @@ def write(
 ) -> int:
     """Write colour and depth as a recording for `devices.realsense` and the camera's own program.
 
-    Parameters
-    ----------
-    path : str or Path
-        The `.bag` file; it appears under its name only when whole.
-    colour_from_depth : (3, 4) float
-        Metres.
-    depth_unit_m : float
-        Metres of one step of depth.
-    frames : iterable of (float, (H, W, 3) uint8 or None, (h, w) uint16 or None)
-        Time on the camera's clock in seconds, not before 0; colour as BGR; depth, 0 where there is
-        none. None is a lost frame: its number is missing.
-
-    Returns
-    -------
-    n_frames : int
-        Taken from `frames`.
+    The file appears under its name only when whole. `colour_from_depth` (3, 4) is in metres,
+    `depth_unit_m` the metres of one step of depth. Frames are the time on the camera's clock in
+    seconds, not before 0; colour (H, W, 3) as BGR; depth (h, w), 0 where there is none. None is a
+    lost frame: its number is missing. Return the number of frames.
 
     Raises
     ------

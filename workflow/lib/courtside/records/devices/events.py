@@ -14,34 +14,17 @@ Row = TypeVar("Row")
 
 @dataclass(frozen=True)
 class TPose:
-    """One spell of T-pose.
+    """One spell of T-pose. Its measures are medians over the spell, of the worse arm."""
 
-    Attributes
-    ----------
-    start_s, stop_s : float
-        First and last frame, on the device's own clock.
-    first, stop : int
-        Its frames are `first <= frame < stop`.
-    bend_deg : float
-        Of the elbows: 0 with shoulder, elbow and wrist in line; median over the spell, worse arm.
-    level_deg, sideways_deg : float
-        Of the arms from square to the trunk, and, seen along the trunk, from the line of the
-        shoulders; likewise.
-    speed_per_s : float
-        Of the wrists against the trunk, half wrist spans per second, likewise.
-    cost : float
-        Mean square of these four over their limits: the best spell has the least.
-    """
-
-    start_s: float
+    start_s: float  # first and last frame, on the device's own clock
     stop_s: float
-    first: int
+    first: int  # its frames are `first <= frame < stop`
     stop: int
-    bend_deg: float
-    level_deg: float
-    sideways_deg: float
-    speed_per_s: float
-    cost: float
+    bend_deg: float  # of the elbow: 0 with shoulder, elbow and wrist in line
+    level_deg: float  # of the arm, from square to the trunk
+    sideways_deg: float  # of the arm, seen along the trunk, from the line of the shoulders
+    speed_per_s: float  # of the wrist against the trunk, half wrist spans per second
+    cost: float  # mean square of these four over their limits: the best spell has the least
 
     @property
     def frames(self) -> slice:
@@ -51,34 +34,17 @@ class TPose:
 
 @dataclass(frozen=True)
 class Clap:
-    """One clap.
+    """One clap."""
 
-    Attributes
-    ----------
-    time_s : float
-        First touch of the palms, on the device's own clock.
-    uncertainty_s : float
-        Standard deviation; 90 % of errors should be within 1.645 of it. It excludes a constant
-        delay of the device.
-    tpose : int
-        Number of the T-pose before it, from 0.
-    distance_m : float
-        Of the wrists while the hands are held together, along their line in the T-pose.
-    speed_m_s : float
-        Closing speed of that distance on contact.
-    smoothing_s : float
-        Standard deviation of the smoothing by the device.
-    rebounds : bool
-        Whether the hands part again at once.
-    """
-
-    time_s: float
+    time_s: float  # first touch of the palms, on the device's own clock
+    # Standard deviation; 90 % of errors should be within 1.645 of it. It excludes a constant delay
+    # of the device.
     uncertainty_s: float
-    tpose: int
-    distance_m: float
-    speed_m_s: float
-    smoothing_s: float
-    rebounds: bool
+    tpose: int  # number of the T-pose before it, from 0
+    distance_m: float  # of the wrists held together, along their line in the T-pose
+    speed_m_s: float  # closing speed of that distance on contact
+    smoothing_s: float  # standard deviation of the smoothing by the device
+    rebounds: bool  # whether the hands part again at once
 
 
 @dataclass(frozen=True)
