@@ -38,8 +38,8 @@ class DeviceMotion:
     reason: Annotated[NDArray, "int T J"]  # uint8: codes of `missing_reason`
     # False for frames that nobody performed, like the rest pose in the first row of a mocopi file
     performed: Annotated[NDArray, "bool T"]
-    # The same motion as rotations, where the device gives them: same times, joints by the same names
-    # in the device's own order. Stored as `ROTATIONS`.
+    # The same motion as rotations, where the device gives them: same times and names of joints, in
+    # the device's own order. Stored as `ROTATIONS`.
     posed: Annotated[PosedHierarchy | None, "posed"] = None
 
     def joint(self, name: str) -> NDArray:
@@ -105,7 +105,9 @@ def read(path: str | PathLike) -> DeviceMotion:
     with reading(path, "joints whose parents come before them"):
         tree = Hierarchy(tuple(names.tolist()), parents, offsets, ends)
     posed = PosedHierarchy(tree, found["time_s"], *moved) if len(names) else None
-    values = {key: value if value.ndim else value.item() for key, value in found.items()}
+    values: dict[str, Any] = {
+        key: value if value.ndim else value.item() for key, value in found.items()
+    }
     return DeviceMotion(**values, posed=posed)
 
 
