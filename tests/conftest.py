@@ -1,4 +1,4 @@
-"""How the tests share processes: a file stays in one, and so do all that share a study."""
+"""How the tests share processes: a file stays in one, and so do all that hurt one study."""
 
 import os
 from pathlib import PurePosixPath
@@ -7,11 +7,11 @@ from xdist.scheduler import LoadFileScheduling
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # as in the study; a third less time than with threads
 
-ONE_STUDY = {"smoke", "faults", "slurm"}  # folders
+ONE_STUDY = {"faults", "slurm"}  # folders
 
 
 class ByStudy(LoadFileScheduling):
-    """Gives a process the tests of one file, or of all folders that look at one study."""
+    """Gives a process the tests of one file, or of all folders that hurt one study."""
 
     def _split_scope(self, nodeid):
         file = PurePosixPath(nodeid.partition("::")[0])

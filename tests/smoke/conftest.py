@@ -2,7 +2,8 @@
 
 import pytest
 
-from smoke.snakemake_runs import FOLDER, ROOT, run
+from fixtures.study import once
+from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, run
 
 ASKED_FOR = (  # what the study makes only when it is asked for by name
     "results/report.html",
@@ -12,10 +13,28 @@ ASKED_FOR = (  # what the study makes only when it is asked for by name
 
 
 @pytest.fixture(scope="session")
-def tiny_study():
-    """Return the folder of the tiny study's results, made new where something changed."""
-    done = run("--", "all", *ASKED_FOR, check=False)
-    if done.returncode and "from the package registry" in done.stdout + done.stderr:
+def tiny_study(request, tmp_path_factory):
+    """Return the folder of the tiny study's results, made new where something changed.
+
+    Of several processes one runs it, and the others wait for it.
+    """
+    shared = once.folder_of_run(request.config, tmp_path_factory)
+    fault = once.made_once(shared, "tiny_study", fault_of_study)
+    if "from the package registry" in fault:
         pytest.skip("the pinned artefacts are neither fetched nor within reach")
-    assert done.returncode == 0, done.stdout + done.stderr
+    assert fault == ""
     return ROOT / FOLDER / "results"
+
+
+def fault_of_study():
+    """Run the tiny study; return what Snakemake said where it failed."""
+    done = run("--", "all", *ASKED_FOR, check=False)
+    return done.stdout + done.stderr if done.returncode else ""
+
+
+@pytest.fixture(scope="session")
+def kept(tiny_study, tmp_path_factory):
+    """Return a repository copy with the tiny study's results, for tests that leave it unchanged."""
+    root = tmp_path_factory.mktemp("kept")
+    copy_repository(root, FOLDER)
+    return root

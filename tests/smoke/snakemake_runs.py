@@ -1,9 +1,11 @@
 """Running Snakemake as its user does, and reading what it says."""
 
+import os
 import re
 import shutil
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -45,3 +47,24 @@ def planned(*options, root=ROOT):
         return {}
     rows = dict(line.split() for line in table.group(1).splitlines())
     return {rule: int(count) for rule, count in rows.items() if rule not in ("all", "total")}
+
+
+@contextmanager
+def changed(path, content=None):
+    """Give a file another content, or only another date, for a while."""
+    before, state = path.read_bytes(), path.stat()
+    path.write_bytes(before if content is None else content)
+    try:
+        yield
+    finally:
+        path.write_bytes(before)
+        os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
+
+
+@contextmanager
+def edited(path, old, new):
+    """Replace the one place of a text file that says `old`, for a while."""
+    text = path.read_text()
+    assert text.count(old) == 1, f"{path}: {old}"
+    with changed(path, text.replace(old, new).encode()):
+        yield

@@ -1,11 +1,9 @@
 """What the rules leave out for want of consent, and what they say of it; nothing is run."""
 
-import shutil
-
 import pytest
 import yaml
 
-from smoke.snakemake_runs import ROOT, planned, run
+from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, planned, run
 
 TAKE = "results/walk-4cams-tiny/takes/balancing"
 METHOD = "file.all-robust.blazepose-full"
@@ -13,23 +11,19 @@ TRC = f"{TAKE}/pose3d/{METHOD.replace('.', '/')}.p1.trc"
 PICTURED = {"draw_overlay": 1, "export_overlay_video": 4}
 
 
-@pytest.fixture
-def gym(tmp_path):
-    """Return a function: it copies the repository with the real person's consent as said."""
-    for name in ("Snakefile", "workflow", "config", "profiles", "environment.lock"):
-        source, target = ROOT / name, tmp_path / name
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(source, target, ignore=ignored) if source.is_dir() else shutil.copy2(
-            source, target
-        )
-    (tmp_path / "tests" / "smoke").mkdir(parents=True)
+@pytest.fixture(scope="module")
+def gym(tmp_path_factory):
+    """Return a function: it returns a repository copy with the real person's consent as said."""
+    root = tmp_path_factory.mktemp("gym")
+    copy_repository(root)
+    (root / FOLDER).mkdir(parents=True)
+    name = "config/sessions/walk-4cams-tiny.yaml"
 
     def agreed(consent):
-        path = tmp_path / "config" / "sessions" / "walk-4cams-tiny.yaml"
-        session = yaml.safe_load(path.read_text())
+        session = yaml.safe_load((ROOT / name).read_text())
         session["subjects"]["p1"] = {} if consent is None else {"consent": consent}
-        path.write_text(yaml.safe_dump(session))
-        return tmp_path
+        (root / name).write_text(yaml.safe_dump(session))
+        return root
 
     return agreed
 

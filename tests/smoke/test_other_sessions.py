@@ -19,22 +19,18 @@ from courtside.records.truth import session_truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
 from fixtures.recordings.real_data import REAL, needs_real
-from smoke.snakemake_runs import ROOT
+from smoke.snakemake_runs import copy_repository
 
 DOOR = REAL / "sfm-door"
 TINY_FEATURES = {"extract_features": {"first_octave": -1}}
 
 
-@pytest.fixture
-def gym(tmp_path):
-    """Return a copy of the repository without results."""
-    for name in ("Snakefile", "workflow", "config", "profiles"):
-        source, target = ROOT / name, tmp_path / name
-        if source.is_dir():
-            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy2(source, target)
-    return tmp_path
+@pytest.fixture(scope="module")
+def gym(tmp_path_factory):
+    """Return a copy of the repository without results; each test adds a session of its own."""
+    root = tmp_path_factory.mktemp("gym")
+    copy_repository(root)
+    return root
 
 
 def study(gym, name, session, **settings):
@@ -117,6 +113,28 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     assert set(measured["person"]) == {"p1"}
 
 
+def test_another_court_is_a_file(gym):
+    session = {
+        "description": "a tennis court",
+        "court": "tennis",
+        "cameras": {"side": None, "back": None},
+        "walks": {"walk": None},
+        "virtual": {
+            "preset": "rich",
+            "layout": "a",
+            "seed": 5,
+            "size_px": [480, 270],
+            "walk_frames": 24,
+        },
+        "override": {"sweep": {"n_images": [12], "n_offsets": 1}, **TINY_FEATURES},
+    }
+    results = study(gym, "tennis-hall", session, calibrations=["sfm-n12"])
+    rows = pd.read_csv(results / "evaluation" / "global-n12-o0.csv")
+    ours = rows[(rows["method"] == "sfm") & rows["in_sample"]]
+    most = ours[ours["n_clicks"] == ours["n_clicks"].max()]
+    assert most["volume_rms_cm"].median() <= 4.0  # a court of more than twice the length
+
+
 def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_study):
     data = gym / "data" / "hall"
     shutil.copytree(tiny_study / "virtual" / "plain-tiny", data)
@@ -151,25 +169,3 @@ def test_without_a_court_cameras_are_right_but_for_scale_and_frame(gym, tiny_stu
     sigma_deg = np.degrees(np.sqrt(np.trace(turn @ stated.covariance @ turn.T)))
     assert 0.5 < sigma_deg < 3
     assert between < 3 * sigma_deg
-
-
-def test_another_court_is_a_file(gym):
-    session = {
-        "description": "a tennis court",
-        "court": "tennis",
-        "cameras": {"side": None, "back": None},
-        "walks": {"walk": None},
-        "virtual": {
-            "preset": "rich",
-            "layout": "a",
-            "seed": 5,
-            "size_px": [480, 270],
-            "walk_frames": 24,
-        },
-        "override": {"sweep": {"n_images": [12], "n_offsets": 1}, **TINY_FEATURES},
-    }
-    results = study(gym, "tennis-hall", session, calibrations=["sfm-n12"])
-    rows = pd.read_csv(results / "evaluation" / "global-n12-o0.csv")
-    ours = rows[(rows["method"] == "sfm") & rows["in_sample"]]
-    most = ours[ours["n_clicks"] == ours["n_clicks"].max()]
-    assert most["volume_rms_cm"].median() <= 4.0  # a court of more than twice the length

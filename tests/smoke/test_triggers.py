@@ -13,7 +13,6 @@ import os
 import shutil
 import subprocess
 import sys
-from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
 
@@ -23,7 +22,7 @@ import pytest
 import yaml
 
 from courtside.study.execution import digest
-from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, planned, run
+from smoke.snakemake_runs import FOLDER, ROOT, changed, copy_repository, edited, planned, run
 
 RESULTS = FOLDER / "results"
 DEMO = RESULTS / "external/pose2sim/Pose2Sim/Demo_SinglePerson"
@@ -109,35 +108,6 @@ TIES = {
     **{f"draw_{name}": 1 for name in ("badminton_fig08", "badminton_fig12")},
     **{f"draw_{name}": 1 for name in ("coverage", "error_map", "growth")},
 }
-
-
-@pytest.fixture(scope="module")
-def kept(tiny_study, tmp_path_factory):
-    """Return a repository copy with the tiny study's results, for tests that leave it unchanged."""
-    root = tmp_path_factory.mktemp("kept")
-    copy_repository(root, FOLDER)
-    return root
-
-
-@contextmanager
-def changed(path, content=None):
-    """Give a file another content, or only another date, for a while."""
-    before, state = path.read_bytes(), path.stat()
-    path.write_bytes(before if content is None else content)
-    try:
-        yield
-    finally:
-        path.write_bytes(before)
-        os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
-
-
-@contextmanager
-def edited(path, old, new):
-    """Replace the one place of a text file that says `old`, for a while."""
-    text = path.read_text()
-    assert text.count(old) == 1, f"{path}: {old}"
-    with changed(path, text.replace(old, new).encode()):
-        yield
 
 
 def test_a_video_with_other_content_reruns_its_camera_and_what_joins_cameras(kept):

@@ -10,21 +10,7 @@ import time
 
 import pytest
 
-from smoke.snakemake_runs import FOLDER, TINY, copy_repository, planned, run
-
-
-@pytest.fixture
-def copy(tiny_study, tmp_path):
-    """Return a copy of the repository with the results of the tiny study."""
-    copy_repository(tmp_path, FOLDER)
-    return tmp_path
-
-
-def edit(path, old, new):
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new, 1))
-
+from smoke.snakemake_runs import FOLDER, TINY, changed, copy_repository, edited, planned, run
 
 # The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one
 # of them with two cameras for table 1.
@@ -55,63 +41,66 @@ DOWNSTREAM_OF_3D = {
 }
 
 
-def test_a_copied_study_has_nothing_to_do(copy):
-    assert planned(root=copy) == {}
+def test_a_copied_study_has_nothing_to_do(kept):
+    assert planned(root=kept) == {}
 
 
-def test_editing_a_module_reruns_exactly_what_imports_it(copy):
-    module = copy / "workflow/lib/courtside/reconstruction/left_right.py"
-    edit(module, "APART = 2.0", "APART = 2.1")
-    assert planned(root=copy) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
+def test_editing_a_module_reruns_exactly_what_imports_it(kept):
+    module = kept / "workflow/lib/courtside/reconstruction/left_right.py"
+    with edited(module, "APART = 2.0", "APART = 2.1"):
+        assert planned(root=kept) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
 
 
-def test_editing_a_figure_module_reruns_that_figure(copy):
-    module = copy / "workflow/lib/courtside/figures/take/visibility.py"
-    edit(module, "Confidence of the network", "Confidence of this network")
-    assert planned(root=copy) == {"draw_visibility": 1}
+def test_editing_a_figure_module_reruns_that_figure(kept):
+    module = kept / "workflow/lib/courtside/figures/take/visibility.py"
+    with edited(module, "Confidence of the network", "Confidence of this network"):
+        assert planned(root=kept) == {"draw_visibility": 1}
 
 
-def test_a_comment_reruns_nothing(copy):
-    module = copy / "workflow/lib/courtside/geometry/triangulation.py"
-    module.write_text(module.read_text() + "\n# a remark\n")
-    assert planned(root=copy) == {}
+def test_a_comment_reruns_nothing(kept):
+    module = kept / "workflow/lib/courtside/geometry/triangulation.py"
+    with changed(module, module.read_bytes() + b"\n# a remark\n"):
+        assert planned(root=kept) == {}
 
 
-def test_a_parameter_reruns_its_step_and_what_follows(copy):
-    edit(copy / "config/config.yaml", "max_error_px: 15", "max_error_px: 16")
-    assert planned(root=copy) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
+def test_a_parameter_reruns_its_step_and_what_follows(kept):
+    with edited(kept / "config/config.yaml", "max_error_px: 15", "max_error_px: 16"):
+        assert planned(root=kept) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
 
 
-def test_a_filter_parameter_spares_the_triangulation(copy):
-    edit(copy / "config/config.yaml", "max_gap_s: 0.2", "max_gap_s: 0.1")
+def test_a_filter_parameter_spares_the_triangulation(kept):
     after = {"filter_motion": FILTERED, "export_take": 2, "evaluate_fusions": 2}
-    assert planned(root=copy) == {**after, **DOWNSTREAM_OF_FILTER}
+    with edited(kept / "config/config.yaml", "max_gap_s: 0.2", "max_gap_s: 0.1"):
+        assert planned(root=kept) == {**after, **DOWNSTREAM_OF_FILTER}
 
 
-def test_another_number_of_images_maps_only_that_number(copy):
-    edit(copy / "config/sessions/plain-tiny.yaml", "n_images: [12]", "n_images: [12, 16]")
+def test_another_number_of_images_maps_only_that_number(kept):
+    session = kept / "config/sessions/plain-tiny.yaml"
     drawn = ("badminton_fig08", "coverage", "growth")
-    assert planned(root=copy) == {
-        "map_images": 2,
-        "adjust_network": 2,
-        "evaluate_calibration": 2,
-        "tabulate_calibration": 1,
-        "draw_badminton_fig06": 2,
-        **{f"draw_{name}": 1 for name in drawn},
-    }
+    with edited(session, "n_images: [12]", "n_images: [12, 16]"):
+        assert planned(root=kept) == {
+            "map_images": 2,
+            "adjust_network": 2,
+            "evaluate_calibration": 2,
+            "tabulate_calibration": 1,
+            "draw_badminton_fig06": 2,
+            **{f"draw_{name}": 1 for name in drawn},
+        }
 
 
-def test_a_click_spares_structure_from_motion(copy):
-    edit(copy / "config/config.yaml", "click_sigma_px: 0.7", "click_sigma_px: 0.8")
-    jobs = planned(root=copy)
+def test_a_click_spares_structure_from_motion(kept):
+    with edited(kept / "config/config.yaml", "click_sigma_px: 0.7", "click_sigma_px: 0.8"):
+        jobs = planned(root=kept)
     assert jobs["adjust_network"] == 2
     assert not {"extract_features", "match_images", "map_images"} & set(jobs)
 
 
-def test_faults_of_the_configuration_are_single_lines(copy):
-    edit(copy / "config/config.yaml", "max_gap_s: 0.2", "max_gap: 0.2")
-    edit(copy / "config/sessions/walk-4cams-tiny.yaml", "sex: m", "sex: male")
-    done = run("-n", root=copy, check=False)
+def test_faults_of_the_configuration_are_single_lines(kept):
+    with (
+        edited(kept / "config/config.yaml", "max_gap_s: 0.2", "max_gap: 0.2"),
+        edited(kept / "config/sessions/walk-4cams-tiny.yaml", "sex: m", "sex: male"),
+    ):
+        done = run("-n", root=kept, check=False)
     assert done.returncode != 0
     lines = [
         line for line in (done.stdout + done.stderr).splitlines() if line.startswith("Error: ")
@@ -120,15 +109,22 @@ def test_faults_of_the_configuration_are_single_lines(copy):
     assert "Traceback" not in done.stdout + done.stderr
 
 
-def test_a_missing_video_is_named_before_any_job(copy):
-    session = copy / "config/sessions/walk-4cams-tiny.yaml"
-    path = "results/external/pose2sim/Pose2Sim/Demo_SinglePerson/videos/cam03.mp4"
-    edit(session, path, "data/gym/cam03.mp4")
-    done = run(root=copy, check=False)
+def test_a_missing_video_is_named_before_any_job(kept):
+    session = kept / "config/sessions/walk-4cams-tiny.yaml"
+    static = "static: results/external/pose2sim/Pose2Sim/Demo_SinglePerson/videos/cam03.mp4"
+    with edited(session, static, "static: data/gym/cam03.mp4"):
+        done = run(root=kept, check=False)
     output = done.stdout + done.stderr
     assert done.returncode != 0
     assert "cameras.cam03.static: expected a file" in output
     assert "data/gym/cam03.mp4" in output
+
+
+@pytest.fixture
+def copy(tiny_study, tmp_path):
+    """Return a copy of the repository with the results of the tiny study, to be changed."""
+    copy_repository(tmp_path, FOLDER)
+    return tmp_path
 
 
 def checksums(root):
