@@ -11,6 +11,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("tests") / "smoke"
 TINY = Path("config") / "tiny.yaml"
+# Two hundred jobs import the library: let the first keep its bytecode, as on the user's machine.
+ENVIRONMENT = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
 MADE_BY = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 
 
@@ -31,7 +33,13 @@ def run(*options, root=ROOT, check=True, timeout_s=3600):
     command = [sys.executable, "-m", "snakemake", "--directory", str(FOLDER)]
     command += ["--configfile", str(TINY), *options]
     done = subprocess.run(
-        command, cwd=root, capture_output=True, text=True, timeout=timeout_s, check=False
+        command,
+        cwd=root,
+        env=ENVIRONMENT,
+        capture_output=True,
+        text=True,
+        timeout=timeout_s,
+        check=False,
     )
     if check and done.returncode:
         raise AssertionError(done.stdout + done.stderr)

@@ -19,7 +19,7 @@ from courtside.records.truth import session_truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
 from fixtures.recordings.real_data import REAL, needs_real
-from smoke.snakemake_runs import copy_repository
+from smoke.snakemake_runs import ENVIRONMENT, copy_repository
 
 DOOR = REAL / "sfm-door"
 TINY_FEATURES = {"extract_features": {"first_octave": -1}}
@@ -40,7 +40,9 @@ def study(gym, name, session, **settings):
     mine |= {"calibrations": ["sfm-n12", "known8"]} | settings
     (gym / "config" / "mine.yaml").write_text(yaml.safe_dump(mine))
     command = [sys.executable, "-m", "snakemake", "--configfile", "config/mine.yaml"]
-    done = subprocess.run(command, cwd=gym, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=gym, env=ENVIRONMENT, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return gym / "results" / name
 

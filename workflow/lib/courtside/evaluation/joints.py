@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
@@ -151,7 +151,7 @@ def _summary(error: NDArray, covariance: NDArray) -> dict:
         solved = np.linalg.solve(covariance[stated], error[stated][..., None])[..., 0]
         distance = np.einsum("ni,ni->n", error[stated], solved)
         for level in LEVELS:
-            inside = distance <= chi2.ppf(level, df=3)
+            inside = distance <= 2 * gammaincinv(3 / 2, level)
             row[f"coverage_{100 * level:.0f}_percent"] = 100 * inside.mean()
     return row
 

@@ -6,9 +6,8 @@ Every function returns a new record; the raw one is not changed.
 from dataclasses import replace
 
 import numpy as np
+import scipy  # it loads `signal`, half a second, in the jobs that filter
 from numpy.typing import NDArray
-from scipy import signal
-from scipy.interpolate import PchipInterpolator
 
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -58,7 +57,7 @@ def leave_out_uncertain(points: Keypoints3D, times: float = UNCERTAIN_TIMES) -> 
 
 def _pchip(time_s: NDArray, line: NDArray, holes: NDArray) -> NDArray:
     known = np.isfinite(line).all(axis=1)
-    return PchipInterpolator(time_s[known], line[known])(time_s[holes])
+    return scipy.interpolate.PchipInterpolator(time_s[known], line[known])(time_s[holes])
 
 
 def _short_gaps(missing: NDArray, most: int) -> NDArray:
@@ -114,7 +113,7 @@ def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> ND
     for start, stop in runs(np.isfinite(lines).all(axis=1)):
         run = filtered[start:stop] = lines[start:stop]
         if stop - start > 2:
-            filtered[start:stop] = signal.sosfiltfilt(
+            filtered[start:stop] = scipy.signal.sosfiltfilt(
                 sections, run, axis=0, padtype="odd", padlen=min(pad, len(run) - 1)
             )
     return filtered
@@ -122,4 +121,4 @@ def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> ND
 
 def _sections(cutoff_hz: float, rate_hz: float, order: int) -> NDArray:
     one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order)
-    return signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")
+    return scipy.signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy  # as in `filtering`
 from numpy.typing import NDArray
-from scipy import signal
 from scipy.interpolate import CubicSpline
 
 from courtside.kinematics import filtering
@@ -146,7 +146,7 @@ def filtered_covariance(
     has = np.isfinite(covariance).all(axis=(1, 2)) & known
     flat = np.where(has[:, None], covariance.reshape(len(known), 9), 0.0)
     both = np.column_stack([flat, has])
-    summed = signal.oaconvolve(both, (kernel / kernel.sum())[:, None], mode="full", axes=0)
+    summed = scipy.signal.oaconvolve(both, (kernel / kernel.sum())[:, None], mode="full", axes=0)
     summed = summed[len(kernel) // 2 :][: len(known)]
     share = np.where(summed[:, 9:] > 1e-6, summed[:, 9:], np.nan)
     mean = (summed[:, :9] / share).reshape(-1, 3, 3)

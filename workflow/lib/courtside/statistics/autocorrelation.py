@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import norm
+from scipy import special
 
 LEVEL = 0.95  # of intervals, as is usual
 MOST_CORRELATED = 0.95  # beyond this a series is too short to tell from a drift
@@ -35,7 +35,7 @@ def interval(share: float, n_effective: float, level: float = LEVEL) -> tuple[fl
     """
     if not n_effective > 0:
         return 0.0, 1.0
-    z = norm.ppf((1 + level) / 2)
+    z = special.ndtri((1 + level) / 2)
     middle = share + z**2 / (2 * n_effective)
     half = z * np.sqrt(share * (1 - share) / n_effective + z**2 / (4 * n_effective**2))
     scale = 1 + z**2 / n_effective

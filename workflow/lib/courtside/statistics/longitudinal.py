@@ -7,14 +7,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy import special
 
 from courtside.study.errors import InputError
 
 # What must not change unnoticed; the definition is checked beside them.
 CONDITIONS = ("model", "calibration")
 LEVEL = 0.95  # of detectable changes, as is usual
-FACTOR = stats.norm.ppf(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
+FACTOR = special.ndtri(0.5 + LEVEL / 2)  # of the smallest detectable change of single takes
 REAL, WITHIN, UNTOLD, MIXED = "real", "within", "untold", "mixed"
 VALUES = [
     "measure", "unit", "session", "date", "order", "model", "calibration", "definition", "n_takes",
@@ -154,7 +154,7 @@ def changes(values: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for measure, part in values.groupby("measure", sort=False):
         sem, freedom = errors.loc[measure, ["sem", "freedom"]]
-        factor = stats.t.ppf(0.5 + LEVEL / 2, freedom) if freedom > 0 else np.nan
+        factor = special.stdtrit(freedom, 0.5 + LEVEL / 2) if freedom > 0 else np.nan
         first = part.iloc[0]
         for _, row in part.iloc[1:].iterrows():
             change = row["value"] - first["value"]

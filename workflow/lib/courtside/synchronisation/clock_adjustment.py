@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 STEPS = 12  # Newton steps at most; SMALLEST_S is usually reached earlier
 SMALLEST_S = 1e-5  # the adjustment ends with a smaller step: far below a millisecond
@@ -161,4 +161,4 @@ def _moves(slopes: NDArray, curvature: NDArray) -> NDArray:
 def student(freedom: float) -> float:
     """Return the ratio of Student's interval to the normal one."""
     tail = (1 + COVERAGE) / 2
-    return float(stats.t.ppf(tail, freedom) / stats.norm.ppf(tail))
+    return float(special.stdtrit(freedom, tail) / special.ndtri(tail))
