@@ -53,6 +53,8 @@ OWNERS = {
     "ezc3d": "exports",
     "embreex": "virtualgym",
 }
+# Each takes half a second to load. `import scipy` loads one when a function first names it.
+SLOW = ("scipy.signal", "scipy.stats")
 # How rules name files of truth.
 TRUTH = ("truth.npz", "TRUTH", "TRUE_TAKE", "true_take", "BACKDROPS", "backdrops")
 FOR_SCRIPTS = {"courtside", "virtualgym", "numpy", "pandas", "cv2", *sys.stdlib_module_names}
@@ -116,6 +118,20 @@ def test_every_room_has_a_level():
 )
 def test_the_check_bites(room, source):
     assert len(faults(room, source)) == 1
+
+
+def slow_at_head(source):
+    """Return what a module loads slowly whenever it is imported."""
+    head = [node for node in ast.parse(source).body if not isinstance(node, ast.FunctionDef)]
+    return [name for name in imports(ast.unparse(head)) if name.startswith(SLOW)]
+
+
+def test_a_job_that_neither_filters_nor_tests_hypotheses_does_not_wait_for_what_does():
+    found = [name for path in [*MODULES, *SCRIPTS] for name in slow_at_head(path.read_text())]
+    assert found == []
+    assert slow_at_head("from scipy import signal") == ["scipy.signal"]
+    assert slow_at_head("from scipy.stats import chi2") == ["scipy.stats.chi2"]
+    assert slow_at_head("def f():\n    from scipy import stats") == []
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.name)

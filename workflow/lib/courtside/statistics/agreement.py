@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import chi2, norm
 
 from courtside.study.errors import InputError
 
@@ -178,7 +178,7 @@ def limits(subject: ArrayLike, difference: ArrayLike) -> Limits:
     between = np.sum(count * (mean - bias) ** 2) / (n_subjects - 1)
     typical = (total - np.sum(count**2) / total) / (n_subjects - 1)
     component = max((between - within) / typical, 0.0)
-    half = norm.ppf(0.5 + LEVEL / 2) * np.sqrt(component + within)
+    half = scipy.stats.norm.ppf(0.5 + LEVEL / 2) * np.sqrt(component + within)
     inner, outer = _margins(count, mean, within)
     return Limits(
         bias=float(bias),
@@ -210,15 +210,15 @@ def _by_subject(subject: ArrayLike, value: ArrayLike) -> tuple[NDArray, NDArray,
 def _margins(count: NDArray, mean: NDArray, within: float) -> tuple[float, float]:
     """Return how far the interval of a limit reaches towards the bias and away from it."""
     n_subjects, tail = len(count), (1 - LEVEL) / 2
-    normal = norm.ppf(1 - tail)
+    normal = scipy.stats.norm.ppf(1 - tail)
     of_means = mean.var(ddof=1)
     rest = (1 - np.mean(1 / count)) * within
     variance = of_means + rest
     reach = {}
     for side, quantile in (("upper", tail), ("lower", 1 - tail)):
-        of_one = of_means * ((n_subjects - 1) / chi2.ppf(quantile, n_subjects - 1) - 1)
+        of_one = of_means * ((n_subjects - 1) / scipy.stats.chi2.ppf(quantile, n_subjects - 1) - 1)
         freedom = count.sum() - n_subjects
-        of_other = rest * (freedom / chi2.ppf(quantile, freedom) - 1)
+        of_other = rest * (freedom / scipy.stats.chi2.ppf(quantile, freedom) - 1)
         reach[side] = np.hypot(of_one, of_other)
     most, least = np.sqrt(variance + reach["upper"]), np.sqrt(max(variance - reach["lower"], 0.0))
     of_bias = normal**2 * of_means / n_subjects
@@ -244,7 +244,9 @@ def smallest_detectable_change(
     """
     count, _, within, _ = _by_subject(subject, value)
     freedom = int(count.sum() - len(count))
-    change = norm.ppf(0.5 + LEVEL / 2) * np.sqrt(2 * within)
+    change = scipy.stats.norm.ppf(0.5 + LEVEL / 2) * np.sqrt(2 * within)
     tail = (1 - LEVEL) / 2
-    interval = [change * np.sqrt(freedom / chi2.ppf(at, freedom)) for at in (1 - tail, tail)]
+    interval = [
+        change * np.sqrt(freedom / scipy.stats.chi2.ppf(at, freedom)) for at in (1 - tail, tail)
+    ]
     return float(change), (float(interval[0]), float(interval[1])), freedom
