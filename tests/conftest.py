@@ -7,11 +7,14 @@ from xdist.scheduler import LoadFileScheduling
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # as in the study; a third less time than with threads
 
-ONE_STUDY = {"faults", "slurm"}  # folders
+# Files and folders. The two files are collected first and make the tiny study: in one scope they
+# keep their process, so that no other file waits behind the study. The rest of tests/smoke goes to
+# any process; what reads the study there waits for it (smoke/conftest.py).
+ONE_STUDY = {"test_data_dictionary.py", "test_smoke.py", "faults", "slurm"}
 
 
 class ByStudy(LoadFileScheduling):
-    """Gives a process the tests of one file, or of all folders that hurt one study."""
+    """Gives a process the tests of one file, or of all that look first at one study or hurt it."""
 
     def _split_scope(self, nodeid):
         file = PurePosixPath(nodeid.partition("::")[0])
