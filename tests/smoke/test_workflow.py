@@ -15,6 +15,7 @@ from smoke.snakemake_runs import FOLDER, TINY, changed, copy_repository, edited,
 # The real take: all cameras, and two without filter. Two virtual takes: five ways to fuse, and one
 # of them with two cameras for table 1.
 FUSED, FILTERED = 2 + 2 * 5 + 1, 1 + 2 * 5
+FILTER = "filter_motion:\n  max_gap_s: 0.2"  # in config/config.yaml
 TAKE_FIGURES = ("overlay", "skeletons", "reprojection", "visibility", "kinematics", "shake")
 PAPER_FIGURES = ("badminton_fig09", "badminton_fig10", "badminton_fig11", "badminton_tab01")
 DOWNSTREAM_OF_FILTER = {
@@ -70,7 +71,7 @@ def test_a_parameter_reruns_its_step_and_what_follows(kept):
 
 def test_a_filter_parameter_spares_the_triangulation(kept):
     after = {"filter_motion": FILTERED, "export_take": 2, "evaluate_fusions": 2}
-    with edited(kept / "config/config.yaml", "max_gap_s: 0.2", "max_gap_s: 0.1"):
+    with edited(kept / "config/config.yaml", FILTER, FILTER.replace("0.2", "0.1")):
         assert planned(root=kept) == {**after, **DOWNSTREAM_OF_FILTER}
 
 
@@ -97,7 +98,7 @@ def test_a_click_spares_structure_from_motion(kept):
 
 def test_faults_of_the_configuration_are_single_lines(kept):
     with (
-        edited(kept / "config/config.yaml", "max_gap_s: 0.2", "max_gap: 0.2"),
+        edited(kept / "config/config.yaml", FILTER, FILTER.replace("gap_s", "gap")),
         edited(kept / "config/sessions/walk-4cams-tiny.yaml", "sex: m", "sex: male"),
     ):
         done = run("-n", root=kept, check=False)
