@@ -10,8 +10,8 @@ from itertools import product
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import median_abs_deviation
 
 from courtside.depth.lifting import SKIN_TO_JOINT_M, by_joint
 from courtside.evaluation.joints import at_times
@@ -79,4 +79,4 @@ def _spread(parts: list[NDArray]) -> tuple[float, float, int]:
     values = values[np.isfinite(values)]
     if not len(values):
         return np.nan, np.nan, 0
-    return np.median(values), median_abs_deviation(values, scale="normal"), len(values)
+    return np.median(values), scipy.stats.median_abs_deviation(values, scale="normal"), len(values)
