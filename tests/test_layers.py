@@ -154,6 +154,32 @@ def test_every_module_imports(path):
     assert importlib.import_module(name.removesuffix(".__init__")).__doc__
 
 
+def faults_of_list(package: Path) -> list[str]:
+    """Return what the docstring of a room leaves out or calls by a name that is gone."""
+    text = ast.get_docstring(ast.parse((package / "__init__.py").read_text()))
+    parts = {p.stem for p in package.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()}
+    parts -= {"__init__"}
+    source = "\n".join(p.read_text() for p in package.rglob("*.py") if p.name != "__init__.py")
+    listed = {name.split(".")[-1] for name in re.findall(r"`([\w.]+)`", text)} - parts
+    return [f"{part} is not listed" for part in parts if not re.search(rf"\b{part}\b", text)] + [
+        f"{name} is not there" for name in listed if not re.search(rf"\b{name}\b", source)
+    ]
+
+
+@pytest.mark.parametrize(
+    "path", [p for p in MODULES if p.name == "__init__.py"], ids=lambda p: p.parent.name
+)
+def test_a_room_lists_its_modules_and_their_functions(path):
+    assert faults_of_list(path.parent) == []
+
+
+def test_a_list_of_modules_that_is_not_true_is_found(tmp_path):
+    (tmp_path / "__init__.py").write_text('"""Room.\n\nnear: `gone`, `there`\n"""\n')
+    (tmp_path / "near.py").write_text("def there(): ...\n")
+    (tmp_path / "far.py").write_text("")
+    assert faults_of_list(tmp_path) == ["far is not listed", "gone is not there"]
+
+
 TRUE_MODULES = ("virtualgym", "courtside.records.truth")
 KNOWING = ("simulate_", "evaluate_")  # rules that make truth or measure against it
 # What may rest on an evaluation: measures and drawings of it, never a method.

@@ -1,6 +1,12 @@
 """Courtside: markerless 3D human motion in a gymnasium.
 
-Rooms import one another in this order only:
-study, then geometry and records, then sfm, pose, devices and motion, then exports, virtual,
-figures and pages.
+A room imports rooms of lower levels only; this is their order (tests/test_layers.py).
+
+1. study: configuration, jobs and targets, execution, provenance
+2. geometry, video, statistics: mathematics, pictures, dependent samples
+3. records: what rules hand to each other
+4. pose, calibration, devices, depth, inertial, kinematics: one subject each
+5. sfm, reconstruction, events, exports, drafting, pages: what joins them
+6. evaluation, body_frame: comparison with truth; sources in one frame of the body
+7. synchronisation, figures: clocks of cameras and devices; drawings
 """

@@ -1,6 +1,7 @@
 """Running the study: logs, whole files, artefacts, digests of code, resources, the last words.
 
 files: `atomic`, `atomic_folder`, `write_json`, `read_json`, `sha256`, `seen_from`
+script: `run`: one job
 log: `to_file` and `progress`, for scripts
 artefacts: `fetch` and `unpack` pinned files
 digest: `code_digest` and `Remembered`, which rerun rules whose code changed

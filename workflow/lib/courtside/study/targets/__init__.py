@@ -1,4 +1,4 @@
-"""What the study makes: the files that `snakemake` asks for, from the checked configuration alone.
+"""What the study makes: the files that Snakemake asks for, from the checked configuration alone.
 
 calibration: cameras, their errors, the figures of the calibration study
 takes: exports, figures, measures and errors of each take
