@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
-from courtside.devices.realsense import writer
 from courtside.geometry.camera import Camera
 from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.truth import take_truth
@@ -17,7 +16,7 @@ from courtside.study.execution import log
 from virtualgym import presets
 from virtualgym.body import skinned_body
 from virtualgym.body.athlete import Athlete
-from virtualgym.devices import depth_camera, inertial_suit
+from virtualgym.devices import depth_camera, inertial_suit, realsense_writer
 from virtualgym.hall import hall
 from virtualgym.rendering.hall_renderer import Renderer
 from virtualgym.session import parallel, session
@@ -152,8 +151,8 @@ def _write_bag(
     frames = call("frame", [(name, index, time_s) for index, time_s in enumerate(times_s)])
     own_s = np.arange(len(times_s)) / device.rate_hz
     shown = log.progress(zip(own_s, frames, strict=True), len(own_s), f"{name}: frames")
-    about = writer.Device(baseline_m=device.baseline_m, rate_hz=round(device.rate_hz))
-    writer.write(
+    about = realsense_writer.Device(baseline_m=device.baseline_m, rate_hz=round(device.rate_hz))
+    realsense_writer.write(
         path,
         colour,
         depth,

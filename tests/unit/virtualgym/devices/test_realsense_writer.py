@@ -3,7 +3,7 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag1 import Reader
 
-from courtside.devices.realsense import recording, writer
+from courtside.devices.realsense import recording
 from courtside.geometry.camera import Camera
 from fixtures.recordings import aligned_depth
 from fixtures.recordings.depth_recordings_made import (
@@ -16,6 +16,7 @@ from fixtures.recordings.depth_recordings_made import (
     write_bag,
 )
 from fixtures.recordings.real_data import REAL, needs_real
+from virtualgym.devices import realsense_writer
 
 IMAGES = ("/device_0/sensor_0/Depth_0/image/data", "/device_0/sensor_1/Color_0/image/data")
 
@@ -143,7 +144,7 @@ def test_the_camera_s_own_software_aligns_alike(sdk, tmp_path):
     black = np.zeros((240, 320, 3), np.uint8)
     made = [(k / 30, black, steps) for k in range(3)]
     path = tmp_path / "a.bag"
-    writer.write(path, colour, depth, apart, 0.001, made)
+    realsense_writer.write(path, colour, depth, apart, 0.001, made)
     theirs = played(sdk, path)[0][3]
     ours = aligned_depth.align(steps * 0.001, depth, colour, apart)
     both = (theirs > 0) & np.isfinite(ours)

@@ -52,7 +52,7 @@ def write(
     *,
     device: Device | None = None,
 ) -> int:
-    """Write colour and depth as a recording for `devices.realsense` and the camera's own program.
+    """Write colour and depth as a recording that `courtside` and the camera's own program read.
 
     The file appears under its name only when whole. `colour_from_depth` (3, 4) is in metres,
     `depth_unit_m` the metres of one step of depth. Frames are the time on the camera's clock in
