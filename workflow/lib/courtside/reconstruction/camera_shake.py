@@ -49,26 +49,12 @@ def camera_turns(camera: Camera, table: DataFrame) -> NDArray:
 def steady(view: Keypoints2D, camera: Camera, table: DataFrame) -> Keypoints2D:
     """Move keypoints from a camera's shaken frames to their place in its static picture.
 
-    Parameters
-    ----------
-    table : DataFrame
-        With a row for each frame of the view.
+    `table` has a row for each frame of the view. `xy` and `xyz_in_body` are turned back. Frames
+    whose shake is unknown for longer than 0.2 s are left as they are, and the log reports them;
+    keypoints outside the lens model stay, too. The measured shake is not smoothed: its noise is far
+    below a keypoint's, and smoothing would remove more tremor than noise.
 
-    Returns
-    -------
-    steadied : Keypoints2D
-        With `xy` and `xyz_in_body` turned back. Frames whose shake is unknown for longer than 0.2 s
-        are left as they are, and the log reports them. Keypoints outside the lens model stay, too.
-
-    Raises
-    ------
-    InputError
-        If the camera was calibrated at another size, or a frame is not in the table.
-
-    Notes
-    -----
-    The measured shake is not smoothed: its noise is far below a keypoint's, and smoothing would
-    remove more tremor than noise.
+    An `InputError` if the camera was calibrated at another size, or a frame is not in the table.
     """
     camera_models.check_size(
         camera, (int(view.size[0]), int(view.size[1])), f"keypoints of camera {view.camera}"
@@ -197,21 +183,11 @@ MOST = 30  # knocks reported per take
 
 @dataclass(frozen=True)
 class Knock:
-    """A camera was knocked and stayed in its new pose.
+    """A camera was knocked and stayed in its new pose."""
 
-    Attributes
-    ----------
-    time_s : float
-        Of the first frame that shows it, on the camera's own clock.
-    shift_px : (2,) float
-        Movement of the content at the picture's centre: right, down.
-    turn_deg : float
-        Angle by which the camera turned, about any axis.
-    """
-
-    time_s: float
-    shift_px: NDArray
-    turn_deg: float
+    time_s: float  # of the first frame that shows it, on the camera's own clock
+    shift_px: NDArray  # (2,): movement of the content at the picture's centre: right, down
+    turn_deg: float  # angle by which the camera turned, about any axis
 
 
 def find(camera: Camera, table: DataFrame) -> list[Knock]:

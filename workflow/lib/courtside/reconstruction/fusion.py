@@ -33,30 +33,15 @@ def triangulate_take(
     time_s: NDArray | None = None,
     rule: str = "robust",
 ) -> Keypoints3D:
-    """Triangulate the persons of one take.
+    """Triangulate the persons of one take; the result tells where sides were exchanged (`swapped`).
 
-    Parameters
-    ----------
-    cameras, views, clocks
-        In one order. Each view has one tracklet per person, in the order of `person_id` (P,), by
-        the network of `skeleton`. Without clocks, all agree.
-    min_score, min_views, max_error_px, fade_px
-        As for `triangulation.triangulate_robust`.
-    fix_sides : bool
-        Whether to exchange left and right in views that contradict the others.
-    time_s : (T,) float, optional
-        Of the result, on the reference clock; by default `resampling.common_times` of the views.
-    rule : str
-        "robust" weights and excludes views (`triangulation.triangulate_robust`); "dlt" uses all
-        (`triangulation.triangulate_plain`).
+    `cameras`, `views` and `clocks` are in one order; without clocks, all agree. Each view has one
+    tracklet per person, in the order of `person_id` (P,), by the network of `skeleton`. `fix_sides`
+    exchanges left and right in views that contradict the others. `time_s` (T,) is of the result, on
+    the reference clock; by default `resampling.common_times` of the views. The `rule` "robust"
+    weights and excludes views (`triangulation.triangulate_robust`, which the limits are of); "dlt"
+    uses all (`triangulation.triangulate_plain`).
 
-    Returns
-    -------
-    points : Keypoints3D
-        Its `swapped` tells where left and right were exchanged.
-
-    Notes
-    -----
     The keypoints' standard deviation is measured per joint from the residuals of the accepted
     views, three degrees of freedom less per point. It contains what the views disagree on, but not
     an error that all views share, such as a network that places every hip too low.
@@ -150,30 +135,13 @@ SHARED = ("time_s", "joints", "person_id")  # fields that both halves must have 
 
 
 def merge(left: Keypoints3D, right: Keypoints3D, cameras: Sequence[str]) -> Keypoints3D:
-    """Join the left half of one record with the right half of another.
+    """Join the left half of one record with the right half of another [Shishido2020, section 4].
 
-    Parameters
-    ----------
-    left, right : Keypoints3D
-        From the centre and the left camera, and from the centre and the right camera.
-    cameras : sequence of str
-        Of the result.
-
-    Returns
-    -------
-    merged : Keypoints3D
-        Left joints are those of `left`, right joints those of `right`; joints of neither side are
-        the mean of both, or the one that exists.
-
-    Raises
-    ------
-    ValueError
-        If the records differ in times, joints or persons.
-
-    Notes
-    -----
-    [Shishido2020, section 4]. The paper does not tell how head and neck are merged; the mean is
-    ours.
+    `left` is from the centre and the left camera, `right` from the centre and the right camera;
+    `cameras` are those of the result. Left joints are those of `left`, right joints those of
+    `right`; joints of neither side are the mean of both, or the one that exists. The paper does not
+    tell how head and neck are merged; the mean is ours. A `ValueError` if the records differ in
+    times, joints or persons.
     """
     for key in SHARED:
         if not np.array_equal(getattr(left, key), getattr(right, key)):
@@ -219,26 +187,15 @@ def _choose(left: NDArray, right: NDArray, of_left: NDArray, of_right: NDArray) 
 def with_cameras(
     points: Keypoints3D, cameras: Sequence[Camera], covariance: NDArray
 ) -> Keypoints3D:
-    """Add the covariance caused by the cameras to a record.
+    """Add the covariance caused by the cameras, those of `points.cameras`, to a record.
 
-    Parameters
-    ----------
-    cameras : list of Camera
-        Those of `points.cameras`.
-    covariance : (K, K) float
-        Of the columns of the network of these cameras, from
-        `courtside.calibration.records.covariance.CameraCovariance.of_columns`.
+    `covariance` (K, K) is of the columns of the network of these cameras
+    (`CameraCovariance.of_columns` of `courtside.calibration.records.covariance`).
+    `covariance_camera` becomes that at a person's middle in each frame, the same for all joints;
+    NaN where the person is missing.
 
-    Returns
-    -------
-    points : Keypoints3D
-        With `covariance_camera`: that at a person's middle in each frame, the same for all joints;
-        NaN where the person is missing.
-
-    Notes
-    -----
     # ASSUME: the error of a calibration varies little over a body, and little if single joints use
-    # fewer views than the person does.
+    fewer views than the person does.
     """
     placed = np.isfinite(points.xyz)
     count = placed.sum(axis=2)

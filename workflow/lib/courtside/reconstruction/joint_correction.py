@@ -32,9 +32,8 @@ BY_SEX = {"hip": TRUNK}
 SIGN: dict[str | None, float] = {"m": 1.0, "f": -1.0}  # for others, the mean of both
 # Lines that also count by their direction: if a part of the arm looks too short, the elbow is off.
 DIRECTED = {"elbow": (("shoulder", "elbow"), ("elbow", "wrist"))}
-LENGTH_M = (
-    0.3  # of directions and of the vector along the world's z: about a limb, any unit will do
-)
+# Of directions and of the vector along the world's z: about a limb, any unit will do.
+LENGTH_M = 0.3
 # Ridge, share of the vectors' mean square: undetermined shares stay near zero. Another weight did
 # not help (docs/measured.md).
 RIDGE = 1e-3
@@ -48,25 +47,14 @@ REMAKE = "make it anew with the rule evaluate_joint_offsets"
 def vectors(
     xyz: NDArray, joints: Sequence[str], side: str, joint: str, sex: str | None = None
 ) -> dict[str, NDArray]:
-    """Return the vectors that a joint's offset may be a combination of.
+    """Return the vectors (..., 3) m that a joint's offset may be a combination of, by name.
 
-    Parameters
-    ----------
-    xyz : (..., J, 3) float
-        Skeletons in the world, metres, with the named `joints` (J,).
-    side : {"left", "right"}
-    joint : str
-        One of `skeleton.LIMBS`.
-    sex : {"m", "f"} or None
-
-    Returns
-    -------
-    basis : dict of str to (..., 3) float
-        Metres. Trunk axes of the trunk's length (`out`: to the joint's own side; `up`; `forward`);
-        `upright`, the world's z; lines between joints of the own side (`hip-knee`) and of the other
-        (`other hip-knee`), if the network has these joints; `way elbow-wrist` and the like, lines
-        of `DIRECTED` with length `LENGTH_M`; `sex up` and the like, those of `BY_SEX` with the sign
-        of the sex.
+    `xyz` (..., J, 3) m are skeletons in the world with the named `joints` (J,); `joint` is one of
+    `skeleton.LIMBS`, of the `side` left or right; `sex` is "m", "f" or None. Trunk axes have the
+    trunk's length (`out`: to the joint's own side; `up`; `forward`); `upright` is the world's z.
+    There are lines between joints of the own side (`hip-knee`) and of the other (`other hip-knee`),
+    if the network has these joints; `way elbow-wrist` and the like, lines of `DIRECTED` with length
+    `LENGTH_M`; and `sex up` and the like, those of `BY_SEX` with the sign of the sex.
     """
     place = dict(zip(joints, np.moveaxis(xyz, -2, 0), strict=True))
     hips, shoulders = (
@@ -100,23 +88,11 @@ def estimate(
 ) -> pd.DataFrame:
     """Fit the offsets on skeletons whose true joints are known.
 
-    Parameters
-    ----------
-    clips : list of ((T, J, 3) float, (T, K, 3) float, {"m", "f"} or None)
-        Estimated and true skeletons, metres, NaN where either is missing; the sex of the person.
-    joints, true_joints : sequence of str
-        Names of the J and of the K joints.
-
-    Returns
-    -------
-    table : DataFrame
-        `COLUMNS`: the share of each joint (both sides together) and vector; `sigma_m`, the residual
-        per axis; `n`, the number of joints used.
-
-    Raises
-    ------
-    ValueError
-        If a joint is never seen.
+    `clips` hold the estimated (T, J, 3) and the true (T, K, 3) skeletons, metres, NaN where either
+    is missing, and the sex of the person ("m", "f" or None); `joints` and `true_joints` name the J
+    and the K joints. The table has `COLUMNS`: the share of each joint (both sides together) and
+    vector; `sigma_m`, the residual per axis; `n`, the number of joints used. A `ValueError` if a
+    joint is never seen.
     """
     joints, true_joints, rows = list(joints), list(true_joints), []
     for joint in skeleton.LIMBS:
@@ -143,21 +119,12 @@ def estimate(
 def correct(
     points: Keypoints3D, table: pd.DataFrame, sex_of: Mapping[str, str | None] | None = None
 ) -> Keypoints3D:
-    """Subtract the offsets from the limb joints of a record.
+    """Subtract the offsets of `estimate` from the limb joints of a record.
 
-    Parameters
-    ----------
-    table : DataFrame
-        From `estimate`.
-    sex_of : dict of str to {"m", "f"} or None, optional
-        Of persons; for others the mean of both is used.
-
-    Returns
-    -------
-    corrected : Keypoints3D
-        Joints without a row stay. A joint's offset needs shoulders, hips and the joint's own limb;
-        if one of them is missing the joint keeps its place and its offset. `sigma_m` of a corrected
-        joint is added to its `covariance_2d`.
+    `sex_of` gives "m", "f" or None for persons; for others the mean of both is used. Joints without
+    a row stay. A joint's offset needs shoulders, hips and the joint's own limb; if one of them is
+    missing the joint keeps its place and its offset. `sigma_m` of a corrected joint is added to its
+    `covariance_2d`.
     """
     joints, xyz = list(points.joints), points.xyz.copy()
     covariance = points.covariance_2d.copy()
@@ -183,16 +150,13 @@ def correct_then_filter(
 ) -> Keypoints3D:
     """Return skeletons that are corrected (`correct`, `keep`) and then filtered, once.
 
-    The filter is last because limbs of constant length move joints faster than the filter lets
-    through: corrected after it, the neck of two development players had three times the error of
-    acceleration, and a quarter more of speed.
+    `raw` is of `skeleton_filter.prepare`, `filtered` the same after `skeleton_filter.smooth` with
+    this `cutoff_hz` (J,) and `order`. The filter is last because limbs of constant length move
+    joints faster than the filter lets through: corrected after it, the neck of two development
+    players had three times the error of acceleration, and a quarter more of speed.
 
-    Parameters
-    ----------
-    raw, filtered : Keypoints3D
-        Of `skeleton_filter.prepare`, and the same after `skeleton_filter.smooth` with this
-        `cutoff_hz` (J,) and `order`. The covariance is that of `filtered` and the scatter of the
-        offsets, which is slow: the filter does not lessen it.
+    The covariance is that of `filtered` and the scatter of the offsets, which is slow: the filter
+    does not lessen it.
     """
     moved = keep(correct(raw, table, sex_of))
     xyz = skeleton_filter.smooth(moved, cutoff_hz, order).xyz

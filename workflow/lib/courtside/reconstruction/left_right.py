@@ -30,27 +30,13 @@ def swapped_views(
 ) -> NDArray:
     """Find where networks confused left and right in a take of one person.
 
-    Parameters
-    ----------
-    xy : (C, T, J, 2) float
-        Keypoints in distorted px, at uniform times; NaN where unseen.
-    score : (C, T, J) float
-        Confidence, 0 to 1; NaN where unseen.
-    mirror : (J,) int
-        Index of the same joint of the other side; its own for joints without sides.
-    groups : list of list of int
-        Joints that a network confuses together, such as both legs; each closed under `mirror`.
-    max_error_px : float
-        Disagreement of a view is cut off at this reprojection error, or at `LIMIT` of the person's
-        size in that view if this is less.
+    Return (C, T, J) bool: True where the left and right keypoints of a view should be exchanged.
+    `xy` (C, T, J, 2) are distorted px at uniform times and `score` (C, T, J) is 0 to 1, both NaN
+    where unseen; `mirror` (J,) is the index of the same joint of the other side, its own for joints
+    without sides. `groups` are joints that a network confuses together, such as both legs; each
+    closed under `mirror`. Disagreement of a view is cut off at the reprojection error
+    `max_error_px`, or at `LIMIT` of the person's size in that view if this is less.
 
-    Returns
-    -------
-    swapped : (C, T, J) bool
-        True where the left and right keypoints of a view should be exchanged.
-
-    Notes
-    -----
     For each group, the cheapest path over time through the hypotheses (Viterbi 1967). A hypothesis
     costs the disagreement of the views (`disagreement`) and a little for each view it exchanges; a
     change in a view costs the additional movement of its joints (`jumps`) and a little more. All
@@ -93,25 +79,13 @@ def sizes(xy: NDArray) -> NDArray:
 
 
 def jumps(xy: NDArray, weight: NDArray, size_px: NDArray) -> NDArray:
-    """Return how much further joints move if sides change between a frame and the one before.
+    """Return how much further joints move if sides change from one frame to the next, (C, T).
 
-    Parameters
-    ----------
-    xy : (C, T, K, 2, 2) float
-        Left and right joint of K pairs, px; NaN where unseen.
-    weight : (C, T, K) float
-        Of each pair; 0 where unseen.
-    size_px : (C, T) float
-        Of the person.
+    `xy` (C, T, K, 2, 2) px has the left and right joint of K pairs, NaN where unseen; `weight` (C,
+    T, K) is of each pair, 0 where unseen; `size_px` (C, T) of the person. The result is the
+    weighted sum over pairs of the squared movements in units of `JUMP`, cut off at 1, with a change
+    minus without: negative where a change is the smaller movement.
 
-    Returns
-    -------
-    further : (C, T) float
-        Weighted sum over pairs of the squared movements in units of `JUMP`, cut off at 1, with a
-        change minus without. Negative where a change is the smaller movement.
-
-    Notes
-    -----
     A movement is the distance of left relative to right from its prediction, by the last frame that
     shows the pair, by its velocity, or by the velocity of the next frame: the smallest of the
     three. Sides that cross with a velocity are thus neutral. After a gap, `JUMP` squared grows with
@@ -213,28 +187,17 @@ def disagreement(
     swapped: NDArray,
     limit_px: NDArray,
 ) -> NDArray:
-    """Return how far views are from showing one body, for several hypotheses of their sides.
+    """Return how far views are from showing one body, (R, T), for R hypotheses of their sides.
 
-    Parameters
-    ----------
-    straight : (C, T, K, 2, 2) float
-        `epipolar.straight_px` of the left and the right joint of K pairs; NaN where unseen.
-    weight : (C, T, K) float
-        Of a pair in a view, such as the lower score of its joints; 0 if one of them is unseen.
-    swapped : (R, C, T) bool
-        R hypotheses: the views with exchanged left and right.
-    limit_px : (C,) float
-        Reprojection error at which the disagreement of a keypoint is cut off.
+    `straight` (C, T, K, 2, 2) is `epipolar.straight_px` of the left and the right joint of K pairs,
+    NaN where unseen; `weight` (C, T, K) that of a pair in a view, such as the lower score of its
+    joints, 0 if one of them is unseen; `swapped` (R, C, T) bool the views with exchanged left and
+    right; `limit_px` (C,) the reprojection error at which the disagreement of a keypoint is cut
+    off.
 
-    Returns
-    -------
-    disagreement : (R, T) float
-        Weighted sum over views, pairs and both joints of the squared errors in units of the limit,
-        cut off at 1. A pair counts less in a view where its joints are close.
-
-    Notes
-    -----
-    A joint is triangulated by DLT from all views that see it: one wrong view moves all errors.
+    The weighted sum over views, pairs and both joints of the squared errors in units of the limit,
+    cut off at 1. A pair counts less in a view where its joints are close. A joint is triangulated
+    by DLT from all views that see it: one wrong view moves all errors.
     """
     n_frames, n_pairs = weight.shape[1:]
     matrix = np.stack([camera.cam_from_world for camera in cameras])

@@ -13,9 +13,8 @@ from courtside.reconstruction.association.rows import describe
 from courtside.study.errors import InputError
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
-EVERY_S = (
-    0.1  # spacing of the instants at which rows are triangulated: costs grow with their number
-)
+# Spacing of the instants at which rows are triangulated: costs grow with their number.
+EVERY_S = 0.1
 # Persons tracked beyond those wanted, so that a bystander does not take a subject's place.
 EXTRA = 2
 FAR_FROM_COURT_M = 2.0  # a person further beyond the lines is a bystander
@@ -27,23 +26,15 @@ Place = tuple[NDArray, NDArray]  # instants (N,) s and places (N, 3) m of a pers
 
 @dataclass(frozen=True)
 class Association:
-    """Which row of which camera shows which person.
+    """Which row of which camera shows which person."""
 
-    Attributes
-    ----------
-    index : list of (K, T) int, length C
-        Row of each person in each frame; -1 where that camera does not show the person.
-    path : (K, T, 3) float
-        Centre of the body, metres, accurate to 0.1 s; NaN for a person who was not found.
-    placed : (K,) float
-        Share of the instants at which two or more views triangulated the person.
-    dropped : int
-        Number of other people who were followed for at least a tenth of the take and left out.
-    """
-
+    # Of each camera (K, T): row of each person in each frame; -1 where it does not show the person
     index: list[NDArray]
+    # (K, T, 3): centre of the body, metres, accurate to 0.1 s; NaN for a person who was not found
     path: NDArray
+    # (K,): share of the instants at which two or more views triangulated the person
     placed: NDArray
+    # Number of other people who were followed for at least a tenth of the take and left out
     dropped: int
 
     def line(self, persons: Iterable[str]) -> str:
@@ -68,34 +59,16 @@ def associate(
 ) -> Association:
     """Find out which tracklets are one person, over all views and the whole take.
 
-    Parameters
-    ----------
-    xy : list of (P, T, J, 2) float, length C
-        Tracklet rows of each camera at common times, distorted px; NaN where missing. P may differ.
-    time_s : (T,) float
-        Uniform.
-    n_persons : int
-        Subjects of the take; other people are left out.
-    trunk : list of int
-        Indices of shoulders and hips.
-    mirror : list of int, length J, optional
-        Index of the same joint of the other side; with it, views with confused sides still agree.
-    court : Court, optional
-        People far from it are left out; if it has a net, changing halves is taken as rare.
+    `xy` has the tracklet rows (P, T, J, 2) of each camera at common, uniform times `time_s` (T,),
+    distorted px, NaN where missing; P may differ. `trunk` are the indices of shoulders and hips.
+    With `mirror` (J,), the index of the same joint of the other side, views with confused sides
+    still agree. People other than the `n_persons` subjects are left out, and those far from the
+    `court`; if this has a net, changing halves is taken as rare.
 
-    Returns
-    -------
-    association : Association
-        Persons in a fixed order: with a net by their median y (the half at y = 0 first), else by
-        the instant of their first place, and by x within one second.
+    The persons are in a fixed order: with a net by their median y (the half at y = 0 first), else
+    by the instant of their first place, and by x within one second. An `InputError` if no person
+    can be placed.
 
-    Raises
-    ------
-    InputError
-        If no person can be placed.
-
-    Notes
-    -----
     At instants 0.1 s apart, rows of several views that meet in space become candidates
     (`candidates`). They are linked over time by a search that keeps several histories (`linking`);
     then each frame of a row gets the person whose path it follows. A row may change its person,

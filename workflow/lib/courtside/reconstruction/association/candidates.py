@@ -29,28 +29,15 @@ PairDistances = dict[tuple[int, int], NDArray]
 
 @dataclass(frozen=True)
 class Candidates:
-    """M places and rays, ordered by instant.
+    """M places and rays, ordered by instant."""
 
-    Attributes
-    ----------
-    instant : (M,) int
-    xyz : (M, 3) float
-        The place, or the origin of the ray, metres.
-    direction : (M, 3) float
-        Unit vector along the ray; zero for a place.
-    row : (M, C) int
-        Row of each camera that shows it; -1 for none.
-    sigma_m : (M,) float
-        Standard deviation of the place, all axes together; of a ray, across it per metre.
-    view_cost : (M, C) float
-        Negative log-likelihood against nobody being there, per view; 0 without one.
-    """
-
-    instant: NDArray
-    xyz: NDArray
-    direction: NDArray
-    row: NDArray
+    instant: NDArray  # (M,) int
+    xyz: NDArray  # (M, 3): the place, or the origin of the ray, metres
+    direction: NDArray  # (M, 3): unit vector along the ray; zero for a place
+    row: NDArray  # (M, C): row of each camera that shows it; -1 for none
+    # (M,): standard deviation of the place, all axes together; of a ray, across it per metre
     sigma_m: NDArray
+    # (M, C): negative log-likelihood against nobody being there, per view; 0 without one
     view_cost: NDArray
 
     def subset(self, kept: NDArray) -> "Candidates":
@@ -80,20 +67,14 @@ def find(
 ) -> Candidates:
     """Find all places where rows of two or more views meet.
 
-    Parameters
-    ----------
-    xy : list of (P, N, J, 2) float, length C
-        Keypoints at N instants, distorted px; NaN where missing.
-    rows, height_px
-        Centres and standard deviations, and heights (P, N), of `rows.Rows` at these instants.
-    mirror : list of int, length J, optional
-        The same joint of the other side: confused sides are still the same person.
+    `xy` has keypoints (P, N, J, 2) of each camera at N instants, distorted px, NaN where missing;
+    `rows` and `height_px` the centres and standard deviations, and heights (P, N), of `rows.Rows`
+    there. With `mirror` (J,), the same joint of the other side, confused sides are still one
+    person.
 
-    Notes
-    -----
-    Seeds are pairs of rows of two views whose median distance from joint to epipolar line is
-    within the gate. Other views join if they show a body at the projected centre. The effort grows
-    with the square of the number of cameras, not with the number of combinations of rows.
+    Seeds are pairs of rows of two views whose median distance from joint to epipolar line is within
+    the gate. Other views join if they show a body at the projected centre. The effort grows with
+    the square of the number of cameras, not with the number of combinations of rows.
     """
     plane = [
         camera_models.undistort(camera, points) for camera, points in zip(cameras, xy, strict=True)

@@ -53,26 +53,12 @@ def link(
     slots: int,
     net_y_m: float | None = None,
 ) -> NDArray:
-    """Link candidates over time.
+    """Link candidates over time: the index (S, N) of each person's candidate, -1 for none.
 
-    Parameters
-    ----------
-    piece : (M, C) int
-        Uncut piece of each candidate's row in each camera; -1 without one.
-    time_s : (N,) float
-        Of the instants.
-    slots : int
-        Largest number S of persons followed.
-    net_y_m : float, optional
-        Position of the net: crossing it has a cost.
+    `piece` (M, C) is the uncut piece of each candidate's row in each camera, -1 without one;
+    `time_s` (N,) is of the instants; `slots` the largest number S of persons followed. With
+    `net_y_m`, the position of a net, crossing it has a cost.
 
-    Returns
-    -------
-    chosen : (S, N) int
-        Index of each person's candidate, a place or a ray; -1 for none.
-
-    Notes
-    -----
     A multiple-hypothesis tracker (Reid 1979): at each instant candidates are assigned to persons,
     and the best histories are kept. A history costs its candidates, their distance from a
     constant-velocity prediction, and a price for each uncut tracklet piece that changes its owner,

@@ -19,29 +19,15 @@ SIGMA_SHARE, SIGMA_PX = 0.02, 2.0
 
 @dataclass(frozen=True)
 class Rows:
-    """The P rows of one camera in T frames, before any comparison across views.
+    """The P rows of one camera in T frames, before any comparison across views."""
 
-    Attributes
-    ----------
-    present : (P, T) bool
-        Whether the row shows a body.
-    centre : (P, T, 2) float
-        Mean of the trunk's joints over at most five frames, px; NaN where absent.
-    height_px : (P, T) float
-        From the highest to the lowest joint; NaN where absent.
-    sigma_px : (P,) float
-        Expected standard deviation of a joint, per axis.
-    cut : (P, T) bool
-        True where the row may show another body than in the frame before.
-    piece : (P, T) int
-        Number of the uncut piece, unique within this camera; -1 where absent.
-    """
-
-    present: NDArray
+    present: NDArray  # (P, T): whether the row shows a body
+    # (P, T, 2): mean of the trunk's joints over at most five frames, px; NaN where absent
     centre: NDArray
-    height_px: NDArray
-    sigma_px: NDArray
-    cut: NDArray
+    height_px: NDArray  # (P, T): from the highest to the lowest joint; NaN where absent
+    sigma_px: NDArray  # (P,): expected standard deviation of a joint, per axis
+    cut: NDArray  # (P, T): true where the row may show another body than in the frame before
+    # (P, T): number of the uncut piece, unique within this camera; -1 where absent
     piece: NDArray
 
 
