@@ -20,12 +20,8 @@ def common(happened: Mapping[str, Events], clocks: Mapping[str, Clock]) -> dict[
     """Choose the T-pose that all sources show best: for each source its own spell of it.
 
     The first source of `happened` is the reference, which `clocks` are against. Where no T-pose is
-    common, the rest poses are used, if all sources bring one along.
-
-    Raises
-    ------
-    InputError
-        If no T-pose is shown by all.
+    common, the rest poses are used, if all sources bring one along. An `InputError` if no T-pose is
+    shown by all.
     """
     reference = next(iter(happened.values()))
     choices = []
@@ -103,12 +99,8 @@ def counterpart(
     """Return the body frame of the true motion at the T-pose of another source.
 
     The motion, whose T-poses are `spells` and whose joints `carried_by` weighs, and the other
-    T-pose's start and end (2,) are on the reference clock.
-
-    Raises
-    ------
-    InputError
-        If it shows no T-pose then.
+    T-pose's start and end (2,) are on the reference clock. An `InputError` if it shows no T-pose
+    then.
     """
     best = max(spells, key=lambda spell: _overlap(spell, tpose_s))
     if _overlap(best, tpose_s) < SAME_S:

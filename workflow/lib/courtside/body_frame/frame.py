@@ -107,11 +107,8 @@ def axes(
 def at_tpose(motion: DeviceMotion, carried_by: Anchors, tpose: TPose) -> BodyFrame:
     """Return the frame of a T-pose of this motion, from the joints' means over it without outliers.
 
-    Raises
-    ------
-    InputError
-        If joints are missing throughout, or toes and nose are behind: left and right are exchanged,
-        or the device's axes are left-handed.
+    An `InputError` if joints are missing throughout, or toes and nose are behind: left and right
+    are exchanged, or the device's axes are left-handed.
     """
     xyz = motion.xyz[tpose.frames]
     names = [str(name) for name in motion.joints]

@@ -56,40 +56,21 @@ def lift_take(
     beyond_m: Mapping[str, float] | None = None,
     sampling: Sampling | None = None,
 ) -> tuple[DeviceMotion, NDArray]:
-    """Lift the joints of one person over a take.
+    """Lift the joints of one person over a take to a motion named `source`.
 
-    Parameters
-    ----------
-    source : str
-        Name of the result: `d415-depth`.
-    view : Keypoints2D
-        One person (P = 1), its times on the recording's clock, increasing.
-    depth_frames : iterable of (float, (h, w) uint16)
-        Time and depth, in order of time; one is held at a time.
-    bones : sequence of (str, str)
-        Pairs of joints whose distance is constant.
-    baseline_m : float
-        Between the imagers that depth comes from; for the noise.
-    skin_m, beyond_m : dict of str to float, optional
-        Depth of each joint behind the skin, by default `SKIN_TO_JOINT_M`; and how far the network
-        places a joint beyond the end of its limb (`skeleton.PARENT`), which is subtracted. By the
-        joint's name, or its name without side.
+    `view` has one person (P = 1), its times on the recording's clock, increasing. `depth_frames`
+    are times and depth (h, w) uint16, in order of time; one is held at a time. `bones` are pairs of
+    joints whose distance is constant; `baseline_m`, between the imagers that depth comes from, is
+    for the noise. `skin_m` is the depth of each joint behind the skin, by default
+    `SKIN_TO_JOINT_M`; `beyond_m` how far the network places a joint beyond the end of its limb
+    (`skeleton.PARENT`), which is subtracted. Both go by the joint's name, or its name without side.
 
-    Returns
-    -------
-    motion : DeviceMotion
-        In the colour camera's axes (x right, y down, z forward), metres. The reason is `NO_DEPTH`
-        if there is no depth or another part of the body is in front, else that of the 2D joint.
-    sigma_m : (T, J) float
-        Standard deviation along the viewing ray by the noise of the depth alone.
+    The motion is in the colour camera's axes (x right, y down, z forward), metres. The reason is
+    `NO_DEPTH` if there is no depth or another part of the body is in front, else that of the 2D
+    joint. Beside it, the standard deviation (T, J) m along the viewing ray by the noise of the
+    depth alone. A `ValueError` if the view has not one person, its times do not increase or a joint
+    is not in `skin_m`.
 
-    Raises
-    ------
-    ValueError
-        If the view has not one person, its times do not increase or a joint is not in `skin_m`.
-
-    Notes
-    -----
     Each joint has up to three candidate surfaces: the nearest one whose joint keeps the lengths of
     the bones (medians over the take) is used, from the trunk outwards. A joint without one is
     missing: only the surface that covers it is visible.

@@ -20,26 +20,12 @@ TURNED = {"X": (1, 2), "Y": (2, 0), "Z": (0, 1)}  # columns that a rotation abou
 
 
 def read(path: str | PathLike, *, unit_m: float = CENTIMETRES_M) -> PosedHierarchy:
-    """Read a BVH file.
+    """Read a BVH file: joints by its names, which need not be unique, in its order and axes.
 
-    Parameters
-    ----------
-    unit_m : float
-        Length of the file's unit, metres. BVH does not say it; mocopi's is the centimetre.
+    `unit_m` is the length of the file's unit, metres: BVH does not say it; mocopi's is the
+    centimetre. Time is from zero. Position channels replace the offset, axis by axis. An
+    `InputError` if the file is not BVH; see `read_text`.
 
-    Returns
-    -------
-    posed : PosedHierarchy
-        Joints in the file's order, by the file's names, which need not be unique; axes as in the
-        file; time from zero. Position channels replace the offset, axis by axis.
-
-    Raises
-    ------
-    InputError
-        If the file is not BVH; see `read_text`.
-
-    Notes
-    -----
     Meredith & Maddock 2001. Rotations are about the joint's own rotated axes in the order of its
     CHANNELS: Zrotation Xrotation Yrotation is R = Rz Rx Ry, Tait-Bryan, not the proper Euler angles
     (z-x-z) of some descriptions.
@@ -140,10 +126,7 @@ def shown(word: str) -> str:
 def read_rows(path: str | PathLike, text: str, at: int, n_frames: int, n_channels: int) -> NDArray:
     """Read the rows of motion, (T, C) float, which begin at `at` of the whole file's text.
 
-    Raises
-    ------
-    InputError
-        If there are more or fewer rows, or a row is not so many finite numbers.
+    An `InputError` if there are more or fewer rows, or a row is not so many finite numbers.
     """
     lines = text[at:].split("\n")
     filled = [line for line in lines if line and not line.isspace()]
@@ -340,11 +323,8 @@ class _Reader:
 def read_text(path: str | PathLike) -> BvhText:
     """Read the text of a BVH file and check it: one ROOT, keywords in any case, any whitespace.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is not BVH, or is larger than any take; the message names the
-        line.
+    An `InputError` if the file cannot be read, is not BVH, or is larger than any take; the message
+    names the line.
     """
     text = _load(path)
     words = _Words(path, text)

@@ -54,10 +54,8 @@ STANDING_STILL = np.eye(3, 4)
 def read(path: str | PathLike, name: str = "rgbd") -> DepthRecording:
     """Read such a folder; `name` is the device's in the study.
 
-    Raises
-    ------
-    InputError
-        If a file is missing or not as described above. A damaged picture is found only when read.
+    An `InputError` if a file is missing or not as described above. A damaged picture is found only
+    when read.
     """
     folder = Path(path)
     toml = folder / "cameras.toml"

@@ -33,17 +33,11 @@ def read(path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi") ->
     The `names` of the skeleton, `config/skeletons/mocopi27.yaml`, are the file's. The motion, named
     `source`, has the joints in the skeleton's order; metres in the app's axes; its clock starts at
     zero with the first row. The rest pose in the first row is kept, as not performed. `posed` has
-    the joints in the file's order, by the study's names.
+    the joints in the file's order, by the study's names. An `InputError` if the file is not BVH or
+    its joints are not the skeleton's.
 
-    Raises
-    ------
-    InputError
-        If the file is not BVH or its joints are not the skeleton's.
-
-    Notes
-    -----
-    A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame
-    times of 30, 50 and 60 frames a second are taken as these; others as written.
+    A frame time of 0.016667 s means 1/60 s: as written the clock would run 20 ppm fast. Frame times
+    of 30, 50 and 60 frames a second are taken as these; others as written.
     """
     posed = bvh.read(path)
     studied = dict(zip(skeleton.device_names(), skeleton.joints, strict=True))

@@ -50,12 +50,8 @@ def read(path: str | PathLike, joints: Sequence[str], source: str) -> DeviceMoti
 
     `joints` are those of `config/skeletons/nuitrack19.yaml`; `collar` is the mean of the two that
     are one. The motion, named `source`, is in the axes of a camera (x right, y down, z forward),
-    metres; seconds on the sensor's clock.
-
-    Raises
-    ------
-    InputError
-        If the file is not such a recording, holds no user or is not in the unit.
+    metres; seconds on the sensor's clock. An `InputError` if the file is not such a recording,
+    holds no user or is not in the unit.
     """
     path = Path(path)
     kind = path.suffix.lower()

@@ -36,26 +36,14 @@ def read(
 ) -> Keypoints2D:
     """Read the keypoints of one camera: a tracklet for each person that could be followed.
 
-    Parameters
-    ----------
-    folder : str or Path
-        Files `*.json`; the last number in a name counts the frames, the lowest is the first frame.
-    skeleton : Skeleton
-        Joints in the order of the files.
-    size : (int, int)
-        Width and height of the video, px.
-    time_s, rate_hz : (T,) float or float
-        Times of the video's frames, those without a file unseen; or frames per second.
-    trim_s : (start, stop), optional
-        Only frames from start to before stop.
+    The `folder` holds files `*.json`; the last number in a name counts the frames, the lowest is
+    the first frame. Their points are in the order of the `skeleton`; `size` is the width and height
+    of the video, px. Either `time_s` (T,) gives the times of the video's frames, those without a
+    file unseen, or `rate_hz` the frames per second, else a `ValueError`. With `trim_s`, only frames
+    from its start to before its stop.
 
-    Raises
-    ------
-    InputError
-        If there are no such files, one is damaged or has another number of points, there are more
-        frames than in the video, or the points are those of another skeleton.
-    ValueError
-        If not exactly one of `time_s` and `rate_hz` is given.
+    An `InputError` if there are no such files, one is damaged or has another number of points,
+    there are more frames than in the video, or the points are those of another skeleton.
     """
     if (time_s is None) == (rate_hz is None):
         raise ValueError("expected one of time_s and rate_hz")
@@ -182,8 +170,6 @@ def link(people: Sequence[NDArray]) -> NDArray:
     `people` holds for each frame its persons (K, J, 3): x, y in px, NaN where unseen, and score.
     The tracks (P, T, J, 3) are in the order in which they appear, NaN where a person is not there.
 
-    Notes
-    -----
     Each frame's persons are assigned to the tracks so that the sum of median distances between
     common keypoints is least (Kuhn 1955); a person too far from all tracks begins a new one.
     Crossing persons may be swapped.

@@ -64,28 +64,13 @@ def fit(
     noise: Noise = Noise(),
     rebounds: bool = True,
 ) -> Corner:
-    """Fit a corner.
+    """Fit a corner within `reach_s` of `near_s`.
 
-    Parameters
-    ----------
-    time_s, distance : (n,) float
-        Of the fall and the floor after it, or of the fall and the rebound's rise; metres.
-    near_s, reach_s : float
-        The corner is searched within `reach_s` of `near_s`.
-    usual_s : float
-        Usual standard deviation of the device's own smoothing: the scale of a half-normal prior.
-    noise : Noise
-        Lower limit; larger where the hinge fits worse.
-    rebounds : bool
-        Whether the distance may rise again.
+    `time_s` and `distance` (n,) m are of the fall and the floor after it, or of the fall and the
+    rebound's rise, which `rebounds` allows. `usual_s` is the usual standard deviation of the
+    device's own smoothing: the scale of a half-normal prior. `noise` is a lower limit; larger where
+    the hinge fits worse. A `ValueError` if there are fewer than seven values, or nothing falls.
 
-    Raises
-    ------
-    ValueError
-        If there are fewer than seven values, or nothing falls.
-
-    Notes
-    -----
     Before the corner a parabola, after it a constant or a rising parabola, all convolved with a
     Gaussian. Every corner time and width of a grid is tried, with the other parameters by least
     squares (Aitken's, for correlated noise; bends limited to what arms can do). Time and

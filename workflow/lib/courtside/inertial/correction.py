@@ -87,30 +87,20 @@ def correct(
     performed: NDArray | None = None,
     settings: Settings | None = None,
 ) -> tuple[PosedHierarchy, report.CorrectionReport]:
-    """Correct an inertial skeleton by vision.
+    """Correct an inertial skeleton by vision; return it, and what was found.
+
+    `posed` has joints named as in the study; `vision` joints with a place in space, in any frame,
+    of which those that the skeleton does not name are not used; both have times on the reference
+    clock. `sigma_m`, a number or (T, J), is the standard deviation of vision's joints per axis: its
+    size per joint and axis is estimated again from the residuals; what counts is how it differs
+    from frame to frame. `lag_s` is the standard deviation of the offset between both clocks.
+    `offsets_m` (3,) are known offsets of vision's joints from the skeleton's, in the axes of the
+    joint's parent. Frames not `performed` (T,), without motion as mocopi's first row, only change
+    bones. `up` (3,) is the vertical in the device's world.
 
     The corrected skeleton is in the device's world; its times are those of `posed`, less the
-    clock's shift found.
-
-    Parameters
-    ----------
-    posed : PosedHierarchy
-        Joints named as in the study, in axes with y up; times on the reference clock.
-    vision : DeviceMotion
-        Joints with a place in space, times on the reference clock, any frame; joints that the
-        skeleton does not name are not used.
-    sigma_m : float or (T, J) float
-        Standard deviation of vision's joints per axis. Its size per joint and axis is estimated
-        again from the residuals; what counts is how it differs from frame to frame.
-    lag_s : float
-        Standard deviation of the offset between both clocks.
-    performed : (T,) bool, optional
-        False for frames of `posed` without motion, as mocopi's first row: there only bones change.
-
-    Raises
-    ------
-    InputError
-        If vision has too little in common with the skeleton, or nothing to say about place.
+    clock's shift found. An `InputError` if vision has too little in common with the skeleton, or
+    nothing to say about place.
     """
     settings = settings or Settings()
     performed = np.ones(len(posed.time_s), bool) if performed is None else performed

@@ -253,12 +253,8 @@ def observe(posed: PosedHierarchy, vision: DeviceMotion, sigma_m: ArrayLike) -> 
     """Select what vision tells of a skeleton's limbs while it moves, on the same clock.
 
     `sigma_m`, a number or (T, J), is the standard deviation per axis; joints where it is not a
-    positive number are not used.
-
-    Raises
-    ------
-    InputError
-        If vision has no place in space, or too little in common with the skeleton.
+    positive number are not used. An `InputError` if vision has no place in space, or too little in
+    common with the skeleton.
     """
     if vision.kind == "rgb":
         raise InputError(

@@ -36,8 +36,6 @@ def estimate(
     about their mean in each frame count, not the place. `up` (3,) is the vertical in the device's
     world; `window_s` the standard deviation of the window in time over which one heading is taken.
 
-    Notes
-    -----
     Alternates the rotation (Kabsch 1976) and the headings, which have a closed form each; from
     several starts, because headings all around leave the mean without a direction.
     """

@@ -37,15 +37,9 @@ class Frames:
 class Model:
     """The parameters of a correction and the skeleton they give.
 
-    Parameters
-    ----------
-    observed : sequence of int, length D
-        Indices of the joints that vision sees.
-    up : (3,) float
-        Unit vector of the vertical in the device's world.
+    `observed` (D,) are the indices of the joints that vision sees, `up` (3,) the unit vector of the
+    vertical in the device's world.
 
-    Notes
-    -----
     Per frame, `slow` (P,) holds a rotation vector per segment, the heading and the root's shift.
     `fixed` (Q,) holds a rotation vector per segment, the logarithms of stretches, an offset per
     observed joint in the axes of its parent and one in vision's, the frame's tilt (rotation vector)
@@ -232,12 +226,8 @@ def segments_of(hierarchy: Hierarchy, where: str = "skeleton") -> Segments:
 
     It holds the 12 limb joints (`skeleton.JOINTS`), and between the root and the shoulders any
     number of joints of the spine and clavicles. The spine's joints share the corrections of pelvis
-    and thorax by their place between them. `where` begins error messages.
-
-    Raises
-    ------
-    InputError
-        If a joint is missing or is not below its expected parent.
+    and thorax by their place between them. `where` begins error messages. An `InputError` if a
+    joint is missing or is not below its expected parent.
     """
     joints = list(hierarchy.joints)
     missing = [name for name in skeleton.JOINTS if name not in joints]

@@ -48,15 +48,9 @@ def shares(sex: str | None) -> dict[str, float]:
 
     `sex` is "m" or "f"; None gives the mean of men and women. The points are `head_mass`,
     `mid_shoulder`, `mid_hip` and the 12 limb joints; the shares sum to 1. The hand lies beyond the
-    wrist, which makes the wrists' shares larger than the forearm's part and the elbows' smaller.
+    wrist, which makes the wrists' shares larger than the forearm's part and the elbows' smaller. An
+    `InputError` if `sex` is none of these.
 
-    Raises
-    ------
-    InputError
-        If `sex` is none of these.
-
-    Notes
-    -----
     Trunk: a straight line from mid-shoulder to mid-hip, which does not follow a bent back. Head:
     the point `head_mass` of `config/derived_joints.yaml`. Hand: on the forearm's line, as if the
     wrist were straight; a wrist bent by 60 degrees moves the body's centre by 0.4 mm. Foot: at the

@@ -44,18 +44,11 @@ def choose_cutoff(
 ) -> Choice:
     """Choose by residual analysis the lowest cut-off that removes no more motion than noise passes.
 
-    Parameters
-    ----------
-    xyz : (T, ..., 3) float
-        Raw paths of one group of joints, short gaps filled; NaN in gaps. At least 30 known frames,
-        else InputError.
-    candidates_hz : (N,) float, optional
-        Rising, below half the frame rate; the lowest or highest is the result where none fits.
-    order : int
-        Effective order of the filter.
+    `xyz` (T, ..., 3) are raw paths of one group of joints, short gaps filled, NaN in gaps; with
+    fewer than 30 known frames, an `InputError`. `candidates_hz` (N,) rise, below half the frame
+    rate; the lowest or highest is the result where none fits. `order` is the effective order of the
+    filter.
 
-    Notes
-    -----
     Winter 2009, sec. 2.2.4.3 fits a straight line to the tail of the residual over the cut-off and
     takes the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is
     straight only by eye. For white noise of standard deviation s the squared residual in the tail

@@ -127,18 +127,11 @@ def measure(
 ) -> list[Person]:
     """Measure all persons of a take on its filtered skeletons.
 
-    Parameters
-    ----------
-    skeletons : Keypoints3D
-        The ones that are exported, corrected or not: filtered last, as `how` says
-        (`skeleton_filter.smooth`). Of the named `skeleton`.
-    raw : Keypoints3D
-        What they were made from (`skeleton_filter.prepare`): its noise is that of the measures.
-    sex_of : dict of str to {"m", "f"} or None, optional
-        Of persons.
+    `skeletons`, of the named `skeleton`, are those that are exported, corrected or not: filtered
+    last, as `how` says (`skeleton_filter.smooth`). `raw` is what they were made from
+    (`skeleton_filter.prepare`): its noise is that of the measures. `sex_of` gives "m", "f" or None
+    for persons.
 
-    Notes
-    -----
     Nothing is filtered again. Points are means of the skeletons' joints, speeds and accelerations
     the derivatives of their cubic splines, distances the integrals of the speeds. Uncertainties of
     positions and angles are those stated for the skeletons; those of derivatives come from the raw

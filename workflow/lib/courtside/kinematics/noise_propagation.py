@@ -133,8 +133,6 @@ def filtered_covariance(
     have a value, measured or filled in. The result is NaN where no frame within the filter's reach
     has a covariance. In filled gaps it is that of the frames around them, which is too small.
 
-    Notes
-    -----
     The raw covariance is averaged with the filter's squared weights, which is exact for white
     noise, and for any noise while the covariance changes slowly.
     """
@@ -199,8 +197,6 @@ def estimate(xyz: NDArray, covariance: NDArray, rate_hz: float) -> Noise:
     frames. The result is white with a scale above 1 where there is more fast noise than the stated
     covariance can explain, and white of scale 1 where there are too few frames.
 
-    Notes
-    -----
     The power in two bands, 0.45 to 0.7 of half the frame rate and above, fixes the white share and
     the memory of the rest, given the stated variance. The extrapolation to slower noise holds just
     below these bands, where it matters for speeds and path lengths: a variance stated too large

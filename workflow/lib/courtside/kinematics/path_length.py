@@ -72,22 +72,12 @@ def measure(
 ) -> Distance:
     """Return the length of a filtered path.
 
-    Parameters
-    ----------
-    position : (T, 3) float
-        Filtered, metres; NaN in open gaps.
-    parts : dict of float to (T, 3, 3) float
-        For each cut-off (Hz) of the zero-lag filter, the raw covariance of the joints that were
-        filtered at it, weighted as in the path; NaN where unknown.
-    order : int
-        Of that filter.
-    axes : slice
-        `SPACE`, or `GROUND` for the path's projection on the floor.
-    model_bias : (float, float)
-        Mean and standard deviation of the true bias over the expected one.
+    `position` (T, 3) m is filtered with `order`, NaN in open gaps. `parts` are, for each cut-off
+    (Hz) of the zero-lag filter, the raw covariance (T, 3, 3) of the joints that were filtered at
+    it, weighted as in the path; NaN where unknown. `axes` is `SPACE`, or `GROUND` for the path's
+    projection on the floor; `model_bias` the mean and standard deviation of the true bias over the
+    expected one.
 
-    Notes
-    -----
     The length is the integral of the speed by the trapezoidal rule. Noise e with covariance S
     lengthens a velocity v to E|v + e|, by about the variance across v over 2 |v| where the noise is
     small and by E|e| at rest. |v| is not known: the speed of the path filtered again at half the
@@ -225,8 +215,6 @@ def variance(velocity: NDArray, spread: NDArray, weight_s: NDArray, correlation:
     (N,) the time that each velocity stands for, and `correlation` (L,) that of the noise at 0, 1,
     ... L - 1 frames; 1 first.
 
-    Notes
-    -----
     Noise along the path changes its length linearly; on a straight path these changes cancel except
     at both ends. Noise across it changes the length by its square, whose correlation is the square
     of the noise's. Both are scaled to the exact variance of |v + e|, which is less than their sum

@@ -30,18 +30,12 @@ def check_cutoff(highest_hz: float, rate_hz: float) -> None:
 def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D:
     """Remove noise with a zero-lag Butterworth low-pass filter, each joint with its own cut-off.
 
-    `points` are of `prepare`, with uniform times. Runs of finite values are filtered one by one,
-    and the same values stay missing; runs of one or two frames stay as they are. `covariance_2d` is
-    that of the filtered noise, by the noise model of each joint's own path
+    `points` are of `prepare`, with uniform times. `cutoff_hz` (J,) is the -3 dB frequency of the
+    whole, forwards and backwards, filter, below half the frame rate; `order` its effective order,
+    of which each pass has half, even; else an `InputError`. Runs of finite values are filtered one
+    by one, and the same values stay missing; runs of one or two frames stay as they are.
+    `covariance_2d` is that of the filtered noise, by the noise model of each joint's own path
     (`noise_propagation.estimate`); it stays unknown where it was, as in filled gaps.
-
-    Parameters
-    ----------
-    cutoff_hz : (J,) float
-        -3 dB frequency of the whole, forwards and backwards, filter: below half the frame rate,
-        else InputError.
-    order : int
-        Effective order of the whole filter; each pass has half of it. Even, else InputError.
     """
     if order < 2 or order % 2:
         raise InputError(

@@ -25,8 +25,6 @@ def sparc(
     cut-off. Frequencies do not count beyond `cutoff_hz`, nor beyond the last that reaches
     `threshold`, a share of the spectrum at 0 Hz. ValueError if a value is missing or nothing moves.
 
-    Notes
-    -----
     Balasubramanian, Melendez-Calderon & Burdet 2012; with the adaptive limit of Balasubramanian,
     Melendez-Calderon, Roby-Brami & Burdet 2015. Noise counts as unsmooth: compare sources at one
     rate.

@@ -48,10 +48,7 @@ class Arc:
 def arcs(body: BodyMotion) -> list[Arc]:
     """Return the arcs of the left and right wrist from the T-pose's end to the first clap after it.
 
-    Raises
-    ------
-    InputError
-        If no clap follows the T-pose.
+    An `InputError` if no clap follows the T-pose.
     """
     start_s, stop_s = body.tpose_s
     later = body.clap_s[body.clap_s > stop_s]
@@ -93,13 +90,10 @@ def paths(found: Sequence[Arc]) -> pd.DataFrame:
 def distortion(found: Sequence[Arc]) -> pd.DataFrame:
     """Return the distances of the paths from their own arcs, one row per wrist, body units.
 
-    Returns
-    -------
-    rows : pandas.DataFrame
-        side; n; shoulder_x, shoulder_z, radius: of the own arc; meeting_z: where it crosses the
-        middle; mean_signed, mean_distance, p95_distance: of the path's points to the own arc;
-        mean_off_circle: to the circle of radius 1; end_radius: distance of the last known point to
-        the origin.
+    Columns: side; n; shoulder_x, shoulder_z, radius: of the own arc; meeting_z: where it crosses
+    the middle; mean_signed, mean_distance, p95_distance: of the path's points to the own arc;
+    mean_off_circle: to the circle of radius 1; end_radius: distance of the last known point to the
+    origin.
     """
     rows = []
     for arc in found:

@@ -42,15 +42,9 @@ def synchronise(
     Tracklets of the views may differ in number, order and persons. `cameras` are in the order of
     the views; without them only the rhythm of the motion is compared. Offsets larger than
     `max_offset_s` are not tried, keypoints below `min_score` not used. Whether the clocks may be
-    used tells `records.devices.clocks.fault_line`.
+    used tells `records.devices.clocks.fault_line`. An `InputError` if a camera has fewer than
+    `FEWEST_FRAMES` frames.
 
-    Raises
-    ------
-    InputError
-        If a camera has fewer than `FEWEST_FRAMES` frames.
-
-    Notes
-    -----
     First every offset is tried on a coarse grid, camera after camera, the surest first. Then
     offsets and drifts of all cameras are adjusted together: with cameras, to minimise the epipolar
     distances of all joints; without, to maximise the products of the joints' speeds. Sound is not

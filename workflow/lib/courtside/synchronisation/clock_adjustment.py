@@ -43,21 +43,12 @@ def adjust(
 ) -> Adjusted:
     """Find the offsets and drifts that minimise the loss of all pairs.
 
-    Parameters
-    ----------
-    terms : callable
-        `terms(own)`, with `own` (C, T) what each clock shows, returns a dict of pairs (a, b) to
-        `(slope, curvature, steepness)`, (T,) each: first derivative, second derivative and its
-        never negative part, of the pair's loss by the offset of b against a.
-    offset_s : (C,) float
-        Start values; camera 0 stays.
-    time_s : (T,) float
-        Times of the reference clock.
-    unknowns : (C,) int
-        2 to estimate offset and drift, 1 for the offset with zero drift, 0 for a fixed clock.
+    `terms(own)`, with `own` (C, T) what each clock shows, returns for pairs (a, b) `(slope,
+    curvature, steepness)`, (T,) each: first derivative, second derivative and its never negative
+    part, of the pair's loss by the offset of b against a. `offset_s` (C,) are start values; camera
+    0 stays. `time_s` (T,) are of the reference clock. `unknowns` (C,) are 2 to estimate offset and
+    drift, 1 for the offset with zero drift, 0 for a fixed clock.
 
-    Notes
-    -----
     Newton's method. The covariance is that of the jackknife over blocks of time (MacKinnon & White
     1985), valid for correlated noise of neighbouring frames and of pairs with a common camera. It
     is widened as Student's t for the number of blocks.

@@ -65,13 +65,9 @@ def synchronise(
     `happened` holds the events of every source, `devices` its device: sources of one device share
     its clock, and without `devices` each is its own. Clocks `known` against the reference are used
     as they are. The stated delay of a source (`latency`, with its standard deviation, s) is
-    reported, not subtracted: places must be compared at the times of the same event.
-
-    Raises
-    ------
-    InputError
-        If the claps of a source cannot be paired with those of the reference, or leave its clock
-        uncertain.
+    reported, not subtracted: places must be compared at the times of the same event. An
+    `InputError` if the claps of a source cannot be paired with those of the reference, or leave its
+    clock uncertain.
     """
     reference, *others = motions
     devices, known, latency = devices or {}, known or {}, latency or {}
@@ -264,12 +260,8 @@ def pair(
     """Pair the claps of two devices: the most pairs that one offset explains.
 
     Of several such offsets, the one with the more similar motions is taken: `likeness` returns
-    their correlation with an offset in seconds. `where` begins an error message.
-
-    Raises
-    ------
-    InputError
-        If several offsets explain equally many claps and the motion does not tell them apart.
+    their correlation with an offset in seconds. `where` begins an error message. An `InputError` if
+    several offsets explain equally many claps and the motion does not tell them apart.
     """
     choices = {}
     for one, other in product(first, second):

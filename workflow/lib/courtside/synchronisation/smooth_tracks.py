@@ -36,12 +36,10 @@ def build(time_s: NDArray, values: NDArray, sigma_s: float) -> Track:
     """Smooth tracks with a Gaussian.
 
     Frame times (T,) increase, perhaps with dropped frames; values (P, T, J, K) are NaN where
-    missing; the standard deviation of the kernel is at least 0.8 frames: see Notes. The track has
+    missing; the standard deviation of the kernel is at least 0.8 frames: see below. The track has
     two values per frame. Up to `LONGEST_GAP` missing frames are bridged linearly; longer gaps stay
     NaN, with the kernel's reach about them.
 
-    Notes
-    -----
     Both cameras of a pair need the same kernel: a symmetric filter shifts no event in time. Without
     it the noise of interpolated tracks would be lowest half-way between frames and bias every
     offset there; with it, and half-way values that are means of their own, the noise is even within

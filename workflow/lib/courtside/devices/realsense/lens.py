@@ -30,12 +30,8 @@ def five_coefficients(
 
     `where`, file and stream, begins messages; `coefficients` are k1 k2 p1 p2 k3 of the model, as
     the recording names it. They stay if the model is OpenCV's or all are 0, else they are fitted to
-    within half a pixel.
-
-    Raises
-    ------
-    InputError
-        If the model is another, or no such coefficients come within half a pixel of it.
+    within half a pixel. An `InputError` if the model is another, or no such coefficients come
+    within half a pixel of it.
     """
     given = np.zeros(5)
     values = np.asarray(coefficients, dtype=float).ravel()[:5]

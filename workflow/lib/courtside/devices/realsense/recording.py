@@ -37,18 +37,10 @@ STANDING_STILL = np.eye(3, 4)
 def read(path: str | PathLike, name: str = "realsense") -> DepthRecording:
     """Read a `.bag` or `.db3` file; `name` is the device's in the study.
 
-    Returns
-    -------
-    recording : DepthRecording
-        Times are the camera's own (its hardware clock where both streams have it). Frames that are
-        not later than the one before are left out, and counted in the log, as are frames missing
-        by their numbers.
-
-    Raises
-    ------
-    InputError
-        If the file is no such recording, damaged, or lacks a stream, its lens or its pose. Damage
-        further in is found when the frames are read.
+    Times are the camera's own (its hardware clock where both streams have it). Frames that are not
+    later than the one before are left out, and counted in the log, as are frames missing by their
+    numbers. An `InputError` if the file is no such recording, damaged, or lacks a stream, its lens
+    or its pose. Damage further in is found when the frames are read.
     """
     path = Path(path)
     with rosbag.opened(path) as bag:

@@ -73,10 +73,7 @@ class Bag:
 def opened(path: str | PathLike) -> Iterator[Bag]:
     """Open a recording: `.bag` of ROS 1 or `.db3` of ROS 2.
 
-    Raises
-    ------
-    InputError
-        If the file is missing, neither of these, cut short or damaged.
+    An `InputError` if the file is missing, neither of these, cut short or damaged.
     """
     path = Path(path)
     if path.suffix.lower() not in READERS or not path.is_file():
