@@ -9,9 +9,8 @@ The folder holds
 - `colour.mp4` (or .mkv .mov .avi): the colour video;
 - `depth/`: one 16-bit PNG of one channel per frame, taken in the order of their names; 0 is a hole;
 - where a frame was lost or the clocks differ, `colour.csv` and `depth.csv` with the columns
-`number`
-  (as the camera counted) and `time_s` (on one clock), one row per frame. Without them frame k of
-  both is taken at the time the video says, and the video and the folder must hold equally many.
+  `number` (as the camera counted) and `time_s` (on one clock), one row per frame. Without them
+  frame k of both is taken at the time the video says, and both must hold equally many.
 
     [colour]
     name = "colour"

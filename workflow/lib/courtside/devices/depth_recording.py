@@ -26,9 +26,8 @@ class DepthRecording:
     name: str  # of the device in the study
     colour: Camera
     depth: Camera
-    colour_from_depth: (
-        NDArray  # (3, 4): from the depth camera's axes to the colour camera's, metres
-    )
+    # (3, 4): from the depth camera's axes to the colour camera's, metres
+    colour_from_depth: NDArray
     depth_unit_m: float  # metres of one step of the depth pictures; 0 in them is a hole
     colour_frames: Frames  # a new iterator of (time_s, (H, W, 3) uint8 BGR), in order of time
     depth_frames: Frames  # a new iterator of (time_s, (h, w) uint16), in order of time

@@ -6,7 +6,7 @@ model, all rotations zero.
 """
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from os import PathLike
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from courtside.devices import bvh
 from courtside.records.devices import hierarchy
 from courtside.records.devices.device_motion import DeviceMotion
-from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy
+from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError
@@ -42,9 +42,12 @@ def read(path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi") ->
     posed = bvh.read(path)
     studied = dict(zip(skeleton.device_names(), skeleton.joints, strict=True))
     _check_joints(path, skeleton.name, posed.hierarchy.joints, studied)
-    posed = replace(
-        posed, hierarchy=_renamed(posed.hierarchy, studied), time_s=_nominal(posed.time_s)
+    renamed = replace(
+        posed.hierarchy,
+        joints=tuple(studied[joint] for joint in posed.hierarchy.joints),
+        ends={studied[joint]: tip for joint, tip in posed.hierarchy.ends.items()},
     )
+    posed = replace(posed, hierarchy=renamed, time_s=_nominal(posed.time_s))
     xyz, _ = hierarchy.forward(posed)
     order = [posed.hierarchy.joints.index(joint) for joint in skeleton.joints]
     return DeviceMotion(
@@ -72,15 +75,6 @@ def _check_joints(
             f"{path}: expected the {len(wanted)} joints of {name}, found {len(found)}: {told}; "
             "give the file that the app exported, or add the names to the skeleton's file"
         )
-
-
-def _renamed(shape: Hierarchy, studied: Mapping[str, str]) -> Hierarchy:
-    return Hierarchy(
-        joints=tuple(studied[joint] for joint in shape.joints),
-        parents=shape.parents,
-        offsets=shape.offsets,
-        ends={studied[joint]: tip for joint, tip in shape.ends.items()},
-    )
 
 
 def _nominal(time_s: NDArray) -> NDArray:

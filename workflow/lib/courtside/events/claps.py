@@ -184,21 +184,17 @@ def _fitted(motion, spell, number, apart, near_s) -> Clap | NoClap:
     if corner.uncertainty_s > MOST_UNCERTAIN_S:
         why = f"its time is uncertain by {1e3 * corner.uncertainty_s:.0f} ms"
         return NoClap(corner.time_s, why)
+    # Between the rest of the hands and their touch the contact is hidden.
+    unseen_s = max(corner.floor - TOUCHING_M, 0.0) / np.clip(abs(corner.slope), *SPEEDS_M_S)
     return Clap(
         time_s=corner.time_s,
-        uncertainty_s=float(np.hypot(corner.uncertainty_s, _never_met_s(corner))),
+        uncertainty_s=float(np.hypot(corner.uncertainty_s, unseen_s)),
         tpose=number,
         distance_m=corner.floor,
         speed_m_s=corner.slope,
         smoothing_s=corner.smoothing_s,
         rebounds=corner.rises,
     )
-
-
-def _never_met_s(corner: contact_time.Corner) -> float:
-    """Return the time, s, between the rest of the hands and their touch: it hides the contact."""
-    speed = np.clip(abs(corner.slope), *SPEEDS_M_S)
-    return max(corner.floor - TOUCHING_M, 0.0) / speed
 
 
 def _parted(time_s: NDArray, apart: NDArray, near_s: float) -> float:

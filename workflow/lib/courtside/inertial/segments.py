@@ -193,12 +193,12 @@ def _layout(sizes: Mapping[str, int]) -> tuple[dict[str, slice], int]:
 class Segments:
     """How corrections of segments act on the joints of a skeleton."""
 
-    names: tuple[str, ...]  # length G: `pelvis`, `thorax`, `left_clavicle`, `left_upper_arm`,
+    names: tuple[str, ...]  # length G: `pelvis`, `thorax`, `left_clavicle` and the like
     # (J, G): share of a segment's correction that a joint's frame takes; joints whose row is zero
     # keep their rotation against their parent.
     share: NDArray
     # Length B: `body` (all bones), `upper_arm` (both sides), `upper_arm difference` (left minus
-    # right, halved), .
+    # right, halved) and the like.
     stretches: tuple[str, ...]
     # (J, B): share of each in the logarithm of the factor on the bone that ends at a joint.
     stretch: NDArray

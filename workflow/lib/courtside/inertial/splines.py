@@ -8,7 +8,7 @@ memory time: where data are missing, the correction returns to zero.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 from scipy.linalg import cho_factor, cho_solve, cholesky_banded, lapack
 
@@ -35,20 +35,16 @@ class Basis:
 
         Times outside the span are taken as its ends.
         """
-        first, local = self._place(time_s)
-        return first, _pieces()(local)
+        place = (time_s - self.start_s) / self.spacing_s
+        place = np.clip(place, 0, self.n_intervals)
+        first = np.minimum(place.astype(int), self.n_intervals - 1)
+        return first, _pieces()(place - first)
 
     def evaluate(self, coefficients: NDArray, time_s: NDArray) -> NDArray:
         """Return the splines (T, ...) with coefficients (K, ...) at times (T,)."""
         first, values = self.at(time_s)
         picked = coefficients[first[:, None] + np.arange(REACH)]
         return np.einsum("tk,tk...->t...", values, picked)
-
-    def _place(self, time_s: ArrayLike) -> tuple[NDArray, NDArray]:
-        u = (np.asarray(time_s, float) - self.start_s) / self.spacing_s
-        u = np.clip(u, 0, self.n_intervals)
-        first = np.minimum(u.astype(int), self.n_intervals - 1)
-        return first, u - first
 
 
 def basis_over(start_s: float, stop_s: float, spacing_s: float) -> Basis:

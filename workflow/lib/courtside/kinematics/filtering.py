@@ -19,18 +19,19 @@ PAD_PERIODS = 1.0  # ASSUME: mirrored padding at both ends, in periods of the cu
 def fill_gaps(points: Keypoints3D, max_gap_s: float) -> Keypoints3D:
     """Interpolate gaps of at most `max_gap_s`, cubically; longer ones and those at the ends stay.
 
-    `points` has uniform times. Filled values have reason INTERPOLATED and no covariance.
-
-    A cubic Hermite spline through the neighbours (Fritsch & Butland 1984, as scipy's PCHIP), which
-    does not overshoot.
+    `points` has uniform times. Filled values have reason INTERPOLATED and no covariance. They are
+    on a cubic Hermite spline through the neighbours (Fritsch & Butland 1984, as scipy's PCHIP),
+    which does not overshoot.
     """
     xyz, reason = points.xyz.copy(), points.reason.copy()
     most = int(np.floor(max_gap_s * points.rate_hz + 1e-6)) if len(points.time_s) > 1 else 0
     for person, joint in np.ndindex(xyz.shape[0], xyz.shape[2]):
         line = xyz[person, :, joint]
-        holes = _short_gaps(~np.isfinite(line).all(axis=1), most)
+        known = np.isfinite(line).all(axis=1)
+        holes = _short_gaps(~known, most)
         if holes.any():
-            line[holes] = _pchip(points.time_s, line, holes)
+            spline = scipy.interpolate.PchipInterpolator(points.time_s[known], line[known])
+            line[holes] = spline(points.time_s[holes])
             reason[person, holes, joint] = missing_reason.INTERPOLATED
     return replace(points, xyz=xyz, reason=reason)
 
@@ -53,11 +54,6 @@ def leave_out_uncertain(points: Keypoints3D, times: float = UNCERTAIN_TIMES) -> 
             points.reason.dtype
         ),
     )
-
-
-def _pchip(time_s: NDArray, line: NDArray, holes: NDArray) -> NDArray:
-    known = np.isfinite(line).all(axis=1)
-    return scipy.interpolate.PchipInterpolator(time_s[known], line[known])(time_s[holes])
 
 
 def _short_gaps(missing: NDArray, most: int) -> NDArray:
@@ -107,7 +103,8 @@ def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> ND
     effective order: twice that of each pass. Each end of a run is extended by its odd reflection
     over one period of the cut-off.
     """
-    sections = _sections(cutoff_hz, rate_hz, order // 2)
+    one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order // 2)
+    sections = scipy.signal.butter(order // 2, one_pass_hz, fs=rate_hz, output="sos")
     pad = round(PAD_PERIODS * rate_hz / cutoff_hz)
     filtered = np.full(np.shape(lines), np.nan)
     for start, stop in runs(np.isfinite(lines).all(axis=1)):
@@ -117,8 +114,3 @@ def zero_lag(lines: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> ND
                 sections, run, axis=0, padtype="odd", padlen=min(pad, len(run) - 1)
             )
     return filtered
-
-
-def _sections(cutoff_hz: float, rate_hz: float, order: int) -> NDArray:
-    one_pass_hz = corrected_cutoff(cutoff_hz, rate_hz, order)
-    return scipy.signal.butter(order, one_pass_hz, fs=rate_hz, output="sos")

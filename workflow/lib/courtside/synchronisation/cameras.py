@@ -50,13 +50,18 @@ def synchronise(
     distances of all joints; without, to maximise the products of the joints' speeds. Sound is not
     used.
     """
-    _check(views)
+    for view in views:
+        if len(view.time_s) < FEWEST_FRAMES:
+            raise InputError(
+                f"camera {view.camera}: expected {FEWEST_FRAMES} frames or more to synchronise by, "
+                f"found {len(view.time_s)}; record a longer take"
+            )
     time_s = _times(views[0].time_s)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN|Mean of empty|Degrees of freedom")
         evidence = _evidence(views, cameras, min_score)
         placed = place(evidence.scan, len(views), max_offset_s, evidence.scan_step_s)
-        sure = [camera for camera, at in placed.items() if not at.candidates_s]
+        sure = _sure(placed)
         offset_s = [placed[c].offset_s if c in sure else 0.0 for c in range(len(views))]
         pairs = evidence.match(time_s + np.array(offset_s)[:, None], sure)
         sure = sorted(_connected(pairs))
@@ -65,21 +70,13 @@ def synchronise(
     clocks = {views[0].camera: Clock(status="reference", note="the take's clock")}
     for camera in range(1, len(views)):
         if camera in sure:
-            overlap = _overlap(views[camera], adjusted.own(camera, time_s), time_s)
+            own, known_s = adjusted.own(camera, time_s), views[camera].time_s
+            overlap = time_s[(own >= known_s[0]) & (own <= known_s[-1])]
             clock = _found(adjusted, camera, overlap, time_s, abs(rows[camera] - rows[0]))
         else:
             clock = _not_found(placed.get(camera))
         clocks[views[camera].camera] = clock
     return clocks
-
-
-def _check(views: Sequence[Keypoints2D]) -> None:
-    for view in views:
-        if len(view.time_s) < FEWEST_FRAMES:
-            raise InputError(
-                f"camera {view.camera}: expected {FEWEST_FRAMES} frames or more to synchronise by, "
-                f"found {len(view.time_s)}; record a longer take"
-            )
 
 
 def _evidence(views, cameras, min_score) -> Epipolar | Speeds:
@@ -118,11 +115,6 @@ def _adjust(evidence, offset_s, sure, time_s) -> clock_adjustment.Adjusted:
     if spread.max() <= HOPELESS * PRIOR_DRIFT:
         return clock_adjustment.with_prior(adjusted, PRIOR_DRIFT)
     return clock_adjustment.adjust(evidence.terms, offset_s, time_s, np.minimum(unknowns, 1))
-
-
-def _overlap(view: Keypoints2D, own: NDArray, time_s: NDArray) -> NDArray:
-    """Return the times of the reference clock at which a camera ran."""
-    return time_s[(own >= view.time_s[0]) & (own <= view.time_s[-1])]
 
 
 def _row(view: Keypoints2D) -> float:

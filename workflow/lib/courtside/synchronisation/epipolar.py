@@ -25,9 +25,8 @@ WINDOW_S = 3.0  # slower errors are the network's, not the clock's
 NOISE_OF_MAD = 1.4826  # standard deviation over median absolute deviation, normal distribution
 PROBE_S = 2e-3  # step of numerical derivatives: small against a frame
 
-Sample = tuple[
-    NDArray, NDArray, NDArray
-]  # value, velocity and acceleration of a track, (T, J, 2) each
+# Value, velocity and acceleration of a track, (T, J, 2) each.
+Sample = tuple[NDArray, NDArray, NDArray]
 
 
 class Epipolar:

@@ -3,8 +3,7 @@
 The camera's software (librealsense, `rsutil.h`) projects points of the z = 1 plane by
 - Brown Conrady: OpenCV's model;
 - Modified and Inverse Brown Conrady: the tangential part acts on the points after the radial one.
-By
-  its name and the maker's documents the inverse model would map the picture to the plane; since
+  By its name and the maker's documents the inverse model would map the picture to the plane; since
   2021 the software takes both as the same, and so do its files.
 """
 

@@ -176,19 +176,15 @@ def _assign(state, own, offered, now_s) -> tuple[NDArray, NDArray, NDArray]:
         lost = np.where(taken_rows.sum(axis=2) < views, lost, np.inf)
         every = np.concatenate([missed[parent, slot, None], own[parent, slot] + lost], axis=1)
         every += cost[:, None]
-        best = _lowest(every.ravel(), 3 * HISTORIES)
+        near = np.flatnonzero(every <= every.min() + HOPELESS)
+        best = near[np.argsort(every.flat[near], kind="stable")[: 3 * HISTORIES]]
         source, taken = np.divmod(best, n + 1)
-        parent, cost, choice = parent[source], every.ravel()[best], choice[source]
+        parent, cost, choice = parent[source], every.flat[best], choice[source]
         choice[:, slot] = taken - 1
         taken_rows = taken_rows[source] | np.where(
             (taken > 0)[:, None, None], same[taken - 1], False
         )
     return parent, choice, cost
-
-
-def _lowest(values: NDArray, most: int) -> NDArray:
-    near = np.flatnonzero(values <= values.min() + HOPELESS)
-    return near[np.argsort(values[near], kind="stable")[:most]]
 
 
 def _move(state: _Histories, choice: NDArray, offered: Candidates, now_s: float) -> None:
