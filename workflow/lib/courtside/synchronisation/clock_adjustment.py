@@ -54,7 +54,8 @@ def adjust(
     is widened as Student's t for the number of blocks.
     """
     centre_s = float(time_s.mean())
-    free = _free(unknowns)
+    # Indices of the free parameters among offset 0, drift 0, offset 1, ...
+    free = np.array([2 * c + k for c, count in enumerate(unknowns) for k in range(count)], int)
     state = np.column_stack([offset_s, np.zeros(len(offset_s))]).astype(float)
     lever = np.column_stack([np.ones_like(time_s), time_s - centre_s])
     for _ in range(STEPS):
@@ -86,13 +87,6 @@ def with_prior(adjusted: Adjusted, spread: float) -> Adjusted:
     state = (state - gain @ state[drifts]).reshape(-1, 2)
     covariance = adjusted.covariance - gain @ adjusted.covariance[drifts]
     return Adjusted(state[:, 0], state[:, 1], covariance, adjusted.centre_s)
-
-
-def _free(unknowns: NDArray) -> NDArray:
-    """Return the indices of the free parameters among offset 0, drift 0, offset 1, ..."""
-    return np.array(
-        [2 * c + k for c, count in enumerate(unknowns) for k in range(count)], dtype=int
-    )
 
 
 def _own(state: NDArray, lever: NDArray, time_s: NDArray) -> NDArray:
