@@ -12,8 +12,7 @@ from courtside.study.execution.script import run
 def main(paths, errors_csv, *, labels, sex_of):
     frames, summary = pd.read_csv(paths.frames), pd.read_csv(paths.summary)
     truth, derived = take_truth.read(paths.truth), derived_joints.read(paths.derived)
-    rows = kinematics.table(frames, truth, derived, sex_of)
-    rows = kinematics.distances(rows, frames, summary, truth, derived, sex_of)
+    rows = kinematics.table(frames, summary, truth, derived, sex_of)
     tables.write(errors_csv, rows, labels)
 
 

@@ -48,8 +48,7 @@ def measured(real, shift_m=0.0, faster=0.0, sigma=0.1, step=2):
 
 
 def errors(real, frames, summary):
-    rows = kinematics.table(frames, real, TABLE, {"p1": "m"})
-    rows = kinematics.distances(rows, frames, summary, real, TABLE, {"p1": "m"})
+    rows = kinematics.table(frames, summary, real, TABLE, {"p1": "m"})
     return rows.set_index("point").loc["neck"]
 
 

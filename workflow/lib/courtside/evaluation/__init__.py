@@ -3,7 +3,7 @@
 joints: errors, table, true, left_out: errors of 3D joints, against the truth and against other
     views
 detection: evaluate, torso_px: errors of a network's 2D joints in the pictures
-kinematics: table, distances: errors of paths and speeds
+kinematics: table: errors of paths and speeds
 sources: errors, table, split: errors of devices and cameras, and their parts
 round_trip: table, distance_after: the paper's table 1
 camera_sets: compare, gains: fewer cameras, and other fusions

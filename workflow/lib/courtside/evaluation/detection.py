@@ -71,8 +71,6 @@ def evaluate(
     `joints` are compared; the trunk's must be among the truth's. `tolerance` is a share of the
     torso's length, see `torso_px`.
 
-    Notes
-    -----
     A tracklet belongs to the person whose trunk is nearest, by the assignment of the least sum;
     `placed` is PCK, the percentage of correct keypoints (Yang & Ramanan 2013).
     """

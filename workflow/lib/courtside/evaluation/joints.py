@@ -70,17 +70,10 @@ def errors(
 ) -> tuple[list[str], NDArray, NDArray]:
     """Return the differences of a record from the truth, joint by joint.
 
-    `joints` name those of the truth, `true_xyz` (P, T, K, 3) m: at the record's times, persons in
-    the record's order.
-
-    Returns
-    -------
-    names : list of str, length M
-        Joints of both.
-    error : (P, T, M, 3) float
-        Measured minus true, metres; NaN where missing.
-    covariance : (P, T, M, 3, 3) float
-        Stated by the record, square metres: of keypoints, and of cameras where known.
+    The names of the M joints of both; measured minus true (P, T, M, 3) m, NaN where missing; and
+    the covariance (P, T, M, 3, 3) m2 that the record states: of keypoints, and of cameras where
+    known. `joints` name those of the truth, `true_xyz` (P, T, K, 3) m: at the record's times,
+    persons in the record's order.
     """
     names, own, other = _of_both(points, joints)
     error = points.xyz[:, :, own] - true_xyz[:, :, other]
@@ -191,12 +184,8 @@ def derive_truth(truth: Truth, table: DerivedJoints, skeleton: str, names: Seque
 def true(points: Keypoints3D, truth: Truth) -> NDArray:
     """Return the distance to the truth, (P, T, J) mm; NaN where either is missing.
 
-    The truth is interpolated at the times of `points`, never extrapolated.
-
-    Raises
-    ------
-    InputError
-        If none of the persons is in the truth.
+    The truth is interpolated at the times of `points`, never extrapolated. `InputError` if none of
+    the persons is in the truth.
     """
     known, wanted = list(map(str, truth.person_id)), list(map(str, points.person_id))
     if not set(known) & set(wanted):

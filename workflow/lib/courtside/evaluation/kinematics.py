@@ -11,71 +11,60 @@ from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints.derived_joints import DerivedJoints
 
 FINE = 10  # ASSUME: true points per frame, for the length of the true path; chords err little
-COLUMNS = ["person", "point", "n", "seconds", "distance_m", "true_distance_m"]
-COLUMNS += ["distance_error_percent"]
-COLUMNS += ["distance_sigma_percent", "position_median_mm", "position_p95_mm", "speed_rmse_m_s"]
-COLUMNS += ["ground_speed_rmse_m_s", "speed_bias_m_s", "speed_within_90_percent"]
+COLUMNS = [
+    "person", "point", "n", "seconds", "distance_m", "true_distance_m", "distance_error_percent",
+    "distance_sigma_percent", "position_median_mm", "position_p95_mm", "speed_rmse_m_s",
+    "ground_speed_rmse_m_s", "speed_bias_m_s", "speed_within_90_percent",
+]  # fmt: skip
 
 
 def table(
-    frames: pd.DataFrame, truth: Truth, derived: DerivedJoints, sex_of: dict[str, str | None]
-) -> pd.DataFrame:
-    """Compare measured paths and speeds with the true ones, over the frames that were measured.
-
-    person, point (neck, centre, mass), n frames, seconds; position errors of the filtered path;
-    errors of speed in space and on the ground, and the share of frames in which the speed lies
-    within its stated 90 % interval; the distances are left to `distances`. `frames` are of
-    `courtside.exports.measures`, `sex_of` is "m", "f" or None by person.
-    """
-    rows = []
-    for person, part in frames.groupby("person", sort=False):
-        of = truth.person_id.tolist().index(person)
-        weights, _ = measures.definitions(
-            derived, derived_joints.RIG, truth.joints, sex_of.get(person)
-        )
-        time_s = part["time_s"].to_numpy()
-        inside = (time_s >= truth.time_s[0]) & (time_s <= truth.time_s[-1])
-        for point, shares in weights.items():
-            path = CubicSpline(truth.time_s, np.einsum("j,tjk->tk", shares, truth.xyz[of]))
-            rows.append({"person": person, "point": point, **_errors(part[inside], point, path)})
-    return pd.DataFrame(rows).reindex(columns=COLUMNS)
-
-
-def distances(
-    rows: pd.DataFrame,
     frames: pd.DataFrame,
     summary: pd.DataFrame,
     truth: Truth,
     derived: DerivedJoints,
     sex_of: dict[str, str | None],
 ) -> pd.DataFrame:
-    """Fill in the distances: measured over all frames of a person, true over the same span.
+    """Compare measured paths and speeds with the true ones, over the frames that were measured.
 
-    `rows` are of `table`, `frames` and `summary` of `courtside.exports.measures`. Distances are in
-    space. They stay empty if the truth does not cover the measured frames, or if frames between the
+    person, point (neck, centre, mass), n frames, seconds; distances in space, measured over all
+    frames of a person and true over the same span; position errors of the filtered path; errors of
+    speed in space and on the ground, and the share of frames in which the speed lies within its
+    stated 90 % interval. `frames` and `summary` are of `courtside.exports.measures`, `sex_of` is
+    "m", "f" or None by person.
+
+    Distances stay empty if the truth does not cover the measured frames, or if frames between the
     first and the last are missing: the paths would differ in span.
     """
-    rows, measured = rows.copy(), summary.set_index(["person", "measure"])
-    for at, row in rows.iterrows():
-        part = frames[frames["person"] == row["person"]]
-        known = np.flatnonzero(part[f"{row['point']}_x_m"].notna())
-        time_s = part["time_s"].to_numpy()[known]
-        whole = len(known) > 1 and np.ptp(known) == len(known) - 1
-        if not whole or time_s[0] < truth.time_s[0] or time_s[-1] > truth.time_s[-1]:
-            continue
-        of = truth.person_id.tolist().index(row["person"])
+    rows, measured = [], summary.set_index(["person", "measure"])
+    for person, part in frames.groupby("person", sort=False):
+        of = truth.person_id.tolist().index(person)
         weights, _ = measures.definitions(
-            derived, derived_joints.RIG, truth.joints, sex_of.get(row["person"])
+            derived, derived_joints.RIG, truth.joints, sex_of.get(person)
         )
-        path = np.einsum("j,tjk->tk", weights[row["point"]], truth.xyz[of])
-        fine_s = np.linspace(time_s[0], time_s[-1], FINE * len(time_s))
-        steps = np.diff(CubicSpline(truth.time_s, path)(fine_s), axis=0)
-        true_m = np.linalg.norm(steps, axis=1).sum()
-        found = measured.loc[(row["person"], f"{row['point']}_distance")]
-        rows.loc[at, "distance_m"], rows.loc[at, "true_distance_m"] = found["value"], true_m
-        rows.loc[at, "distance_error_percent"] = 100 * (found["value"] / true_m - 1)
-        rows.loc[at, "distance_sigma_percent"] = 100 * found["sigma"] / true_m
-    return rows
+        inside = part["time_s"].between(truth.time_s[0], truth.time_s[-1])
+        for point, shares in weights.items():
+            path = CubicSpline(truth.time_s, np.einsum("j,tjk->tk", shares, truth.xyz[of]))
+            row = {"person": person, "point": point, **_errors(part[inside], point, path)}
+            rows.append(row | _distances(part, point, path, measured.loc[person]))
+    return pd.DataFrame(rows).reindex(columns=COLUMNS)
+
+
+def _distances(part: pd.DataFrame, point: str, path: CubicSpline, measured: pd.DataFrame) -> dict:
+    known = np.flatnonzero(part[f"{point}_x_m"].notna())
+    time_s = part["time_s"].to_numpy()[known]
+    whole = len(known) > 1 and np.ptp(known) == len(known) - 1
+    if not whole or time_s[0] < path.x[0] or time_s[-1] > path.x[-1]:
+        return {}
+    fine_s = np.linspace(time_s[0], time_s[-1], FINE * len(time_s))
+    true_m = np.linalg.norm(np.diff(path(fine_s), axis=0), axis=1).sum()
+    found = measured.loc[f"{point}_distance"]
+    return {
+        "distance_m": found["value"],
+        "true_distance_m": true_m,
+        "distance_error_percent": 100 * (found["value"] / true_m - 1),
+        "distance_sigma_percent": 100 * found["sigma"] / true_m,
+    }
 
 
 def _errors(part: pd.DataFrame, point: str, path: CubicSpline) -> dict:

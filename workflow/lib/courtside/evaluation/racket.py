@@ -118,8 +118,6 @@ def place_linearly(matrices: dict[str, NDArray], seen: dict[str, NDArray]) -> ND
     They map homogeneous world points (m) to homogeneous pixels; `seen` are px (N, 2) by camera, NaN
     where missing. The result is NaN if fewer than two cameras see the point.
 
-    Notes
-    -----
     The error of a row of the linear system is the error in px times the depth. The system is solved
     again with weights of one over the depth, which minimises the error in px as least squares does
     (Hartley & Sturm 1997, iterative linear method).

@@ -109,12 +109,8 @@ def table(
     has. `published_width` is the longer side, px, of the picture whose pixel grid the row
     `rounded_published` uses.
 
-    Raises
-    ------
-    InputError
-        If a view has no camera, or no person is in the truth.
-    ValueError
-        If the exact round trip moves a point: projection and triangulation are then inconsistent.
+    `InputError` if a view has no camera, or no person is in the truth; `ValueError` if the exact
+    round trip moves a point: projection and triangulation are then inconsistent.
     """
     known = {camera.name: camera for camera in cameras}
     for name in points.cameras:

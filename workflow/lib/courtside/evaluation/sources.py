@@ -159,8 +159,6 @@ def split(source: BodyMotion, reference: BodyMotion, *, form: str = "fixed") -> 
     origin's shift in mm, scale's factor, rotation's angle in degrees, time's shift in seconds
     (added to the source's times). `form` is `fixed` or `following`.
 
-    Notes
-    -----
     There are four corrections: one shift in space, one scale, one rotation, one shift in time for
     the whole take. For every subset the mean squared error is found that remains when all of the
     subset are fitted together. A part's share is its mean reduction over all orders of the

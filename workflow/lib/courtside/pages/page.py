@@ -42,27 +42,19 @@ def build(
 ) -> str:
     """Return the content of a page, to be written by `write`.
 
+    title : of the window; any text
+    body_html : trusted HTML, as `render` returns it; `<img src="image:NAME" alt="...">` shows a
+        picture of `images`
+    css, js : names of files in `pages/assets`, or other paths (a plotting library); `page.css` and
+        `page.js` come first; scripts run after the body, in this order
+    data : what scripts get by `courtside.data(name)`: plain values, lists, dictionaries, numpy
+        arrays; numbers that are not finite become null
+    images : picture, or picture and MIME type ("image/png" if left out); scripts get pictures that
+        `body_html` does not show by `courtside.image(name)`, as a data address
+    evaluates : whether a script makes code from text, as some plotting libraries do
+
     `ValueError` if a name has characters other than letters, digits, _ . and -, or a picture is
     missing.
-
-    Parameters
-    ----------
-    title
-        Of the window; any text.
-    body_html
-        Trusted HTML, as `render` returns it. `<img src="image:NAME" alt="...">` shows a picture of
-        `images`.
-    css, js
-        Names of files in `pages/assets`, or other paths (a plotting library). `page.css` and
-        `page.js` come first. Scripts run after the body, in this order.
-    data
-        What scripts get by `courtside.data(name)`: plain values, lists, dictionaries, numpy arrays.
-        Numbers that are not finite become null.
-    images
-        Picture, or picture and MIME type ("image/png" if left out). Scripts get pictures that
-        `body_html` does not show by `courtside.image(name)`, as a data address.
-    evaluates
-        Whether a script makes code from text, as some plotting libraries do.
     """
     data, images = dict(data or {}), dict(images or {})
     for name in [*data, *images]:

@@ -24,12 +24,8 @@ def pair(rows: pd.DataFrame, networks: tuple[str, str]) -> pd.DataFrame:
     """Put the values of two networks from the same takes side by side, as `PAIRS`.
 
     `rows` are of `longitudinal.read`. `definition` is empty where both networks define the measure
-    alike, and else names both definitions.
-
-    Raises
-    ------
-    InputError
-        If a network has no values, or none from the same takes and calibration as the other.
+    alike, and else names both definitions. `InputError` if a network has no values, or none from
+    the same takes and calibration as the other.
     """
     known = sorted(rows["model"].unique())
     sides = []
@@ -60,12 +56,8 @@ def compare(
     bias, limits and their intervals (second minus first), standard deviations, the smallest
     detectable change of the first network with its interval and that of the second, the number of
     subjects and differences, and a verdict with a sentence: `yes`, `unsure` (the limits lie within
-    the change, their intervals do not), `no`, `unknown` (too few values).
-
-    Raises
-    ------
-    InputError
-        If no measure has `min_subjects` subjects with `min_repeats` repeats each.
+    the change, their intervals do not), `no`, `unknown` (too few values). `InputError` if no
+    measure has `min_subjects` subjects with `min_repeats` repeats each.
     """
     table = [
         _row(name, unit, part, networks, min_subjects, min_repeats)
@@ -158,14 +150,8 @@ def limits(subject: ArrayLike, difference: ArrayLike) -> Limits:
     """Find limits of agreement from several differences of each subject, the true value varying.
 
     `subject` (N,) are labels; `difference` (N,) is of the two methods, measured at the same time.
+    `ValueError` if there are fewer than two subjects, or none has two differences.
 
-    Raises
-    ------
-    ValueError
-        If there are fewer than two subjects, or none has two differences.
-
-    Notes
-    -----
     Bland & Altman 2007, J Biopharm Stat 17:571-582, section 3: the variance of a single difference
     is the sum of its components between and within subjects, from a one-way analysis of variance.
     Intervals after Zou 2013, Stat Methods Med Res 22:630-642 (method of variance estimates
@@ -236,8 +222,6 @@ def smallest_detectable_change(
     times the standard error of measurement; its 95 % confidence interval; and its degrees of
     freedom, repeats less subjects.
 
-    Notes
-    -----
     The standard error of measurement is the standard deviation between repeats of one subject,
     pooled (Bland & Altman 1996, BMJ 312:1654; de Vet et al. 2006, Health Qual Life Outcomes 4:54).
     It includes all that differs between repeats: the athlete's own variation and the measurement's.

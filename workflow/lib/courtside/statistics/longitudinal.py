@@ -42,12 +42,8 @@ def of_subject(
     """Return the rows of `read` of one subject, of all measures or those named.
 
     `allow_mixed` lets values of different networks or kinds of calibration, or of one measure
-    defined differently, stand in one table: `changes` marks them.
-
-    Raises
-    ------
-    InputError
-        If there is no such subject or measure, or values are mixed and may not be.
+    defined differently, stand in one table: `changes` marks them. `InputError` if there is no such
+    subject or measure, or values are mixed and may not be.
     """
     known = sorted(rows["subject"].unique())
     if subject not in known:
@@ -185,12 +181,7 @@ def read(
 
     Each path is a CSV with a row for each person and measure: person, measure, value, unit; sigma
     and definition optional. Its labels: session, take, model, calibration; date (year-month-day)
-    where known.
-
-    Raises
-    ------
-    InputError
-        If a column is missing or a value stands twice.
+    where known. `InputError` if a column is missing or a value stands twice.
     """
     tables = []
     for path, label in zip(paths, labels, strict=True):

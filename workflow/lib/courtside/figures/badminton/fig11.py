@@ -30,18 +30,13 @@ PIXELS = ("detected_x_px", "detected_y_px", "reprojected_x_px", "reprojected_y_p
 def disagreements(
     points: Keypoints3D, cameras: list[Camera], joints: Sequence[str], limit_torso: float
 ) -> tuple[NDArray, NDArray, NDArray]:
-    """Return where a camera's keypoint does not fit the 3D joint.
+    """Return where a camera's keypoint does not fit the 3D joint: disagrees, known, limit.
+
+    disagrees (P, T, K, C) bool: the reprojection error is above the limit (P, C) px; known
+    (P, T, K, C) bool: both the keypoint and the 3D joint are known.
 
     `cameras` are those of `points`, in its order, and `joints` K of its joints. `limit_torso` is a
     share of the length of the person's torso in that camera's picture (its median over the take).
-
-    Returns
-    -------
-    disagrees : (P, T, K, C) bool
-        The reprojection error is above the limit.
-    known : (P, T, K, C) bool
-        Both the keypoint and the 3D joint are known.
-    limit_px : (P, C) float
     """
     at = [list(points.joints).index(joint) for joint in joints]
     torso = [detection.torso_px(camera, points.joints, points.xyz) for camera in cameras]

@@ -27,96 +27,38 @@ def session(
         configured=configured,
         level=warned.worst(found),
         found=found,
-        model=facts["model"],
-        calibrations=_calibrations(configured, facts["quality"]),
-        static=_movement(facts["static"]),
+        facts=facts,
+        calibrations=[_calibration(*one) for one in facts["quality"].items()],
         takes=[_take(*one) for one in takes],
+        stages=STAGES,
         number=number,
+        percent=percent,
+        movement_px=lambda row: math.hypot(row["shift_x_px"], row["shift_y_px"]),
+        clock_ms=lambda sigma_s: number(warned.MS_90 * sigma_s or None),
     )
 
 
 def _take(take: dict, known: dict, found: Sequence[warned.Warned]) -> dict:
-    """Return what the template says of a take: the rows of its tables, and more."""
-    views = sorted(known.get("views", {}).items(), reverse=True)
-    reasons = list(dict.fromkeys(why for row in known["joints"].values() for why in row["reasons"]))
+    """Return what the template says of a take besides its facts."""
+    devices = [(row["source"], {**row, "note": ""}) for row in known["devices"]]
+    reasons = [why for row in known["joints"].values() for why in row["reasons"]]
     return {
+        **known,
         "name": take["name"],
+        "fusion": take["fusion"],
         "level": warned.worst(found),
-        "clocks": _clocks(known),
-        "movement": _movement(known["movement"]),
-        "shake": known["shake"],
-        "cameras": [
-            (camera, percent(each["accepted"]), number(each["median_px"]))
-            for camera, each in known["cameras"].items()
-        ],
-        "views": ", ".join(f"{share:.0%} on {n}" for n, share in views),
-        "reasons": [why.replace("_", " ") for why in reasons],
-        "joints": [
-            (
-                joint.replace("_", " "),
-                percent(row["missing"]),
-                *(percent(row["reasons"].get(why, 0.0)) for why in reasons),
-                percent(row["few"]),
-            )
-            for joint, row in known["joints"].items()
-        ],
-        "truth": _truth(take, known),
+        "clocks": [*known["clocks"].items(), *devices],
+        "reasons": list(dict.fromkeys(reasons)),
     }
 
 
-def _calibrations(configured: dict, quality: dict) -> list[tuple]:
-    rows = []
-    for calibration, content in quality.items():
-        left = content.get("left_out")
-        points = left.values() if isinstance(left, dict) else ()
-        errors = [row["error_cm"] for row in points if row["error_cm"] is not None]
-        values = (
-            warned.left_out_cm(content),
-            max(errors, default=None),
-            content.get("expected_volume_rms_cm"),
-            content.get("tie_residual_px"),
-        )
-        name = calibration + (" (takes)" if calibration == configured["calibration"] else "")
-        rows.append((name, *map(number, values), len(content.get("warnings", ()))))
-    return rows
-
-
-def _movement(rows: Iterable[dict]) -> list[tuple]:
-    found = []
-    for row in rows:
-        shift = number(math.hypot(row["shift_x_px"], row["shift_y_px"]))
-        found.append((row["camera"], shift, number(row["zoom_percent"], 4), row["n_matches"]))
-    return found
-
-
-def _clocks(known: dict) -> list[tuple]:
-    rows = [
-        (camera, each.status, each.offset_s, each.uncertainty_s, each.note)
-        for camera, each in known["clocks"].items()
-    ]
-    rows += [
-        (row["source"], row["status"], row["offset_s"], row["uncertainty_s"], "")
-        for row in known["devices"]
-    ]
-    return [
-        (name, status, number(offset_s, 4), number(warned.MS_90 * sigma_s or None), note)
-        for name, status, offset_s, sigma_s, note in rows
-    ]
-
-
-def _truth(take: dict, known: dict) -> list[tuple]:
-    """Return errors against the truth, and the coverage of the stated ellipsoids."""
-    return [
-        (
-            STAGES.get(row["stage"], row["stage"]),
-            number(row["median_mm"], 0),
-            number(row["p95_mm"], 0),
-            percent(row["coverage_90_percent"] / 100),
-            row["n"],
-        )
-        for row in known["truth"]
-        if (row["fusion"], row["person"], row["joint"]) == (take["fusion"], "all", "limbs")
-    ]
+def _calibration(name: str, content: dict) -> dict:
+    """Return what the template says of a calibration besides its content."""
+    left = content.get("left_out")
+    points = left.values() if isinstance(left, dict) else ()
+    errors = [row["error_cm"] for row in points if row["error_cm"] is not None]
+    median = warned.left_out_cm(content)
+    return {"name": name, "median_cm": median, "largest_cm": max(errors, default=None), **content}
 
 
 def limits() -> Markup:

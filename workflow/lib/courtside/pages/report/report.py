@@ -11,22 +11,14 @@ GLANCE = ("neck_distance", "neck_speed_mean", "neck_speed_max")
 
 
 def build(study: dict) -> str:
-    """Return the report, to be written by `page.write`.
+    """Return the report, to be written by `page.write`; `InputError` if a file is missing or odd.
 
-    Parameters
-    ----------
-    study
-        `title`; `parameters` (the steps as configured); `sessions`, each with `name`,
-        `description`, `virtual`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`,
-        `model`, `overrides`, `limits` (`max_shift_px`, `max_zoom_percent`), perhaps `withheld`
-        (lines that say what is missing for lack of consent), `files` (of `facts.of_session`) and
-        `takes`, each with `name`, `fusion`, `links` and `files` (of `facts.of_take`); `figures` as
-        `figures.figure` takes them, with `take`; `tables` as `figures.table` takes them.
-
-    Raises
-    ------
-    InputError
-        If a file is missing or has another content.
+    `study` has `title`; `parameters` (the steps as configured); `sessions`, each with `name`,
+    `description`, `virtual`, `calibration` (of its takes), `mapper`, `n_images`, `fusion`, `model`,
+    `overrides`, `limits` (`max_shift_px`, `max_zoom_percent`), perhaps `withheld` (lines that say
+    what is missing for lack of consent), `files` (of `facts.of_session`) and `takes`, each with
+    `name`, `fusion`, `links` and `files` (of `facts.of_take`); `figures` as `figures.figure` takes
+    them, with `take`; `tables` as `figures.table` takes them.
     """
     known = [_read(session) for session in study["sessions"]]
     grouped = figures.groups(study["figures"], [one["configured"]["name"] for one in known])

@@ -32,12 +32,8 @@ def integers(values: NDArray) -> str:
 def positions(xyz: NDArray, middle: NDArray) -> tuple[str, NDArray]:
     """Pack positions (P, T, J, 3) m, NaN where missing, in whole millimetres from `middle` (3,) m.
 
-    Returns
-    -------
-    text
-        `integers` of (P, J, 3, T); a missing value repeats the one before it.
-    known : (P, T, J) bool
-        Joints with three coordinates, none further than 32 m from the middle.
+    Return `integers` of (P, J, 3, T), in which a missing value repeats the one before it; and which
+    joints (P, T, J) have three coordinates, none further than 32 m from the middle.
     """
     offset_m = np.asarray(xyz, dtype=float) - middle
     near = np.abs(np.where(np.isfinite(offset_m), offset_m, np.inf)) <= REACH_M
