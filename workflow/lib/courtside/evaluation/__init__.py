@@ -11,4 +11,6 @@ skin_depths: estimate: depth of joints behind the skin
 calibration: of_ties, of_known, score: one trial of calibration
 racket: calibrate, measure, score, rows: one trial of measuring a racket
 tables: Tables of the study from these
+
+`config/README.md` describes the columns of their tables.
 """

@@ -23,10 +23,8 @@ REPLICATES = 1000  # of the bootstrap: usual for percentile intervals (Davison &
 def compare(records: dict[str, Keypoints3D], reference: str) -> pd.DataFrame:
     """Return the distances of skeletons from fewer cameras to a reference, in the world, unaligned.
 
-    `COLUMNS`, for each person and joint and for sets of the limb joints. missing_percent: share of
-    the reference's joints that the record lacks; distances are over the joints of both.
-    exchanged_percent, in the row of all limbs: share of frames in which the limbs are nearer to the
-    reference's limbs of the other side, by the mean distance.
+    For each person and joint and for sets of the limb joints. Distances are over the joints of
+    both; exchanged_percent is by the mean distance of the limbs.
 
     `records` are of one take, by the name of their views and rule; `ValueError` if they differ in
     times, joints or persons. A distance is not an error: the reference rests on the same keypoints

@@ -61,11 +61,9 @@ def evaluate(
 ) -> pd.DataFrame:
     """Compare one camera's keypoints with the true joints in its pictures.
 
-    `COLUMNS`, one row for each person, frame with a truth, and joint; time_s on the reference
-    clock. found: the network reports a trunk within a torso's length of the true one; in_picture:
-    the true joint lies in the picture; placed: found, and the joint's error is below the tolerance;
-    exchanged: not placed, but the keypoint of the other side would be, so that only the sides are
-    mixed up; in_stroke: the person is playing a stroke.
+    One row for each person, frame with a truth, and joint. found: the network reports a trunk
+    within a torso's length of the true one; placed: found, and the joint's error is below the
+    tolerance; exchanged: not placed, but the keypoint of the other side would be.
 
     Camera and clock are the true ones. The view's tracklets are not assigned to persons yet.
     `joints` are compared; the trunk's must be among the truth's. `tolerance` is a share of the

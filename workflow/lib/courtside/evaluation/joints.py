@@ -93,10 +93,8 @@ def table(
 ) -> pd.DataFrame:
     """Summarise errors: one row for each person and joint, and for sets of the limb joints.
 
-    From what `errors` returns to `COLUMNS`. missing_percent is over the frames with truth; bias is
-    the mean error, bias_mm its length, sd_mm the root mean square about it; sigma_mm the root of
-    the mean trace of the stated covariance; coverage the share of the errors within their stated
-    ellipsoid, in percent, empty without a stated covariance.
+    From what `errors` returns. missing_percent is over the frames with truth; sd_mm is the root
+    mean square about the mean error, sigma_mm the root of the mean trace of the stated covariance.
     """
     groups = {name: [names.index(name)] for name in names}
     for label, sides in SETS.items():

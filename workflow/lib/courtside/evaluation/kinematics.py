@@ -27,11 +27,9 @@ def table(
 ) -> pd.DataFrame:
     """Compare measured paths and speeds with the true ones, over the frames that were measured.
 
-    person, point (neck, centre, mass), n frames, seconds; distances in space, measured over all
-    frames of a person and true over the same span; position errors of the filtered path; errors of
-    speed in space and on the ground, and the share of frames in which the speed lies within its
-    stated 90 % interval. `frames` and `summary` are of `courtside.exports.measures`, `sex_of` is
-    "m", "f" or None by person.
+    Distances are in space, measured over all frames of a person and true over the same span; errors
+    of the position are of the filtered path. `frames` and `summary` are of
+    `courtside.exports.measures`, `sex_of` is "m", "f" or None by person.
 
     Distances stay empty if the truth does not cover the measured frames, or if frames between the
     first and the last are missing: the paths would differ in span.

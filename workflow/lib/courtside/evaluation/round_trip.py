@@ -97,12 +97,9 @@ def table(
 ) -> pd.DataFrame:
     """Fill the rows of table 1 for one set of cameras.
 
-    `COLUMNS`. `row`: `exact` and `rounded`: distance after a round trip, exact or with projections
-    rounded to whole pixels of the picture, and of one of the published width (`rounded_published`);
-    `reprojection`: detection to reprojection in all views of the set, accepted or not; `left_out`:
-    the same in the other views; `truth`: distance to the true joint of the same name. `mean` and
-    `sd` are over the values that `over` names, and `n` is their number; for joint `all`, they are
-    means over the joints.
+    Rows `rounded` and `rounded_published` have projections rounded to whole pixels of the picture,
+    and of one of the published width; `reprojection` is of all views of the set, accepted or not,
+    `left_out` of the other views; `truth` is the distance to the true joint of the same name.
 
     `cameras` are at least the views that `points` rests on, `others` views that it does not rest
     on; without a clock, they are on that of `points`. Rows are for those `joints` that `points`

@@ -45,10 +45,8 @@ def estimate(
 ) -> pd.DataFrame:
     """Measure the depth of limb joints behind the skin, and their offset beyond the limb.
 
-    `COLUMNS`: for each joint, both sides together, the median depth behind the skin along the
-    viewing ray and its robust standard deviation, metres; their number n; and the distance beyond
-    the end of the limb (`skeleton.PARENT`), NaN for shoulder and hip. `ValueError` if a joint is
-    never seen.
+    For each joint, both sides together; the end of the limb is that of `skeleton.PARENT`.
+    `ValueError` if a joint is never seen.
 
     `pairs` are the lifted (T, J, 3) and true (T, K, 3) skeletons of clips, in the axes of the
     camera, metres, NaN where missing; `joints` and `true_joints` name the J and the K joints.

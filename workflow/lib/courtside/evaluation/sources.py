@@ -118,10 +118,8 @@ def _procrustes(measured: NDArray, true: NDArray) -> NDArray:
 def table(names: list[str], errors_mm: dict[str, NDArray], true_known: NDArray) -> pd.DataFrame:
     """Summarise errors (T, M, 3) mm: one row for each alignment and joint, and for all joints.
 
-    alignment, joint, n, missing_percent; bias_x_mm, bias_y_mm, bias_z_mm: mean error along the
-    body's axes; bias_mm: its length; sd_mm: root mean square about it; rmse_mm: root mean square
-    error (its square is the sum of those of bias_mm and sd_mm); median_mm and p95_mm of the
-    distances. Missing values are counted where the reference has a value, `true_known` (T, M).
+    The square of rmse_mm is the sum of those of bias_mm and sd_mm. Missing values are counted where
+    the reference has a value, `true_known` (T, M).
     """
     groups = {name: [at] for at, name in enumerate(names)} | {"all": list(range(len(names)))}
     rows = [

@@ -53,10 +53,8 @@ def compare(
 ) -> pd.DataFrame:
     """Compare two networks, one row per measure of the `pairs` of `pair`.
 
-    bias, limits and their intervals (second minus first), standard deviations, the smallest
-    detectable change of the first network with its interval and that of the second, the number of
-    subjects and differences, and a verdict with a sentence: `yes`, `unsure` (the limits lie within
-    the change, their intervals do not), `no`, `unknown` (too few values). `InputError` if no
+    Columns: `agreement.table.csv` of `config/README.md`. A verdict is `unsure` if the limits lie
+    within the change, their intervals do not; `unknown` for too few values. `InputError` if no
     measure has `min_subjects` subjects with `min_repeats` repeats each.
     """
     table = [

@@ -157,13 +157,9 @@ def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
 
     One row per session, method, mapper, clicks, in-sample or not, and number of bridging images;
     and one for all sessions of a condition together if they differ in their seeds only (session:
-    `all N`). `n` trials with a result, `n_failed` without; the share of the structures from motion
-    that led to a result (`solved_share`) and the mean share of registered images
-    (`registered_share`); medians and 95 % quantiles; `coverage90` mean; and paired differences of
-    the volume error, each as number of pairs, mean, 95 % upper confidence limit of the mean, and 95
-    % quantile of the pairs: `vs_reference_...` to `n_reference` images (same draw, offset 0),
-    `vs_known_...` to calibration from all known points (same session, draw and choice of scored
-    points). `rows` are of `tidy`.
+    `all N`). Differences of the volume error are paired: `vs_reference_...` to `n_reference` images
+    (same draw, offset 0), `vs_known_...` to calibration from all known points (same session, draw
+    and choice of scored points). `rows` are of `tidy`.
     """
     rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=_to_known(rows))
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]

@@ -48,16 +48,10 @@ def table(
 ) -> pd.DataFrame:
     """Summarise the evaluations of takes, one row per take, calibration, network, fusion and stage.
 
-    Over the 12 limb joints: n values, missing_percent, median_mm, p95_mm, sigma_mm and coverage in
-    percent, with the least and the most of any joint and the number of joints whose coverage at 90
-    % is within `joints.WANTED_90`. On rows of the robust rule, its gain: `vs_dlt_...` over the
-    linear transformation with the same cameras, `vs_halfbody_...` over the half-body rule: ours
-    minus the other, negative if ours is nearer. Those without `paired` in their name are
-    differences of the two summaries; the paired ones are over the joints that both have, with the
-    ends of their 95 % interval. `beats_others`: whether ours has the smaller median and p95 than
-    all of them in the paired comparison, or in the plain one if there is no paired one. On rows of
-    the stage that is measured, the kinematics of the person with the largest errors; on raw rows,
-    the clocks of the take.
+    Over the 12 limb joints. On rows of the robust rule its gain over others: ours minus the other.
+    `beats_others` is by the paired comparison, or by the plain one if there is no paired one. On
+    rows of the stage that is measured, the kinematics of the person with the largest errors; on raw
+    rows, the clocks of the take.
 
     The arguments are of `read`: tables of `evaluate_take`, `evaluate_kinematics`, `evaluate_clocks`
     and `evaluate_fusions`; all but the first may be empty.

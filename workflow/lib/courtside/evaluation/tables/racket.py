@@ -38,11 +38,10 @@ def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
 def table(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the numbers drawn, from rows of `read`.
 
-    The columns `COLUMNS`, see `config/README.md`. Quantities: those of `ERRORS` and
-    `volume_rms_cm`, for each way; with a `reference` their differences by run (`tips` "same": both
-    ways from the same clicks of the racket; "anew": from separate clicks); "all three": how often
-    all errors are ordered as published; `length_mm`: the run drawn. The way `published` holds the
-    paper's values.
+    Quantities: those of `ERRORS` and `volume_rms_cm`, for each way; with a `reference` their
+    differences by run (`tips` "same": both ways from the same clicks of the racket; "anew": from
+    separate clicks); "all three": how often all errors are ordered as published; `length_mm`: the
+    run drawn. The way `published` holds the paper's values.
     """
     parts = _published()
     for (session, layout), of in rows.groupby(["session", "layout"], sort=False):

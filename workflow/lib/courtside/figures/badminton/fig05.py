@@ -32,12 +32,11 @@ HEAD = 0.7  # the top of the head lies above the shoulders, in lengths of the to
 def table(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> pd.DataFrame:
     """Return the share of frames in which the joints are placed, for each camera and joint.
 
-    `COLUMNS`: the share of placed joints over the frames in whose picture all the person's joints
-    lie, its 95 % interval (Wilson, on the effective number of frames), and the share in which only
-    the sides are exchanged. Joint ALL: all joints in one frame; STROKE: the same in the frames of a
-    stroke. Camera TOGETHER: all joints in all cameras of the layout at the same time. `rows` are of
-    `courtside.evaluation.detection.evaluate`, with session, take and model; `layouts` are by name
-    the session and the cameras that reconstruct together.
+    Over the frames in whose picture all the person's joints lie; the 95 % interval is Wilson's, on
+    the effective number of frames. Joint ALL: all joints in one frame; STROKE: the same in the
+    frames of a stroke. Camera TOGETHER: all joints in all cameras of the layout at the same time.
+    `rows` are of `courtside.evaluation.detection.evaluate`, with session, take and model; `layouts`
+    are by name the session and the cameras that reconstruct together.
     """
     found = []
     for layout, (session, cameras) in layouts.items():

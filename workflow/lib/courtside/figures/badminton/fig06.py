@@ -41,7 +41,7 @@ TEXT_WIDTH = 26  # characters of an outcome in its panel
 
 
 def table(records: dict[int, Record]) -> pd.DataFrame:
-    """Return what is drawn: n_bridging, kind (fixed, bridging, tie), order, name, x_m, y_m, z_m.
+    """Return the positions drawn: of fixed cameras, bridging images and ties.
 
     `records` are by number of bridging images. A record without ties has no frame: its single row
     has the outcome as its name.

@@ -39,10 +39,8 @@ WALK_DEG = {"a": 90.0}  # what a walk from one fixed camera to the other turns, 
 def table(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the numbers drawn, from rows of `calibration.tidy` of one session.
 
-    quantity (`xy_cm`, `volume_rms_cm`, `solved_share`, `registered_share`, `neighbour_deg_median`,
-    `neighbour_deg_max`), method, mapper, n_clicks, in_sample, n_bridging, n, p05, median, p95,
-    n_failed. For the last four quantities n counts structures from motion. The method `published`
-    holds the paper's values.
+    For quantities other than `ERRORS` n counts structures from motion. The method `published` holds
+    the paper's values.
     """
     keys = ["method", "mapper", "n_clicks", "in_sample", "n_bridging"]
     parts = [calibration.summary(rows, keys, name).assign(quantity=name) for name in ERRORS]

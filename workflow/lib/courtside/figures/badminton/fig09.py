@@ -35,9 +35,8 @@ COLUMNS = [
 def table(points: Keypoints3D, footage: list[Footage], frame: int, stick: Stick) -> pd.DataFrame:
     """Return the numbers of every step for one frame of `points`.
 
-    `COLUMNS`: for each camera, person and joint of the figure the detected position in the camera's
-    nearest frame, the 3D joint, and its projection; round_trip_mm: how far the joint moves when its
-    projections into all cameras are triangulated again.
+    For each camera, person and joint of the figure the detected position in the camera's nearest
+    frame, the 3D joint, its projection, and the way it moves when triangulated again.
     """
     time_s, xyz = points.time_s[frame], stick.of(points.xyz[:, frame])
     moved = round_trip.distance_after([one.camera for one in footage], xyz)

@@ -38,11 +38,7 @@ def trails(xyz: NDArray, stick: Stick, frames: slice) -> dict[str, NDArray]:
 
 
 def table(points: Keypoints3D, stick: Stick, frames: slice, shown: Sequence[int]) -> pd.DataFrame:
-    """Return the trails as numbers.
-
-    time_s, person, joint, x_m, y_m, z_m of all joints of the figure in all frames; drawn: whether
-    the skeleton of that time is drawn (`shown`); trail: whether the joint has one.
-    """
+    """Return all joints of the figure in all frames; the skeletons of `shown` are drawn."""
     xyz = stick.of(points.xyz)[:, frames]
     at = np.arange(frames.start, frames.stop)
     n_persons, n_frames, n_joints = xyz.shape[:3]

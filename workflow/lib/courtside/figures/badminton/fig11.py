@@ -66,10 +66,9 @@ def table(
     joints.
 
     For each person, camera and joint the detected pixel in the camera's nearest frame (with sides
-    as the fusion used them: `sides_exchanged` marks joints of the other side) and the projection of
-    the 3D joint; error_px as the fusion measured it at the frame's time; whether the view was used
-    (accepted); then of the whole take the frames with both (take_frames) and the share in which
-    they disagree (take_disagree_percent).
+    as the fusion used them) and the projection of the 3D joint; error_px as the fusion measured it
+    at the frame's time; then of the whole take the frames with both and the share in which they
+    disagree.
     """
     disagrees, known, limit_px = limit
     at = [list(points.joints).index(joint) for joint in joints]

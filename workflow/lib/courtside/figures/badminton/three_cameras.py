@@ -40,11 +40,9 @@ NUMBERS = ["n", "missing_percent", "median_mm", "p95_mm"]
 def table(errors: pd.DataFrame, kinematics: pd.DataFrame) -> pd.DataFrame:
     """Put the errors of joints and of body points together, one row each.
 
-    session, take, calibration, model, fusion, stage, joint, person, n, missing_percent, median_mm,
-    p95_mm, claimed (called stable with two cameras by the paper). Several persons are pooled; for
-    neck and centre, which are measured on the skeletons of the last stage (here called
-    `kinematics`), the person with the larger median counts. `errors` and `kinematics` are of
-    `players.read`; kinematics may be empty.
+    Several persons are pooled; for neck and centre, which are measured on the skeletons of the last
+    stage (here called `kinematics`), the person with the larger median counts. `errors` and
+    `kinematics` are of `players.read`; kinematics may be empty.
     """
     errors = players.together(errors)
     points = kinematics.reindex(columns=[*BLOCK, "fusion", "person", "n", *POINT_COLUMNS])

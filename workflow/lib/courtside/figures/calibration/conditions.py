@@ -31,9 +31,9 @@ def table(
 ) -> pd.DataFrame:
     """Return the spread of the volume error by setting, from rows of `calibration.tidy`.
 
-    way (a key of `METHODS`), in_sample, the settings, n, p05, median, p95 (cm), n_failed. Trials
-    with the scored points left out, if the way can do without them. `x` and `group` are the columns
-    of the settings that vary; only trials with `n_bridging` images count, if it is given.
+    Trials with the scored points left out, if the way (a key of `METHODS`) can do without them. `x`
+    and `group` are the columns of the settings that vary; only trials with `n_bridging` images
+    count, if it is given.
     """
     if n_bridging is not None:
         rows = rows[rows["n_bridging"] == n_bridging]

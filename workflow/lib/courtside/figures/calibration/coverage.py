@@ -21,9 +21,8 @@ ACROSS = 4  # sessions in a row
 def table(rows: pd.DataFrame) -> pd.DataFrame:
     """Compare stated with true errors, of rows of `calibration.tidy` of any number of sessions.
 
-    One row per session and number of bridging images, method `sfm` with all clicks: n_clicks, n,
-    n_failed; the mean over trials of `coverage50`, `coverage90`, `coverage95`, %; and of
-    `volume_rms_cm` and `predicted_volume_cm` the columns `..._p05`, `..._median`, `..._p95`.
+    One row per session and number of bridging images, method `sfm` with all clicks; coverages are
+    means over trials.
     """
     of = calibration.pick(rows, in_sample=True, **METHOD)
     of = of[of["n_clicks"] == of.groupby("session")["n_clicks"].transform("max")]

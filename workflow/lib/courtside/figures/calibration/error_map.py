@@ -30,9 +30,8 @@ def table(
 ) -> pd.DataFrame:
     """Return the expected error over the court; `covariance` is of the same cameras, in order.
 
-    x_m, y_m, z_m and sigma_cm: the root of the trace of a point's covariance, cm; NaN if a camera
-    does not see the point, or its covariance is unknown. `ValueError` if the covariance is of other
-    cameras.
+    The error is the root of the trace of a point's covariance, NaN if that is unknown.
+    `ValueError` if the covariance is of other cameras.
     """
     if list(covariance.cameras) != [camera.name for camera in cameras]:
         raise ValueError(f"covariance of {covariance.cameras}, cameras {[c.name for c in cameras]}")

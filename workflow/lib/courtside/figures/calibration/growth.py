@@ -18,7 +18,7 @@ MARKERS = "osv^Dx"
 def table(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
     """Read benchmark files `{step}/{mapper}-n{N}-o{offset}.tsv`; other names are steps done once.
 
-    step, mapper, n_bridging, offset, seconds, max_rss_mb; the mean if a file has several runs.
+    The seconds and memory are means if a file has several runs.
     """
     rows = []
     for path in map(Path, paths):

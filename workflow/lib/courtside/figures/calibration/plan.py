@@ -15,12 +15,7 @@ COLUMNS = (
 
 
 def table(predictions: list[Prediction], chosen: Prediction | None) -> pd.DataFrame:
-    """Return one row per number of bridging images; `chosen` has the fewest images that suffice.
-
-    `n_images`, `neighbour_deg` (widest angle between neighbouring views), `n_ties`, `least_ties`
-    (of a fixed camera), quantiles of the root mean square error over the volume, `enough` (1 for
-    the one chosen and all with more images), `fault`.
-    """
+    """Return one row per number of bridging images; `chosen` has the fewest images that suffice."""
     rows = []
     for p in sorted(predictions, key=lambda p: p.n_images):
         low, middle, high = p.error_cm

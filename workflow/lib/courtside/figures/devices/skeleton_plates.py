@@ -76,11 +76,7 @@ def plates(
 
 
 def table(found: list[Plate], rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the numbers drawn, one row per joint of each plate; `rows` are of `joint_map`.
-
-    source: `schematic` without a recording; skeleton, number, joint, device_name; x, y, z in body
-    units; stands_for: the common joints of which it is a part, with its weight.
-    """
+    """Return the numbers drawn, one row per joint of each plate; `rows` are of `joint_map`."""
     parts: dict[tuple[str, int], list[str]] = {}
     for _, row in rows.iterrows():
         for number, weight in zip(row["numbers"], row["weights"], strict=True):

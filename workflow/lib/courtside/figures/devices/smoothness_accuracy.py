@@ -26,11 +26,6 @@ def table(
 ) -> pd.DataFrame:
     """Put smoothness beside accuracy, one row for each take and source.
 
-    session, take, source; sparc: mean of both wrists, with sparc_low and sparc_high, the two;
-    distortion_mm: mean of both wrists, in millimetres of the source's own unit; median_error_mm:
-    unaligned, of all joints; sparc_true: of the true wrists, mean of both. The last two are empty
-    if no truth is known.
-
     `distortion` is of `courtside.kinematics.wrist_arcs`, with session, take, source, unit_m and
     sparc; `errors` are of `courtside.evaluation.sources`, with session, take and source, of the
     takes with a truth; `truth` has the form of `distortion`, of the true wrists: source is the one

@@ -37,11 +37,8 @@ def read(
 def table(wrists: pd.DataFrame, events: pd.DataFrame, *, aligned: bool = True) -> pd.DataFrame:
     """Add to each event the panel that shows it, and the distance of the held wrists.
 
-    Events are ordered by source and time. `panel`: number of the zoom from 1, empty if there is
-    none; `floor_m`: median distance from 0.03 to 0.2 s after a clap or candidate; `note`: the
-    letter that marks a candidate which is not a clap. `wrists` and `events` are of
-    `courtside.events.detect`; if time_s is not `aligned`, on one clock for all sources, each source
-    is shown by itself.
+    Events are ordered by source and time. `wrists` and `events` are of `courtside.events.detect`;
+    if time_s is not `aligned`, on one clock for all sources, each source is shown by itself.
     """
     rows = events.assign(panel=np.nan, floor_m=np.nan, note="")
     place = rows["source"].map({name: at for at, name in enumerate(wrists["source"].unique())})

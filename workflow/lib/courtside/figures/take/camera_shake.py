@@ -21,10 +21,8 @@ def table(
 ) -> pd.DataFrame:
     """Return the numbers drawn, one row per camera and frame.
 
-    `camera`, `frame_idx`, `time_s`, `shift_x_px`, `shift_y_px`, `rotation_deg`, `zoom_percent`,
-    `sigma_px`, `n_matches`, `shift_mm` (at the player `xyz`, (3,) m in the world, NaN if unknown),
-    `knock_px` and `knock_deg` (of a bump that first shows in this frame; else empty). `shakes` are
-    of `courtside.records.cameras.shake_table`, for each camera to draw.
+    `shift_mm` is at the player `xyz`, (3,) m in the world, NaN if unknown. `shakes` are of
+    `courtside.records.cameras.shake_table`, for each camera to draw.
     """
     parts = []
     for name, shake in shakes.items():

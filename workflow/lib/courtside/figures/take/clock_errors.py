@@ -23,9 +23,7 @@ LABELS = ["session", "take", "camera", "calibration", "model"]
 def table(rows: pd.DataFrame) -> pd.DataFrame:
     """Add intervals, and whether they hold the truth, to the tables of `evaluate_clocks`.
 
-    Rows are ordered by label. lower_ms and upper_ms are the 90 % interval about worst_error_ms, the
-    largest error in the take; worst_error_mm is at `SPEED_M_S`; `holds`: yes, no, or unused for a
-    clock whose status is not `found`.
+    Rows are ordered by label; `holds` is unused for a clock whose status is not `found`.
     """
     rows = rows.sort_values(LABELS, kind="stable").reset_index(drop=True)
     reach = point_covariance.WITHIN_90 * rows["sigma_ms"]

@@ -11,11 +11,7 @@ SMALLEST_PX = 0.5  # where the logarithmic axis begins
 
 
 def table(points: Keypoints3D) -> pd.DataFrame:
-    """Return the statistics of reprojection errors.
-
-    joint, camera, n (frames and persons with an error), n_accepted, then of all errors p05_px,
-    median_px, p95_px, mean_px, and of the accepted ones accepted_median_px.
-    """
+    """Return the statistics of reprojection errors, of all and of the accepted ones."""
     rows = []
     for at, joint in enumerate(points.joints):
         for view, camera in enumerate(points.cameras):

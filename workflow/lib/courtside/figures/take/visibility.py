@@ -10,11 +10,7 @@ from courtside.records.keypoints.skeleton import Skeleton
 
 
 def table(points: Keypoints3D, views: list[Keypoints2D]) -> pd.DataFrame:
-    """Return scores and numbers of views over time.
-
-    time_s, person, joint, n_views, and one column score_<camera> each; empty if the camera saw
-    nothing.
-    """
+    """Return scores and numbers of views over time; empty if a camera saw nothing."""
     n_persons, n_frames, n_joints = points.n_views.shape
     columns = {
         "time_s": np.tile(np.repeat(points.time_s, n_joints), n_persons),
