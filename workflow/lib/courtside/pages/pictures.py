@@ -25,14 +25,9 @@ def shrunk(png: bytes, max_width_px: int = MAX_WIDTH_PX) -> tuple[bytes, tuple[i
     # Without dithering: it would put dots into the flat areas of drawings.
     flat = picture.quantize(N_COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     made = [_bytes(picture)] if scaled else [png]
-    made += [_bytes(flat)] if _differ(picture, flat) <= MAX_DIFFERENCE else []
-    return min(made, key=len), picture.size
-
-
-def _differ(picture: Image.Image, flat: Image.Image) -> float:
-    """Return the root mean square difference of two pictures, in levels of 255."""
     off = np.asarray(picture, float) - np.asarray(flat.convert("RGB"), float)
-    return float(np.sqrt(np.mean(off**2)))
+    made += [_bytes(flat)] if np.sqrt(np.mean(off**2)) <= MAX_DIFFERENCE else []
+    return min(made, key=len), picture.size
 
 
 def _opaque(picture: Image.Image) -> Image.Image:

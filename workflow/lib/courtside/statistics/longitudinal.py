@@ -90,21 +90,17 @@ def over_sessions(rows: pd.DataFrame) -> pd.DataFrame:
     standard deviation. `order` counts sessions by date where all have one, and else as they come.
     """
     rows = rows.dropna(subset=["value"])
-    order = _order(rows)
-    keys = ["measure", "unit", "session", "date", *CONDITIONS, "definition"]
-    groups = rows.groupby(keys, sort=False)["value"]
-    found = groups.agg(n_takes="count", value="mean", sd_takes="std").reset_index()
-    found["order"] = found["session"].map(order)
-    names = list(dict.fromkeys(rows["measure"]))
-    found["place"] = found["measure"].map(names.index)
-    return found.sort_values(["place", "order"], kind="stable")[VALUES].reset_index(drop=True)
-
-
-def _order(rows: pd.DataFrame) -> dict[str, int]:
     sessions = rows[["session", "date"]].drop_duplicates()
     if (sessions["date"] != "").all():
         sessions = sessions.sort_values("date", kind="stable")
-    return {session: at for at, session in enumerate(dict.fromkeys(sessions["session"]))}
+    order = list(dict.fromkeys(sessions["session"]))
+    keys = ["measure", "unit", "session", "date", *CONDITIONS, "definition"]
+    groups = rows.groupby(keys, sort=False)["value"]
+    found = groups.agg(n_takes="count", value="mean", sd_takes="std").reset_index()
+    found["order"] = found["session"].map(order.index)
+    names = list(dict.fromkeys(rows["measure"]))
+    found["place"] = found["measure"].map(names.index)
+    return found.sort_values(["place", "order"], kind="stable")[VALUES].reset_index(drop=True)
 
 
 def errors_of_measurement(

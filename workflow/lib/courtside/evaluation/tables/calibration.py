@@ -161,7 +161,10 @@ def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
     (same draw, offset 0), `vs_known_...` to calibration from all known points (same session, draw
     and choice of scored points). `rows` are of `tidy`.
     """
-    rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=_to_known(rows))
+    known = rows[rows["method"] == "known"]
+    most = known.groupby("session")["n_clicks"].transform("max")
+    to_known = against(rows, known[known["n_clicks"] == most], ["session", "in_sample", "draw"])
+    rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=to_known)
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]
     keys = [*LABELS, *settings, *METHOD, "n_bridging"]
     groups = [
@@ -184,12 +187,6 @@ def _to_reference(rows: pd.DataFrame, n_reference: int) -> NDArray:
     first = rows["offset"] == 0
     difference = against(rows, rows[first & (rows["n_bridging"] == n_reference)], on)
     return np.where(first, difference, np.nan)
-
-
-def _to_known(rows: pd.DataFrame) -> NDArray:
-    known = rows[rows["method"] == "known"]
-    most = known.groupby("session")["n_clicks"].transform("max")
-    return against(rows, known[known["n_clicks"] == most], ["session", "in_sample", "draw"])
 
 
 def _row(group: pd.DataFrame) -> dict:

@@ -43,7 +43,8 @@ def table(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> 
         part = rows[rows.session == session]
         part = part[part.groupby(KEY).in_picture.transform("all")]
         labels = {"layout": layout, **part.iloc[0][["session", "take", "model"]]}
-        step_s = _step_s(part)
+        times_s = np.unique(part[part.camera == part.camera.iloc[0]].time_s)
+        step_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else POSE_S
         spans = {ALL: part, STROKE: part[part.in_stroke]}
         for camera, own in part.groupby("camera", sort=False):
             for joint, span in spans.items():
@@ -83,11 +84,6 @@ def together(rows: pd.DataFrame, cameras: Sequence[str], step_s: float) -> NDArr
             first["placed"] &= first.pop("placed_other").astype(bool)
         parts.append(first.placed.to_numpy(dtype=bool))
     return np.concatenate(parts) if parts else np.zeros(0, dtype=bool)
-
-
-def _step_s(rows: pd.DataFrame) -> float:
-    times_s = np.unique(rows[rows.camera == rows.camera.iloc[0]].time_s)
-    return float(np.median(np.diff(times_s))) if len(times_s) > 1 else POSE_S
 
 
 def examples(rows: pd.DataFrame, layouts: dict[str, tuple[str, Sequence[str]]]) -> list[dict]:

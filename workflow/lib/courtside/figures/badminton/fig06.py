@@ -101,14 +101,12 @@ def _rows(count: int, kind: str | NDArray, names: str | NDArray, xyz: NDArray) -
 
 
 def _limits(rows: pd.DataFrame, court: Court) -> tuple[NDArray, NDArray]:
-    cameras = rows.loc[rows["kind"].isin(["fixed", "bridging"]), ["x_m", "y_m"]].to_numpy()
-    middle = np.asarray(court.size_m) / 2
-    cameras = cameras[np.linalg.norm(cameras - middle, axis=1) < FAR_M]
-    every = np.concatenate([cameras, [[0, 0]], [court.size_m]])
-    ties = rows.loc[rows["kind"] == "tie", ["x_m", "y_m"]].to_numpy()
-    ties = ties[np.linalg.norm(ties - middle, axis=1) < FAR_M]
-    if len(ties):
-        every = np.concatenate([every, np.percentile(ties, [SHOWN, 100 - SHOWN], axis=0)])
+    xy = rows[["x_m", "y_m"]].to_numpy()
+    near = np.linalg.norm(xy - np.asarray(court.size_m) / 2, axis=1) < FAR_M
+    ties = near & (rows["kind"] == "tie")
+    every = np.concatenate([xy[near & ~ties], [[0, 0]], [court.size_m]])
+    if ties.any():
+        every = np.concatenate([every, np.percentile(xy[ties], [SHOWN, 100 - SHOWN], axis=0)])
     return every.min(axis=0) - ROOM_M, every.max(axis=0) + ROOM_M
 
 

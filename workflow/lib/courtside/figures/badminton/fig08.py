@@ -16,9 +16,12 @@ from courtside.figures.style import bars, style
 
 Series = namedtuple("Series", "label method mapper n_clicks in_sample colour marker")
 # [Shishido2020, sec 3.2]: mean of the X_o and Y_o errors, cm, and degrees between neighbours, by N.
-PUBLISHED_CM, PUBLISHED_BELOW_CM = {300: 4.3, 20: 229.5}, {150: 10, 75: 10}
-PUBLISHED_STRONG_CM = 2.2
-PUBLISHED_DEG = {40: 6.0, 20: 12.0}
+PUBLISHED = {
+    "xy_cm": {300: 4.3, 20: 229.5},
+    "xy_cm_below": {150: 10, 75: 10},
+    "xy_cm_strong": {np.nan: 2.2},
+    "neighbour_deg_median": {40: 6.0, 20: 12.0},
+}
 MAPPERS = {"global": style.CYCLE[0], "incremental": style.CYCLE[1]}
 BY_CLICKS = [(style.CYCLE[0], "o"), (style.CYCLE[5], "^"), (style.CYCLE[2], "v")]
 Level = namedtuple("Level", "method rank words colour line marker")
@@ -56,10 +59,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _published() -> pd.DataFrame:
-    values: list[tuple] = [("xy_cm", count, value) for count, value in PUBLISHED_CM.items()]
-    values += [("xy_cm_below", count, value) for count, value in PUBLISHED_BELOW_CM.items()]
-    values += [("xy_cm_strong", np.nan, PUBLISHED_STRONG_CM)]
-    values += [("neighbour_deg_median", count, value) for count, value in PUBLISHED_DEG.items()]
+    values = [(name, *pair) for name, of in PUBLISHED.items() for pair in of.items()]
     rows = pd.DataFrame(values, columns=["quantity", "n_bridging", "median"])
     return rows.assign(method="published", mapper="", in_sample=True)
 

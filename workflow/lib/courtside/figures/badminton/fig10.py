@@ -77,7 +77,10 @@ def draw(
         len(names) + 1,
         width_ratios=[*[width] * len(names), style.WIDTH_MM * SPACE_SHARE],
     )
-    parts = {name: _common_box(pictures, name, width / height) for name in names}
+    parts = {}  # what shows the persons at all instants
+    for name, (image, _) in pictures[0].items():
+        detected = [by_camera[name][1] for by_camera in pictures]
+        parts[name] = picture_crops.box(detected, image.shape[1::-1], width / height)
     xyz = stick.of(points.xyz)
     line = 1.5 * np.sqrt(width / 60)
     for row, (frame, by_camera) in enumerate(zip(shown, pictures, strict=True)):
@@ -92,12 +95,6 @@ def draw(
         _draw_space(axis, xyz, stick, (frames, frame), court)
     _explain(drawing)
     return drawing
-
-
-def _common_box(pictures: list[dict], name: str, aspect: float) -> picture_crops.Box:
-    """Return the part of a camera's pictures that shows the persons at all instants."""
-    detected = [by_camera[name][1] for by_camera in pictures]
-    return picture_crops.box(detected, pictures[0][name][0].shape[1::-1], aspect)
 
 
 def _draw_space(

@@ -77,6 +77,8 @@ def table(
         own = one.frame_at(points.time_s[frame])
         reprojected = one.reprojected(points, own)
         for person, name in enumerate(points.person_id):
+            both = known[person, :, :, camera].sum(axis=0)
+            percent = 100 * disagrees[person, :, :, camera].sum(axis=0) / np.maximum(both, 1)
             seen = one.view.xy[person, own]
             exchanged = points.swapped[person, frame, :, camera]
             seen = np.where(exchanged[:, None], seen[mirror], seen)
@@ -93,16 +95,11 @@ def table(
                 "accepted": points.accepted[person, frame, at, camera],
                 "disagrees": disagrees[person, frame, :, camera],
                 "reason": [missing_reason.WORDS[int(c)] for c in points.reason[person, frame, at]],
-                "take_frames": known[person, :, :, camera].sum(axis=0),
-                "take_disagree_percent": _percent(disagrees, known, person, camera),
+                "take_frames": both,
+                "take_disagree_percent": np.where(both > 0, percent, np.nan),
             }
             parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)
-
-
-def _percent(disagrees: NDArray, known: NDArray, person: int, camera: int) -> NDArray:
-    times, of = (each[person, :, :, camera].sum(axis=0) for each in (disagrees, known))
-    return np.where(of > 0, 100 * times / np.maximum(of, 1), np.nan)
 
 
 def draw(

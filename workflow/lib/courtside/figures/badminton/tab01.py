@@ -70,10 +70,15 @@ def draw(rows: pd.DataFrame, title: str = "") -> Figure:
     axes[0].errorbar(theirs["mean"], place, xerr=theirs["sd"], **look)
     for axis, (names, _) in zip(axes, PANELS, strict=True):
         _scale(axis, rows.loc[rows["row"].isin(names), "mean"])
-    _without_truth(axes[-1], rows)
+    if rows.loc[rows["row"] == "truth", "mean"].isna().all():
+        words = "no truth:\na real session"
+        axes[-1].text(0.5, 0.5, words, transform=axes[-1].transAxes, ha="center")
+        axes[-1].set_xticks([])
     bars.name_rows(axes[0], joints)
     _explain(drawing, axes[0], sets)
-    drawing.suptitle(f"{title}\n{_identity(rows)}".strip(), fontsize=8)
+    exact = rows.loc[(rows["row"] == "exact") & (rows["joint"] != ALL), "mean"].max()
+    identity = f"0 mm (largest mean of a joint {exact:.0e} mm): it is an identity"
+    drawing.suptitle(f"{title}\nA  exact round trip: {identity}".strip(), fontsize=8)
     return drawing
 
 
@@ -95,13 +100,6 @@ def _scale(axis: Axes, means: pd.Series) -> None:
         axis.set_xlim(left=0)
 
 
-def _without_truth(axis: Axes, rows: pd.DataFrame) -> None:
-    known = rows.loc[rows["row"] == "truth", "mean"].notna().any()
-    if not known:
-        axis.text(0.5, 0.5, "no truth:\na real session", transform=axis.transAxes, ha="center")
-        axis.set_xticks([])
-
-
 def _explain(drawing: Figure, axis: Axes, sets: list[tuple[int, str]]) -> None:
     marks = [
         axis.errorbar([], [], xerr=[], fmt="o", color=COLOURS[at % len(COLOURS)], markersize=3)
@@ -112,9 +110,3 @@ def _explain(drawing: Figure, axis: Axes, sets: list[tuple[int, str]]) -> None:
     names.append("published, 2 cameras")
     look = {"title": LEGEND, "title_fontsize": 7, "fontsize": 7}
     drawing.legend(marks, names, loc="outside lower center", ncols=2, **look)
-
-
-def _identity(rows: pd.DataFrame) -> str:
-    exact = rows[(rows["row"] == "exact") & (rows["joint"] != ALL)]
-    mean = exact["mean"].max()
-    return f"A  exact round trip: 0 mm (largest mean of a joint {mean:.0e} mm): it is an identity"

@@ -81,7 +81,10 @@ def draw(rows: pd.DataFrame, cameras: dict[str, Sequence[str]]) -> Figure:
                 heading = "filtered"
                 axis.text(0.5, 0.5, NO_OFFSETS, transform=axis.transAxes, ha="center")
             axis.set(title=heading, xlabel="distance from the truth (mm)")
-            _logarithmic(axis, limits)
+            bars.plain_log(axis, "x")
+            axis.set_xlim(*limits)
+            axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.xaxis.set_minor_locator(NullLocator())
         _missing(axes[2], block[block["stage"] == "pose3d"], ways)
         _names(axes)
         part.suptitle(_title(key, block), fontsize=7)
@@ -115,13 +118,6 @@ def _missing(axis: Axes, rows: pd.DataFrame, ways: list[str]) -> None:
     most = rows["missing_percent"].max()
     axis.set(title="missing", xlabel="of frames (%)")
     axis.set_xlim(-0.5, max(5.0, 1.1 * most) if np.isfinite(most) else 5.0)
-
-
-def _logarithmic(axis: Axes, limits: tuple[float, float]) -> None:
-    bars.plain_log(axis, "x")
-    axis.set_xlim(*limits)
-    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.xaxis.set_minor_locator(NullLocator())
 
 
 def _names(axes: Sequence[Axes]) -> None:

@@ -38,15 +38,13 @@ def table(
     xyz = quality.volume(court, heights_m, COLUMNS, ROWS)
     network = selection.of_cameras(cameras)
     sigma = np.full(len(xyz), np.nan)
-    seen = np.all([_sees(camera, xyz) for camera in cameras], axis=0)
+    seen = np.ones(len(xyz), dtype=bool)
+    for camera in cameras:
+        seen &= camera_models.in_picture(camera, camera_models.project(camera, xyz))
     if seen.any():
         spread = point_covariance.point_covariance(network, covariance.of_columns(), xyz[seen])
         sigma[seen] = 100 * np.sqrt(np.trace(spread, axis1=1, axis2=2))
     return pd.DataFrame({"x_m": xyz[:, 0], "y_m": xyz[:, 1], "z_m": xyz[:, 2], "sigma_cm": sigma})
-
-
-def _sees(camera: Camera, xyz: NDArray) -> NDArray:
-    return camera_models.in_picture(camera, camera_models.project(camera, xyz))
 
 
 def draw(rows: pd.DataFrame, cameras: list[Camera], court: Court, title: str) -> Figure:

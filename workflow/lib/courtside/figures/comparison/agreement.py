@@ -36,13 +36,10 @@ def read(
 def choose(table: pd.DataFrame, count: int = SHOWN) -> list[str]:
     """Choose measures of a table of `agreement.compare`, evenly from best to worst agreement."""
     known = table[table["verdict"].isin(COLOURS)]
-    order = known.assign(ratio=_ratio(known)).sort_values("ratio", kind="stable")["measure"]
+    ratio = np.maximum(-known["lower"], known["upper"]) / known["detectable"]
+    order = known.assign(ratio=ratio).sort_values("ratio", kind="stable")["measure"]
     at = np.unique(np.linspace(0, len(order) - 1, min(count, len(order))).round().astype(int))
     return order.iloc[at].tolist()
-
-
-def _ratio(table: pd.DataFrame) -> pd.Series:
-    return np.maximum(-table["lower"], table["upper"]) / table["detectable"]
 
 
 def draw(

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, source_styles, style
@@ -88,16 +87,12 @@ def draw(rows: pd.DataFrame, *, kinds: dict[str, str] | None = None) -> Figure:
         axis.set_xlim(left=0)
         axis.set_xlabel(PANELS[name])
     axes[0].set_ylabel("SPARC of the wrists' speed\n(nearer to 0 is smoother)")
-    _draw_best(axes[0])
+    arrow = {"arrowstyle": "->", "color": "#aaaaaa", "linewidth": 0.8}
+    look = {"xycoords": "axes fraction", "fontsize": 7, "color": "#777777", "arrowprops": arrow}
+    axes[0].annotate("smooth and accurate", (0.01, 0.99), xytext=(0.09, 0.9), **look)
     marks = source_styles.marks(looks)
     marks.append(bars.mark("#bbbbbb", marker="", line="-", label="one minimum-jerk reach"))
     if rows["sparc_true"].notna().any():
         marks.append(bars.mark(TRUE, marker="_", label="the true wrists, same time"))
     drawing.legend(handles=marks, loc="outside lower center", ncols=4)
     return drawing
-
-
-def _draw_best(axis: Axes) -> None:
-    arrow = {"arrowstyle": "->", "color": "#aaaaaa", "linewidth": 0.8}
-    look = {"xycoords": "axes fraction", "fontsize": 7, "color": "#777777", "arrowprops": arrow}
-    axis.annotate("smooth and accurate", (0.01, 0.99), xytext=(0.09, 0.9), **look)

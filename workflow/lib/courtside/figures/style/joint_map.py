@@ -13,13 +13,8 @@ SIDES = ("left", "right")
 
 def limbs(skeletons: Sequence[Skeleton]) -> list[str]:
     """Return the limb joints of all skeletons, without side, in the order of the first one."""
-    pairs = [_parts(skeleton) for skeleton in skeletons]
-    return [part for part in pairs[0] if all(part in other for other in pairs)]
-
-
-def _parts(skeleton: Skeleton) -> list[str]:
-    named = [joint.partition("_") for joint in skeleton.groups["limbs"]]
-    return list(dict.fromkeys(part for _, _, part in named))
+    parts = [[joint.partition("_")[2] for joint in one.groups["limbs"]] for one in skeletons]
+    return [part for part in dict.fromkeys(parts[0]) if all(part in other for other in parts)]
 
 
 def rows(skeletons: list[Skeleton], table: DerivedJoints) -> pd.DataFrame:

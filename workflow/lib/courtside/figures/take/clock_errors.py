@@ -40,7 +40,9 @@ def draw(rows: pd.DataFrame) -> Figure:
     """Draw the errors of `table`, one line per camera of a take."""
     drawing = style.figure(40 + 3.8 * len(rows))
     axis = drawing.subplots()
-    edge = _edge(rows)
+    known = rows.loc[rows["holds"] != "unused", ["lower_ms", "upper_ms"]].abs().to_numpy()
+    furthest = known[np.isfinite(known)].max(initial=0.0)
+    edge = float(np.clip(1.1 * furthest, 1.5 * LIMIT_MS, FURTHEST_MS))
     axis.axvspan(-LIMIT_MS, LIMIT_MS, color="#eeeeee", linewidth=0, zorder=0)
     axis.axvline(0, color="#999999", linewidth=0.6)
     for holds, colour in COLOURS.items():
@@ -64,12 +66,6 @@ def draw(rows: pd.DataFrame) -> Figure:
     marks = [bars.mark(COLOURS[h], filled=h != "unused", line="-", label=WORDS[h]) for h in there]
     drawing.legend(handles=marks, loc="outside lower center", ncols=3)
     return drawing
-
-
-def _edge(rows: pd.DataFrame) -> float:
-    known = rows.loc[rows["holds"] != "unused", ["lower_ms", "upper_ms"]].abs().to_numpy()
-    known = known[np.isfinite(known)]
-    return float(np.clip(1.1 * known.max(initial=0.0), 1.5 * LIMIT_MS, FURTHEST_MS))
 
 
 def _beyond(axis: Axes, at: float, error_ms: float, edge: float, colour: str) -> None:

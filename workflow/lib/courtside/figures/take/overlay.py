@@ -5,7 +5,6 @@ from itertools import product
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -78,13 +77,10 @@ def draw(
         picture_crops.show(axis, image, picture_crops.box(both, image.shape[1::-1]))
         line = LINE / np.sqrt(len(footage))
         picture_crops.compare(axis, *both, skeleton.bone_indices(), line)
-        _mark_unused(axis, *both, points.accepted[:, frame, :, column])
+        unused = ~points.accepted[:, frame, :, column]
+        for ends in np.stack(both, axis=2)[unused]:
+            axis.plot(*ends.T, color=picture_crops.MARKED, linewidth=1.0, zorder=4)
         axis.set_title(f"{one.camera.name}, {points.time_s[frame]:.2f} s")
     words = "Detected (yellow), 3D skeleton reprojected (blue), view not used (red)"
     drawing.suptitle(words, fontsize=8)
     return drawing
-
-
-def _mark_unused(axis: Axes, detected: NDArray, reprojected: NDArray, accepted: NDArray) -> None:
-    for ends in np.stack([detected, reprojected], axis=2)[~accepted]:
-        axis.plot(*ends.T, color=picture_crops.MARKED, linewidth=1.0, zorder=4)

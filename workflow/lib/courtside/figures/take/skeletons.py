@@ -49,16 +49,12 @@ def draw(
     return drawing
 
 
-def _poses(points: Keypoints3D, n_poses: int) -> list[tuple[int, float]]:
-    at = np.unique(np.linspace(0, len(points.time_s) - 1, n_poses).round().astype(int))
-    return list(zip(at, np.linspace(0.35, 1.0, len(at)), strict=True))
-
-
 def _bones(
     points: Keypoints3D, skeleton: Skeleton, n_poses: int
 ) -> Iterator[tuple[NDArray, str, float]]:
     """Yield both ends (2, 3), colour and opacity of every bone to draw."""
-    for frame, opacity in _poses(points, n_poses):
+    frames = np.unique(np.linspace(0, len(points.time_s) - 1, n_poses).round().astype(int))
+    for frame, opacity in zip(frames, np.linspace(0.35, 1.0, len(frames)), strict=True):
         for person in range(len(points.person_id)):
             xyz = points.xyz[person, frame]
             for start, stop in skeleton.bones:

@@ -94,9 +94,12 @@ def build(session: str, court: Court, frames: list[Frame], *, targets: dict[str,
     names = [frame.identity for frame in frames]
     if not frames or len(set(names)) < len(names):
         raise ValueError(f"expected pictures of different cameras and times, found {names}")
+    # What tells this page's clicks from those of other pages in one browser.
+    about = [session, court.points, [[f.identity, list(f.size), f.clicks] for f in frames]]
+    stamp = hashlib.sha256(json.dumps(about, default=lambda value: value.tolist()).encode())
     shown = {
         "session": session,
-        "stamp": _stamp(session, court, frames),
+        "stamp": f"{session} {stamp.hexdigest()[:16]}",
         "court": _court(court),
         "ends": [{"name": name, "edges": words} for name, words in ENDS.items()],
         "frames": [
@@ -129,10 +132,3 @@ def _court(court: Court) -> dict:
     ]
     keys = ("size_m", "line_width_m", "lines_m", "net")
     return {"points": points, **{key: getattr(court, key) for key in keys}}
-
-
-def _stamp(session: str, court: Court, frames: Sequence[Frame]) -> str:
-    """Return what tells this page's clicks from those of other pages in one browser."""
-    about = [session, court.points, [[f.identity, list(f.size), f.clicks] for f in frames]]
-    text = json.dumps(about, default=lambda value: value.tolist())
-    return f"{session} {hashlib.sha256(text.encode()).hexdigest()[:16]}"

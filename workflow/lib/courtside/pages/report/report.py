@@ -7,8 +7,6 @@ from courtside.pages.report import coach, figures, methods, quality, warnings
 from courtside.pages.report import facts as report_facts
 from courtside.pages.report.figures import identity
 
-GLANCE = ("neck_distance", "neck_speed_mean", "neck_speed_max")
-
 
 def build(study: dict) -> str:
     """Return the report, to be written by `page.write`; `InputError` if a file is missing or odd.
@@ -24,8 +22,9 @@ def build(study: dict) -> str:
     grouped = figures.groups(study["figures"], [one["configured"]["name"] for one in known])
     drawn, images = _figures(grouped)
     reported = [one for one in known if one["takes"] or one["withheld"]]
+    places = [(one["place"], one["configured"]["name"]) for one in reported]
     parts = [
-        ("measured", "What was measured", _measured(known, reported, grouped), _places(reported)),
+        ("measured", "What was measured", _measured(known, reported, grouped), places),
         ("figures", "Figures", drawn, [(_group_id(key), _group_name(key)) for key in grouped]),
         ("quality", "How far to trust it", *_quality(known)),
         ("tables", "Tables", Markup().join(map(figures.table, study["tables"])), []),
@@ -55,10 +54,6 @@ def _read(session: dict) -> dict:
     }
 
 
-def _places(reported: list[dict]) -> list[tuple[str, str]]:
-    return [(one["place"], one["configured"]["name"]) for one in reported]
-
-
 def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) -> Markup:
     """Return a table of all takes at a glance, then every take in words."""
     sessions = []
@@ -69,25 +64,14 @@ def _measured(known: list[dict], reported: list[dict], grouped: figures.Groups) 
             figures_id = _group_id(key) if key in grouped else None
             written.append(coach.take(take, facts, found, figures_id))
         sessions.append(session | {"written": written})
-    return page.render("report_measured.html", glance=_glance(known), sessions=sessions)
-
-
-def _glance(known: list[dict]) -> list[dict]:
-    """Return a row for each person of each take."""
-    return [
-        {
-            "session": session["configured"],
-            "take": take,
-            "level": max(warnings.worst(found), session["level"]),
-            "person": person,
-            "measured": [
-                coach.with_error(*measures[name]) if name in measures else "–" for name in GLANCE
-            ],
-        }
+    glance = [
+        (session, take, max(warnings.worst(found), session["level"]), person, measures)
         for session in known
         for take, facts, found in session["takes"]
         for person, measures in facts["persons"].items()
     ]
+    look = {"glance": glance, "with_error": coach.with_error}
+    return page.render("report_measured.html", sessions=sessions, **look)
 
 
 def _figures(grouped: figures.Groups) -> tuple[Markup, dict[str, page.Picture]]:
