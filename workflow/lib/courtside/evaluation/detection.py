@@ -16,7 +16,9 @@ from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 
-TOLERANCE = 0.2  # of the torso's length: PCK@0.2, the usual threshold (Yang & Ramanan 2013)
+TOLERANCE = (
+    0.2  # of the torso's length (`torso_px`): PCK@0.2, the usual threshold (Yang & Ramanan 2013)
+)
 TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
 EDGE_S = 1e-3  # a frame this little outside the truth's span, by rounding, counts as its end
 COLUMNS = [
@@ -52,22 +54,16 @@ def torso_px(camera: Camera, joints: Sequence[str] | NDArray, xyz: NDArray) -> N
 
 
 def evaluate(
-    camera: Camera,
-    view: Keypoints2D,
-    clock: Clock,
-    truth: FilmedTruth,
-    joints: Sequence[str],
-    tolerance: float = TOLERANCE,
+    camera: Camera, view: Keypoints2D, clock: Clock, truth: FilmedTruth, joints: Sequence[str]
 ) -> pd.DataFrame:
     """Compare one camera's keypoints with the true joints in its pictures.
 
     One row for each person, frame with a truth, and joint. found: the network reports a trunk
-    within a torso's length of the true one; placed: found, and the joint's error is below the
-    tolerance; exchanged: not placed, but the keypoint of the other side would be.
+    within a torso's length of the true one; placed: found, and the joint's error is below
+    `TOLERANCE`; exchanged: not placed, but the keypoint of the other side would be.
 
     Camera and clock are the true ones. The view's tracklets are not assigned to persons yet.
-    `joints` are compared; the trunk's must be among the truth's. `tolerance` is a share of the
-    torso's length, see `torso_px`.
+    `joints` are compared; the trunk's must be among the truth's.
 
     A tracklet belongs to the person whose trunk is nearest, by the assignment of the least sum;
     `placed` is PCK, the percentage of correct keypoints (Yang & Ramanan 2013).
@@ -82,7 +78,7 @@ def evaluate(
     true = true[:, :, _places(truth.joints, joints, "the truth")]
     rows = view.xy[:, frames][:, :, _places(view.joints, joints, f"{view.camera}, {view.model}")]
     detected = _assign(rows, true, torso, [list(joints).index(name) for name in TRUNK])
-    return _table(truth, view, joints, frames, time_s, detected, true, torso, tolerance)
+    return _table(truth, view, joints, frames, time_s, detected, true, torso)
 
 
 def _seen(
@@ -123,35 +119,32 @@ def _assign(rows: NDArray, true: NDArray, torso: NDArray, trunk: list[int]) -> N
     return found
 
 
-def _table(truth, view, joints, frames, time_s, detected, true, torso, tolerance):
+def _table(truth, view, joints, frames, time_s, detected, true, torso):
     other = [list(joints).index(_other_side(joint)) for joint in joints]
     error = np.linalg.norm(detected - true, axis=-1)
     share = error / torso[..., None]
     crossed = np.linalg.norm(detected[:, :, other] - true, axis=-1) / torso[..., None]
-    placed = share < tolerance
-    names, shape = list(map(str, truth.person_id)), error.shape
+    placed = share < TOLERANCE
+    names = list(map(str, truth.person_id))
+    strokes = np.array([_strokes(truth.events.get(name, {}), time_s) for name in names])
+    labels = np.reshape(names, (-1, 1, 1)), frames[:, None], time_s[:, None], np.array(joints)
     columns = {
-        "person": np.repeat(names, shape[1] * shape[2]),
-        "camera": view.camera,
-        "frame_idx": np.tile(np.repeat(frames, shape[2]), shape[0]),
-        "time_s": np.tile(np.repeat(time_s, shape[2]), shape[0]),
-        "joint": np.tile(joints, shape[0] * shape[1]),
-        "x_px": detected[..., 0].ravel(),
-        "y_px": detected[..., 1].ravel(),
-        "true_x_px": true[..., 0].ravel(),
-        "true_y_px": true[..., 1].ravel(),
-        "torso_px": np.repeat(torso.ravel(), shape[2]),
-        "error_px": error.ravel(),
-        "error_torso": share.ravel(),
-        "found": np.repeat(np.isfinite(detected).all(axis=-1).any(axis=-1).ravel(), shape[2]),
-        "in_picture": ((true > -0.5) & (true < view.size - 0.5)).all(axis=-1).ravel(),
-        "placed": placed.ravel(),
-        "exchanged": (~placed & (crossed < tolerance)).ravel(),
-        "in_stroke": np.repeat(
-            [_strokes(truth.events.get(n, {}), time_s) for n in names], shape[2]
-        ),
+        **dict(zip(("person", "frame_idx", "time_s", "joint"), labels, strict=True)),
+        "x_px": detected[..., 0],
+        "y_px": detected[..., 1],
+        "true_x_px": true[..., 0],
+        "true_y_px": true[..., 1],
+        "torso_px": torso[..., None],
+        "error_px": error,
+        "error_torso": share,
+        "found": np.isfinite(detected).all(axis=-1).any(axis=-1)[..., None],
+        "in_picture": ((true > -0.5) & (true < view.size - 0.5)).all(axis=-1),
+        "placed": placed,
+        "exchanged": ~placed & (crossed < TOLERANCE),
+        "in_stroke": strokes[..., None],
     }
-    return pd.DataFrame(columns)[COLUMNS]
+    flat = {name: np.broadcast_to(of, error.shape).ravel() for name, of in columns.items()}
+    return pd.DataFrame(flat).assign(camera=view.camera)[COLUMNS]
 
 
 def _strokes(events: dict[str, float], time_s: NDArray) -> NDArray:

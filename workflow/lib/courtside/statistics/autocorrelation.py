@@ -44,7 +44,7 @@ def interval(share: float, n_effective: float, level: float = LEVEL) -> tuple[fl
     return max(0.0, low), min(1.0, high)
 
 
-def share(hits: ArrayLike, least_frames: float = 1.0, level: float = LEVEL) -> dict[str, float]:
+def share(hits: ArrayLike, least_frames: float = 1.0) -> dict[str, float]:
     """Return n_frames, n_effective, share, low and high of a share of frames (T,) bool.
 
     At least `least_frames` in a row count as one trial: the duration of a pose, for hits so alike
@@ -55,7 +55,7 @@ def share(hits: ArrayLike, least_frames: float = 1.0, level: float = LEVEL) -> d
     if not count:
         return {"n_frames": 0, "n_effective": 0.0, "share": np.nan, "low": 0.0, "high": 1.0}
     effective = count / min(max(frames_per_trial(hits), least_frames), count)
-    low, high = interval(hits.mean(), effective, level)
+    low, high = interval(hits.mean(), effective)
     found = {"n_frames": count, "n_effective": effective, "share": hits.mean()}
     return {**found, "low": low, "high": high}
 

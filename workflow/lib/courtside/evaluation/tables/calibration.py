@@ -92,17 +92,15 @@ def structures_of(rows: pd.DataFrame) -> pd.DataFrame:
     return found.assign(registered_share=found["n_registered"] / found["n_images"])
 
 
-def against(
-    rows: pd.DataFrame, reference: pd.DataFrame, on: list[str], value: str = "volume_rms_cm"
-) -> NDArray:
-    """Return the paired differences of trials from their reference; NaN where one is missing.
+def against(rows: pd.DataFrame, reference: pd.DataFrame, on: list[str]) -> NDArray:
+    """Return the paired differences of the volume error from a reference; NaN where one is missing.
 
     Both tables are of `tidy`. Columns `on` make a pair; at most one row of `reference` has the same
     values.
     """
-    known = reference[[*on, value]].rename(columns={value: "reference"})
-    both = rows[[*on, value]].merge(known, on=on, how="left", validate="many_to_one")
-    return (both[value] - both["reference"]).to_numpy(dtype=float)
+    own, other = (table[[*on, "volume_rms_cm"]] for table in (rows, reference))
+    both = own.merge(other, on=on, how="left", suffixes=("", "_known"), validate="many_to_one")
+    return (both["volume_rms_cm"] - both["volume_rms_cm_known"]).to_numpy(dtype=float)
 
 
 def upper_limit(difference: NDArray, scene: NDArray, structure: NDArray, *, seed: int = 0) -> float:

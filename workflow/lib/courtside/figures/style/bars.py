@@ -30,15 +30,13 @@ def draw(
     axis.plot(x, rows["median"], marker=marker, linestyle=line, color=colour, label=label, **look)
 
 
-def draw_level(
-    axis: Axes, row: Mapping, *, colour: str, line: str = "--", label: str | None = None
-) -> None:
+def draw_level(axis: Axes, row: Mapping, *, colour: str, line: str = "--") -> None:
     """Draw a level as a band from the 5 to the 95 % quantile and a line at the median.
 
     `row` has `p05`, `median` and `p95`.
     """
     axis.axhspan(row["p05"], row["p95"], color=colour, alpha=0.13, linewidth=0, zorder=0)
-    axis.axhline(row["median"], color=colour, linestyle=line, linewidth=0.9, label=label, zorder=1)
+    axis.axhline(row["median"], color=colour, linestyle=line, linewidth=0.9, zorder=1)
 
 
 def ticks_at(axis: Axes, values: Sequence[float]) -> None:

@@ -13,6 +13,7 @@ from courtside.figures.style.stick_figure import Stick
 from courtside.geometry.camera import Camera
 
 ROOM_M = 0.2  # around what is shown
+AXIS_M = 0.5  # length of the axes drawn
 FLOOR = "#bbbbbb"
 
 
@@ -40,15 +41,13 @@ def line(axis: Axes, sight: Sight, xyz: NDArray, form: str = "-", **look: Any) -
     axis.plot(*sight.seen(xyz).T, form, **look)
 
 
-def figures(
-    axis: Axes, sight: Sight, xyz: NDArray, stick: Stick, width: float = 1.4, opacity: float = 1.0
-) -> None:
-    """Draw stick figures (P, K, 3) m, each line in the colour of its side; `width` in points."""
+def figures(axis: Axes, sight: Sight, xyz: NDArray, stick: Stick) -> None:
+    """Draw stick figures (P, K, 3) m, each line in the colour of its side."""
     for person in xyz:
         for start, stop in stick.bones:
             colour = style.side_colour(stick.joints[start], stick.joints[stop])
-            look: dict = {"color": colour, "linewidth": width, "alpha": opacity}
-            line(axis, sight, person[[start, stop]], solid_capstyle="round", zorder=3, **look)
+            look: dict = {"color": colour, "linewidth": 1.4, "solid_capstyle": "round"}
+            line(axis, sight, person[[start, stop]], zorder=3, **look)
 
 
 def floor(
@@ -113,14 +112,14 @@ def limits(xyz: NDArray, percentiles: tuple[float, float] = (0, 100)) -> tuple[N
     return np.floor(2 * (low - ROOM_M)) / 2, np.ceil(2 * (high + ROOM_M)) / 2
 
 
-def finish(axis: Axes, sight: Sight, corner: NDArray, length_m: float = 0.5) -> None:
+def finish(axis: Axes, sight: Sight, corner: NDArray) -> None:
     """Finish a drawing to scale without a frame, with the world's axes at a corner on the floor."""
     origin = np.array([*np.asarray(corner, dtype=float)[:2], 0.0])
-    for name, along in zip("xyz", np.eye(3), strict=True):
-        ends = np.stack([origin, origin + length_m * along])
+    for name, along in zip("xyz", AXIS_M * np.eye(3), strict=True):
+        ends = np.stack([origin, origin + along])
         line(axis, sight, ends, color="black", linewidth=1.0, zorder=4)
-        words = f"z ({length_m:g} m)" if name == "z" else name
-        place = sight.seen(origin + 1.25 * length_m * along)
+        words = f"z ({AXIS_M:g} m)" if name == "z" else name
+        place = sight.seen(origin + 1.25 * along)
         axis.text(*place, words, fontsize=6, ha="center", va="center")
     axis.set_aspect("equal")
     axis.set_axis_off()

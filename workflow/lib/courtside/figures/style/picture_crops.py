@@ -129,7 +129,7 @@ def compare(
     sticks(axis, reprojected, bones, REPROJECTED, width=width, outline=0)
 
 
-def rings(axis: Axes, xy: NDArray, colour: str | None = None, size: float = 9.0) -> None:
-    """Put rings (`size` in points, red by default) around points (n, 2)."""
+def rings(axis: Axes, xy: NDArray, size: float = 9.0) -> None:
+    """Put red rings (`size` in points) around points (n, 2)."""
     look = {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 1.3, "zorder": 4}
-    axis.plot(*np.reshape(xy, (-1, 2)).T, "o", markeredgecolor=colour or MARKED, **look)
+    axis.plot(*np.reshape(xy, (-1, 2)).T, "o", markeredgecolor=MARKED, **look)
