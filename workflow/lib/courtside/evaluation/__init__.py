@@ -1,15 +1,15 @@
 """Comparison with truth: joints, detection, kinematics, sources, calibration, racket.
 
-joints: errors, table, true, left_out: errors of 3D joints, against the truth and against other
-    views
-detection: evaluate, torso_px: errors of a network's 2D joints in the pictures
-kinematics: table: errors of paths and speeds
-sources: errors, table, split: errors of devices and cameras, and their parts
-round_trip: table, distance_after: the paper's table 1
-camera_sets: compare, gains: fewer cameras, and other fusions
-skin_depths: estimate: depth of joints behind the skin
-calibration: of_ties, of_known, score: one trial of calibration
-racket: calibrate, measure, score, rows: one trial of measuring a racket
+joints: `errors`, `table`, `true`, `left_out`: errors of 3D joints, against the truth and
+    against other views
+detection: `evaluate`, `torso_px`: errors of a network's 2D joints in the pictures
+kinematics: `table`: errors of paths and speeds
+sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts
+round_trip: `table`, `distance_after`: the paper's table 1
+camera_sets: `compare`, `gains`: fewer cameras, and other fusions
+skin_depths: `estimate`: depth of joints behind the skin
+calibration: `of_ties`, `of_known`, `score`: one trial of calibration
+racket: `calibrate`, `measure`, `score`, `rows`: one trial of measuring a racket
 tables: Tables of the study from these
 
 `config/README.md` describes the columns of their tables.

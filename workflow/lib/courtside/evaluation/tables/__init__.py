@@ -2,6 +2,6 @@
 
 calibration: read, tidy, table: errors of calibrations; pick, summary, spread, structures_of: parts
     of it
-players: read, together, table: errors of simulated players
-racket: read, table: lengths of a racket
+players: `read`, `together`, `table`: errors of simulated players
+racket: `read`, `table`: lengths of a racket
 """

@@ -1,5 +1,5 @@
 """Figures of calibrations: court points, error map, coverage, conditions, growth, plan.
 
-court_points, error_map, coverage, conditions, plan: table, draw
-growth: table, exponents, draw: run times and their power laws
+court_points, error_map, coverage, conditions, plan: `table`, `draw`
+growth: `table`, `exponents`, `draw`: run times and their power laws
 """

@@ -1,5 +1,5 @@
 """Figures of one take: overlay, skeletons, reprojection, visibility, kinematics, clocks.
 
-overlay: table, panel, draw: detected and reprojected joints on the pictures
-skeletons, reprojection, visibility, kinematics, camera_shake, clock_errors: table, draw
+overlay: `table`, `draw`: detected and reprojected joints on the pictures
+skeletons, reprojection, visibility, kinematics, camera_shake, clock_errors: `table`, `draw`
 """

@@ -1,4 +1,4 @@
 """The page on which court points are clicked.
 
-page: build, frame, by_point: the page, its pictures, earlier clicks
+page: `build`, `frame`, `by_point`: the page, its pictures, earlier clicks
 """
