@@ -33,8 +33,9 @@ def tidy(rows: pd.DataFrame) -> pd.DataFrame:
     rows = rows.copy()
     for column in TEXT:
         rows[column] = rows[column].astype(object).fillna("").astype(str) if column in rows else ""
-    for column in {"n_bridging", "offset", "in_sample"} - set(rows):
-        rows[column] = np.nan
+    for column in ("n_bridging", "offset", "in_sample"):
+        if column not in rows:
+            rows[column] = np.nan
     empty = (rows["method"] == "").to_numpy()
     done, failed = rows[~empty].copy(), rows[empty]
     done["in_sample"] = done["in_sample"].astype(str) == "True"

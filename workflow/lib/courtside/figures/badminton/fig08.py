@@ -16,7 +16,7 @@ from courtside.figures.style import bars, style
 
 Series = namedtuple("Series", "label method mapper n_clicks in_sample colour marker")
 # [Shishido2020, sec 3.2]: mean of the X_o and Y_o errors, cm, and degrees between neighbours, by N.
-PUBLISHED = {
+PUBLISHED: dict[str, dict[float, float]] = {
     "xy_cm": {300: 4.3, 20: 229.5},
     "xy_cm_below": {150: 10, 75: 10},
     "xy_cm_strong": {np.nan: 2.2},

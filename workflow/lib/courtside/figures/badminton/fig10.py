@@ -38,7 +38,11 @@ def trails(xyz: NDArray, stick: Stick, frames: slice) -> dict[str, NDArray]:
 
 
 def table(points: Keypoints3D, stick: Stick, frames: slice, shown: Sequence[int]) -> pd.DataFrame:
-    """Return all joints of the figure in all frames; the skeletons of `shown` are drawn."""
+    """Return the trails as numbers.
+
+    time_s, person, joint, x_m, y_m, z_m of all joints of the figure in all frames; drawn: whether
+    the skeleton of that time is drawn (`shown`); trail: whether the joint has one.
+    """
     xyz = stick.of(points.xyz)[:, frames]
     at = np.arange(frames.start, frames.stop)
     n_persons, n_frames, n_joints = xyz.shape[:3]
@@ -77,10 +81,7 @@ def draw(
         len(names) + 1,
         width_ratios=[*[width] * len(names), style.WIDTH_MM * SPACE_SHARE],
     )
-    parts = {}  # what shows the persons at all instants
-    for name, (image, _) in pictures[0].items():
-        detected = [by_camera[name][1] for by_camera in pictures]
-        parts[name] = picture_crops.box(detected, image.shape[1::-1], width / height)
+    parts = {name: _common_box(pictures, name, width / height) for name in names}
     xyz = stick.of(points.xyz)
     line = 1.5 * np.sqrt(width / 60)
     for row, (frame, by_camera) in enumerate(zip(shown, pictures, strict=True)):
@@ -95,6 +96,12 @@ def draw(
         _draw_space(axis, xyz, stick, (frames, frame), court)
     _explain(drawing)
     return drawing
+
+
+def _common_box(pictures: list[dict], name: str, aspect: float) -> picture_crops.Box:
+    """Return the part of a camera's pictures that shows the persons at all instants."""
+    detected = [by_camera[name][1] for by_camera in pictures]
+    return picture_crops.box(detected, pictures[0][name][0].shape[1::-1], aspect)
 
 
 def _draw_space(

@@ -88,8 +88,10 @@ def draw(rows: pd.DataFrame, *, kinds: dict[str, str] | None = None) -> Figure:
         axis.set_xlabel(PANELS[name])
     axes[0].set_ylabel("SPARC of the wrists' speed\n(nearer to 0 is smoother)")
     arrow = {"arrowstyle": "->", "color": "#aaaaaa", "linewidth": 0.8}
-    look = {"xycoords": "axes fraction", "fontsize": 7, "color": "#777777", "arrowprops": arrow}
-    axes[0].annotate("smooth and accurate", (0.01, 0.99), xytext=(0.09, 0.9), **look)
+    text = {"xycoords": "axes fraction", "fontsize": 7, "color": "#777777"}
+    axes[0].annotate(
+        "smooth and accurate", (0.01, 0.99), xytext=(0.09, 0.9), arrowprops=arrow, **text
+    )
     marks = source_styles.marks(looks)
     marks.append(bars.mark("#bbbbbb", marker="", line="-", label="one minimum-jerk reach"))
     if rows["sparc_true"].notna().any():

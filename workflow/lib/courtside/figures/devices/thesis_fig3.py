@@ -77,8 +77,7 @@ def draw_all(
     for axis, (source, look) in zip(axes.ravel(), looks.items(), strict=False):
         own, off = _of(paths, source), _of(distortion, source)
         _panel(axis, own, off, look, _of(truth, source))
-        arcs, circle = off["mean_distance"].mean(), off["mean_off_circle"].mean()
-        axis.set_title(f"{source}\noff own arcs {arcs:.3f}, off circle {circle:.3f}")
+        axis.set_title(f"{source}\n{_short(off)}")
         axis.set(**_limits([paths, truth]))
     for axis in axes.ravel()[len(looks) :]:
         axis.set_axis_off()
@@ -157,6 +156,11 @@ def _title(own: pd.DataFrame, off: pd.DataFrame) -> str:
         f"{time_s.nunique()} frames in {time_s.max() - time_s.min():.2f} s from T-pose to clap\n"
         f"mean distance to the own arc: {arcs}; to the circle: {off['mean_off_circle'].mean():.3f}"
     )
+
+
+def _short(off: pd.DataFrame) -> str:
+    arcs, circle = off["mean_distance"].mean(), off["mean_off_circle"].mean()
+    return f"off own arcs {arcs:.3f}, off circle {circle:.3f}"
 
 
 def _marks(colour: str, true: pd.DataFrame | None) -> list[Line2D]:
