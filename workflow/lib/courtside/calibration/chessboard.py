@@ -1,6 +1,5 @@
 """Calibrate a camera's lens from pictures of a chessboard, held in different places before it."""
 
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.video import images
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
@@ -47,9 +46,7 @@ class Lens:
     dropped: dict[Path, str]  # the other pictures, and why: unseen, misread, blurred or off
 
 
-def find(
-    pictures: str | Path | Iterable[str | os.PathLike], inner_corners: Sequence[int]
-) -> Boards:
+def find(pictures: str | Path | Iterable[StrPath], inner_corners: Sequence[int]) -> Boards:
     """Find a chessboard in pictures of one camera, in the order of their file names.
 
     OpenCV's sector-based detector (Duda & Frese 2018), which is sub-pixel by itself. It sometimes
@@ -80,7 +77,7 @@ def find(
     return Boards(tuple(paths), xy, size or (0, 0), (columns, rows), dropped)
 
 
-def _paths(pictures: str | Path | Iterable[str | os.PathLike]) -> list[Path]:
+def _paths(pictures: str | Path | Iterable[StrPath]) -> list[Path]:
     if isinstance(pictures, (str, Path)):
         folder = Path(pictures)
         if not folder.is_dir():

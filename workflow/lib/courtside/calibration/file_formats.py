@@ -1,6 +1,5 @@
 """Read cameras calibrated elsewhere: by Qualisys, Pose2Sim and aniposelib, Caliscope, OpenCV."""
 
-import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from courtside.geometry import camera as camera_files
 from courtside.geometry import camera_fields
 from courtside.geometry.camera import Camera
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 
 LARGEST_BYTES = 1 << 24  # ASSUME: far above any calibration: a larger file is another one
 FARTHEST_M = 300.0  # ASSUME: no hall is larger: a camera farther away is in mm or cm
@@ -34,7 +33,7 @@ OPENCV_KEYS = {  # the first is what `camera.build` calls it
 }
 
 
-def read(path: str | os.PathLike) -> list[Camera]:
+def read(path: StrPath) -> list[Camera]:
     """Read the cameras of a calibration file, choosing the reader by what the file holds.
 
     It is a Qualisys `.qca.txt`; a TOML file of Pose2Sim, aniposelib or Caliscope; a YAML or XML

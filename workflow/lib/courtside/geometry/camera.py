@@ -1,6 +1,5 @@
 """Pinhole cameras with lens distortion: projection, its inverse, and camera files."""
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera_fields, rotations
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
 OTHER_TABLES = ("metadata", "capture_volume", "charuco", "checkerboard")  # as Pose2Sim has it
@@ -167,9 +166,7 @@ def crop(camera: Camera, crop_px: Sequence[int]) -> Camera:
     return replace(camera, size=(width, height), K=camera.K - shift)
 
 
-def check_size(
-    camera: Camera, video_size: tuple[int, int], video_path: str | os.PathLike[str]
-) -> None:
+def check_size(camera: Camera, video_size: tuple[int, int], video_path: StrPath) -> None:
     """Raise `InputError` unless a video has the (width, height) its camera was calibrated at."""
     if tuple(video_size) != camera.size:
         raise InputError(
@@ -180,7 +177,7 @@ def check_size(
         )
 
 
-def read_toml(path: str | os.PathLike[str]) -> list[Camera]:
+def read_toml(path: StrPath) -> list[Camera]:
     """Read cameras, in metres, from a TOML file as this study, Pose2Sim and aniposelib write it.
 
     The file holds one table per camera with `name size matrix distortions rotation translation`, in
@@ -221,9 +218,7 @@ def build(where: str, name: str, table: Mapping[str, Any], metres: float) -> Cam
         raise InputError(f"{where}: {error}; {camera_fields.EXPORT_AGAIN}") from error
 
 
-def write_toml(
-    path: str | os.PathLike[str], cameras: Sequence[Camera], *, source: str, unit: str = "m"
-) -> None:
+def write_toml(path: StrPath, cameras: Sequence[Camera], *, source: str, unit: str = "m") -> None:
     """Write cameras so that `read_toml`, Pose2Sim and aniposelib read them.
 
     `source`, how the cameras were found, goes into `[metadata]`. `unit` is `camera_fields.UNSCALED`

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tomllib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import rotations
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 if TYPE_CHECKING:
     from courtside.geometry.camera import Camera
@@ -24,7 +23,7 @@ UNSCALED = "unscaled"  # unit of cameras of a session without a court
 EXPORT_AGAIN = "export the calibration again or mend the file"
 
 
-def numbers(where: str | os.PathLike, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
+def numbers(where: StrPath, key: str, value: object, *shapes: tuple[int, ...]) -> NDArray:
     """Return a field's `value`, None where missing, as a finite float array of one of `shapes`.
 
     Raises `InputError` if it is anything else; the message begins with `where` (file and camera)
@@ -76,7 +75,7 @@ def pose(where: str, rotation: object, translation: object, metres: float) -> ND
     return np.column_stack([rotation, translation.ravel() * metres])
 
 
-def unit_in_metres(where: str | os.PathLike[str], unit: object) -> float:
+def unit_in_metres(where: StrPath, unit: object) -> float:
     """Return the length in metres of a unit that a file names: m, cm or mm."""
     if unit == UNSCALED:
         raise InputError(
@@ -90,7 +89,7 @@ def unit_in_metres(where: str | os.PathLike[str], unit: object) -> float:
     return METRES[unit]
 
 
-def check_distinct(path: str | os.PathLike[str], cameras: Cameras) -> Cameras:
+def check_distinct(path: StrPath, cameras: Cameras) -> Cameras:
     """Return `cameras`; raise `InputError` if there are none or two have the same name."""
     names = [camera.name for camera in cameras]
     if not names or len(set(names)) < len(names):

@@ -6,7 +6,6 @@ its own.
 """
 
 import math
-from os import PathLike
 
 import cv2
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from courtside.pose import detector
 from courtside.pose.detector import Pose, Region
+from courtside.study.errors import StrPath
 
 DETECTOR_SIDE = 224
 LANDMARK_SIDE = 256
@@ -60,7 +60,7 @@ class BlazePoseDetector:
     Detections below the confidence `min_score`, 0 to 1, are dropped.
     """
 
-    def __init__(self, onnx_path: str | PathLike, min_score: float = 0.5) -> None:
+    def __init__(self, onnx_path: StrPath, min_score: float = 0.5) -> None:
         self.network = detector.open_network(onnx_path)
         self.min_score = min_score
         self.anchors = anchors()
@@ -116,7 +116,7 @@ class BlazePoseLandmarks:
 
     n_joints = N_JOINTS
 
-    def __init__(self, onnx_path: str | PathLike) -> None:
+    def __init__(self, onnx_path: StrPath) -> None:
         self.network = detector.open_network(onnx_path)
 
     def estimate(self, image: NDArray, region: Region) -> Pose:

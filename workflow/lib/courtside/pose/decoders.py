@@ -1,16 +1,15 @@
 """The code that runs a network, by its decoder's name in `config/models.yaml`."""
 
 from collections.abc import Sequence
-from os import PathLike
 
 from courtside.pose.blazepose import BlazePoseLandmarks
 from courtside.pose.detector import LandmarkNetwork
 from courtside.pose.heatmaps import HeatmapLandmarks
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 
 def landmark_network(
-    onnx_path: str | PathLike,
+    onnx_path: StrPath,
     joints: Sequence[str],
     *,
     decoder: str,

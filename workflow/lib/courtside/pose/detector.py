@@ -6,13 +6,14 @@ places the joints in one region, and returns the region to look at in the next f
 
 import math
 from dataclasses import dataclass
-from os import PathLike
 from typing import Protocol
 
 import cv2
 import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
+
+from courtside.study.errors import StrPath
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class LandmarkNetwork(Protocol):
         ...
 
 
-def open_network(path: str | PathLike, threads: int = 1) -> onnxruntime.InferenceSession:
+def open_network(path: StrPath, threads: int = 1) -> onnxruntime.InferenceSession:
     """Open an ONNX file for inference on the processor.
 
     `threads` work within one operator. One is fastest when several files are processed in

@@ -5,13 +5,13 @@ used.
 """
 
 from collections.abc import Sequence
-from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pose import detector
 from courtside.pose.detector import Pose, Region
+from courtside.study.errors import StrPath
 
 # ASSUME: a body grows by less than this from one frame to the next, head and hands included.
 MARGIN = 1.3  # the next region is the joints' extent times this
@@ -28,7 +28,7 @@ class HeatmapLandmarks:
 
     def __init__(
         self,
-        onnx_path: str | PathLike,
+        onnx_path: StrPath,
         input_range: tuple[float, float],
         channels: str,
         presence_joints: Sequence[int],

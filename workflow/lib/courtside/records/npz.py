@@ -5,13 +5,12 @@ object.
 """
 
 from collections.abc import Mapping
-from os import PathLike
 from typing import TypeVar, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.study.errors import InputError, reading, require_type
+from courtside.study.errors import InputError, StrPath, reading, require_type
 from courtside.study.execution.files import atomic
 
 # For each key its kind (of `KINDS`) and the names of its dimensions: one name means one length
@@ -21,7 +20,7 @@ KINDS = {"float": np.floating, "int": np.integer, "bool": np.bool_, "str": np.st
 Record = TypeVar("Record")
 
 
-def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, ArrayLike]) -> None:
+def write(path: StrPath, form: str, spec: Spec, arrays: Mapping[str, ArrayLike]) -> None:
     """Write arrays under their names, after checking them; the file appears only when whole.
 
     `form` says what the file is, with its version: "courtside keypoints2d 1". A `ValueError` if a
@@ -37,7 +36,7 @@ def write(path: str | PathLike, form: str, spec: Spec, arrays: Mapping[str, Arra
         np.savez_compressed(stream, format=np.array(form), **checked)  # type: ignore[arg-type]
 
 
-def read(path: str | PathLike, form: str, spec: Spec) -> dict[str, NDArray]:
+def read(path: StrPath, form: str, spec: Spec) -> dict[str, NDArray]:
     """Read arrays written by `write`: one for each key of `spec`.
 
     An `InputError` if the file is not an npz of this form, or its arrays are not as stated.
@@ -68,12 +67,12 @@ def spec_of(record: type) -> Spec:
     return found
 
 
-def write_record(path: str | PathLike, form: str, record: object) -> None:
+def write_record(path: StrPath, form: str, record: object) -> None:
     """Write a dataclass that `spec_of` understands, as `write`."""
     write(path, form, spec_of(type(record)), vars(record))
 
 
-def read_record(path: str | PathLike, form: str, kind: type[Record]) -> Record:
+def read_record(path: StrPath, form: str, kind: type[Record]) -> Record:
     """Read a dataclass that `write_record` wrote, as `read`."""
     arrays = read(path, form, spec_of(kind))
     return kind(**{key: value if value.ndim else value.item() for key, value in arrays.items()})

@@ -1,13 +1,12 @@
 """Write and read the CSV tables of the study: whole files, labels first, floats to 6 digits."""
 
 from collections.abc import Callable, Iterable, Mapping
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
 REMAKE = "delete it and run the study again"
@@ -23,7 +22,7 @@ def column_fault(table: pd.DataFrame, columns: Iterable[str], numbers: Iterable[
 
 
 def write(
-    path: str | PathLike,
+    path: StrPath,
     rows: pd.DataFrame,
     labels: Mapping[str, Any] | None = None,
     float_format: str | None = "%.6g",
@@ -48,7 +47,7 @@ def write(
 
 
 def read(
-    path: str | PathLike, what: str, fault_of: Callable[[pd.DataFrame], str], **options: Any
+    path: StrPath, what: str, fault_of: Callable[[pd.DataFrame], str], **options: Any
 ) -> pd.DataFrame:
     """Read a CSV table that another rule wrote, with options of `pandas.read_csv`.
 

@@ -1,6 +1,7 @@
 """The study itself: its configuration, its execution, where results come from.
 
-errors: the error that a user can mend
+errors: `InputError`, an error that a user can mend; `reading`, which raises it on damaged files;
+    `StrPath`, the type of paths
 methods: `Calibration`, `Variant` and `Fusion`, parsed from their names
 paths: the name of every file
 configuration: YAML files checked as a whole, `Study`, `Session` and `Take`

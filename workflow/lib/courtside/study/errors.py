@@ -3,15 +3,16 @@
 import contextlib
 import csv
 import lzma
+import os
 import struct
 import sysconfig
 import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterator
-from os import PathLike
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
+StrPath: TypeAlias = str | os.PathLike  # of a file or folder
 LONGEST = 1000  # characters of a line
 SHORT = 200  # of what a library says
 # What readers of text, JSON, TOML, CSV and archives, numpy and pandas raise on damaged files
@@ -67,7 +68,7 @@ def said(error: BaseException) -> str:
 
 @contextlib.contextmanager
 def reading(
-    path: str | PathLike,
+    path: StrPath,
     what: str,
     advice: str = "make it again",
     *,

@@ -1,23 +1,18 @@
 """Pictures in files: OpenCV reports faults in three ways, here they all become an InputError."""
 
-import os
 from pathlib import Path
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import DAMAGED, InputError, reading
+from courtside.study.errors import DAMAGED, InputError, StrPath, reading
 
 AGAIN = "copy it again from the camera"
 
 
 def read(
-    path: str | os.PathLike,
-    flags: int = cv2.IMREAD_COLOR,
-    *,
-    what: str = "a picture",
-    advice: str = AGAIN,
+    path: StrPath, flags: int = cv2.IMREAD_COLOR, *, what: str = "a picture", advice: str = AGAIN
 ) -> NDArray:
     """Read a picture (H, W) or (H, W, 3), upright by its EXIF orientation unless `flags` differ.
 
@@ -32,7 +27,7 @@ def read(
 
 
 def decode(
-    path: str | os.PathLike,
+    path: StrPath,
     content: bytes,
     flags: int = cv2.IMREAD_COLOR,
     *,

@@ -5,7 +5,6 @@ stream (.ts, .mpg) or a live recording without a declared duration, cut between 
 """
 
 import contextlib
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -18,7 +17,7 @@ from av.error import FFmpegError
 from av.stream import Disposition
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 # ffmpeg's Matroska reader, FFV1 decoder and packet reader ("") report damage only in the log.
 ONLY_LOG = {"matroska,webm", "ffv1", ""}
@@ -60,7 +59,7 @@ class Listing:
         return (ticks - self.pts[0]) * self.tick_s.numerator / self.tick_s.denominator
 
 
-def list_packets(path: str | os.PathLike, *, stop_s: float | None = None) -> Listing:
+def list_packets(path: StrPath, *, stop_s: float | None = None) -> Listing:
     """List the whole frames of a video file by its packets, without decoding.
 
     A file cut short after `stop_s`, the end of the wanted part, is accepted. Raise InputError if

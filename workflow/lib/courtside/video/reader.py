@@ -5,7 +5,6 @@ only PyAV gives the time stamp of every packet and mirrored display matrices, an
 cut files.
 """
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 from courtside.video.decoder import decode_checked, display_matrix, pictures
 from courtside.video.packets import Listing, list_packets
@@ -37,7 +36,7 @@ class VideoInfo:
     variable_rate: bool
 
 
-def probe(path: str | os.PathLike, *, stop_s: float | None = None) -> VideoInfo:
+def probe(path: StrPath, *, stop_s: float | None = None) -> VideoInfo:
     """Describe a video file, after checking that no packet of it is missing.
 
     A file cut short after `stop_s`, where a take is trimmed to end, is accepted. Raise InputError
@@ -59,7 +58,7 @@ def probe(path: str | os.PathLike, *, stop_s: float | None = None) -> VideoInfo:
     )
 
 
-def frame_times(path: str | os.PathLike, *, stop_s: float | None = None) -> NDArray:
+def frame_times(path: StrPath, *, stop_s: float | None = None) -> NDArray:
     """Return the time (T,) of every frame before `stop_s`, without decoding one.
 
     Times are seconds since the first frame, strictly increasing, from the container's time stamps.
@@ -71,7 +70,7 @@ def frame_times(path: str | os.PathLike, *, stop_s: float | None = None) -> NDAr
 
 
 def frames(
-    path: str | os.PathLike,
+    path: StrPath,
     *,
     start_s: float | None = None,
     stop_s: float | None = None,
@@ -91,7 +90,7 @@ def frames(
 
 
 def extract_frames(
-    path: str | os.PathLike,
+    path: StrPath,
     every_s: float,
     *,
     start_s: float | None = None,
@@ -116,7 +115,7 @@ def extract_frames(
         yield index, float(times_s[index]), image
 
 
-def read_frame(path: str | os.PathLike, time_s: float) -> tuple[float, NDArray]:
+def read_frame(path: StrPath, time_s: float) -> tuple[float, NDArray]:
     """Decode the frame nearest to a time in seconds since the first frame.
 
     Return the frame's own time and its picture (H, W, 3) uint8, BGR, upright. Raise InputError if
@@ -133,7 +132,7 @@ def read_frame(path: str | os.PathLike, time_s: float) -> tuple[float, NDArray]:
     return float(listing.times_s[index]), image
 
 
-def write_png(path: str | os.PathLike, image: NDArray) -> None:
+def write_png(path: StrPath, image: NDArray) -> None:
     """Write a picture (H, W, 3) BGR or (H, W) grey, uint8; the file appears only when whole.
 
     Raise InputError if the disk refuses it, ValueError if `image` is not such a picture.

@@ -1,12 +1,11 @@
 """Static pictures of fixed cameras: temporal median, and checks of movement and light."""
 
-import os
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.video.camera_movement import MIN_MATCHES, Movement, movement, unknown
 
 BAND_PX = 64  # rows of the median at a time: bounds the memory
@@ -80,7 +79,7 @@ def check_still(
 
 def static_picture(
     camera: str,
-    source: str | os.PathLike,
+    source: StrPath,
     images: Sequence[NDArray],
     *,
     max_shift_px: float,
@@ -108,7 +107,7 @@ def static_picture(
     return image, found
 
 
-def check_light(path: str | os.PathLike, image: NDArray) -> None:
+def check_light(path: StrPath, image: NDArray) -> None:
     """Raise InputError if a picture (H, W, 3) uint8, BGR, from the file `path` is mostly black."""
     share = np.mean(image.max(axis=2) < BLACK_LEVEL)
     if share > BLACK_SHARE:

@@ -1,6 +1,5 @@
 """Frames of walks and static recordings: from a video, or from photos in name order."""
 
-import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -10,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.video import images, reader
 from courtside.video.decoder import pictures
 from courtside.video.packets import list_packets
@@ -21,7 +20,7 @@ UNREADABLE = (".heic", ".heif", ".avif", ".dng", ".raw", ".cr2", ".cr3", ".nef",
 PHOTO = "a photo"  # for messages
 SMALL_PX = 320  # width of the pictures that `courtside.sfm.usable.judge` compares
 
-Source = str | os.PathLike | Sequence[str | os.PathLike]
+Source = StrPath | Sequence[StrPath]
 
 
 def frames(
@@ -66,7 +65,7 @@ def _evenly(n_available: int, n_wanted: int) -> list[int]:
 
 
 def extract(
-    found: Iterable[tuple[int, float, NDArray]], folder: str | os.PathLike
+    found: Iterable[tuple[int, float, NDArray]], folder: StrPath
 ) -> tuple[pd.DataFrame, list[NDArray]]:
     """Write frames, from `frames`, as PNG files named `%06d.png` by the frame's index.
 
@@ -107,7 +106,7 @@ def photo_paths(source: Source) -> list[Path]:
     return photos
 
 
-def read_photo(path: str | os.PathLike) -> NDArray:
+def read_photo(path: StrPath) -> NDArray:
     """Read a photo (H, W, 3) uint8, BGR, upright by its EXIF orientation.
 
     Raise InputError if the file is missing, no picture, cut short, or mostly black.
@@ -136,7 +135,7 @@ def _photos(paths: Sequence[Path]) -> Iterator[NDArray]:
 
 
 def _paths(source: Source) -> list[Path]:
-    return [Path(p) for p in ([source] if isinstance(source, str | os.PathLike) else source)]
+    return [Path(p) for p in ([source] if isinstance(source, StrPath) else source)]
 
 
 def _name_order(path: Path) -> tuple[list[int | str], str]:

@@ -3,7 +3,6 @@
 PyAV encodes rather than OpenCV, whose wheels have no H.264 encoder.
 """
 
-import os
 from collections.abc import Iterable
 from fractions import Fraction
 from itertools import chain
@@ -13,7 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
 KEYFRAME_EVERY = 12  # frames: seeking decodes no more than these
@@ -21,12 +20,7 @@ LARGEST_DENOMINATOR = 10_000  # keeps the container's clock far below its 32 bit
 
 
 def write_video(
-    path: str | os.PathLike,
-    frames: Iterable[NDArray],
-    rate_hz: float,
-    *,
-    crf: float,
-    effort: str = "medium",
+    path: StrPath, frames: Iterable[NDArray], rate_hz: float, *, crf: float, effort: str = "medium"
 ) -> int:
     """Write pictures as H.264 in yuv420p, at a constant rate; return how many.
 

@@ -1,6 +1,5 @@
 """A court of known size: named points, the line edges that meet there, painted lines, net."""
 
-import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from courtside.geometry import camera_fields
 from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 KEYS = {
@@ -55,7 +54,7 @@ class Court:
         return np.array([self.points.index(name) for name in names], dtype=int)
 
 
-def read(path: str | os.PathLike) -> Court:
+def read(path: StrPath) -> Court:
     """Read a court file: YAML; `config/courts/badminton.yaml` shows every key.
 
     Raises `InputError` if a key is missing or unknown, a value is not a number, a set names an
@@ -127,7 +126,7 @@ def _sets(path, table, points) -> dict[str, tuple[str, ...]]:
     return {name: tuple(members) for name, members in table.items()}
 
 
-def _net(path: str | os.PathLike, table: dict | None) -> dict | None:
+def _net(path: StrPath, table: dict | None) -> dict | None:
     if table is None:
         return None
     if not isinstance(table, dict) or set(table) != set(NET_KEYS):
@@ -142,7 +141,7 @@ def _net(path: str | os.PathLike, table: dict | None) -> dict | None:
     return {key: value.tolist() for key, value in numbers.items()}
 
 
-def _check(path: str | os.PathLike, court: Court) -> None:
+def _check(path: StrPath, court: Court) -> None:
     if not 0 < court.size_m[0] <= court.size_m[1]:
         raise InputError(
             f"{path}: expected size_m as [short side, long side], found {court.size_m.tolist()}; "

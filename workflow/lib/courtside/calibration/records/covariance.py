@@ -1,6 +1,5 @@
 """The joint covariance of a session's fixed cameras: npz with its parameters named."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.bundle.problem import FLEX, IMAGE, LENS, POSE
 from courtside.records import npz
+from courtside.study.errors import StrPath
 
 FORM = "courtside camera covariance 1"
 PARAMETERS = POSE + LENS
@@ -66,7 +66,7 @@ def of_network(cameras: Sequence[str], covariance: NDArray) -> CameraCovariance:
     return CameraCovariance(list(cameras), covariance[np.ix_(at, at)])
 
 
-def write(path: str | os.PathLike, found: CameraCovariance) -> None:
+def write(path: StrPath, found: CameraCovariance) -> None:
     """Write a `CameraCovariance`; a camera whose covariance is unknown has NaN."""
     arrays = {
         "camera": np.array(found.cameras, dtype=str),
@@ -76,7 +76,7 @@ def write(path: str | os.PathLike, found: CameraCovariance) -> None:
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path: str | os.PathLike) -> CameraCovariance:
+def read(path: StrPath) -> CameraCovariance:
     """Read a `CameraCovariance`; an `InputError` says what is wrong with the file."""
     found = npz.read(path, FORM, SPEC)
     return CameraCovariance([str(name) for name in found["camera"]], found["covariance"])

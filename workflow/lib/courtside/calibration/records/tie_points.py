@@ -1,6 +1,5 @@
 """npz: tie-point constraints on the fixed cameras of a session, or why there are none."""
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -13,7 +12,7 @@ from courtside.calibration.court import joint_adjustment
 from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera
 from courtside.records import npz
-from courtside.study.errors import reading
+from courtside.study.errors import StrPath, reading
 
 FORM = "courtside ties 3"
 SPEC = {
@@ -58,7 +57,7 @@ class Record:
     support: Support  # as mapped or as adjusted with the clicks, whichever is better
 
 
-def write(path: str | os.PathLike, record: Record) -> None:
+def write(path: StrPath, record: Record) -> None:
     """Write a `Record` to an npz file."""
     sfm = selection.of_cameras(record.sfm_cameras)
     reference = record.ties.knowledge.reference if record.ties else None
@@ -86,7 +85,7 @@ def write(path: str | os.PathLike, record: Record) -> None:
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path: str | os.PathLike) -> Record:
+def read(path: StrPath) -> Record:
     """Read a `Record`; an `InputError` says what is wrong with the file."""
     found = npz.read(path, FORM, SPEC)
     with reading(path, "cameras and ties that fit one another"):

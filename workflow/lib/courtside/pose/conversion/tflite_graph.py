@@ -6,7 +6,6 @@ is checked here, and any error they raise on a damaged file becomes one `InputEr
 
 import dataclasses
 from collections.abc import Iterable, Sequence
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ from courtside.pose.conversion.tflite_tensors import (
     names_of,
     read_tensor,
 )
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 IDENTIFIER = b"TFL3"  # bytes 4 to 7 of every TFLite file
 SCHEMA_VERSION = 3
@@ -78,7 +77,7 @@ class Graph:
     outputs: tuple[int, ...]
 
 
-def read(path: str | PathLike) -> Graph:
+def read(path: StrPath) -> Graph:
     """Read a TFLite file.
 
     Its first and only subgraph is read. Sparse constants become dense; float16 ones stay float16.

@@ -1,7 +1,6 @@
 """Convert a TFLite network of floats to ONNX, and check the result against what the file states."""
 
 from collections.abc import Iterable
-from os import PathLike
 
 import numpy as np
 import onnx
@@ -10,7 +9,7 @@ from onnx import helper
 from courtside.pose.conversion import tflite_graph, tflite_operators
 from courtside.pose.conversion.onnx_writer import Writer
 from courtside.pose.conversion.tflite_graph import Graph
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic, sha256
 
 OPSET = 17
@@ -19,7 +18,7 @@ ONNX_FAULTS = (onnx.checker.ValidationError, onnx.shape_inference.InferenceError
 
 
 def convert(
-    tflite_path: str | PathLike, onnx_path: str | PathLike, *, outputs: Iterable[str] | None = None
+    tflite_path: StrPath, onnx_path: StrPath, *, outputs: Iterable[str] | None = None
 ) -> None:
     """Convert a TFLite network of floats to ONNX (opset 17).
 

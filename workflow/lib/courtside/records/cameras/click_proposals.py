@@ -1,7 +1,6 @@
 """Proposed court points, one CSV row each; a person confirms them before anything uses them."""
 
 from collections.abc import Mapping, Sequence
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ import pandas as pd
 
 from courtside.records import tables
 from courtside.records.cameras.clicks import STATIC
+from courtside.study.errors import StrPath
 
 COLUMNS = (
     "camera", "point", "frame_idx", "x_px", "y_px", "sigma_px", "confidence", "reason",
@@ -17,7 +17,7 @@ NUMBERS = ("x_px", "y_px", "sigma_px")
 WHAT = "a table of proposed court points"
 
 
-def write(path: str | PathLike, proposals: Mapping[str, Any], points: Sequence[str]) -> None:
+def write(path: StrPath, proposals: Mapping[str, Any], points: Sequence[str]) -> None:
     """Write proposals of court points, and why there are none for the other points.
 
     `proposals` has a `courtside.calibration.click_proposals.proposals.Proposals` for each camera,
@@ -32,7 +32,7 @@ def write(path: str | PathLike, proposals: Mapping[str, Any], points: Sequence[s
 
 
 def read(
-    path: str | PathLike, cameras: Sequence[str], points: Sequence[str]
+    path: StrPath, cameras: Sequence[str], points: Sequence[str]
 ) -> dict[str, dict[str, dict[str, float]]]:
     """Read proposals as the page for clicking shows them: `x`, `y`, `sigma_px` by camera and point.
 

@@ -3,20 +3,19 @@
 import csv
 import math
 from collections.abc import Collection, Mapping, Sequence
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
 COLUMNS = ("camera", "point", "frame_idx", "x_px", "y_px")
 STATIC = 0  # frame_idx of the static picture
 
 
-def read(path: str | PathLike, cameras: Sequence[str], points: Sequence[str]) -> dict[str, NDArray]:
+def read(path: StrPath, cameras: Sequence[str], points: Sequence[str]) -> dict[str, NDArray]:
     """Read clicked court points, (P, 2) px for every camera, NaN where not clicked.
 
     The CSV has the columns camera, point, frame_idx (0, the static picture), x_px, y_px (px of the
@@ -42,7 +41,7 @@ def read(path: str | PathLike, cameras: Sequence[str], points: Sequence[str]) ->
     return clicks
 
 
-def write(path: str | PathLike, clicks: Mapping[str, NDArray], points: Sequence[str]) -> None:
+def write(path: StrPath, clicks: Mapping[str, NDArray], points: Sequence[str]) -> None:
     """Write clicked points, (P, 2) px by camera, as `read` takes them; NaN rows are left out."""
     for camera, xy in clicks.items():
         if np.shape(xy) != (len(points), 2):
@@ -58,7 +57,7 @@ def write(path: str | PathLike, clicks: Mapping[str, NDArray], points: Sequence[
                     writer.writerow([camera, point, STATIC, x, y])
 
 
-def _rows(path: str | PathLike) -> list[tuple[int, dict[str, str]]]:
+def _rows(path: StrPath) -> list[tuple[int, dict[str, str]]]:
     """Return (line number, row) of every row, cells stripped."""
     try:
         with Path(path).open(newline="", encoding="utf-8-sig") as stream:

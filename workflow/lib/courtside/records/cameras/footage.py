@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import repeat
-from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import keypoints, people
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
 from courtside.records.keypoints.people import People
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +29,7 @@ class Footage:
     camera: camera_models.Camera
     tracklets: Keypoints2D
     clock: Clock
-    video: str | PathLike | None = None
+    video: StrPath | None = None
     people: People | None = None
     turns: NDArray | None = None
 
@@ -76,11 +75,11 @@ def between(points: Keypoints3D, time_s: float) -> NDArray:
 
 
 def read(
-    cameras_toml: str | PathLike,
-    pose2d_npz: Sequence[str | PathLike],
-    people_npz: str | PathLike | None,
-    sync_json: str | PathLike,
-    videos: Sequence[str | PathLike] = (),
+    cameras_toml: StrPath,
+    pose2d_npz: Sequence[StrPath],
+    people_npz: StrPath | None,
+    sync_json: StrPath,
+    videos: Sequence[StrPath] = (),
     wanted: Sequence[str] | None = None,
     *,
     sure_clocks: bool = False,

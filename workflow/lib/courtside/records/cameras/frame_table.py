@@ -1,18 +1,17 @@
 """The table of extracted frames: source, sharpness, and whether each may be used."""
 
-from os import PathLike
-
 import numpy as np
 import pandas as pd
 
 from courtside.records import tables
+from courtside.study.errors import StrPath
 
 COLUMNS = ("frame_idx", "time_s", "name", "sharpness", "kept", "reason")
 NUMBERS = ("frame_idx", "time_s", "sharpness", "kept")
 REASONS = ("", "dark", "blurred", "duplicate")  # why a frame is not kept; empty if it is
 
 
-def write(path: str | PathLike, table: pd.DataFrame) -> None:
+def write(path: StrPath, table: pd.DataFrame) -> None:
     """Write a frame table as CSV; a `ValueError` if it does not meet this description.
 
     One row per extracted frame: `frame_idx` (of the video; of photos, the place in name order),
@@ -30,7 +29,7 @@ def write(path: str | PathLike, table: pd.DataFrame) -> None:
     tables.write(path, table, float_format=None)
 
 
-def read(path: str | PathLike) -> pd.DataFrame:
+def read(path: StrPath) -> pd.DataFrame:
     """Read a table as `write` describes it; raise `InputError` if the file is no such table."""
     table = tables.read(
         path, "a frame table", _fault, keep_default_na=False, na_values={"time_s": [""]}

@@ -1,7 +1,6 @@
 """When each frame of a device's extracted video was taken, on the device's own clock."""
 
 from dataclasses import dataclass, replace
-from os import PathLike
 
 import numpy as np
 import pandas as pd
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 
 from courtside.records import tables
 from courtside.records.keypoints.keypoints import Keypoints2D
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 COLUMNS = ("frame_idx", "number", "time_s")
 LARGEST = 2**53  # up to here a float holds every whole number exactly
@@ -30,7 +29,7 @@ class FrameTimes:
         return float(1 / np.median(np.diff(self.time_s)))
 
 
-def write(path: str | PathLike, frames: FrameTimes) -> None:
+def write(path: StrPath, frames: FrameTimes) -> None:
     """Write frame times as CSV: frame_idx, number, time_s (to the microsecond)."""
     rows = pd.DataFrame(
         {
@@ -42,13 +41,13 @@ def write(path: str | PathLike, frames: FrameTimes) -> None:
     tables.write(path, rows, float_format="%.6f")
 
 
-def read(path: str | PathLike) -> FrameTimes:
+def read(path: StrPath) -> FrameTimes:
     """Read frame times; raise `InputError` if the file is no such table."""
     rows = tables.read(path, "a table of frame times", _fault)
     return FrameTimes(rows["time_s"].to_numpy(float), rows["number"].to_numpy(np.int64))
 
 
-def on_device_clock(view: Keypoints2D, frames_csv: str | PathLike) -> Keypoints2D:
+def on_device_clock(view: Keypoints2D, frames_csv: StrPath) -> Keypoints2D:
     """Return the keypoints of a whole extracted video with times on the device's clock.
 
     Raises `InputError` if the numbers of frames differ.

@@ -1,13 +1,13 @@
 """The table of a fixed camera's shake: where its static picture lies in every frame of a take."""
 
 from collections.abc import Iterable
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from courtside.records import tables
+from courtside.study.errors import StrPath
 
 # ASSUME: rounding to these places stays far below the measurement noise of each column.
 DECIMALS = {
@@ -23,7 +23,7 @@ DECIMALS = {
 MEASURED = ("shift_x_px", "shift_y_px", "rotation_deg", "zoom_percent", "sigma_px")
 
 
-def write(path: str | PathLike, table: pd.DataFrame) -> None:
+def write(path: StrPath, table: pd.DataFrame) -> None:
     """Write a shake table as CSV; a `ValueError` if it does not meet this description.
 
     One row per frame: `frame_idx` (of the file), `time_s` (on the camera's own clock), `shift_x_px`
@@ -40,13 +40,13 @@ def write(path: str | PathLike, table: pd.DataFrame) -> None:
     tables.write(path, table, float_format=None)
 
 
-def read(path: str | PathLike) -> pd.DataFrame:
+def read(path: StrPath) -> pd.DataFrame:
     """Read a table as `write` describes it; raise `InputError` if the file is no such table."""
     table = tables.read(path, "a table of shake", _fault)
     return table.loc[:, list(DECIMALS)].astype(dict.fromkeys(("time_s", *MEASURED), float))
 
 
-def read_all(paths: Iterable[str | PathLike]) -> dict[str, pd.DataFrame]:
+def read_all(paths: Iterable[StrPath]) -> dict[str, pd.DataFrame]:
     """Read the tables of cameras, by their names: those of the files."""
     return {Path(path).stem: read(path) for path in paths}
 

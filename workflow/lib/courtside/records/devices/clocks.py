@@ -3,13 +3,12 @@
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from os import PathLike
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from courtside.study.errors import InputError, reading, require_scalar, require_type
+from courtside.study.errors import InputError, StrPath, reading, require_scalar, require_type
 from courtside.study.execution.files import read_json, write_json
 
 FORM = "courtside sync 1"
@@ -71,7 +70,7 @@ def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
     return {name: Clock(**clock, note="stated by the session") for name, clock in numbers.items()}
 
 
-def fault_line(where: str | PathLike, clocks: Mapping[str, Clock]) -> str:
+def fault_line(where: StrPath, clocks: Mapping[str, Clock]) -> str:
     """Return a line on the first camera whose clock may not be used; empty if all may.
 
     It begins with `where`: a file or a take.
@@ -93,7 +92,7 @@ def wrist_error_mm(uncertainty_s: float, speed_m_s: float) -> float:
     return 1e3 * uncertainty_s * speed_m_s
 
 
-def write(path: str | PathLike, reference: str, clocks: Mapping[str, Clock]) -> None:
+def write(path: StrPath, reference: str, clocks: Mapping[str, Clock]) -> None:
     """Write the clocks of a take; `reference` is the camera whose clock is the take's."""
     if reference not in clocks:
         raise ValueError(f"expected the reference among {list(clocks)}, found {reference!r}")
@@ -106,7 +105,7 @@ def write(path: str | PathLike, reference: str, clocks: Mapping[str, Clock]) -> 
     write_json(path, {"form": FORM, "reference": reference, "cameras": tables})
 
 
-def read(path: str | PathLike) -> tuple[str, dict[str, Clock]]:
+def read(path: StrPath) -> tuple[str, dict[str, Clock]]:
     """Read the reference camera and the clocks of a take.
 
     An `InputError` if the file is not one of `write`, or a number is impossible.

@@ -1,7 +1,6 @@
 """The skeleton of a take from one device or one single-view method: a file between rules."""
 
 from dataclasses import dataclass
-from os import PathLike
 from typing import Annotated, Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 from courtside.records import npz
 from courtside.records.devices.hierarchy import Hierarchy, PosedHierarchy
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 
 FORM = "courtside device motion 2"
 # Of `posed` in the file; no joints where there is none.
@@ -74,7 +73,7 @@ def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> Devi
     return DeviceMotion(source, "cameras", points.joints, points.time_s, xyz, reason, complete)
 
 
-def write(path: str | PathLike, motion: DeviceMotion) -> None:
+def write(path: StrPath, motion: DeviceMotion) -> None:
     """Write a `DeviceMotion` to an npz file."""
     arrays, n_frames = dict(vars(motion)), len(motion.time_s)
     none = PosedHierarchy(
@@ -96,7 +95,7 @@ def write(path: str | PathLike, motion: DeviceMotion) -> None:
     npz.write(path, FORM, _spec(), arrays)
 
 
-def read(path: str | PathLike) -> DeviceMotion:
+def read(path: StrPath) -> DeviceMotion:
     """Read a `DeviceMotion` from an npz file; raise `InputError` if it is not one."""
     found = npz.read(path, FORM, _spec())
     names, parents, offsets = (found.pop(key) for key in ("hierarchy", "parents", "offsets"))

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
-from os import PathLike
 from typing import Any, TypeVar
 
-from courtside.study.errors import DAMAGED, InputError, reading, require_type
+from courtside.study.errors import DAMAGED, InputError, StrPath, reading, require_type
 from courtside.study.execution.files import read_json, write_json
 
 FORM = "courtside events 1"
@@ -70,13 +69,13 @@ class Events:
     fault: str = ""
 
 
-def write(path: str | PathLike, found: Mapping[str, Events]) -> None:
+def write(path: StrPath, found: Mapping[str, Events]) -> None:
     """Write the events of sources by name."""
     tables = {source: asdict(events) for source, events in found.items()}
     write_json(path, {"form": FORM, "sources": tables})
 
 
-def read(paths: Iterable[str | PathLike]) -> dict[str, Events]:
+def read(paths: Iterable[StrPath]) -> dict[str, Events]:
     """Read the events of sources, by name, from the files that hold them, in their order.
 
     Raises

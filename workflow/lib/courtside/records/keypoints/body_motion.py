@@ -1,12 +1,12 @@
 """One source's skeleton in the body's own frame and unit, on the reference clock."""
 
 from dataclasses import dataclass
-from os import PathLike
 from typing import Annotated
 
 from numpy.typing import NDArray
 
 from courtside.records import npz
+from courtside.study.errors import StrPath
 
 FORM = "courtside body motion 1"
 
@@ -34,11 +34,11 @@ class BodyMotion:
         return self.fixed[:, list(self.joints).index(name)]
 
 
-def write(path: str | PathLike, motion: BodyMotion) -> None:
+def write(path: StrPath, motion: BodyMotion) -> None:
     """Write a `BodyMotion` to an npz file."""
     npz.write_record(path, FORM, motion)
 
 
-def read(path: str | PathLike) -> BodyMotion:
+def read(path: StrPath) -> BodyMotion:
     """Read a `BodyMotion` from an npz file; raise `InputError` if it is not one."""
     return npz.read_record(path, FORM, BodyMotion)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, reading, require_scalar, require_type
+from courtside.study.errors import InputError, StrPath, reading, require_scalar, require_type
 
 SUM_TOLERANCE = 1e-9  # far above the rounding of a sum of decimal fractions
 WHAT = "`definitions` with `means` and `weights`, and `joints` with a definition for each skeleton"
@@ -68,7 +67,7 @@ class DerivedJoints:
         return np.array([parts.get(joint, 0.0) for joint in joints])
 
 
-def read(path: str | PathLike) -> DerivedJoints:
+def read(path: StrPath) -> DerivedJoints:
     """Read a table of derived joints: YAML with `definitions` and `joints`.
 
     An `InputError` if a key is missing, weights do not sum to 1, or a joint names an unknown
@@ -96,9 +95,7 @@ def _definition(value: dict) -> Definition:
 
 
 def _check(
-    path: str | PathLike,
-    definitions: Mapping[str, Definition],
-    joints: Mapping[str, Mapping[str, str]],
+    path: StrPath, definitions: Mapping[str, Definition], joints: Mapping[str, Mapping[str, str]]
 ) -> None:
     for name, definition in definitions.items():
         total = sum(definition.weights.values())

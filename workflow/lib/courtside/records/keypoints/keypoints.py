@@ -1,12 +1,12 @@
 """The two tables of keypoints that rules exchange: 2D of one camera, 3D of one take."""
 
 from dataclasses import dataclass, replace
-from os import PathLike
 from typing import Annotated
 
 from numpy.typing import NDArray
 
 from courtside.records import npz
+from courtside.study.errors import StrPath
 
 FORM_2D = "courtside keypoints2d 1"
 FORM_3D = "courtside keypoints3d 2"
@@ -69,21 +69,21 @@ class Keypoints3D:
         return replace(self, time_s=self.time_s[at], **cut)
 
 
-def write_2d(path: str | PathLike, keypoints: Keypoints2D) -> None:
+def write_2d(path: StrPath, keypoints: Keypoints2D) -> None:
     """Write a `Keypoints2D` to an npz file."""
     npz.write_record(path, FORM_2D, keypoints)
 
 
-def read_2d(path: str | PathLike) -> Keypoints2D:
+def read_2d(path: StrPath) -> Keypoints2D:
     """Read a `Keypoints2D` from an npz file; raise `InputError` if it is not one."""
     return npz.read_record(path, FORM_2D, Keypoints2D)
 
 
-def write_3d(path: str | PathLike, keypoints: Keypoints3D) -> None:
+def write_3d(path: StrPath, keypoints: Keypoints3D) -> None:
     """Write a `Keypoints3D` to an npz file."""
     npz.write_record(path, FORM_3D, keypoints)
 
 
-def read_3d(path: str | PathLike) -> Keypoints3D:
+def read_3d(path: StrPath) -> Keypoints3D:
     """Read a `Keypoints3D` from an npz file; raise `InputError` if it is not one."""
     return npz.read_record(path, FORM_3D, Keypoints3D)

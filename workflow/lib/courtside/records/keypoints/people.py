@@ -1,7 +1,6 @@
 """Which tracklet of which camera is which person: the file between detection and triangulation."""
 
 from dataclasses import dataclass, replace
-from os import PathLike
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from courtside.records import npz
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 FORM = "courtside people 1"
 # Cameras differ in their numbers of frames: the tables are concatenated along the frames.
@@ -45,7 +44,7 @@ class People:
         return assigned(view, self.index[view.camera])
 
 
-def write(path: str | PathLike, people: People) -> None:
+def write(path: StrPath, people: People) -> None:
     """Write a `People` to an npz file."""
     arrays: dict[str, ArrayLike] = {
         "model": people.model,
@@ -58,7 +57,7 @@ def write(path: str | PathLike, people: People) -> None:
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path: str | PathLike) -> People:
+def read(path: StrPath) -> People:
     """Read a `People` from an npz file; raise `InputError` if it is not one."""
     found = npz.read(path, FORM, SPEC)
     if found["n_frames"].sum() != found["index"].shape[1] or (found["n_frames"] < 0).any():

@@ -3,11 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from os import PathLike
 from pathlib import Path
 
 from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, reading, require_type
+from courtside.study.errors import InputError, StrPath, reading, require_type
 
 SIDES = {"left_": "right_", "right_": "left_"}
 
@@ -71,7 +70,7 @@ def _other_side(joint: str) -> str:
     return joint
 
 
-def read(path: str | PathLike) -> Skeleton:
+def read(path: StrPath) -> Skeleton:
     """Read a skeleton file: YAML with `joints`, `bones`, `segments`, `groups`, perhaps `names`.
 
     An `InputError` if a key is missing, a joint stands twice in `joints`, a bone or segment is no
@@ -107,7 +106,7 @@ def _pair(joints: object) -> tuple[str, str]:
     return start, end
 
 
-def _check(path: str | PathLike, skeleton: Skeleton) -> None:
+def _check(path: StrPath, skeleton: Skeleton) -> None:
     for at, joint in enumerate(skeleton.joints):
         if not isinstance(joint, str) or joint in skeleton.joints[:at]:
             raise InputError(

@@ -6,7 +6,6 @@ Only code that evaluates a result may read it.
 import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from os import PathLike
 from typing import Annotated
 
 import numpy as np
@@ -14,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.camera import Camera
 from courtside.records import npz
-from courtside.study.errors import RAISED_BY_READERS, reading
+from courtside.study.errors import RAISED_BY_READERS, StrPath, reading
 
 FORM = "courtside truth 1"
 SPEC = {
@@ -53,7 +52,7 @@ class Truth:
 
 
 def write(
-    path: str | PathLike,
+    path: StrPath,
     cameras: Sequence[Camera],
     walks: Mapping[str, Walk],
     court_points: Sequence[str],
@@ -74,7 +73,7 @@ def write(
     npz.write(path, FORM, _spec(walks), arrays)
 
 
-def read(path: str | PathLike) -> Truth:
+def read(path: StrPath) -> Truth:
     """Read the truth of a session; raise `InputError` if the file is not one of `write`."""
     names = _walk_names(path)
     arrays = npz.read(path, FORM, _spec(names))
@@ -101,7 +100,7 @@ def _spec(walks: Iterable[str]) -> npz.Spec:
     return SPEC | of_walks
 
 
-def _walk_names(path: str | PathLike) -> list[str]:
+def _walk_names(path: StrPath) -> list[str]:
     """Return the names of the walks in a file; none of a file that `npz.read` will refuse."""
     try:
         with zipfile.ZipFile(path) as stored:

@@ -5,12 +5,12 @@ Only code that evaluates a result may read it.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.records import npz
+from courtside.study.errors import StrPath
 
 FORM = "courtside take truth 2"
 SPEC = {
@@ -73,7 +73,7 @@ class TakeTruth:
     devices: dict[str, DeviceTruth] = field(default_factory=dict)
 
 
-def write(path: str | PathLike, truth: TakeTruth) -> None:
+def write(path: StrPath, truth: TakeTruth) -> None:
     """Write the truth of a take to an npz file.
 
     A `ValueError` if shapes disagree, the clocks are not of the same cameras, or events or devices
@@ -110,7 +110,7 @@ def write(path: str | PathLike, truth: TakeTruth) -> None:
     npz.write(path, FORM, SPEC, arrays)
 
 
-def read(path: str | PathLike) -> TakeTruth:
+def read(path: StrPath) -> TakeTruth:
     """Read the truth of a take; raise `InputError` if the file is not one of `write`."""
     arrays = npz.read(path, FORM, SPEC)
     cameras, people = arrays["camera"].tolist(), arrays["person_id"].tolist()

@@ -2,7 +2,6 @@
 
 import difflib
 import functools
-import os
 import re
 import sys
 from collections.abc import Iterable, Iterator
@@ -21,7 +20,7 @@ from courtside.study.configuration import (
 )
 from courtside.study.configuration.sessions import Model, Session, Study
 from courtside.study.configuration.yaml_files import Content
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.artefacts import Artefact
 
 SCHEMAS = Path(__file__).parents[4] / "schemas"
@@ -43,7 +42,7 @@ TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
 )
 REPLACED = {  # keys of former versions: what to use now
     "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
-    "filter and cut-offs are those of filter_motion",
+    "filter and cut-offs are those of filter_motion"
 }
 VALIDATOR = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=TYPES)
 
@@ -56,9 +55,7 @@ class ConfigurationError(InputError):
         self.faults = self.lines
 
 
-def load(
-    config: Content, config_file: str, folder: str | os.PathLike, root: str | os.PathLike = "."
-) -> Study:
+def load(config: Content, config_file: str, folder: StrPath, root: StrPath = ".") -> Study:
     """Check the whole configuration and return what it says.
 
     `config` is merged, as Snakemake gives it, and `config_file` its name, for messages. `folder` is
@@ -109,9 +106,7 @@ def _models(models: Content, found: dict[str, tuple]) -> dict[str, Model]:
     return others | {name: sessions.model(name, entry) for name, entry in models.items()}
 
 
-def _sessions(
-    config: Content, found: dict[str, tuple], root: str | os.PathLike
-) -> dict[str, Session]:
+def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[str, Session]:
     """Return the sessions of the files, and the variations that conditions make of them."""
     made = {
         name: session_files.session(name, file, content, config, root)
@@ -152,7 +147,7 @@ def _name_faults(where: str, name: str, file: Path) -> Iterator[str]:
         yield f"{where}: expected a file {file}, found {there}; {advice}"
 
 
-def schema_faults(content: Content, schema: str, file: str | os.PathLike) -> list[str]:
+def schema_faults(content: Content, schema: str, file: StrPath) -> list[str]:
     """Return what a schema finds wrong, one line each: `file: key: expected ..., found ...`.
 
     `schema` is the name of a file in workflow/schemas/, without `.schema.yaml`.

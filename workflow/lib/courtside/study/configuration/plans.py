@@ -1,6 +1,5 @@
 """A planned session, as `config/plans/<plan>.yaml` states it."""
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -8,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study.configuration import configuration, yaml_files
+from courtside.study.errors import StrPath
 
 HEIGHT_M = 1.6  # at which people hold a camera
 TEXTURE = "plain"  # a plan without a word on texture expects few tie points
@@ -52,7 +52,7 @@ class Plan:
     target_cm: float | None  # error that is wanted
 
 
-def read(path: str | os.PathLike) -> Plan:
+def read(path: StrPath) -> Plan:
     """Read a plan; an `InputError` has every fault of the file, one line each."""
     content = yaml_files.read(path)
     faults = configuration.schema_faults(content, "plan", Path(path))
@@ -78,7 +78,7 @@ def read(path: str | os.PathLike) -> Plan:
     )
 
 
-def _faults(path: str | os.PathLike, content: dict[str, Any]) -> Iterator[str]:
+def _faults(path: StrPath, content: dict[str, Any]) -> Iterator[str]:
     low, high = (
         [pick(pair) for pair in zip(*content["hall_m"], strict=True)] for pick in (min, max)
     )

@@ -1,6 +1,5 @@
 """Building sessions from their files, and variations of virtual ones from a condition."""
 
-import os
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
@@ -10,6 +9,7 @@ from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Device, FixedCamera, Session, Subject, Take
 from courtside.study.configuration.yaml_files import Content
+from courtside.study.errors import StrPath
 
 KINDS = {  # of devices, by the ending of their recording; a folder is one of a depth camera
     ".bvh": "inertial",
@@ -30,11 +30,7 @@ def is_there(path: Path) -> bool:
 
 
 def session(
-    name: str,
-    file: str | os.PathLike,
-    content: Content,
-    parameters: Content,
-    root: str | os.PathLike = ".",
+    name: str, file: StrPath, content: Content, parameters: Content, root: StrPath = "."
 ) -> Session:
     """Build a `Session` from its checked YAML file.
 
@@ -74,7 +70,7 @@ def session(
     )
 
 
-def _clicks(content: Content, root: str | os.PathLike) -> tuple[str | None, str | None]:
+def _clicks(content: Content, root: StrPath) -> tuple[str | None, str | None]:
     """Return the clicked court points, and where those are to be saved that nobody has clicked."""
     clicks = content.get("court_points")
     if not clicks or clicks.startswith(f"{paths.RESULTS}/") or is_there(Path(root) / clicks):

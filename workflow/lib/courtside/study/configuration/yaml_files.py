@@ -1,12 +1,11 @@
 """YAML files without YAML's surprises: no duplicate keys, names stay text."""
 
-import os
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 
 LARGEST_BYTES = 1 << 20  # the largest that is read within seconds
 DEEPEST = 40  # levels
@@ -37,7 +36,7 @@ class _StrictLoader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-def read(path: str | os.PathLike) -> Content:
+def read(path: StrPath) -> Content:
     """Read a YAML file that holds a mapping; an `InputError` names the line that is wrong."""
     with reading(path, "a readable YAML file", "save it as UTF-8", kinds=(OSError, UnicodeError)):
         text = Path(path).read_text(encoding="utf-8-sig")
@@ -57,7 +56,7 @@ def read(path: str | os.PathLike) -> Content:
     return content
 
 
-def _check_extent(path: str | os.PathLike, content: Content) -> None:
+def _check_extent(path: StrPath, content: Content) -> None:
     """Refuse huge content, which aliases and hexadecimal numbers make of a few bytes."""
     waiting, count = [(content, 1)], 0
     while waiting:

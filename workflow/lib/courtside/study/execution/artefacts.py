@@ -1,6 +1,5 @@
 """Pinned files from outside: fetched, checked, and only their named members unpacked."""
 
-import os
 import shutil
 import subprocess
 import sys
@@ -12,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution import digest, files
 
 LARGEST_MEMBER_BYTES = 1 << 30  # ASSUME: far more than any pinned member has
@@ -42,7 +41,7 @@ class Artefact:
     note: str = ""
 
 
-def read(path: str | os.PathLike) -> dict[str, Artefact]:
+def read(path: StrPath) -> dict[str, Artefact]:
     """Return the artefacts of a file such as config/external.yaml, by name."""
     return {name: Artefact(name, **entry) for name, entry in yaml_files.read(path).items()}
 

@@ -1,11 +1,10 @@
 """Checksums of many large files, computed again only for a file whose size or date changed."""
 
 import hashlib
-import os
 import time
 from pathlib import Path
 
-from courtside.study.errors import DAMAGED
+from courtside.study.errors import DAMAGED, StrPath
 from courtside.study.execution import files
 
 FORMAT = 1
@@ -13,7 +12,7 @@ FORMAT = 1
 SETTLED_NS = 2_000_000_000
 
 
-def of_path(path: str | os.PathLike) -> str:
+def of_path(path: StrPath) -> str:
     """Return the SHA-256 of a file, or of a folder: of names and checksums of all its files."""
     path = Path(path)
     if not path.is_dir():
@@ -24,7 +23,7 @@ def of_path(path: str | os.PathLike) -> str:
     return digest.hexdigest()
 
 
-def members(folder: str | os.PathLike) -> list[Path]:
+def members(folder: StrPath) -> list[Path]:
     """Return all files in a folder, in the order of their names, without Snakemake's time stamp."""
     found = (path for path in Path(folder).rglob("*") if path.is_file())
     return sorted(path for path in found if path.name != ".snakemake_timestamp")
@@ -36,7 +35,7 @@ class Checksums:
     A file that cannot be read as such is taken for an empty one.
     """
 
-    def __init__(self, path: str | os.PathLike) -> None:
+    def __init__(self, path: StrPath) -> None:
         self.path = Path(path)
         self.known = self._read()
         self.changed = False
@@ -53,7 +52,7 @@ class Checksums:
         except DAMAGED:
             return {}
 
-    def of(self, path: str | os.PathLike) -> str | None:
+    def of(self, path: StrPath) -> str | None:
         """Return the SHA-256 of a file or folder; None if there is none."""
         path = Path(path)
         if path.is_dir():

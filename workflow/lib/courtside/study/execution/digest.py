@@ -7,13 +7,12 @@ import ast
 import contextlib
 import hashlib
 import json
-import os
 import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import files
 
 PACKAGES = {"courtside", "virtualgym"}
@@ -23,7 +22,7 @@ IGNORED = {"ctx", "kind", "type_comment", "type_ignores", "type_params"}
 INSTALLED_AS = {"cv2": "opencv-python-headless", "PIL": "pillow", "yaml": "pyyaml"}
 
 
-def rule_digest(script: str | os.PathLike, library: str | os.PathLike, lock_text: str) -> str:
+def rule_digest(script: StrPath, library: StrPath, lock_text: str) -> str:
     """Return the digest of all that a rule runs: `<code>-<packages>`, 64 hexadecimal digits each.
 
     Packages are those that the code imports itself, as the lock (`name==version` at the start of
@@ -34,7 +33,7 @@ def rule_digest(script: str | os.PathLike, library: str | os.PathLike, lock_text
     return f"{code_digest(script, library)}-{hashlib.sha256(packages.encode()).hexdigest()}"
 
 
-def packages_of(script: str | os.PathLike, library: str | os.PathLike, lock_text: str) -> set[str]:
+def packages_of(script: StrPath, library: StrPath, lock_text: str) -> set[str]:
     """Return the pins (`name==version` with marker) of the packages that a script imports."""
     paths = [Path(script), *(_file(name, Path(library)) for name in modules_of(script, library))]
     imported = {name for path in paths for name in _parsed(path)[2]}
@@ -57,7 +56,7 @@ def package_name(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def code_digest(script: str | os.PathLike, library: str | os.PathLike) -> str:
+def code_digest(script: StrPath, library: StrPath) -> str:
     """Return the digest of a script and of every library module it reaches, 64 hexadecimal digits.
 
     It changes with the syntax trees, not with comments, docstrings or formatting. `library` is the
@@ -68,7 +67,7 @@ def code_digest(script: str | os.PathLike, library: str | os.PathLike) -> str:
     return hashlib.sha256("\n".join(_parsed(path)[0] for path in paths).encode()).hexdigest()
 
 
-def modules_of(script: str | os.PathLike, library: str | os.PathLike) -> set[str]:
+def modules_of(script: StrPath, library: StrPath) -> set[str]:
     """Return the full names of all library modules and packages that a file reaches."""
     return _reached(Path(script), Path(library), lambda path: _parsed(path)[1], _file)
 
@@ -80,7 +79,7 @@ class Remembered:
     or damaged JSON file `path` costs time only. Each file is read once in the life of an object.
     """
 
-    def __init__(self, path: str | os.PathLike, lock_text: str) -> None:
+    def __init__(self, path: StrPath, lock_text: str) -> None:
         self._path, self._lock_text = Path(path), lock_text
         self._kept = _read(self._path)
         self._used: dict[str, str] = {}
@@ -89,7 +88,7 @@ class Remembered:
         # Entries made by another version of this module, or with another lock, are not used.
         self._own = hashlib.sha256((files.sha256(__file__) + lock_text).encode()).hexdigest()
 
-    def digest(self, script: str | os.PathLike, library: str | os.PathLike) -> str:
+    def digest(self, script: StrPath, library: StrPath) -> str:
         """Return `rule_digest` of a script, from the file where its code was met before."""
         script, library = Path(script), Path(library)
         names = sorted(_reached(script, library, self._imports, self._file))

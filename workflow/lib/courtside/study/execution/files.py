@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 
 CHUNK_BYTES = 1 << 20
 # Names that `atomic` and `atomic_folder` give.
@@ -22,7 +22,7 @@ WAITS_S = (0.1, 0.2, 0.3, 0.4)  # for a program that has a file open only shortl
 
 
 @contextlib.contextmanager
-def atomic(path: str | os.PathLike) -> Iterator[Path]:
+def atomic(path: StrPath) -> Iterator[Path]:
     """Give a temporary path beside `path`; rename it to `path` when the block ends well.
 
     The temporary file keeps the suffix, because some writers choose the format by it, and is
@@ -39,7 +39,7 @@ def atomic(path: str | os.PathLike) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def atomic_folder(path: str | os.PathLike) -> Iterator[Path]:
+def atomic_folder(path: StrPath) -> Iterator[Path]:
     """Give a new folder beside `path`; rename it to `path` when the block ends well.
 
     It is deleted if the block raises, and `path` stays as it was. Missing parent folders are made;
@@ -81,7 +81,7 @@ def _rename(path: Path, new: Path) -> None:
         ) from error
 
 
-def seen_from(path: str | os.PathLike, folder: str | os.PathLike = ".") -> str:
+def seen_from(path: StrPath, folder: StrPath = ".") -> str:
     """Return a path relative to a folder, with `/`; absolute between drives of Windows."""
     try:
         return Path(os.path.relpath(path, folder)).as_posix()
@@ -89,7 +89,7 @@ def seen_from(path: str | os.PathLike, folder: str | os.PathLike = ".") -> str:
         return Path(path).resolve().as_posix()
 
 
-def delete_unfinished(folder: str | os.PathLike) -> None:
+def delete_unfinished(folder: StrPath) -> None:
     """Delete what killed jobs left below a folder; only when no job is running there."""
     found = [path for path in Path(folder).rglob(".*") if UNFINISHED.fullmatch(path.name)]
     for path in found:
@@ -99,19 +99,19 @@ def delete_unfinished(folder: str | os.PathLike) -> None:
             path.unlink(missing_ok=True)
 
 
-def write_json(path: str | os.PathLike, content: Any) -> None:
+def write_json(path: StrPath, content: Any) -> None:
     """Write a JSON file that people can read, whole or not at all."""
     with atomic(path) as temporary:
         temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8", newline="\n")
 
 
-def read_json(path: str | os.PathLike, advice: str = "make it again") -> Any:
+def read_json(path: StrPath, advice: str = "make it again") -> Any:
     """Read a JSON file; an `InputError` with `advice` where it is missing or no JSON."""
     with reading(path, "JSON", advice):
         return json.loads(Path(path).read_text(encoding="utf-8-sig"))
 
 
-def sha256(path: str | os.PathLike) -> str:
+def sha256(path: StrPath) -> str:
     """Return the SHA-256 of a file as 64 hexadecimal digits, reading it in pieces."""
     digest = hashlib.sha256()
     with Path(path).open("rb") as stream:

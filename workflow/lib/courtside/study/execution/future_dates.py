@@ -1,18 +1,17 @@
 """Files dated in the future, as cameras with a wrong clock write them."""
 
-import os
 import time
 from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import files
 
 SLACK_S = 60.0  # by which the clocks of a computer and of a disk in its network may differ
 
 
-def check(folders: Iterable[str | os.PathLike]) -> None:
+def check(folders: Iterable[StrPath]) -> None:
     """Check that no file below some folders is dated in the future; leave out missing folders.
 
     Snakemake ends a job with an error if what it made is older than what it was made from. An

@@ -1,7 +1,6 @@
 """Where a script's messages go, and how its errors look."""
 
 import logging
-import os
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -9,7 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import machine_resources
 
 FORMAT = "%(asctime)s %(levelname)s %(message)s"
@@ -17,7 +16,7 @@ T = TypeVar("T")
 logger = logging.getLogger("courtside")
 
 
-def to_file(path: str | os.PathLike) -> None:
+def to_file(path: StrPath) -> None:
     """Send messages, warnings and errors of this process to a job's log file.
 
     An `InputError` that nothing catches becomes one line, and so does a full disk, a file that may

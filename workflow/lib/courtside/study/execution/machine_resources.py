@@ -6,7 +6,7 @@ import secrets
 import shutil
 from pathlib import Path
 
-from courtside.study.errors import SPARE_MEMORY, InputError
+from courtside.study.errors import SPARE_MEMORY, InputError, StrPath
 from courtside.study.execution import files
 
 LEAST_FREE_MB = 20  # below, Snakemake's own metadata and logs may not fit
@@ -17,7 +17,7 @@ NO_MEMORY = ("Insufficient memory", "bad_alloc", "bad allocation")
 AGAIN = "then give the same command again"
 
 
-def check(folder: str | os.PathLike) -> None:
+def check(folder: StrPath) -> None:
     """Check, before any work, that a study can write to a folder: an `InputError` if it cannot."""
     folder = Path(folder)
     if not _is_writable(folder):

@@ -1,10 +1,9 @@
 """The words at the end of a run: what was made and how long it took, or what to do."""
 
-import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from courtside.study.errors import SPARE_MEMORY
+from courtside.study.errors import SPARE_MEMORY, StrPath
 
 N_NAMED = 3  # folders or files that a line names; the rest are counted
 N_FAULTS = 3
@@ -100,7 +99,7 @@ def _places(paths: list[str]) -> str:
     return f"{named} and {rest} more folders" if rest > 0 else named
 
 
-def _last_fault(log: str | os.PathLike) -> str:
+def _last_fault(log: StrPath) -> str:
     """Return the last error that a job's log holds, else its last line."""
     lines = Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
     lines = [line.strip() for line in lines if line.strip()]

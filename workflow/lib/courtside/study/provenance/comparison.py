@@ -4,7 +4,6 @@ import csv
 import fnmatch
 import json
 import math
-import os
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from courtside.study.errors import DAMAGED
+from courtside.study.errors import DAMAGED, StrPath
 from courtside.study.execution import files
 
 # Not compared: logs, run times, records of runs.
@@ -58,7 +57,7 @@ class Verdict:
     largest: float = math.nan  # largest difference of numbers, NaN where there are none to compare
 
 
-def compare(here: str | os.PathLike, there: str | os.PathLike) -> list[Verdict]:
+def compare(here: StrPath, there: StrPath) -> list[Verdict]:
     """Return the verdict on every file of two results trees, in the order of their names."""
     ours, theirs = names(here), names(there)
     verdicts = []
@@ -70,7 +69,7 @@ def compare(here: str | os.PathLike, there: str | os.PathLike) -> list[Verdict]:
     return verdicts
 
 
-def names(folder: str | os.PathLike) -> set[str]:
+def names(folder: StrPath) -> set[str]:
     """Return the relative paths of all files below results that a comparison looks at."""
     paths = (path.relative_to(folder) for path in Path(folder).rglob("*") if path.is_file())
     return {

@@ -1,18 +1,18 @@
 """What a study ran with: commit, lock, interpreter, packages."""
 
-import os
 import platform
 import subprocess
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from courtside.study.errors import StrPath
 from courtside.study.execution import digest, files
 
 GIT_SECONDS = 20  # ASSUME: enough for `git status` on a slow disk; a run does not wait longer
 
 
-def found(repository: str | os.PathLike) -> dict[str, Any]:
+def found(repository: StrPath) -> dict[str, Any]:
     """Return what a study of a repository would run with now.
 
     commit (40 digits, None outside a Git checkout), dirty (True if a file differs from the commit
@@ -30,14 +30,14 @@ def found(repository: str | os.PathLike) -> dict[str, Any]:
     }
 
 
-def commit(repository: str | os.PathLike) -> dict[str, Any]:
+def commit(repository: StrPath) -> dict[str, Any]:
     """Return the commit of a checkout and whether it is dirty; both None without Git."""
     head = _git(repository, "rev-parse", "HEAD")
     changes = _git(repository, "status", "--porcelain") if head else None
     return {"commit": head, "dirty": None if changes is None else bool(changes)}
 
 
-def packages(lock: str | os.PathLike) -> dict[str, str]:
+def packages(lock: StrPath) -> dict[str, str]:
     """Return {name: version} of installed packages that a lock names; of all without a lock."""
     lock = Path(lock)
     found = {digest.package_name(one.name): one.version for one in metadata.distributions()}
@@ -45,7 +45,7 @@ def packages(lock: str | os.PathLike) -> dict[str, str]:
     return {name: version for name, version in sorted(found.items()) if name in named}
 
 
-def _git(repository: str | os.PathLike, *words: str) -> str | None:
+def _git(repository: StrPath, *words: str) -> str | None:
     """Return the output of Git, None where it is not installed, too slow, or fails."""
     try:
         done = subprocess.run(

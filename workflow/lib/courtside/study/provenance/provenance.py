@@ -8,12 +8,12 @@ done (its outputs are up to date), made (in this run).
 import dataclasses
 import graphlib
 import json
-import os
 import shlex
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from courtside.study.errors import StrPath
 from courtside.study.execution import checksums, files
 
 FORMAT = 1
@@ -24,10 +24,10 @@ Job = Mapping[str, Any]
 
 def record(
     jobs: Sequence[Job],
-    folder: str | os.PathLike,
+    folder: StrPath,
     *,
     run: dict[str, Any],
-    root: str | os.PathLike,
+    root: StrPath,
     pinned: Sequence[str] = (),
     targets: Collection[str] = (),
 ) -> list[str]:
@@ -64,16 +64,14 @@ def record(
     return written
 
 
-def sidecar(folder: str | os.PathLike, name: str, root: str | os.PathLike) -> Path:
+def sidecar(folder: StrPath, name: str, root: StrPath) -> Path:
     """Return the path of a file's sidecar below the folder of the records."""
     path = Path(name)
     inner = path.relative_to(root) if path.is_relative_to(root) else Path(path.name)
     return Path(folder) / "provenance" / inner.with_name(f"{inner.name}.json")
 
 
-def _is_final(
-    name: str, targets: Collection[str], folder: str | os.PathLike, root: str | os.PathLike
-) -> bool:
+def _is_final(name: str, targets: Collection[str], folder: StrPath, root: StrPath) -> bool:
     if Path(name).suffix in FINAL or name in targets:
         return True
     return sidecar(folder, name, root).exists()
@@ -178,7 +176,7 @@ def plain(value: Any) -> Any:
     """Return a value as JSON can hold it: paths as text, sets in order, records as dictionaries."""
     if value is None or isinstance(value, bool | int | float):
         return value
-    if isinstance(value, str | os.PathLike):
+    if isinstance(value, StrPath):
         return str(value)
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         value = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
@@ -219,7 +217,7 @@ def _of_run(run: dict[str, Any], known: checksums.Checksums) -> dict[str, Any]:
     }
 
 
-def _prune(folder: Path, root: str | os.PathLike) -> None:
+def _prune(folder: Path, root: StrPath) -> None:
     """Delete the sidecars of files that are gone."""
     for path in folder.rglob("*.json"):
         inner = path.relative_to(folder)

@@ -2,10 +2,9 @@
 
 import csv
 import fnmatch
-import os
 from pathlib import Path
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import files
 from courtside.study.provenance import comparison
 
@@ -42,13 +41,13 @@ def stage_of(name: str) -> str:
     return next(stage for stage, pattern in STAGES if fnmatch.fnmatch(name, pattern))
 
 
-def measure(results: str | os.PathLike) -> Rows:
+def measure(results: StrPath) -> Rows:
     """Return size and SHA-256 of every file that `comparison` looks at, by path below results."""
     paths = {name: Path(results) / name for name in comparison.names(results)}
     return {name: (path.stat().st_size, files.sha256(path)) for name, path in paths.items()}
 
 
-def write(path: str | os.PathLike, rows: Rows) -> None:
+def write(path: StrPath, rows: Rows) -> None:
     """Write what `measure` found to a CSV file."""
     order = list(dict(STAGES))
     ranked = sorted(rows, key=lambda name: (order.index(stage_of(name)), name))
@@ -61,7 +60,7 @@ def write(path: str | os.PathLike, rows: Rows) -> None:
         writer.writerows([stage_of(name), name, *rows[name]] for name in ranked)
 
 
-def read(path: str | os.PathLike) -> Rows:
+def read(path: StrPath) -> Rows:
     """Read what `write` wrote; an `InputError` says what is wrong with another file."""
     with Path(path).open(encoding="utf-8", newline="") as stream:
         rows = list(csv.reader(stream))

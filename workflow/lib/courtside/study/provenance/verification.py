@@ -1,6 +1,5 @@
 """Which files of a study would differ if made now, and why, by their sidecars."""
 
-import os
 import shlex
 import subprocess
 import sys
@@ -10,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import checksums, digest, files
 from courtside.study.provenance import environment
 from courtside.study.provenance.provenance import FORMAT, command
@@ -24,7 +23,7 @@ OF_FILE = {
 DRAWN = {".pdf", ".png", ".csv"}  # in folders named figures: all have sidecars
 
 
-def read(folder: str | os.PathLike) -> list[dict[str, Any]]:
+def read(folder: StrPath) -> list[dict[str, Any]]:
     """Return all sidecars below a folder such as results/run, in the order of their names.
 
     An `InputError` if there is none, or one is not a sidecar of this version.
@@ -51,7 +50,7 @@ def _read(path: Path, kinds: dict[str, Any]) -> dict[str, Any]:
     return content
 
 
-def present(repository: str | os.PathLike) -> dict[str, Any]:
+def present(repository: StrPath) -> dict[str, Any]:
     """Return what the study would be made with now.
 
     sha256 (callable of a path, None for one that is gone; each file is read once), code (callable
@@ -109,7 +108,7 @@ def _of_surroundings(sidecar: dict[str, Any], now: dict[str, Any]) -> list[str]:
     return reasons
 
 
-def unrecorded(root: str | os.PathLike, sidecars: Iterable[dict[str, Any]]) -> list[str]:
+def unrecorded(root: StrPath, sidecars: Iterable[dict[str, Any]]) -> list[str]:
     """Return the files in folders named figures below `root` that have no sidecar."""
     known = {Path(sidecar["file"]).resolve() for sidecar in sidecars}
     drawn = (p for p in Path(root).glob("**/figures/*") if p.suffix in DRAWN)
@@ -122,7 +121,7 @@ def changed_configuration(run: dict[str, Any], now: dict[str, Any]) -> list[str]
     return [line for path, sha in pairs for line in _of_file(path, sha, now["sha256"](path))]
 
 
-def planned(run: dict[str, Any], repository: str | os.PathLike) -> set[str]:
+def planned(run: dict[str, Any], repository: StrPath) -> set[str]:
     """Return the files that Snakemake would make anew with the command of a run's record.
 
     An `InputError` if Snakemake refuses the configuration.
@@ -153,9 +152,7 @@ def _words(run: dict[str, Any]) -> list[str]:
     return words
 
 
-def report(
-    folder: str | os.PathLike, root: str | os.PathLike, repository: str | os.PathLike
-) -> tuple[list[str], int]:
+def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[str], int]:
     """Return lines for people, and the number of files that would differ or have no record.
 
     `folder` is such as results/run, `root` the folder of all results.
