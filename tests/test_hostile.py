@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from courtside.study.configuration import configuration, yaml_files
+from courtside.study.configuration import configuration, schemas, yaml_files
+from courtside.study.errors import InputError
 
 ROOT = Path(__file__).parents[1]
 PROGRAM = ("Snakefile", "workflow", "benchmarks")
@@ -162,8 +163,8 @@ def renamed(content, places, name):
 
 def lines(content, schema):
     """Return the faults that a check finds, as the message of its error has them."""
-    faults = configuration.schema_faults(content, schema, "f.yaml")
-    return configuration.ConfigurationError(faults).lines
+    faults = schemas.faults(content, schema, "f.yaml")
+    return InputError(*faults).lines
 
 
 def assert_one_line(found, key):

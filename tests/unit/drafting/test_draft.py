@@ -6,7 +6,7 @@ import yaml
 from courtside.drafting import draft as session_draft
 from courtside.drafting import guess as session_guess
 from courtside.drafting.guess import Recording
-from courtside.study.configuration import configuration, session_faults
+from courtside.study.configuration import schemas, session_faults
 from courtside.study.errors import InputError
 
 
@@ -20,7 +20,7 @@ def draft(*recordings, title="North", folder="data/north", **options):
     guess = session_guess.guess(list(recordings))
     text = session_draft.text(guess, title=title, folder=folder, **options)
     content = yaml.safe_load(text)
-    assert configuration.schema_faults(content, "session", "draft") == []
+    assert schemas.faults(content, "session", "draft") == []
     return guess, text, content
 
 
@@ -56,7 +56,7 @@ def test_the_workflow_takes_a_draft(tmp_path):
     path = tmp_path / "sessions" / "north.yaml"
     path.parent.mkdir()
     session_draft.write(path, text)
-    folder = configuration.SCHEMAS.parents[1] / "config"
+    folder = schemas.SCHEMAS.parents[1] / "config"
     content = yaml.safe_load(path.read_text())
     found = list(session_faults.find(folder, path, content, None, tmp_path))
     assert [line for line in found if "expected a file, found none" not in line] == []
@@ -203,11 +203,11 @@ def test_a_study_of_the_session_alone_is_written_once(tmp_path):
         "variations": [],
         "export_overlay_video": {"takes": ["north/a", "north/b"]},
     }
-    folder = configuration.SCHEMAS.parents[1] / "config"
+    folder = schemas.SCHEMAS.parents[1] / "config"
     config = yaml.safe_load((folder / "config.yaml").read_text())
     videos = config["export_overlay_video"] | said["export_overlay_video"]
     config |= said | {"export_overlay_video": videos}
-    assert configuration.schema_faults(config, "config", "north.yaml") == []
+    assert schemas.faults(config, "config", "north.yaml") == []
     path.write_text("mine")
     assert "name north among its `sessions`" in session_draft.write_study(path, "north", ["a"])
     assert path.read_text() == "mine"

@@ -10,12 +10,12 @@ import pytest
 import yaml
 
 from courtside.drafting import survey
-from courtside.study.configuration import configuration
+from courtside.study.configuration import schemas
 from courtside.study.errors import InputError
 from fixtures.recordings import video_files
 from fixtures.recordings.real_data import REAL, needs_real
 
-PROGRAM = configuration.SCHEMAS.parents[1] / "workflow" / "draft_session.py"
+PROGRAM = schemas.SCHEMAS.parents[1] / "workflow" / "draft_session.py"
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from courtside.study.configuration import configuration, yaml_files
+from courtside.study.errors import InputError
 
 CONFIG = Path(__file__).parents[4] / "config"
 SESSION = {
@@ -38,10 +39,10 @@ def load(folder, session=None, **changes):
 
 
 def faults(folder, session=None, **changes):
-    with pytest.raises(configuration.ConfigurationError) as caught:
+    with pytest.raises(InputError) as caught:
         load(folder, session, **changes)
-    assert all("\n" not in line for line in caught.value.faults)
-    return caught.value.faults
+    assert all("\n" not in line for line in caught.value.lines)
+    return caught.value.lines
 
 
 def changed(*keys, value):
@@ -250,9 +251,9 @@ def test_a_skeleton_is_a_name_not_a_path(folder):
 def test_every_missing_key_is_named(folder):
     config = yaml_files.read(CONFIG / "config.yaml")
     del config["fusions"], config["filter_motion"]["order"]
-    with pytest.raises(configuration.ConfigurationError) as caught:
+    with pytest.raises(InputError) as caught:
         configuration.load(config, "mine.yaml", folder)
-    assert [line.split(";")[0] for line in caught.value.faults] == [
+    assert [line.split(";")[0] for line in caught.value.lines] == [
         "mine.yaml: top level: expected the key 'fusions', missing ['fusions']",
         "mine.yaml: filter_motion: expected the key 'order', missing ['order']",
     ]

@@ -10,7 +10,7 @@ import yaml
 
 from courtside.drafting import guess as file_names
 from courtside.drafting.guess import Guess, Recording, Take
-from courtside.study.configuration import configuration, yaml_files
+from courtside.study.configuration import configuration, schemas, yaml_files
 from courtside.study.errors import InputError
 
 MARK = "# guess:"
@@ -67,7 +67,7 @@ def write(path: Path, content: str) -> None:
         raise InputError(
             f"{path}: expected no file of that name, found one and left it; give another by --name"
         ) from None
-    faults = configuration.schema_faults(yaml_files.read(path), "session", path)
+    faults = schemas.faults(yaml_files.read(path), "session", path)
     if faults:
         path.unlink()
         raise ValueError(f"the draft does not hold its own schema: {faults[0]}")

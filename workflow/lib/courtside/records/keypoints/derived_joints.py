@@ -1,6 +1,6 @@
 """Joints computed from others by one table: neck, head centre, mid-hip and the like."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,12 +9,10 @@ from numpy.typing import NDArray
 
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, StrPath, reading, require_scalar, require_type
+from courtside.study.configuration import schemas
+from courtside.study.errors import InputError, StrPath
 
 SUM_TOLERANCE = 1e-9  # far above the rounding of a sum of decimal fractions
-WHAT = "`definitions` with `means` and `weights`, and `joints` with a definition for each skeleton"
-SEE = "see config/derived_joints.yaml"
 RIG = "rig"  # name in the table of the skeleton of virtual sessions' truth
 
 
@@ -70,47 +68,30 @@ class DerivedJoints:
 def read(path: StrPath) -> DerivedJoints:
     """Read a table of derived joints: YAML with `definitions` and `joints`.
 
-    An `InputError` if a key is missing, weights do not sum to 1, or a joint names an unknown
-    definition.
+    An `InputError` if the file is not as its schema says, weights do not sum to 1, or a joint names
+    an unknown definition.
     """
-    content = yaml_files.read(path)
-    with reading(path, WHAT, SEE):
-        definitions = {
-            name: _definition(require_type(value, dict))
-            for name, value in require_type(content["definitions"], dict).items()
-        }
-        joints = {
-            name: dict(require_type(value, dict))
-            for name, value in require_type(content["joints"], dict).items()
-        }
-        _check(path, definitions, joints)
-    return DerivedJoints(definitions, joints)
-
-
-def _definition(value: dict) -> Definition:
-    weights = require_type(value["weights"], dict)
-    return Definition(
-        str(value["means"]), {joint: float(require_scalar(w)) for joint, w in weights.items()}
-    )
-
-
-def _check(
-    path: StrPath, definitions: Mapping[str, Definition], joints: Mapping[str, Mapping[str, str]]
-) -> None:
-    for name, definition in definitions.items():
+    content = schemas.read(path, "derived_joints")
+    definitions = {
+        name: Definition(one["means"], {joint: float(w) for joint, w in one["weights"].items()})
+        for name, one in content["definitions"].items()
+    }
+    table = DerivedJoints(definitions, content["joints"])
+    for name, definition in table.definitions.items():
         total = sum(definition.weights.values())
-        if not abs(total - 1.0) < SUM_TOLERANCE:
+        if abs(total - 1.0) > SUM_TOLERANCE:
             raise InputError(
                 f"{path}: definitions.{name}: expected weights that sum to 1, found {total:g}; "
                 "correct them"
             )
-    for name, by_skeleton in joints.items():
+    for name, by_skeleton in table.joints.items():
         for skeleton, used in by_skeleton.items():
-            if used not in list(definitions):
+            if used not in table.definitions:
                 raise InputError(
-                    f"{path}: joints.{name}.{skeleton}: expected one of {sorted(definitions)}, "
-                    f"found {used!r}; correct the name"
+                    f"{path}: joints.{name}.{skeleton}: expected one of "
+                    f"{sorted(table.definitions)}, found {used!r}; correct the name"
                 )
+    return table
 
 
 def combine(

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 
-from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, StrPath, reading, require_type
+from courtside.study.configuration import schemas
+from courtside.study.errors import InputError, StrPath
 
 SIDES = {"left_": "right_", "right_": "left_"}
 
@@ -73,61 +73,34 @@ def _other_side(joint: str) -> str:
 def read(path: StrPath) -> Skeleton:
     """Read a skeleton file: YAML with `joints`, `bones`, `segments`, `groups`, perhaps `names`.
 
-    An `InputError` if a key is missing, a joint stands twice in `joints`, a bone or segment is no
-    pair, a bone, segment or group names a joint that is not in `joints`, a side has no mirror, or
-    `names` gives two joints one name.
+    An `InputError` if the file is not as its schema says, a bone, segment or group names a joint
+    that is not in `joints`, a side has no mirror, or `names` gives two joints one name.
     """
-    content = yaml_files.read(path)
-    what = (
-        "lists `joints` and `bones` and mappings `segments` and `groups`, "
-        "bones and segments of two joints"
+    content = schemas.read(path, "skeleton")
+    skeleton = Skeleton(
+        name=Path(path).stem,
+        joints=tuple(content["joints"]),
+        bones=tuple((start, end) for start, end in content["bones"]),
+        segments={name: (start, end) for name, (start, end) in content["segments"].items()},
+        groups={name: tuple(joints) for name, joints in content["groups"].items()},
+        names=content.get("names", {}),
     )
-    with reading(path, what, "see the files beside it"):
-        skeleton = Skeleton(
-            name=Path(path).stem,
-            joints=tuple(require_type(content["joints"], list)),
-            bones=tuple(map(_pair, require_type(content["bones"], list))),
-            segments={
-                name: _pair(joints)
-                for name, joints in require_type(content["segments"], dict).items()
-            },
-            groups={
-                name: tuple(require_type(joints, list))
-                for name, joints in require_type(content["groups"], dict).items()
-            },
-            names=dict(require_type(content.get("names", {}), dict)),
-        )
-        _check(path, skeleton)
+    _check(path, skeleton)
     return skeleton
 
 
-def _pair(joints: object) -> tuple[str, str]:
-    start, end = require_type(joints, list)
-    return start, end
-
-
 def _check(path: StrPath, skeleton: Skeleton) -> None:
-    for at, joint in enumerate(skeleton.joints):
-        if not isinstance(joint, str) or joint in skeleton.joints[:at]:
-            raise InputError(
-                f"{path}: joints: expected names that differ, found {joint!r}; rename it"
-            )
-    used: list[tuple[str, ...]] = [
-        *skeleton.bones,
-        *skeleton.segments.values(),
-        *skeleton.groups.values(),
-    ]
+    used = [*skeleton.bones, *skeleton.segments.values(), *skeleton.groups.values()]
     used += [tuple(skeleton.names), tuple(map(_other_side, skeleton.joints))]
-    for joints in used:
-        for joint in joints:
-            if joint not in skeleton.joints:
-                raise InputError(
-                    f"{path}: expected joints from the list `joints`, found {joint!r}; "
-                    "add it there or correct the name"
-                )
+    for joint in chain(*used):
+        if joint not in skeleton.joints:
+            raise InputError(
+                f"{path}: expected joints from the list `joints`, found {joint!r}; "
+                "add it there or correct the name"
+            )
     called = skeleton.device_names()
     for at, name in enumerate(called):
-        if not isinstance(name, str) or name in called[:at]:
+        if name in called[:at]:
             raise InputError(
                 f"{path}: names: expected a name for each joint that no other joint has, found "
                 f"{name!r}; correct it"

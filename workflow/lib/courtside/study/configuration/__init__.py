@@ -6,5 +6,6 @@ session_files: `session` and `variations` build sessions from checked files
 session_faults, take_faults: what schemas cannot check
 consent: `refusing`, `withheld` and `left_out` say what persons have not agreed to
 plans: `read` a session that is only planned
+schemas: `read` a file that a JSON schema describes, `faults` in words
 yaml_files: `read` YAML without duplicate keys
 """

@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
-from courtside.study.configuration import configuration, yaml_files
-from courtside.study.errors import StrPath
+from courtside.study.configuration import schemas
+from courtside.study.errors import InputError, StrPath
 
 HEIGHT_M = 1.6  # at which people hold a camera
 TEXTURE = "plain"  # a plan without a word on texture expects few tie points
@@ -54,12 +53,9 @@ class Plan:
 
 def read(path: StrPath) -> Plan:
     """Read a plan; an `InputError` has every fault of the file, one line each."""
-    content = yaml_files.read(path)
-    faults = configuration.schema_faults(content, "plan", Path(path))
-    if not faults:
-        faults = list(_faults(path, content))
-    if faults:
-        raise configuration.ConfigurationError(faults)
+    content = schemas.read(path, "plan")
+    if faults := list(_faults(path, content)):
+        raise InputError(*faults)
     walk = {key: _frozen(value) for key, value in content["walk"].items()}
     way_m = (walk.pop("from_m"), *walk.pop("via_m", ()), walk.pop("to_m"))
     return Plan(

@@ -1,0 +1,50 @@
+"""Files against their schemas: every fault of a file, each in one line of plain words."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from courtside.study.configuration import schemas
+from courtside.study.errors import InputError
+
+CONFIG = schemas.SCHEMAS.parents[1] / "config"
+FILES = {
+    "court": sorted((CONFIG / "courts").glob("*.yaml")),
+    "skeleton": sorted((CONFIG / "skeletons").glob("*.yaml")),
+    "derived_joints": [CONFIG / "derived_joints.yaml"],
+    "plan": sorted((CONFIG / "plans").glob("*.yaml")),
+    "external": [CONFIG / "external.yaml"],
+}
+
+
+@pytest.mark.parametrize(
+    ("path", "schema"),
+    [(path, schema) for schema, paths in FILES.items() for path in paths],
+    ids=lambda part: getattr(part, "stem", part),
+)
+def test_committed_files_are_as_their_schemas_say(path, schema):
+    assert schemas.read(path, schema) == yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def test_every_fault_is_one_line(tmp_path):
+    content = yaml.safe_load((CONFIG / "courts" / "rectangle-10x5.yaml").read_text())
+    content |= {"size": [1, 2], "line_width_m": "wide"}
+    content["points"]["p01"]["xyz_m"] = [0, 0]
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(content))
+    with pytest.raises(InputError) as caught:
+        schemas.read(path, "court")
+    unknown, width, place = caught.value.lines
+    assert unknown.endswith("found 'size'; did you mean 'size_m'?")
+    expected = "line_width_m: expected a value of type number (metres above 0), found 'wide'"
+    assert width == f"{path}: {expected}"
+    expected = "points.p01.xyz_m: expected at least 3 entries ([x, y, z], metres), found [0, 0]"
+    assert place == f"{path}: {expected}"
+
+
+def test_an_entry_that_repeats_is_named():
+    names = ["neck", *(f"joint_{at}" for at in range(40)), "neck"]
+    skeleton = {"joints": names, "bones": [], "segments": {}, "groups": {}}
+    (line,) = schemas.faults(skeleton, "skeleton", Path("long.yaml"))
+    assert line == "long.yaml: joints: expected entries that differ, found 'neck' again"

@@ -1,0 +1,167 @@
+"""The JSON schemas of YAML files, and what they find wrong in words: a line for each fault."""
+
+import difflib
+import functools
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import yaml
+
+from courtside.study.configuration import yaml_files
+from courtside.study.configuration.yaml_files import Content
+from courtside.study.errors import InputError, StrPath
+
+SCHEMAS = Path(__file__).parents[4] / "schemas"
+# JSON Schema lets 3.0 pass for an integer, and a comparison lets nan pass for any number.
+TYPES = jsonschema.Draft202012Validator.TYPE_CHECKER.redefine_many(
+    {
+        "integer": lambda _, value: isinstance(value, int) and not isinstance(value, bool),
+        "number": lambda _, value: (
+            isinstance(value, int | float)
+            and not isinstance(value, bool)
+            and abs(value) <= sys.float_info.max
+        ),
+    }
+)
+REPLACED = {  # keys of former versions: what to use now
+    "measure_kinematics": "remove it: kinematics are measured on the exported skeletons, whose "
+    "filter and cut-offs are those of filter_motion"
+}
+VALIDATOR = jsonschema.validators.extend(jsonschema.Draft202012Validator, type_checker=TYPES)
+
+
+def read(path: StrPath, schema: str) -> Content:
+    """Read a YAML file that a schema describes; an `InputError` has every fault, one line each."""
+    content = yaml_files.read(path)
+    found = faults(content, schema, path)
+    if found:
+        raise InputError(*found)
+    return content
+
+
+def faults(content: Content, schema: str, file: StrPath) -> list[str]:
+    """Return what a schema finds wrong, one line each: `file: key: expected ..., found ...`.
+
+    `schema` is the name of a file in workflow/schemas/, without `.schema.yaml`.
+    """
+    errors = _validator(schema).iter_errors(content)
+    return [
+        f"{file}: {line}"
+        for error in sorted(errors, key=lambda e: [str(at) for at in e.absolute_path])
+        for line in _lines(error)
+    ]
+
+
+def _rules(schema: str) -> Content:
+    """Read a schema by libyaml, which is many times as fast as `yaml_files`.
+
+    Hostile nesting would kill it: only for files of the project itself.
+    """
+    text = (SCHEMAS / f"{schema}.schema.yaml").read_text(encoding="utf-8")
+    return yaml.load(text, Loader=yaml.CSafeLoader)
+
+
+@functools.cache
+def _validator(schema: str) -> jsonschema.protocols.Validator:
+    """Return the validator of a kind of file; made once, as reading takes longer than checking."""
+    rules = _rules(schema)
+    if schema == "session":
+        steps = _rules("config")
+        rules["properties"]["override"] = _overridable(steps)
+        rules["$defs"] = steps["$defs"] | rules["$defs"]
+    elif schema == "config":
+        condition = rules["properties"]["conditions"]["additionalProperties"]["properties"]
+        condition["override"] = _overridable(rules)
+        virtual = _rules("session")["properties"]["virtual"]
+        condition["set"]["properties"] = virtual["properties"]
+        condition["vary"]["properties"] = {
+            key: {"type": "array", "minItems": 1, "items": value}
+            for key, value in virtual["properties"].items()
+        }
+    return VALIDATOR(rules)
+
+
+def _overridable(steps: Content) -> Content:
+    """Return the schema of `override`: step blocks without required keys, and some of the lists."""
+    blocks = {
+        key: {name: value for name, value in block.items() if name != "required"}
+        for key, block in steps["properties"].items()
+        if block.get("type") == "object" and key != "conditions"
+    }
+    lists = ("models", "calibrations", "take_calibrations", "fusions", "compared_fusions")
+    more = ("export_stages", "take_figures")
+    blocks |= {key: steps["properties"][key] for key in (*lists, *more)}
+    return {"type": "object", "additionalProperties": False, "properties": blocks}
+
+
+def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all values open
+    where = ".".join(_plain(str(part)) for part in error.absolute_path) or "top level"
+    if error.validator in ("additionalProperties", "propertyNames") and isinstance(
+        error.instance, dict
+    ):
+        yield from _key_lines(error, where)
+    elif error.validator == "required":
+        missing = [key for key in error.validator_value if key not in error.instance]
+        yield f"{where}: expected the key {error.message.split(' ')[0]}, missing {missing}; add it"
+    elif error.validator in ("oneOf", "anyOf"):
+        expected = error.schema.get("description", "another form")
+        yield f"{where}: expected {expected}, found {shown(error.instance)}"
+    else:
+        hint = error.schema.get("description")
+        wanted = f"{_wanted(error)} ({hint})" if hint else _wanted(error)
+        found = shown(error.instance)
+        if error.validator == "uniqueItems":
+            values = error.instance
+            twice = next(value for at, value in enumerate(values) if value in values[:at])
+            found = f"{shown(twice)} again"
+        yield f"{where}: expected {wanted}, found {found}"
+
+
+def _key_lines(error: Any, where: str) -> Iterator[str]:
+    known = list(error.schema.get("properties", {})) if isinstance(error.schema, dict) else []
+    if error.validator == "propertyNames" or not known:
+        yield (
+            f"{where}: expected names of {error.schema.get('description', 'a fixed form')}, "
+            f"{error.message}"
+        )
+        return
+    for key in error.instance:
+        if key not in known:
+            close = difflib.get_close_matches(key, known, n=1)
+            advice = f"did you mean {close[0]!r}?" if close else "remove it"
+            if key in REPLACED:
+                yield f"{where}: expected no key {key!r} any more, found it; {REPLACED[key]}"
+                continue
+            yield f"{where}: expected keys of {known}, found {key!r}; {advice}"
+
+
+def _wanted(error: Any) -> str:
+    words = {
+        "type": "a value of type {}",
+        "enum": "one of {}",
+        "minimum": "at least {}",
+        "maximum": "at most {}",
+        "exclusiveMinimum": "more than {}",
+        "exclusiveMaximum": "less than {}",
+        "pattern": "text that matches {}",
+        "minItems": "at least {} entries",
+        "maxItems": "at most {} entries",
+        "minProperties": "at least {} entries",
+        "multipleOf": "a multiple of {}",
+        "uniqueItems": "entries that differ",
+    }
+    return words.get(error.validator, error.validator + " {}").format(error.validator_value)
+
+
+def _plain(text: str) -> str:
+    """Return a text as it is, or quoted if it would break the line."""
+    return text if text.isprintable() else repr(text)
+
+
+def shown(value: object) -> str:
+    """Return a value as at most 80 characters of a line."""
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
