@@ -10,7 +10,7 @@ measure_arcs.
 rule correct_inertial:
     input:
         device_npz=paths.DEVICE,
-        skeleton_yaml=paths.skeleton(CONFIG, "mocopi27"),
+        skeleton_yaml=CONFIG / paths.SKELETON_YAML.format(skeleton="mocopi27"),
         vision_npz=of_job(devices.vision_file),
         sync_json=paths.DEVICE_CLOCKS,
     output:
@@ -34,7 +34,7 @@ rule align_bodies:
         device_npz=of_job(lambda job: devices.sources(job)[job["source"]].file),
         sync_json=paths.DEVICE_CLOCKS,
         events_json=of_job(devices.event_files),
-        derived_yaml=paths.derived_joints(CONFIG),
+        derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,
     output:
         body_npz=paths.BODY,
         frame_json=paths.BODY_FRAME,

@@ -52,7 +52,9 @@ NAME = "[a-z0-9][a-z0-9_-]*"
 
 try:
     STUDY = configuration.load(config, workflow.configfiles[-1], folder=CONFIG, root=Path.cwd())
-    PLANS = {name: plans.read(paths.plan(CONFIG, name)) for name in config["plans"]}
+    PLANS = {
+        name: plans.read(CONFIG / paths.PLAN_YAML.format(plan=name)) for name in config["plans"]
+    }
     future_dates.check([CONFIG, paths.EXTERNAL, *(f"data/{name}" for name in STUDY.sessions)])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))

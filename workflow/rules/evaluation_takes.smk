@@ -45,7 +45,7 @@ rule evaluate_kinematics:
     input:
         frames=paths.FRAME_MEASURES,
         summary=paths.MEASURES,
-        derived=paths.derived_joints(CONFIG),
+        derived=CONFIG / paths.DERIVED_JOINTS_YAML,
         truth=paths.TRUE_TAKE,
     output:
         errors_csv=paths.MEASURE_ERRORS,
@@ -63,7 +63,7 @@ rule evaluate_sources:
     input:
         body_npz=of_job(devices.bodies),
         truth_npz=paths.TRUE_TAKE,
-        derived_yaml=paths.derived_joints(CONFIG),
+        derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,
     output:
         errors_csv=paths.SOURCE_ERRORS,
         parts_csv=paths.ERROR_PARTS,
@@ -85,7 +85,7 @@ rule evaluate_body_frames:
         body_npz=of_job(devices.bodies, corrected=False),
         frame_json=of_job(devices.bodies, paths.BODY_FRAME, corrected=False),
         truth_npz=paths.TRUE_TAKE,
-        derived_yaml=paths.derived_joints(CONFIG),
+        derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,
     output:
         errors_csv=paths.BODY_FRAME_ERRORS,
     log:
@@ -157,7 +157,7 @@ rule evaluate_round_trip:
         pose2d_npz=of_job(takes.keypoints_2d),
         sync_json=paths.CAMERA_CLOCKS,
         skeleton_yaml=of_job(Job.skeleton_file),
-        derived_yaml=paths.derived_joints(CONFIG),
+        derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,
         truth_npz=of_job(evaluation.true_take),
     output:
         rows_csv=paths.ROUND_TRIP,

@@ -124,7 +124,7 @@ rule draw_badminton_fig12:
 rule draw_badminton_tab01:
     input:
         rows_csv=paths.ROUND_TRIP,
-        published_csv=paths.published(CONFIG, "badminton_tab01"),
+        published_csv=CONFIG / paths.PUBLISHED_CSV.format(table="badminton_tab01"),
     output:
         **calibrated_figure("badminton_tab01", "badminton_tab01"),
     log:

@@ -8,7 +8,7 @@ Steps: draw_court_points, draw_coverage, draw_growth, draw_error_map, draw_captu
 
 rule draw_court_points:
     input:
-        court_yaml=paths.court(CONFIG, "{court}"),
+        court_yaml=CONFIG / paths.COURT_YAML,
     output:
         **study_figure(
             "court_points.{court}",

@@ -45,7 +45,7 @@ rule draw_skeleton_plates:
     input:
         body_npz=of_job(devices.bodies),
         skeleton_yaml=of_job(devices.plates),
-        derived_yaml=paths.derived_joints(CONFIG),
+        derived_yaml=CONFIG / paths.DERIVED_JOINTS_YAML,
     output:
         **device_figure("skeleton_plates", "skeleton_plates"),
     log:

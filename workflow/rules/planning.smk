@@ -7,8 +7,8 @@ Steps: plan_session.
 
 rule plan_session:
     input:
-        plan_yaml=paths.plan(CONFIG, "{plan}"),
-        court_yaml=lambda w: paths.court(CONFIG, PLANS[w.plan].court),
+        plan_yaml=CONFIG / paths.PLAN_YAML,
+        court_yaml=lambda w: CONFIG / paths.COURT_YAML.format(court=PLANS[w.plan].court),
     output:
         **plan_figure("growth"),
         **plan_figure("map"),

@@ -15,7 +15,7 @@ LOOK_AT = [paths.REPORT, paths.PLAYERS_TABLE, paths.CALIBRATION_TABLE]
 
 def record_provenance():
     """Write the sidecars of all files that are newer than theirs."""
-    read = [paths.session(CONFIG, name) for name in config["sessions"]]
+    read = [CONFIG / paths.SESSION_YAML.format(session=name) for name in config["sessions"]]
     read = [CONFIG / "external.yaml", CONFIG / "models.yaml", *read]
     asked(run.record, workflow, REPOSITORY, config, map(str, read))
 

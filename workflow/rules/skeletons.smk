@@ -108,7 +108,7 @@ rule correct_joints:
         filtered=paths.POSE3D_FILTERED,
         cutoffs=paths.CUTOFFS,
         skeleton=of_job(Job.skeleton_file),
-        offsets=lambda w: paths.joint_offsets(CONFIG, w.model),
+        offsets=lambda w: CONFIG / paths.OFFSETS_CSV.format(model=w.model),
     output:
         corrected_npz=paths.POSE3D_CORRECTED,
     log:
@@ -142,7 +142,7 @@ rule measure_kinematics:
         raw=paths.POSE3D,
         cutoffs=paths.CUTOFFS,
         skeleton=of_job(Job.skeleton_file),
-        derived=paths.derived_joints(CONFIG),
+        derived=CONFIG / paths.DERIVED_JOINTS_YAML,
     output:
         frames_csv=paths.FRAME_MEASURES,
         summary_csv=paths.MEASURES,

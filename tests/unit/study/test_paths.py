@@ -85,12 +85,12 @@ def test_a_figure_has_three_formats():
 def test_files_of_the_configuration_exist():
     config = Path(__file__).parents[3] / "config"
     found = [
-        paths.court(config, "badminton"),
-        paths.skeleton(config, "mocopi27"),
-        paths.joint_offsets(config, "blazepose-full"),
-        paths.derived_joints(config),
-        paths.published(config, "badminton_tab01"),
-        paths.plan(config, "plain-a"),
-        paths.session(config, "plain-a"),
+        config / paths.COURT_YAML.format(court="badminton"),
+        config / paths.SKELETON_YAML.format(skeleton="mocopi27"),
+        config / paths.OFFSETS_CSV.format(model="blazepose-full"),
+        config / paths.DERIVED_JOINTS_YAML,
+        config / paths.PUBLISHED_CSV.format(table="badminton_tab01"),
+        config / paths.PLAN_YAML.format(plan="plain-a"),
+        config / paths.SESSION_YAML.format(session="plain-a"),
     ]
     assert [path for path in found if not path.is_file()] == []

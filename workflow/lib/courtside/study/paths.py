@@ -3,12 +3,11 @@
 Fill a pattern with `str.format`. Names in braces are wildcards: `session`, `take`, `camera`,
 `model` (a pose network), `calibration` and `fusion` (see `courtside.study.methods`); `mapper`,
 `n_images` and `offset` of a structure from motion, ... Log files are named in the rules, each by
-the one rule that writes it. Paths below the folder config/ are functions of that folder.
+the one rule that writes it.
 """
 
 from collections.abc import Iterable
 from itertools import product
-from pathlib import Path
 
 RESULTS = "results"
 SESSION = "results/{session}"
@@ -144,6 +143,15 @@ PLAYERS_TABLE = "results/figures/players.csv"
 NETWORK_PAIRS = "results/figures/agreement.pairs.csv"
 NETWORK_AGREEMENT = "results/figures/agreement.table.csv"
 
+# Below the folder config/.
+COURT_YAML = "courts/{court}.yaml"
+SKELETON_YAML = "skeletons/{skeleton}.yaml"
+OFFSETS_CSV = "joint_offsets/{model}.csv"  # from a network's joints to the anatomical ones
+DERIVED_JOINTS_YAML = "derived_joints.yaml"  # joints that are computed from others
+PUBLISHED_CSV = "published/{table}.csv"
+PLAN_YAML = "plans/{plan}.yaml"
+SESSION_YAML = "sessions/{session}.yaml"
+
 # Of a run.
 REPORT = "results/report.html"
 RUN = "results/run"
@@ -165,38 +173,3 @@ def each(pattern: str, **values: str | int | Iterable[str]) -> list[str]:
 def formats(stems: list[str]) -> list[str]:
     """Return the files of figures, of every format."""
     return [f"{stem}.{suffix}" for stem in stems for suffix in FORMATS]
-
-
-def court(config: Path, name: str) -> Path:
-    """Return the file of a court."""
-    return config / "courts" / f"{name}.yaml"
-
-
-def skeleton(config: Path, name: str) -> Path:
-    """Return the file of a skeleton."""
-    return config / "skeletons" / f"{name}.yaml"
-
-
-def joint_offsets(config: Path, model: str) -> Path:
-    """Return the file of how far a network's joints are from the anatomical ones."""
-    return config / "joint_offsets" / f"{model}.csv"
-
-
-def derived_joints(config: Path) -> Path:
-    """Return the file of joints that are computed from others."""
-    return config / "derived_joints.yaml"
-
-
-def published(config: Path, name: str) -> Path:
-    """Return a table of published numbers."""
-    return config / "published" / f"{name}.csv"
-
-
-def plan(config: Path, name: str) -> Path:
-    """Return the file of a planned session."""
-    return config / "plans" / f"{name}.yaml"
-
-
-def session(config: Path, name: str) -> Path:
-    """Return the file of a session."""
-    return config / "sessions" / f"{name}.yaml"

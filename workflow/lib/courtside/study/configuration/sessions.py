@@ -212,16 +212,16 @@ class Study:
 
         Joints are corrected only of networks whose offsets were estimated.
         """
-        estimated = paths.joint_offsets(self.folder, model).is_file()
+        estimated = (self.folder / paths.OFFSETS_CSV.format(model=model)).is_file()
         return paths.STAGES if estimated else paths.STAGES[:-1]
 
     def court_file(self, session: Session) -> Path | None:
         """Return the file of a session's court, None without a court."""
-        return paths.court(self.folder, session.court) if session.court else None
+        return self.folder / paths.COURT_YAML.format(court=session.court) if session.court else None
 
     def skeleton_file(self, model: str) -> Path:
         """Return the file of the skeleton of a network."""
-        return paths.skeleton(self.folder, self.models[model].skeleton)
+        return self.folder / paths.SKELETON_YAML.format(skeleton=self.models[model].skeleton)
 
 
 def model(name: str, content: dict[str, Any]) -> Model:

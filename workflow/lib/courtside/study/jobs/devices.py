@@ -62,7 +62,7 @@ def bodies(job: Job, pattern: str = paths.BODY, corrected: bool = True) -> list[
 
 def skeleton_file(job: Job) -> Path:
     """Return the skeleton that a device comes with."""
-    return paths.skeleton(job.study.folder, OF_KIND[job.device.kind])
+    return job.study.folder / paths.SKELETON_YAML.format(skeleton=OF_KIND[job.device.kind])
 
 
 def colour_frames(job: Job) -> str | list:
@@ -156,7 +156,7 @@ def events(job: Job) -> str:
 def plates(job: Job) -> list[Path]:
     """Return the skeletons that are drawn side by side, those of a take's own sources included."""
     names = dict.fromkeys((*PLATES, *skeletons(job).values()))
-    return [paths.skeleton(job.study.folder, name) for name in names]
+    return [job.study.folder / paths.SKELETON_YAML.format(skeleton=name) for name in names]
 
 
 def thesis_file(study: Study, what: str) -> str:

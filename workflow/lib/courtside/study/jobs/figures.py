@@ -67,7 +67,7 @@ def seen_and_made(job: Job) -> dict[str, Any]:
         "sync": job.fill(paths.CAMERA_CLOCKS),
         "videos": list(job.take.videos.values()),
         "skeleton": job.skeleton_file(),
-        "derived": paths.derived_joints(job.study.folder),
+        "derived": job.study.folder / paths.DERIVED_JOINTS_YAML,
     }
 
 

@@ -58,7 +58,7 @@ def layer_settings(job: Job) -> list[dict[str, Any]]:
 def skeleton_files(job: Job) -> list[Path]:
     """Return the skeletons of a viewer's layers, each once, in their order."""
     names = dict.fromkeys(layer["of"] for layer in layers(job))
-    return [paths.skeleton(job.study.folder, name) for name in names]
+    return [job.study.folder / paths.SKELETON_YAML.format(skeleton=name) for name in names]
 
 
 def viewed_cameras(job: Job) -> str | list:

@@ -44,11 +44,7 @@ class Wildcards(SimpleNamespace):
 
 
 def content(study: Study, rules: Iterable[Any], captions: str) -> dict[str, Any]:
-    """Return all that the report is made of.
-
-    `rules` are all of Snakemake's, of which those that draw figures know the captions; `captions`
-    is the folder of these.
-    """
+    """Return what the report is made of, by Snakemake's `rules` and the folder of `captions`."""
     rules = list(rules)
     sessions = [session for session in study.sessions.values() if not session.condition]
     wanted = calibration.every_study_figure(study) + together.every_players_figure(study)
@@ -125,7 +121,10 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
     ways = [Calibration.parse(name) for name in session.calibrations()]
     way = next(iter(session.take_calibrations()), ways[0].name if ways else None)
     mapped = bool(session.walks) and any(one.kind in ("sfm", "sim3") for one in ways)
-    variant = _variant(session, way)
+    # The reported structure from motion: global, with as many images as the calibration.
+    mapped_by = Calibration.parse(way).variant if way else None
+    first = session.parameters["sweep"]["n_images"][0]
+    variant = Variant("global", mapped_by.n_images if mapped_by else first)
     known = {"session": session.name, **vars(variant)}
     quality = {
         one.name: paths.CALIBRATION_QUALITY.format(**known, calibration=one.name) for one in ways
@@ -150,13 +149,6 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "files": {"quality": quality, **(model if mapped else {})},
         "takes": [_take(study, session, take) for take in session.takes.values()],
     }
-
-
-def _variant(session: Session, way: str | None) -> Variant:
-    """Return the reported structure from motion: global, with as many images as the calibration."""
-    variant = Calibration.parse(way).variant if way else None
-    first = session.parameters["sweep"]["n_images"][0]
-    return Variant("global", variant.n_images if variant else first)
 
 
 def _overrides(study: Study, session: Session) -> dict[str, dict]:
