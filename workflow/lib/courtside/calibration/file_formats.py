@@ -200,14 +200,11 @@ def _attributes(where: str, element: ElementTree.Element, tag: str, keys: str) -
 
 
 def _read_opencv(path: Path, text: str) -> list[Camera]:
-    try:
+    with reading(
+        path, "a file of OpenCV's FileStorage", "check it", kinds=(cv2.error, SystemError)
+    ):
         storage = cv2.FileStorage(text, cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
         root = storage.root()
-    except (cv2.error, SystemError) as error:
-        found = camera_fields.short(error)
-        raise InputError(
-            f"{path}: expected a file of OpenCV's FileStorage, found {found}"
-        ) from error
     if _child(root, OPENCV_KEYS["matrix"]) is not None:
         return [_from_opencv(path, root, path.stem, root)]
     maps = [(key, root.getNode(key)) for key in (root.keys() if root.isMap() else ())]

@@ -60,7 +60,7 @@ def _shortened(text: str) -> str:
 def said(error: BaseException) -> str:
     """Return the message of a library's error, or else the error's name, as one short line."""
     try:
-        text = " ".join(str(error).split())
+        text = " ".join(str(getattr(error, "strerror", None) or error).split())
     except ValueError:  # of a number too long to be written
         text = ""
     return text[:SHORT] or type(error).__name__

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 from courtside.video.decoder import decode_checked, display_matrix, pictures
 from courtside.video.packets import Listing, list_packets
@@ -143,14 +143,12 @@ def write_png(path: StrPath, image: NDArray) -> None:
     done, data = cv2.imencode(".png", image)
     if not done:
         raise ValueError(f"OpenCV cannot write a picture of shape {image.shape} as PNG")
-    try:
-        with atomic(path) as temporary:
-            temporary.write_bytes(data)
-    except OSError as error:
-        raise InputError(
-            f"{path}: expected to write {len(data)} bytes, found {error.strerror}: "
-            "free or allow the space"
-        ) from error
+    what = f"to write {len(data)} bytes"
+    with (
+        reading(path, what, "free or allow the space", kinds=(OSError,)),
+        atomic(path) as temporary,
+    ):
+        temporary.write_bytes(data)
 
 
 def sharpness(image: NDArray) -> float:

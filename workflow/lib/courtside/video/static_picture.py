@@ -78,19 +78,15 @@ def check_still(
 
 
 def static_picture(
-    camera: str,
-    source: StrPath,
-    images: Sequence[NDArray],
-    *,
-    max_shift_px: float,
-    max_zoom_percent: float,
+    camera: str, source: StrPath, images: Sequence[NDArray], **limits: float
 ) -> tuple[NDArray, Movement]:
     """Make the static picture of a fixed camera, after checking that it stood still meanwhile.
 
     Of images (H, W, 3) uint8, BGR, spread over a recording, in order, it is the temporal median.
     Also return the movement between the medians of the first and of the last third, which
-    `check_still` checks; it is unknown for fewer than three pictures, which are not checked. Raises
-    `InputError` if the camera moved, that cannot be told, or the median is mostly black.
+    `check_still` checks within its `**limits`; it is unknown for fewer than three pictures, which
+    are not checked. Raises `InputError` if the camera moved, that cannot be told, or the median is
+    mostly black.
     """
     image, third, found = temporal_median(images), len(images) // 3, unknown()
     check_light(source, image)
@@ -99,10 +95,9 @@ def static_picture(
             camera,
             temporal_median(images[:third]),
             temporal_median(images[-third:]),
-            max_shift_px=max_shift_px,
-            max_zoom_percent=max_zoom_percent,
             where=f"the first and the last third of {source}",
             mend="film it again without touching the camera",
+            **limits,
         )
     return image, found
 

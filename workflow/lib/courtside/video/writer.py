@@ -10,9 +10,10 @@ from itertools import chain
 import av
 import cv2
 import numpy as np
+from av.error import FFmpegError
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import StrPath, reading
 from courtside.study.execution.files import atomic
 
 KEYFRAME_EVERY = 12  # frames: seeking decodes no more than these
@@ -44,13 +45,12 @@ def write_video(
         raise ValueError(f"{path}: expected at least one frame, found none")
     _check(first, np.shape(first))
     rate = Fraction(rate_hz).limit_denominator(LARGEST_DENOMINATOR)
-    try:
-        with atomic(path) as temporary, av.open(str(temporary), "w") as container:
-            return _encode(container, chain([first], frames), first.shape, rate, crf, effort)
-    except av.error.FFmpegError as error:
-        raise InputError(
-            f"{path}: expected to write a video, found {error.strerror}: free or allow the space"
-        ) from error
+    with (
+        reading(path, "to write a video", "free or allow the space", kinds=(FFmpegError,)),
+        atomic(path) as temporary,
+        av.open(str(temporary), "w") as container,
+    ):
+        return _encode(container, chain([first], frames), first.shape, rate, crf, effort)
 
 
 def _encode(container, frames, shape, rate, crf, effort) -> int:

@@ -20,7 +20,7 @@ from courtside.pose.conversion.tflite_tensors import (
     names_of,
     read_tensor,
 )
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, reading
 
 IDENTIFIER = b"TFL3"  # bytes 4 to 7 of every TFLite file
 SCHEMA_VERSION = 3
@@ -89,14 +89,9 @@ def read(path: StrPath) -> Graph:
     """
     path = Path(path)
     content = _content(path)
-    try:
+    advice = "compare its checksum with the source's, or use another network"
+    with reading(path, "a whole TFLite network of floats", advice, kinds=DAMAGED):
         return _graph(path, content)
-    except DAMAGED as error:
-        found = " ".join(str(error).split())
-        raise InputError(
-            f"{path}: expected a whole TFLite network of floats, found {found}; "
-            "compare its checksum with the source's, or use another network"
-        ) from None
 
 
 def keep_outputs(graph: Graph, names: Iterable[str]) -> Graph:
@@ -123,19 +118,14 @@ def keep_outputs(graph: Graph, names: Iterable[str]) -> Graph:
 
 
 def _content(path: Path) -> bytes:
-    try:
-        with path.open("rb") as stream:
-            head = stream.read(8)
-            if head[4:] != IDENTIFIER:
-                raise InputError(
-                    f"{path}: expected a TFLite file, found one that starts {head!r}; "
-                    "correct its name or fetch it again"
-                )
-            rest = stream.read(MAX_FILE_BYTES)
-    except OSError as error:
-        raise InputError(
-            f"{path}: expected a TFLite file, found: {error.strerror}; correct its name or fetch it"
-        ) from None
+    advice = "correct its name or fetch it again"
+    with reading(path, "a TFLite file", advice, kinds=(OSError,)), path.open("rb") as stream:
+        head = stream.read(8)
+        if head[4:] != IDENTIFIER:
+            raise InputError(
+                f"{path}: expected a TFLite file, found one that starts {head!r}; {advice}"
+            )
+        rest = stream.read(MAX_FILE_BYTES)
     if len(rest) == MAX_FILE_BYTES:
         raise InputError(
             f"{path}: expected a network below {MAX_FILE_BYTES} bytes, found more; use a smaller "

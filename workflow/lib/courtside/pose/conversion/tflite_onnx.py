@@ -9,7 +9,7 @@ from onnx import helper
 from courtside.pose.conversion import tflite_graph, tflite_operators
 from courtside.pose.conversion.onnx_writer import Writer
 from courtside.pose.conversion.tflite_graph import Graph
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic, sha256
 
 OPSET = 17
@@ -90,14 +90,9 @@ def _check(model: onnx.ModelProto, writer: Writer) -> None:
     bare.CopyFrom(model)
     for output in bare.graph.output:
         output.type.tensor_type.ClearField("shape")
-    try:
+    with reading(path, "a consistent network", "fetch it again", kinds=ONNX_FAULTS):
         onnx.checker.check_model(model)
         inferred = onnx.shape_inference.infer_shapes(bare, check_type=True, strict_mode=True)
-    except ONNX_FAULTS as error:
-        found = " ".join(str(error).split())
-        raise InputError(
-            f"{path}: expected a consistent network, found: {found}; fetch it again"
-        ) from None
     shapes = {
         value.name: tuple(dimension.dim_value for dimension in value.type.tensor_type.shape.dim)
         for value in inferred.graph.value_info

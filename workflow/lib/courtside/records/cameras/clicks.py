@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
 COLUMNS = ("camera", "point", "frame_idx", "x_px", "y_px")
@@ -59,14 +59,13 @@ def write(path: StrPath, clicks: Mapping[str, NDArray], points: Sequence[str]) -
 
 def _rows(path: StrPath) -> list[tuple[int, dict[str, str]]]:
     """Return (line number, row) of every row, cells stripped."""
-    try:
-        with Path(path).open(newline="", encoding="utf-8-sig") as stream:
-            table = csv.reader(stream, strict=True)
-            lines = [(table.line_num, [cell.strip() for cell in row]) for row in table]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(
-            f"{path}: expected a readable CSV file, found: {error}; save it again as CSV (UTF-8)"
-        ) from None
+    kinds = (OSError, UnicodeDecodeError, csv.Error)
+    with (
+        reading(path, "a readable CSV file", "save it again as CSV (UTF-8)", kinds=kinds),
+        Path(path).open(newline="", encoding="utf-8-sig") as stream,
+    ):
+        table = csv.reader(stream, strict=True)
+        lines = [(table.line_num, [cell.strip() for cell in row]) for row in table]
     lines = [(number, row) for number, row in lines if any(row)]
     header = lines[0][1] if lines else []
     if sorted(header) != sorted(COLUMNS):
