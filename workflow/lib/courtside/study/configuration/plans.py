@@ -28,9 +28,9 @@ class PlannedWalk:
     """The walk of the mobile camera; its other fields are as of `PlannedCamera`."""
 
     way_m: tuple  # places on the floor that it passes, first and last included
-    height_m: float
     aim_m: tuple
     size_px: tuple
+    height_m: float = HEIGHT_M
     focal_px: float | None = None
     fov_deg: float | None = None
 
@@ -42,13 +42,13 @@ class Plan:
     description: str
     court: str
     hall_m: tuple  # two opposite corners
-    texture: str  # a key of `courtside.calibration.planning.tie_points.TEXTURES`
     cameras: dict
     walk: PlannedWalk
     n_images: tuple  # numbers of bridging images, increasing
+    texture: str = TEXTURE  # a key of `courtside.calibration.planning.tie_points.TEXTURES`
     # Scatter of a click per axis at a width of 3840 px, where it is not the study's
-    click_sigma_px: float | None
-    target_cm: float | None  # error that is wanted
+    click_sigma_px: float | None = None
+    target_cm: float | None = None  # error that is wanted
 
 
 def read(path: StrPath) -> Plan:
@@ -56,22 +56,12 @@ def read(path: StrPath) -> Plan:
     content = schemas.read(path, "plan")
     if faults := list(_faults(path, content)):
         raise InputError(*faults)
-    walk = {key: _frozen(value) for key, value in content["walk"].items()}
+    plan = _frozen(content)
+    walk, cameras = plan.pop("walk"), plan.pop("cameras")
     way_m = (walk.pop("from_m"), *walk.pop("via_m", ()), walk.pop("to_m"))
-    return Plan(
-        description=content["description"],
-        court=content["court"],
-        hall_m=_frozen(content["hall_m"]),
-        texture=content.get("texture", TEXTURE),
-        cameras={
-            name: PlannedCamera(**{key: _frozen(value) for key, value in camera.items()})
-            for name, camera in content["cameras"].items()
-        },
-        walk=PlannedWalk(**({"height_m": HEIGHT_M} | walk), way_m=way_m),
-        n_images=tuple(sorted(content["n_images"])),
-        click_sigma_px=content.get("click_sigma_px"),
-        target_cm=content.get("target_cm"),
-    )
+    plan["n_images"] = tuple(sorted(plan["n_images"]))
+    fixed = {name: PlannedCamera(**camera) for name, camera in cameras.items()}
+    return Plan(**plan, cameras=fixed, walk=PlannedWalk(**walk, way_m=way_m))
 
 
 def _faults(path: StrPath, content: dict[str, Any]) -> Iterator[str]:
@@ -103,4 +93,6 @@ def _faults(path: StrPath, content: dict[str, Any]) -> Iterator[str]:
 
 
 def _frozen(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _frozen(part) for key, part in value.items()}
     return tuple(_frozen(part) for part in value) if isinstance(value, list) else value

@@ -19,6 +19,8 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
     ".json": "nuitrack",
     ".csv": "nuitrack",
 }
+# Of a take, as its record has them.
+AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d")
 
 
 def is_there(path: Path) -> bool:
@@ -34,8 +36,7 @@ def session(
 ) -> Session:
     """Build a `Session` from its checked YAML file.
 
-    `parameters` is the study's configuration, whose steps `override` in `content` changes; relative
-    paths start from `root`.
+    Its `override` changes steps of `parameters`, the study's; relative paths start from `root`.
     """
     clicked, unclicked = _clicks(content, root)
     subjects, walks = _subjects(content), content.get("walks", {}).items()
@@ -137,12 +138,7 @@ def _take(
         devices=_devices(content if filmed is None else filmed, there),
         subjects=there,
         trim_s=tuple(content["trim_s"]) if "trim_s" in content else None,
-        synchronised=content.get("synchronised", False),
-        steady=content.get("steady", False),
-        virtual=content.get("virtual"),
-        clocks=content.get("clocks", {}),
-        pose2d=content.get("pose2d", {}),
-        pose3d=content.get("pose3d", {}),
+        **{key: content[key] for key in AS_STATED if key in content},
     )
 
 
