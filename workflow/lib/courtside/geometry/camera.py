@@ -26,8 +26,7 @@ NEGLIGIBLE = 1e-30  # dividing by a coefficient this much smaller than the other
 class Camera:
     """A calibrated camera with OpenCV's five distortion coefficients.
 
-    Raises `ValueError` if a shape or value is impossible, or the rotation matrix is not orthonormal
-    to 1e-6.
+    Raises `ValueError` if a shape or value is impossible, or the rotation not orthonormal to 1e-6.
     """
 
     name: str
@@ -244,10 +243,7 @@ def write_toml(path: StrPath, cameras: Sequence[Camera], *, source: str, unit: s
 
 
 def distort(dist: NDArray, normalised: NDArray) -> NDArray:
-    """Return where the lens shows points (..., 2) of the z = 1 plane.
-
-    Brown 1971, in OpenCV's order of coefficients.
-    """
+    """Return where a lens shows points (..., 2) of the plane z = 1 (Brown 1971, OpenCV's order)."""
     x, y = normalised[..., 0], normalised[..., 1]
     square, product = x * x + y * y, 2 * x * y
     _, _, p1, p2, _ = dist

@@ -3,6 +3,8 @@
 Depth images hold the distance along the camera's axis, metres; 0 or NaN where nothing was measured.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,10 +12,7 @@ from courtside.geometry.camera import Camera, project, undistort
 
 
 def rays(camera: Camera) -> NDArray:
-    """Return the viewing directions (H, W, 2) of a camera's pixels on the z = 1 plane.
-
-    NaN where the lens model has none.
-    """
+    """Return viewing directions (H, W, 2) of pixels on the plane z = 1; NaN where there is none."""
     columns, rows = np.meshgrid(np.arange(camera.size[0]), np.arange(camera.size[1]))
     return undistort(camera, np.stack([columns, rows], axis=-1))
 
@@ -32,11 +31,5 @@ def points_in_colour(
     x, y = depth_rays[..., 0] * depth_m, depth_rays[..., 1] * depth_m
     axes = zip(rotation, shift, strict=True)
     xyz = np.stack([r[0] * x + r[1] * y + r[2] * depth_m + t for r, t in axes], axis=-1)
-    return project(_at_origin(colour), xyz), np.where(xyz[..., 2] > 0, xyz[..., 2], np.nan)
-
-
-def _at_origin(camera: Camera) -> Camera:
-    """Return the camera at the origin of the world, along its axes."""
-    if np.array_equal(camera.cam_from_world, np.eye(3, 4)):
-        return camera
-    return Camera(camera.name, camera.size, camera.K, camera.dist, np.eye(3, 4))
+    colour = replace(colour, cam_from_world=np.eye(3, 4))
+    return project(colour, xyz), np.where(xyz[..., 2] > 0, xyz[..., 2], np.nan)

@@ -27,8 +27,7 @@ def rodrigues_from_rotation(rotations: ArrayLike) -> NDArray:
 def nearest_rotation(matrix: NDArray) -> NDArray:
     """Return the rotation (3, 3) nearest to a printed one: its polar factor.
 
-    Raises `ValueError` if `matrix` is a reflection, or differs from a rotation by more than 1e-4 in
-    an entry.
+    Raises `ValueError` for a reflection, and where an entry differs by more than 1e-4.
     """
     left, _, right = np.linalg.svd(matrix)
     rotation = left @ right
@@ -74,10 +73,7 @@ def left_jacobians(vectors: NDArray) -> NDArray:
 
 
 def interpolate(time_s: NDArray, rotations: NDArray, wanted_s: NDArray) -> NDArray:
-    """Interpolate rotations (T, ..., 3, 3) at times (N,) by slerp.
-
-    Times outside the increasing samples take the nearest one.
-    """
+    """Interpolate rotations (T, ..., 3, 3) at times (N,) by slerp; beyond the ends, the nearest."""
     before, share = interpolation.shares(time_s, wanted_s)
     start, stop = rotations[before], rotations[np.minimum(before + 1, len(time_s) - 1)]
     step = rodrigues_from_rotation(np.swapaxes(start, -1, -2) @ stop)
@@ -90,10 +86,7 @@ def unit_vector(vector: NDArray) -> NDArray:
 
 
 def swing(start: NDArray, end: NDArray) -> NDArray:
-    """Return the smallest rotation (3, 3) that turns one unit vector into another.
-
-    For opposite vectors it is one of many.
-    """
+    """Return the smallest rotation (3, 3) of a unit vector to another; one of many if opposite."""
     cosine = start @ end
     if cosine < NEARLY_OPPOSITE:
         aside = unit_vector(np.cross(start, NO_TURN[np.argmin(np.abs(start))]))

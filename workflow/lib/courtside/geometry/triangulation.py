@@ -173,7 +173,10 @@ def _select_and_refine(
     xyz = _linear(views)
     bad = np.flatnonzero(((views.distance(xyz) > limit_px) & (views.weight > 0)).any(axis=0))
     if len(bad):
-        xyz[bad] = _graduate(views.of(bad), xyz[bad], fade_px)
+        worst, scale_px = views.of(bad), START * fade_px
+        while scale_px > fade_px:
+            xyz[bad] = worst.stepped(xyz[bad], _faded(worst, xyz[bad], scale_px, np.inf))
+            scale_px /= GRADUATION
     for _ in range(SETTLING):
         xyz = views.stepped(xyz, _faded(views, xyz, fade_px, WIDEST * limit_px))
     accepted = _accept(views.distance(xyz), views.weight > 0, limit_px, min_views)
@@ -193,14 +196,6 @@ def _accept(error: NDArray, usable: NDArray, limit_px: float, min_views: int) ->
     error = np.where(usable, error, np.inf)
     enough_px = np.sort(error, axis=0)[min_views - 1]
     return error <= np.clip(enough_px, limit_px, WIDEST * limit_px)
-
-
-def _graduate(views: Views, xyz: NDArray, fade_px: float) -> NDArray:
-    scale = START * fade_px
-    while scale > fade_px:
-        xyz = views.stepped(xyz, _faded(views, xyz, scale, np.inf))
-        scale /= GRADUATION
-    return xyz
 
 
 def _faded(views: Views, xyz: NDArray, scale_px: float, widest_px: float) -> NDArray:
@@ -226,10 +221,7 @@ def reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDA
 
 
 class Views:
-    """Keypoints of C cameras on the normalised plane.
-
-    Made of `xy` (C, N, 2) px and `weight` (C, N) in px^-2, relative to score 1.
-    """
+    """Keypoints of C cameras: `xy` (C, N, 2) px, and `weight` (C, N) in px^-2, 1 for score 1."""
 
     def __init__(self, cameras: Sequence[Camera], xy: NDArray, weight: NDArray) -> None:
         self.xy = np.stack([undistort(c, points) for c, points in zip(cameras, xy, strict=True)])

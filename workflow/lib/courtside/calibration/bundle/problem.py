@@ -101,10 +101,7 @@ def without_points(
     height_px: ArrayLike,
     lens_of_image: ArrayLike | None = None,
 ) -> Network:
-    """Return a network of V images without flex, points or prior knowledge.
-
-    By default each image has a lens of its own.
-    """
+    """Return V images without flex, points or prior; by default each has a lens of its own."""
     n_images, nothing = len(cam_from_world), np.zeros(0)
     return Network(
         cam_from_world=cam_from_world,
@@ -159,10 +156,7 @@ def _residuals(network: Network, distorted: NDArray) -> NDArray:
 
 
 def linearised(network: Network) -> tuple[NDArray, NDArray, NDArray]:
-    """Return `residuals` and their derivatives.
-
-    These are by `Network.columns` (M, 2, 19) and by the point (M, 2, 3).
-    """
+    """Return `residuals`, with derivatives by `columns` (M, 2, 19) and by point (M, 2, 3)."""
     still, in_cam, normalised, distorted = _see(network)
     lens = _lens(network)
     # Of the point in the camera's frame.

@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -104,19 +104,11 @@ def _descend(network, normal, quadratic, damping, hold) -> tuple[Network, float 
     step = np.zeros(len(normal.active))
     step[normal.active] = part
     moved = network.moved(step, normal.back(part))
-    if hold:
-        moved = _in_front(moved, network)
+    if hold:  # points that would be behind an image stay where they were
+        stay = moved.point_idx[~np.isfinite(problem.residuals(moved)).all(axis=1)]
+        moved.xyz[stay] = network.xyz[stay]
     trial = cost(moved, quadratic)
     return moved, trial if trial <= normal.cost else None
-
-
-def _in_front(moved: Network, network: Network) -> Network:
-    """Return a moved network whose points stay where they were if they would be behind an image."""
-    behind = ~np.isfinite(problem.residuals(moved)).all(axis=1)
-    xyz = moved.xyz.copy()
-    stay = np.unique(moved.point_idx[behind])
-    xyz[stay] = network.xyz[stay]
-    return replace(moved, xyz=xyz)
 
 
 def cost(network: Network, quadratic: Quadratic | None = None) -> float:

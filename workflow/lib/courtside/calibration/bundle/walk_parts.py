@@ -33,19 +33,14 @@ def split(network: Network, fixed: Sequence[int], images_per_part: int) -> list[
     """
     walked = np.setdiff1d(np.arange(len(network.cam_from_world)), fixed)
     n_parts = max(1, round(len(walked) / images_per_part))
-    parts = []
+    parts, every_point = [], np.ones(len(network.xyz), dtype=bool)
     for first in range(n_parts):
         images = np.sort(np.concatenate([np.asarray(fixed, dtype=int), walked[first::n_parts]]))
-        at = np.searchsorted(images, fixed)
-        parts.append(Part(images, at, _of_images(network, images)))
+        mine = selection.select(network, every_point, np.isin(network.image_idx, images))
+        per_image = {name: getattr(network, name)[images] for name in PER_IMAGE}
+        mine = replace(mine, image_idx=np.searchsorted(images, mine.image_idx), **per_image)
+        parts.append(Part(images, np.searchsorted(images, fixed), mine))
     return parts
-
-
-def _of_images(network: Network, images: NDArray) -> Network:
-    every_point = np.ones(len(network.xyz), dtype=bool)
-    mine = selection.select(network, every_point, np.isin(network.image_idx, images))
-    per_image = {name: getattr(network, name)[images] for name in PER_IMAGE}
-    return replace(mine, image_idx=np.searchsorted(images, mine.image_idx), **per_image)
 
 
 def centres(parts: Sequence[Part]) -> NDArray:

@@ -176,7 +176,9 @@ def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Propos
         if not reason:
             off, alone = place - expected[at], covariance
             if view.court.xyz[at, 2] == 0:
-                place, covariance = _with_camera(place, covariance, expected[at])
+                # Together with where the camera, moved to fit all lines, has it.
+                gain = covariance @ np.linalg.inv(covariance + CAMERA_PX**2 * np.eye(2))
+                place, covariance = place - gain @ off, covariance - gain @ covariance
             sigma = float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
             allowed = alone + _model_error(view, at) ** 2 * np.eye(2)
             reason = _why_not(off, allowed, sigma, max_sigma_px)
@@ -184,12 +186,6 @@ def _checked(view: View, found: Sequence[_Found], max_sigma_px: float) -> Propos
                 xy[at], sigma_px[at], confidence[at] = place, sigma, share / (1 + sigma**2)
         reasons.append(reason)
     return Proposals(xy, sigma_px, confidence, tuple(reasons), view.camera)
-
-
-def _with_camera(place: NDArray, covariance: NDArray, expected: NDArray) -> tuple[NDArray, NDArray]:
-    """Combine the place by the edges near it with that by the camera, moved to fit all lines."""
-    gain = covariance @ np.linalg.inv(covariance + CAMERA_PX**2 * np.eye(2))
-    return place + gain @ (expected - place), covariance - gain @ covariance
 
 
 def _model_error(view: View, at: int) -> float:

@@ -63,8 +63,7 @@ class View:
     ) -> tuple[NDArray, NDArray]:
         """Return start and unit direction, (2,) px each, of a line as it was seen at a place.
 
-        It was expected through the origin; it lies `moved_px` across from there, and is turned by
-        a `slope`.
+        It lies `moved_px` across from where it was expected, and is turned by a `slope`.
         """
         tangent, normal = line_profiles.tangent_and_normal(
             self.camera, origin_m[None], along_m, across_m

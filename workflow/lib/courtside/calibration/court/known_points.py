@@ -11,6 +11,7 @@ from courtside.calibration.court.court import ClickedPoints, Court
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
+Found = resection.Linear | resection.Fitted
 NAME = re.compile(r"(dlt|known)(\d+)(-board)?")
 
 
@@ -51,13 +52,13 @@ def calibrate(
     lenses: Mapping[str, Camera],
     *,
     click_sigma_px: float,
-) -> dict[str, resection.Linear | resection.Fitted]:
+) -> dict[str, Found]:
     """Calibrate each camera, whose pictures have the given size (px), from its clicks.
 
     `lenses` give K and dist, for methods with a board; `click_sigma_px` is that at a picture width
     of 3840 px. Raises `InputError` if the points do not determine a camera.
     """
-    found: dict[str, resection.Linear | resection.Fitted] = {}
+    found: dict[str, Found] = {}
     for name, size in sizes.items():
         xyz, xy = court.xyz[way.points], clicks[name][way.points]
         if way.linear:
@@ -76,7 +77,7 @@ def calibrate(
     return found
 
 
-def cameras(found: Mapping[str, resection.Linear | resection.Fitted]) -> list[Camera]:
+def cameras(found: Mapping[str, Found]) -> list[Camera]:
     """Return the cameras of `calibrate`; raise `InputError` where DLT gave no valid camera."""
     calibrated = []
     for name, result in found.items():
@@ -91,6 +92,6 @@ def cameras(found: Mapping[str, resection.Linear | resection.Fitted]) -> list[Ca
     return calibrated
 
 
-def matrices(found: Mapping[str, resection.Linear | resection.Fitted]) -> dict[str, NDArray]:
+def matrices(found: Mapping[str, Found]) -> dict[str, NDArray]:
     """Return the projection matrices (3, 4) that DLT gives, by camera."""
     return {name: one.matrix for name, one in found.items() if isinstance(one, resection.Linear)}

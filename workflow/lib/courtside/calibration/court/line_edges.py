@@ -38,17 +38,13 @@ def _at(low: NDArray, high: NDArray, xyz: NDArray) -> tuple[Edge, ...]:
     best: dict[int, tuple[float, Edge]] = {}
     for line in np.flatnonzero(inside.all(axis=1)):
         axis = int(across[line])
-        side = _side(low[line, axis], high[line, axis], xyz[axis])
+        low_m, high_m = low[line, axis], high[line, axis]
+        sides = {-1: low_m, 0: (low_m + high_m) / 2, 1: high_m}
+        near = [side for side, at_m in sides.items() if abs(at_m - xyz[axis]) <= ON_EDGE_M]
         length = high[line, 1 - axis] - low[line, 1 - axis]
-        if side is not None and length > (best[axis][0] if axis in best else 0):
-            best[axis] = length, Edge(int(line), axis, float(xyz[axis]), side)
+        if near and length > (best[axis][0] if axis in best else 0):
+            best[axis] = length, Edge(int(line), axis, float(xyz[axis]), near[0])
     return tuple(best[axis][1] for axis in sorted(best))
-
-
-def _side(low: float, high: float, at: float) -> int | None:
-    """Return which edge of a line (or 0, its middle) has this coordinate, None if none has."""
-    places = {-1: low, 0: (low + high) / 2, 1: high}
-    return next((side for side, place in places.items() if abs(place - at) <= ON_EDGE_M), None)
 
 
 def post(court: Court, point: int) -> int | None:
@@ -96,10 +92,7 @@ class Paint:
 
 
 def paint(camera: Camera, court: Court) -> Paint:
-    """Return where a camera expects the painted lines of a court.
-
-    Its places are metres on the floor, NaN above the horizon.
-    """
+    """Return where a camera expects paint; places are m on the floor, NaN above the horizon."""
     low, high = court.line_corners()
     rotation, centre = camera.cam_from_world[:, :3], camera.centre_in_world
 

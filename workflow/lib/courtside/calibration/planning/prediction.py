@@ -92,10 +92,7 @@ def _constraints(ties: Network, fixed: NDArray) -> solver.Quadratic:
 
 
 def widest_angle_deg(fixed: Sequence[Camera], walked: Sequence[Camera], court: Court) -> float:
-    """Return the widest angle between neighbouring views, seen 1 m above the court's centre.
-
-    NaN without a walk.
-    """
+    """Return the widest angle of neighbours 1 m above the court's centre; NaN without a walk."""
     if not walked:
         return np.nan
     centres = np.array([c.centre_in_world for c in [*fixed, *walked]])

@@ -71,10 +71,7 @@ def stated(numbers: Mapping[str, Mapping[str, Any]]) -> dict[str, Clock]:
 
 
 def fault_line(where: StrPath, clocks: Mapping[str, Clock]) -> str:
-    """Return a line on the first camera whose clock may not be used; empty if all may.
-
-    It begins with `where`: a file or a take.
-    """
+    """Return a line, begun with `where`, on the first clock that may not be used; empty if none."""
     for camera, clock in clocks.items():
         if not clock.usable:
             others = ", ".join(f"{at:.3f}" for at in clock.candidates_s)
@@ -106,10 +103,7 @@ def write(path: StrPath, reference: str, clocks: Mapping[str, Clock]) -> None:
 
 
 def read(path: StrPath) -> tuple[str, dict[str, Clock]]:
-    """Read the reference camera and the clocks of a take.
-
-    An `InputError` if the file is not one of `write`, or a number is impossible.
-    """
+    """Read the reference camera and the clocks of a take; an `InputError` if it is no such file."""
     content = read_json(path)
     if not isinstance(content, dict) or content.get("form") != FORM:
         found = content.get("form") if isinstance(content, dict) else type(content).__name__

@@ -68,8 +68,7 @@ class DerivedJoints:
 def read(path: StrPath) -> DerivedJoints:
     """Read a table of derived joints: YAML with `definitions` and `joints`.
 
-    An `InputError` if the file is not as its schema says, weights do not sum to 1, or a joint names
-    an unknown definition.
+    An `InputError` for what its schema refuses, weights not of sum 1, or an unknown definition.
     """
     content = schemas.read(path, "derived_joints")
     definitions = {
@@ -99,21 +98,10 @@ def combine(
 ) -> tuple[NDArray, NDArray, NDArray]:
     """Return a weighted sum of joints, with its covariance and reason.
 
-    Parameters
-    ----------
-    xyz : (..., J, 3) float
-        Metres.
-    covariance : (..., J, 3, 3) float
-        Square metres; the errors of the joints are taken as independent.
-    reason : (..., J) uint8
-        `courtside.records.keypoints.missing_reason`.
-    weights : (J,) float
-
-    Returns
-    -------
-    xyz, covariance, reason : (..., 3) float, (..., 3, 3) float, (...,) uint8
-        NaN where a joint with a weight is missing. The reason is the first of these joints' reasons
-        that is not OK, a missing joint's before that of an interpolated one.
+    Joints have `xyz` (..., J, 3) m, `covariance` (..., J, 3, 3) m2, `reason` (..., J), codes of
+    `missing_reason`, and `weights` (J,); their errors are taken as independent. The result, without
+    the axis J, is NaN where a joint with a weight is missing. Its reason is the first of these
+    joints' reasons that is not OK, a missing joint's before that of an interpolated one.
     """
     used = np.flatnonzero(weights)
     kept = np.asarray(weights)[used]

@@ -46,10 +46,7 @@ class Skeleton:
         return [[j for j in self.joints if j not in legs], [j for j in self.joints if j in legs]]
 
     def by_group(self, values: Mapping[str, float]) -> list[float]:
-        """Return for each joint the value of its group.
-
-        An `InputError` if a group is unknown or a joint is in none of the groups named.
-        """
+        """Return the value of each joint's group; `InputError` if a group or a joint is in none."""
         owner = {
             joint: value for name, value in values.items() for joint in self.groups.get(name, ())
         }

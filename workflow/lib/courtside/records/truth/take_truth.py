@@ -76,8 +76,7 @@ class TakeTruth:
 def write(path: StrPath, truth: TakeTruth) -> None:
     """Write the truth of a take to an npz file.
 
-    A `ValueError` if shapes disagree, the clocks are not of the same cameras, or events or devices
-    name an unknown person.
+    A `ValueError` if shapes or cameras disagree, or events or devices name an unknown person.
     """
     people, cameras = [str(person) for person in truth.person_id], list(truth.offset_s)
     there = {*truth.events, *(device.person for device in truth.devices.values())}

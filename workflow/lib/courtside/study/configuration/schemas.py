@@ -98,7 +98,9 @@ def _overridable(steps: Content) -> Content:
 
 
 def _lines(error: Any) -> Iterator[str]:  # of jsonschema, whose types leave all values open
-    where = ".".join(_plain(str(part)) for part in error.absolute_path) or "top level"
+    parts = map(str, error.absolute_path)
+    # Quoted where it would break the line.
+    where = ".".join(p if p.isprintable() else repr(p) for p in parts) or "top level"
     if error.validator in ("additionalProperties", "propertyNames") and isinstance(
         error.instance, dict
     ):
@@ -154,11 +156,6 @@ def _wanted(error: Any) -> str:
         "uniqueItems": "entries that differ",
     }
     return words.get(error.validator, error.validator + " {}").format(error.validator_value)
-
-
-def _plain(text: str) -> str:
-    """Return a text as it is, or quoted if it would break the line."""
-    return text if text.isprintable() else repr(text)
 
 
 def shown(value: object) -> str:

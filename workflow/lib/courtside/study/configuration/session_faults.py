@@ -1,7 +1,7 @@
 """Faults of a session's file beyond its schema: names, files, ways to find the cameras."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from courtside.study.configuration import consent, take_faults
@@ -128,14 +128,10 @@ def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
                 f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty "
                 "court, found none; bridging images are tied to it"
             )
-    yield from _court_faults(file, content)
-
-
-def _court_faults(file: Path, content: Content) -> Iterator[str]:
     clicked = "court_points" in content
     if content["court"] == "none" and clicked:
         yield f"{file}: court_points: expected none without a court, found some; name their court"
-    if content["court"] != "none" and content.get("walks") and content["cameras"] and not clicked:
+    if content["court"] != "none" and walks and cameras and not clicked:
         yield (
             f"{file}: expected `court_points` for a session with a court, found none; say where "
             "they are to be saved, and the study makes a page to click them on, or set court: none"
@@ -167,18 +163,17 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
             # Any of the varied layouts may be wrong; a name in `vary` stands for its values.
             layouts = condition["vary"].get("layout", [keys["layout"]])
             faults += [f for at in layouts for f in setting_faults(where, {**keys, "layout": at})]
-        faults += _condition_faults(where, name, condition, found)
+        faults += [
+            f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
+            for key in sorted(set(condition.get("set", {})) & set(condition["vary"]))
+        ]
+        # Variations are sessions named after their condition.
+        faults += [
+            f"{where}: expected a name that no session has, found session {own!r}; rename it"
+            for own in found
+            if own == name or re.fullmatch(rf"{name}-\d+", own)
+        ]
     return faults
-
-
-def _condition_faults(
-    where: str, name: str, condition: Content, found: Iterable[str]
-) -> Iterator[str]:
-    for key in sorted(set(condition.get("set", {})) & set(condition["vary"])):
-        yield f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
-    # Variations are sessions named after their condition.
-    for taken in (own for own in found if own == name or re.fullmatch(rf"{name}-\d+", own)):
-        yield f"{where}: expected a name that no session has, found session {taken!r}; rename it"
 
 
 def _path_faults(

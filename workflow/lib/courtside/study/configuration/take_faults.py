@@ -40,10 +40,7 @@ def of_other_programs(folder: Path, file: Path, content: Content) -> Iterator[st
 def find(
     where: str, take: Content, cameras: Content, subjects: Content, virtual: bool
 ) -> Iterator[str]:
-    """Yield what in a take contradicts itself or its session, one line each.
-
-    `where` names file and take; `virtual` says whether the session is.
-    """
+    """Yield what in a take contradicts itself or its session; `where` names file and take."""
     yield from _kind_faults(where, take, virtual)
     if not subjects:
         yield (

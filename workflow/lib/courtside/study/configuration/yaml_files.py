@@ -47,7 +47,10 @@ def read(path: StrPath) -> Content:
         try:
             content = yaml.load(text, Loader=_StrictLoader)  # a subclass of SafeLoader
         except yaml.YAMLError as error:
-            raise InputError(f"{path}: {_first_line(error)}") from None
+            mark = getattr(error, "problem_mark", None)
+            where = f"{path}: line {mark.line + 1}" if mark else path
+            problem = getattr(error, "problem", None) or str(error).splitlines()[0]
+            raise InputError(f"{where}: {problem}") from None
         except RecursionError:
             raise InputError(f"{path}: expected YAML, found too deep nesting") from None
     if not isinstance(content, dict):
@@ -72,10 +75,3 @@ def _check_extent(path: StrPath, content: Content) -> None:
         inner = value.values() if isinstance(value, dict) else value
         if isinstance(value, dict | list | tuple | set):
             waiting += [(part, depth + 1) for part in inner]
-
-
-def _first_line(error: yaml.YAMLError) -> str:
-    mark = getattr(error, "problem_mark", None)
-    where = f"line {mark.line + 1}: " if mark else ""
-    problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-    return f"{where}{problem}"

@@ -26,8 +26,7 @@ KINDS = (
 def finished(made: Iterable[str], seconds: float, look_at: Iterable[str] = ()) -> str:
     """Return a few lines on a run in which everything was made.
 
-    `made` are the files that this run made; `look_at` is what to look at, in this order: files that
-    do not exist are left out.
+    `made` are the files that this run made; `look_at` is what to look at, where it exists.
     """
     made = list(made)
     if not made:

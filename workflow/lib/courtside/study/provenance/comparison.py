@@ -193,7 +193,8 @@ def table(verdicts: Iterable[Verdict]) -> list[str]:
             counts = [str(sum(each.outcome == outcome for each in group)) for outcome in outcomes]
             largest = np.fmax.reduce([each.largest for each in group])
             gap = "" if math.isnan(largest) else f"{largest:.3g}"
-            rows.append([pattern, *counts, gap, _in_words(rtol, atol), why])
+            allowed = [f"{atol:g}"] * bool(atol) + [f"{rtol:g} of the value"] * bool(rtol)
+            rows.append([pattern, *counts, gap, " + ".join(allowed) or "none", why])
     lines = aligned(rows)
     for each in (each for each in verdicts if each.outcome in FAULTS):
         gap = "" if math.isnan(each.largest) else f" by up to {each.largest:.3g}"
@@ -206,8 +207,3 @@ def aligned(rows: list[list[str]]) -> list[str]:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     pairs = [zip(row, widths, strict=True) for row in rows]
     return ["  ".join(cell.ljust(width) for cell, width in row).rstrip() for row in pairs]
-
-
-def _in_words(rtol: float, atol: float) -> str:
-    parts = [f"{atol:g}"] * bool(atol) + [f"{rtol:g} of the value"] * bool(rtol)
-    return " + ".join(parts) or "none"

@@ -122,10 +122,7 @@ def changed_configuration(run: dict[str, Any], now: dict[str, Any]) -> list[str]
 
 
 def planned(run: dict[str, Any], repository: StrPath) -> set[str]:
-    """Return the files that Snakemake would make anew with the command of a run's record.
-
-    An `InputError` if Snakemake refuses the configuration.
-    """
+    """Return the files that a run's command would make anew; `InputError` if it is refused."""
     words = [sys.executable, "-m", *_words(run), "--summary"]
     done = subprocess.run(words, cwd=repository, capture_output=True, text=True, check=False)
     if done.returncode:

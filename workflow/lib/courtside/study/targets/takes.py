@@ -103,8 +103,7 @@ def every_comparison_of_views(study: Study) -> list[str]:
 def evaluations(study: Study, kind: str) -> list[str]:
     """Return the tables of one kind of error of all takes of virtual sessions.
 
-    Kinds: errors, kinematics, clocks (of cameras without a common clock), gains (of one fusion over
-    another).
+    Kinds: errors, kinematics, clocks (of cameras without a common one), gains (between fusions).
     """
     found = []
     for session, take in ((session, take) for session, take in study.takes() if session.virtual):
