@@ -89,8 +89,9 @@ def map_images(
         explains, as a `Support`; n_attempts, and n_agreeing, the number of whole models
         that agree with it, itself included
     """
-    arguments = matches_db, images, mapper, seed, dict(options or {}), attempts
-    best, support, n_agreeing, n_attempts = _explaining(*arguments)
+    best, support, n_agreeing, n_attempts = _explaining(
+        matches_db, images, mapper, seed, dict(options or {}), attempts
+    )
     Path(folder).mkdir(parents=True, exist_ok=True)
     best.model.write_binary(str(folder))
     _check_whole(best.model, Path(folder))
