@@ -7,9 +7,9 @@ from xdist.scheduler import LoadFileScheduling
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # as in the study; a third less time than with threads
 
-# Files and folders. The two files are collected first and make the tiny study: in one scope they
-# keep their process, so that no other file waits behind the study. The rest of tests/smoke goes to
-# any process; what reads the study there waits for it (smoke/conftest.py).
+# Files and folders. The two files come first and make the tiny study: in one scope they keep their
+# process, so that no other file waits behind the study. What else reads the study comes last: it
+# waits until the study is made (smoke/conftest.py).
 ONE_STUDY = {"test_data_dictionary.py", "test_smoke.py", "faults", "slurm"}
 
 
@@ -17,10 +17,19 @@ class ByStudy(LoadFileScheduling):
     """Gives a process the tests of one file, or of all that look first at one study or hurt it."""
 
     def _split_scope(self, nodeid):
-        file = PurePosixPath(nodeid.partition("::")[0])
-        return "study" if ONE_STUDY.intersection(file.parts) else str(file)
+        return _scope(nodeid)
+
+
+def pytest_collection_modifyitems(items):
+    reading = {item.path for item in items if "tiny_study" in item.fixturenames}
+    items.sort(key=lambda item: (_scope(item.nodeid) != "study", item.path in reading))
+
+
+def _scope(nodeid):
+    file = PurePosixPath(nodeid.partition("::")[0])
+    return "study" if ONE_STUDY.intersection(file.parts) else str(file)
 
 
 def pytest_xdist_make_scheduler(config, log):
-    config.option.loadscopereorder = False  # the study is collected first, and takes longest
+    config.option.loadscopereorder = False  # the study comes first, and takes longest
     return ByStudy(config, log)
