@@ -147,7 +147,7 @@ def _title(key: tuple[str, str, str, str], rows: pd.DataFrame) -> str:
         if joint in two.index
     ]
     what = f"2 cameras, ours, {PANELS[stage]}; median (95 % quantile) in mm"
-    return f"{title}\n{what}: {', '.join(found)}" if found else title
+    return f"{title}\n{what}:\n{', '.join(found)}" if found else title
 
 
 def _explain(drawing: Figure, ways: list[str], cameras: dict[str, Sequence[str]]) -> None:
