@@ -60,6 +60,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
         )
         adjust_network.main(
             model / "summary.json",
+            folder / "sfm" / "matches.db",
             film / "court_points.csv",
             court_yaml,
             model / "ties.npz",

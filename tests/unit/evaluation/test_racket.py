@@ -9,6 +9,7 @@ import pytest
 from courtside.calibration.bundle import selection
 from courtside.calibration.court import court, joint_adjustment, sfm_alignment
 from courtside.calibration.records import tie_points
+from courtside.calibration.records.support import Support
 from courtside.evaluation import racket as racket_trials
 from courtside.geometry import similarity, triangulation
 from fixtures.cameras import networks_made, scene
@@ -34,8 +35,9 @@ def record(cameras, **changes):
     moved = similarity.Sim3(0.3, np.eye(3)[[1, 2, 0]], np.array([1.0, 2, 3]))
     in_sfm = [moved.camera(camera) for camera in cameras]
     nothing = np.zeros((0, 3))
+    whole = Support(1.0, "", 1.0, ("", ""), 1.0)
     made = tie_points.Record(
-        "", "", in_sfm, [60, 60], known, np.zeros(0, str), nothing, nothing, 0.1, (1, 1)
+        "", "", in_sfm, [60, 60], known, np.zeros(0, str), nothing, nothing, 0.1, (1, 1), whole
     )
     return replace(made, **changes)
 

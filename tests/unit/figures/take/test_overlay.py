@@ -88,8 +88,9 @@ def test_red_lines_only_where_a_view_was_not_used():
 def test_nobody_seen_shows_the_whole_picture():
     record, footage = inputs()
     record = replace(record, xyz=np.full_like(record.xyz, np.nan))
-    unseen = replace(footage[0].view, xy=np.full_like(footage[0].view.xy, np.nan))
-    nobody = [replace(footage[0], view=unseen)]
+    seen = footage[0].tracklets
+    unseen = replace(seen, xy=np.full_like(seen.xy, np.nan))
+    nobody = [replace(footage[0], tracklets=unseen)]
     axis = overlay.draw(record, nobody, [6], [[IMAGE]], walker.SKELETON).axes[0]
     (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
     assert left <= 0 <= 1920 <= right and top <= 0 <= 1080 <= bottom

@@ -92,7 +92,10 @@ def reading(
         if isinstance(error, MemoryError):
             # The file asks for too much, or the machine has too little.
             advice = f"{advice}; or, if the file is whole, {SPARE_MEMORY}"
-        raise InputError(f"{path}: expected {what}, found: {said(error)}; {advice}") from error
+        found = said(error)
+        if isinstance(error, OSError) and error.filename and str(error.filename) != str(path):
+            found = f"{found}: {error.filename}"  # a file of the folder that was read
+        raise InputError(f"{path}: expected {what}, found: {found}; {advice}") from error
 
 
 def _raised_by_library(error: BaseException) -> bool:
