@@ -23,18 +23,11 @@ PAIR_MATCHES = 50  # ASSUME: fewer verified matches may all be false
 
 @dataclass(frozen=True, eq=False)
 class Verified:
-    """Verified matches of some images.
+    """Verified matches of some images."""
 
-    Attributes
-    ----------
-    images : names
-    places : (N, 2) float px of an image's features, by name
-    matches : (M, 2) int indices of features, by pair of images; of pairs with any
-    """
-
-    images: tuple[str, ...]
-    places: Mapping[str, NDArray]
-    matches: Mapping[tuple[str, str], NDArray]
+    images: tuple[str, ...]  # their names
+    places: Mapping[str, NDArray]  # (N, 2) px of an image's features, by name
+    matches: Mapping[tuple[str, str], NDArray]  # (M, 2) indices of features, of pairs with any
 
 
 def read(matches_db: str | os.PathLike, images: Sequence[str]) -> Verified:
@@ -108,19 +101,22 @@ def with_known_lenses(
                 lens.has_prior_focal_length = True
                 opened.update_camera(lens)
             chosen = {i.name: i for i in opened.read_all_images() if i.name in set(images)}
-            for (one, other), matches in list(_verified(opened, chosen)):
-                _verify_again(opened, lenses, (chosen[one], chosen[other]), matches, options)
+            places = {
+                name: opened.read_keypoints(image.image_id)[:, :2].astype(float)
+                for name, image in chosen.items()
+            }
+            for pair, matches in list(_verified(opened, chosen)):
+                both = [chosen[name] for name in pair]
+                seen = [(lenses[image.camera_id], places[image.name]) for image in both]
+                found = pycolmap.estimate_calibrated_two_view_geometry(
+                    *seen[0], *seen[1], matches, options
+                )
+                _replace_geometry(opened, [image.image_id for image in both], found, options)
         database.fold(path)
         yield path
 
 
-def _verify_again(opened, lenses, pair, matches, options) -> None:
-    ids = [image.image_id for image in pair]
-    places = [opened.read_keypoints(at)[:, :2].astype(float) for at in ids]
-    one, other = (lenses[image.camera_id] for image in pair)
-    found = pycolmap.estimate_calibrated_two_view_geometry(
-        one, places[0], other, places[1], matches, options
-    )
+def _replace_geometry(opened, ids, found, options) -> None:
     opened.delete_two_view_geometry(*ids)
     if len(found.inlier_matches) >= options.min_num_inliers:
         opened.write_two_view_geometry(*ids, found)

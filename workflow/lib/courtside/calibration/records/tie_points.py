@@ -61,7 +61,7 @@ def write(path: StrPath, record: Record) -> None:
     """Write a `Record` to an npz file."""
     sfm = selection.of_cameras(record.sfm_cameras)
     reference = record.ties.knowledge.reference if record.ties else None
-    knowledge, s = record.ties.knowledge if record.ties else None, record.support
+    knowledge, support = record.ties.knowledge if record.ties else None, record.support
     arrays = {
         "outcome": np.array(record.outcome),
         "fault": np.array(record.fault),
@@ -79,8 +79,8 @@ def write(path: StrPath, record: Record) -> None:
         "xyz": _stack(record.xyz, (3,)),
         "residual_px": np.array(float(record.residual_px)),
         "n_maps": np.array(record.n_maps, dtype=int),
-        "explained": np.array([s.share, s.image_share, s.pair_share]),
-        "doubted": np.array([s.image, *s.pair], dtype=str),
+        "explained": np.array([support.share, support.image_share, support.pair_share]),
+        "doubted": np.array([support.image, *support.pair], dtype=str),
     }
     npz.write(path, FORM, SPEC, arrays)
 
