@@ -8,22 +8,21 @@ from courtside.evaluation import round_trip
 from courtside.figures.badminton import fig10
 from courtside.figures.style import picture_crops, stick_figure, style
 from courtside.reconstruction import camera_shake
-from courtside.records.cameras import footage, shake_table
 from courtside.records.keypoints import derived_joints, keypoints, skeleton
 from courtside.study.execution.script import run
 
 
 def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
-    seen = footage.read(
+    seen = camera_shake.read_as_filmed(
         paths.cameras,
         paths.pose2d,
         paths.people,
         paths.sync,
+        paths.shake,
         paths.videos,
         wanted=points.cameras,
     )
-    seen = camera_shake.put_back(seen, shake_table.read_all(paths.shake))
     figure = stick_figure.stick(joints, derived_joints.read(paths.derived))
     frames = round_trip.span(points, n_frames, start_s).frames
     shown = fig10.instants(frames, n_instants)

@@ -6,22 +6,21 @@ Reads 2D keypoints, people, clocks, 3D keypoints and videos; writes figure and C
 from courtside.figures.style import picture_crops, style
 from courtside.figures.take import overlay
 from courtside.reconstruction import camera_shake
-from courtside.records.cameras import footage, shake_table
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution.script import run
 
 
 def main(paths, pdf, png, csv, *, n_frames, blur_faces):
     joints, points = skeleton.read(paths.skeleton), keypoints.read_3d(paths.pose3d)
-    seen = footage.read(
+    seen = camera_shake.read_as_filmed(
         paths.cameras,
         paths.pose2d,
         paths.people,
         paths.sync,
+        paths.shake,
         paths.videos,
         wanted=points.cameras,
     )
-    seen = camera_shake.put_back(seen, shake_table.read_all(paths.shake))
     shown = overlay.frames(points, n_frames)
 
     def picture(one, frame):

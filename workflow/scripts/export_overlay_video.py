@@ -6,7 +6,6 @@ Reads video, 2D keypoints, people, clocks and 3D keypoints; writes MP4.
 from courtside.exports import overlay_video
 from courtside.figures.style import style
 from courtside.reconstruction import camera_shake
-from courtside.records.cameras import footage, shake_table
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
@@ -16,12 +15,11 @@ COLOURS = style.DETECTED_BGR, style.REPROJECTED_BGR, style.REJECTED_BGR
 
 
 def main(paths, mp4, *, camera, blur_faces, trim_s, crf, effort, keep_background):
-    seen = footage.read(paths.cameras, [paths.pose2d], paths.people, paths.sync)
-    (one,) = camera_shake.put_back(seen, shake_table.read_all(paths.shake))
-    points, joints = keypoints.read_3d(paths.pose3d), skeleton.read(paths.skeleton)
-    track = overlay_video.track(
-        one.camera, one.tracklets, one.view, one.clock, points, joints, one.turns
+    (one,) = camera_shake.read_as_filmed(
+        paths.cameras, [paths.pose2d], paths.people, paths.sync, paths.shake
     )
+    points, joints = keypoints.read_3d(paths.pose3d), skeleton.read(paths.skeleton)
+    track = overlay_video.track(one, points, joints)
     start_s, stop_s = trim_s or (None, None)
     rate_hz = reader.probe(paths.video, stop_s=stop_s).rate_hz
     frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)

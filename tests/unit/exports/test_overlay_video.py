@@ -7,6 +7,7 @@ import pytest
 
 from courtside.exports import overlay_video
 from courtside.figures.style import style
+from courtside.records.cameras.footage import Footage
 from courtside.records.devices.clocks import Clock
 from courtside.study.errors import InputError
 from courtside.video import reader, writer
@@ -31,7 +32,7 @@ def take():
 def tracked(take, clock=None, **changes):
     camera, view, points = take
     view = replace(view, **changes)
-    return overlay_video.track(camera, view, view, clock or Clock(), points, walker.SKELETON)
+    return overlay_video.track(Footage(camera, view, clock or Clock()), points, walker.SKELETON)
 
 
 def grey_frames(camera, times_s, size=None):
@@ -57,9 +58,11 @@ def test_in_shaken_pictures_the_skeleton_lies_on_the_person(take):
     camera, view, points = take
     vectors = shaken.knock(camera, N, 5, 14.0, tremor_px=2)
     moved = shaken.view(replace(view, xy=view.xy - [20.0, 0.0]), camera, vectors)
-    track = overlay_video.track(camera, moved, moved, Clock(), points, walker.SKELETON, vectors)
+    track = overlay_video.track(
+        Footage(camera, moved, Clock(), turns=vectors), points, walker.SKELETON
+    )
     assert np.nanmax(np.abs(track.reprojected - moved.xy)) < 0.01
-    still = overlay_video.track(camera, moved, moved, Clock(), points, walker.SKELETON)
+    still = overlay_video.track(Footage(camera, moved, Clock()), points, walker.SKELETON)
     assert np.nanmin(np.abs(still.reprojected - moved.xy)[:, 5:, :, 0]) > 5
 
 
@@ -204,4 +207,6 @@ def test_persons_and_cameras_must_fit(take):
     with pytest.raises(ValueError, match="persons"):
         tracked((camera, replace(view, xy=view.xy[:0]), points))
     with pytest.raises(ValueError, match="cameras"):
-        overlay_video.track(replace(camera, name="z"), view, view, Clock(), points, walker.SKELETON)
+        overlay_video.track(
+            Footage(replace(camera, name="z"), view, Clock()), points, walker.SKELETON
+        )

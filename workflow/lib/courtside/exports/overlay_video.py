@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.geometry import interpolation
-from courtside.geometry.camera import Camera, project, turned
+from courtside.geometry.camera import project
 from courtside.pose import privacy, stick_drawing
-from courtside.records.devices.clocks import Clock
-from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError
 
@@ -36,32 +36,23 @@ class Track:
     bones: tuple[tuple[int, int], ...]
 
 
-def track(
-    camera: Camera,
-    view: Keypoints2D,
-    assigned: Keypoints2D,
-    clock: Clock,
-    points: Keypoints3D,
-    skeleton: Skeleton,
-    turns: NDArray | None = None,
-) -> Track:
+def track(seen: Footage, points: Keypoints3D, skeleton: Skeleton) -> Track:
     """Gather what is drawn on one camera's pictures.
 
-    `view` holds all tracklets: faces of bystanders are hidden as well. `assigned` holds the same
-    frames by person, in the order of `points.person_id`. The 3D skeleton is that of each frame's
-    own time, between neighbouring points; there is none beyond their ends. `turns` (T, 3) are
-    rotation vectors from the camera as calibrated to the camera in each frame. Raises `ValueError`
-    if `points` do not rest on this camera, or persons or frames do not fit.
+    Faces of all tracklets are hidden, those of bystanders as well. Persons are in the order of
+    `points.person_id`. The 3D skeleton is that of each frame's own time, between neighbouring
+    points, in the camera as it was turned then; there is none beyond their ends. Raises
+    `ValueError` if `points` do not rest on this camera, or persons do not fit.
     """
+    camera, view, assigned = seen.camera, seen.tracklets, seen.view
     if camera.name not in points.cameras or assigned.xy.shape[0] != len(points.person_id):
         raise ValueError(f"{camera.name}: points and 2D keypoints of other cameras or persons")
-    if not np.array_equal(view.time_s, assigned.time_s):
-        raise ValueError(f"{camera.name}: persons at other frames than tracklets")
-    reference_s = clock.to_reference(view.time_s)
+    reference_s = seen.clock.to_reference(view.time_s)
     xyz = between(points.time_s, points.xyz, reference_s)
     reprojected = project(camera, xyz)
-    for frame, turn in enumerate([] if turns is None else turns):
-        reprojected[:, frame] = project(turned(camera, turn), xyz[:, frame])
+    if seen.turns is not None:
+        for frame in range(len(view.time_s)):
+            reprojected[:, frame] = project(seen.standing(frame), xyz[:, frame])
     at = np.interp(reference_s, points.time_s, np.arange(len(points.time_s))).round().astype(int)
     column = points.cameras.tolist().index(camera.name)
     face = [skeleton.index(joint) for joint in skeleton.groups["face"]]

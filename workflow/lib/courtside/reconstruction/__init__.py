@@ -3,7 +3,8 @@
 resampling: `common_times`, `resample`, `nearest`: each camera's clock applied
 left_right: `swapped_views`, `apply_swaps`: sides that a network confused
 fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' covariance
-camera_shake: `steady`, `put_back`: shake removed from keypoints; `find`, `say`: knocks described
+camera_shake: `steady`, `put_back`, `read_as_filmed`: shake removed from keypoints, and put back for
+    pictures; `find`, `say`: knocks described
 joint_correction: `estimate`, `correct`: a network's joint offsets; `keep`: constant limb lengths;
     `correct_then_filter`
 

@@ -15,9 +15,10 @@ from scipy.spatial.transform import Rotation
 
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
+from courtside.records.cameras import footage, shake_table
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.keypoints import Keypoints2D
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import log
 
 # ASSUME: tremor of a mounted camera changes little over longer gaps than this, s.
@@ -88,7 +89,7 @@ def frame_turns(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
     return np.where(np.isnan(turned).any(axis=1, keepdims=True), 0.0, turned)
 
 
-def put_back(footage: Sequence[Footage], tables: Mapping[str, DataFrame]) -> list[Footage]:
+def put_back(seen: Sequence[Footage], tables: Mapping[str, DataFrame]) -> list[Footage]:
     """Return footage with cameras turned as in their pictures, by the `tables` of their names.
 
     Skeletons then reproject onto the persons in the shaken pictures. A camera without a table
@@ -98,8 +99,22 @@ def put_back(footage: Sequence[Footage], tables: Mapping[str, DataFrame]) -> lis
         replace(one, turns=frame_turns(one.camera, tables[one.camera.name], one.view.time_s))
         if one.camera.name in tables
         else one
-        for one in footage
+        for one in seen
     ]
+
+
+def read_as_filmed(
+    cameras_toml: StrPath,
+    pose2d_npz: Sequence[StrPath],
+    people_npz: StrPath,
+    sync_json: StrPath,
+    shake_csv: Sequence[StrPath],
+    videos: Sequence[StrPath] = (),
+    wanted: Sequence[str] | None = None,
+) -> list[Footage]:
+    """Read footage as `footage.read` does, with cameras turned as in their pictures."""
+    seen = footage.read(cameras_toml, pose2d_npz, people_npz, sync_json, videos, wanted)
+    return put_back(seen, shake_table.read_all(shake_csv))
 
 
 def _of_frames(camera: Camera, table: DataFrame, time_s: NDArray) -> NDArray:
