@@ -261,7 +261,7 @@ def test_of_models_that_differ_the_one_with_most_observations_is_kept(
         return bent(found, 0.1 * number)
 
     monkeypatch.setattr(mapping, "SOUND_PX", np.inf)
-    monkeypatch.setattr(mapping, "KNOWN", {})  # not again
+    monkeypatch.setattr(mapping, "AGAIN", {})
     asked = spoil(monkeypatch, poorer)
     names, options = sorted(sfm_made.centres(truth)), {"mapper": "global", "seed": 7}
     summary = mapping.map_images(path, names, tmp_path / "a", **options, attempts=3)
@@ -276,7 +276,7 @@ def test_from_the_third_attempt_on_lenses_are_held(synthetic, tmp_path, monkeypa
     def failing(number, found):
         return found._replace(model=pycolmap.Reconstruction()) if number < 4 else found
 
-    monkeypatch.setattr(mapping, "KNOWN", {})  # not again
+    monkeypatch.setattr(mapping, "AGAIN", {})
     asked = spoil(monkeypatch, failing)
     names, options = sorted(sfm_made.centres(truth)), {"min_num_matches": 14}
     summary = mapping.map_images(
@@ -346,9 +346,18 @@ def test_a_model_that_explains_too_little_is_mapped_again_with_known_lenses(gues
 def test_a_second_model_that_explains_less_is_not_kept(guessed):
     run, _ = guessed
     summary, asked, _ = run(lambda number, found: bent(found, 0.5 if number < 3 else 2.0))
-    assert len(asked) == 4 and summary["held"] == {}
+    assert len(asked) == 6 and summary["held"] == {} and summary["mapper"] == "global"
     assert summary["explained"]["image_share"] < mapping.DOUBTED
-    assert (summary["n_attempts"], summary["n_agreeing"]) == (4, 2)
+    assert (summary["n_attempts"], summary["n_agreeing"]) == (6, 2)
+
+
+def test_where_known_lenses_do_not_help_the_incremental_mapper_is_tried(guessed):
+    run, truth = guessed
+    known = mapping.KNOWN["incremental"]
+    summary, asked, found = run(lambda number, found: bent(found, 0.5) if number < 5 else found)
+    assert [options for _, options in asked[4:]] == [known, known]
+    assert (summary["mapper"], summary["held"], summary["n_attempts"]) == ("incremental", known, 6)
+    assert_placed(sfm_made.centres(found), sfm_made.centres(truth), 1e-3)
 
 
 def test_a_model_that_explains_enough_is_not_mapped_again(guessed):

@@ -26,8 +26,11 @@ KNOWN = {
     "global": {
         "mapper.bundle_adjustment.refine_focal_length": False,
         "mapper.bundle_adjustment.refine_extra_params": False,
-    }
+    },
+    "incremental": {"ba_refine_focal_length": False, "ba_refine_extra_params": False},
 }
+# Mappers that map again in turn, as long as the best model is doubtful.
+AGAIN = {"global": ("global", "incremental")}
 # Of an image's verified matches, as its model explains them. Chosen on small halls with ten
 # images (docs/measured.md): a wrong map had 0.55, and mapping again costs little.
 DOUBTED = 0.65
@@ -41,8 +44,21 @@ class _Attempt(NamedTuple):
 
     model: pycolmap.Reconstruction
     n_models: int
+    mapper: str
     seed: int
     held: Mapping[str, Any]
+
+
+class _Found(NamedTuple):
+    """A model with what it explains, and how many models agree with it."""
+
+    best: _Attempt
+    support: Support
+    n_agreeing: int
+    n_attempts: int
+
+    def is_doubtful(self) -> bool:
+        return self.support.image_share < DOUBTED or self.n_agreeing == 1 < self.n_attempts
 
 
 def map_images(
@@ -68,8 +84,9 @@ def map_images(
     Maps can agree on a wrong shape: the global mapper starts from two-view geometries of unknown
     lenses, which pictures of mostly one plane do not determine, and its focal lengths run away.
     Where no whole models agree, or the model explains less than `DOUBTED` of any image's verified
-    matches, all is mapped again with the first guess of every lens. The model whose worst image is
-    explained better is kept. The adjustment that follows frees the lenses.
+    matches, all is mapped again with the first guess of every lens, at last by the incremental
+    mapper. The model whose worst image is explained best is kept. The adjustment that follows frees
+    the lenses.
 
     Parameters
     ----------
@@ -83,11 +100,11 @@ def map_images(
 
     Returns
     -------
-    summary : of the model: pycolmap's version, the seed that gave it, which of COLMAP's options
-        were `held` against a diverging lens, n_models, n_images, n_registered, n_points3d,
-        reprojection_px, track_length; `explained`, how much of the verified matches it
-        explains, as a `Support`; n_attempts, and n_agreeing, the number of whole models
-        that agree with it, itself included
+    summary : of the model: pycolmap's version, the mapper and the seed that gave it, which of
+        COLMAP's options were `held` against a diverging lens, n_models, n_images, n_registered,
+        n_points3d, reprojection_px, track_length; `explained`, how much of the verified matches it
+        explains, as a `Support`; n_attempts, and n_agreeing, the number of whole models that agree
+        with it, itself included
     """
     best, support, n_agreeing, n_attempts = _explaining(
         matches_db, images, mapper, seed, dict(options or {}), attempts
@@ -96,7 +113,7 @@ def map_images(
     best.model.write_binary(str(folder))
     _check_whole(best.model, Path(folder))
     return {
-        "mapper": mapper,
+        "mapper": best.mapper,
         "seed": best.seed,
         "held": best.held,
         "pycolmap": pycolmap.__version__,
@@ -112,26 +129,33 @@ def map_images(
     }
 
 
-def _explaining(
-    matches_db, images, mapper, seed, options, attempts
-) -> tuple[_Attempt, Support, int, int]:
-    """Map, and again with known lenses where the best model is doubtful; return the better one.
-
-    With it what it explains, how many models agree with it, and how many were tried in all.
-    """
+def _explaining(matches_db, images, mapper, seed, options, attempts) -> _Found:
+    """Map, and again with known lenses while the best model is doubtful; return the best."""
     verified = two_views.read(matches_db, images)
-    best, n_agreeing, n_attempts = _agreed(matches_db, images, mapper, seed, options, attempts)
-    support = _explained(verified, best)
-    doubtful = support.image_share < DOUBTED or n_agreeing == 1 < n_attempts
-    if not (doubtful and mapper in KNOWN and _is_whole(best, images)):
-        return best, support, n_agreeing, n_attempts
-    known = {name: on for name, on in KNOWN[mapper].items() if name not in options}
-    with two_views.with_known_lenses(matches_db, images, seed=seed) as copy:
-        again, n_others, n_more = _agreed(copy, images, mapper, seed, options | known, attempts)
-    others = _explained(verified, again)
-    if _is_better(again, others, best, support):
-        best, support, n_agreeing = again._replace(held=known | dict(again.held)), others, n_others
-    return best, support, n_agreeing, n_attempts + n_more
+
+    def mapped(database, mapper, options) -> _Found:
+        best, *counts = _agreed(database, images, mapper, seed, options, attempts)
+        support = two_views.explained(verified, model.views(best.model))
+        return _Found(best, support, *counts)
+
+    found = mapped(matches_db, mapper, options)
+    for other in AGAIN.get(mapper, ()) if _is_whole(found.best, images) else ():
+        if not found.is_doubtful():
+            break
+        known = {name: on for name, on in KNOWN[other].items() if name not in options}
+        with two_views.with_known_lenses(matches_db, images, seed=seed) as copy:
+            # Options of one mapper are unknown to another.
+            again = mapped(copy, other, (options if other == mapper else {}) | known)
+        again = again._replace(best=again.best._replace(held=known | dict(again.best.held)))
+        tried = found.n_attempts + again.n_attempts
+        found = max((found, again), key=_soundness)._replace(n_attempts=tried)
+    return found
+
+
+def _soundness(found: _Found) -> tuple[int, bool, float]:
+    """Return what ranks models: images, whether it fits, how well its worst image is explained."""
+    best = found.best
+    return len(_places(best)), _error_px(best) <= SOUND_PX, found.support.image_share
 
 
 def _agreed(matches_db, images, mapper, seed, options, attempts) -> tuple[_Attempt, int, int]:
@@ -148,16 +172,6 @@ def _agreed(matches_db, images, mapper, seed, options, attempts) -> tuple[_Attem
     ranks = [_rank(*each) for each in zip(tried, agreeing, strict=True)]
     chosen = ranks.index(max(ranks))  # the first of equals
     return tried[chosen], agreeing[chosen], len(tried)
-
-
-def _explained(verified, attempt) -> Support:
-    return two_views.explained(verified, model.views(attempt.model))
-
-
-def _is_better(again, others, best, support) -> bool:
-    """Return whether another model has as many images and explains the worst of them better."""
-    ranks = [(len(_places(each)), _error_px(each) <= SOUND_PX) for each in (again, best)]
-    return (*ranks[0], others.image_share) > (*ranks[1], support.image_share)
 
 
 def _held(tried, images, mapper, options) -> dict[str, Any]:
@@ -195,7 +209,7 @@ def _map(matches_db, images, mapper, seed, options) -> _Attempt:
         run = pycolmap.global_mapping if is_global else pycolmap.incremental_mapping
         models = run(*arguments)
     largest = max(models.values(), key=_size, default=pycolmap.Reconstruction())
-    return _Attempt(largest, len(models), seed, {})
+    return _Attempt(largest, len(models), mapper, seed, {})
 
 
 def _rank(attempt: _Attempt, n_agreeing: int) -> tuple[int, bool, int, float]:
