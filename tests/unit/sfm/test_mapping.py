@@ -343,11 +343,26 @@ def test_a_model_that_explains_too_little_is_mapped_again_with_known_lenses(gues
     assert_placed(sfm_made.centres(found), sfm_made.centres(truth), 1e-3)
 
 
+@pytest.mark.parametrize("gain", [0.0, 1.0])
+def test_a_lone_model_replaces_two_that_agree_only_if_it_explains_much_more(
+    guessed, monkeypatch, gain
+):
+    run, _ = guessed
+    monkeypatch.setattr(mapping, "LONE_GAIN", gain)
+    # The first two agree on a wrong shape. With known lenses the third is right, all others are
+    # wrong, each in its own way.
+    wrong = {1: 0.5, 2: 0.5, 3: 0.0}
+    summary, _, _ = run(lambda number, found: bent(found, wrong.get(number, 0.3 * number)))
+    alone = {"held": mapping.KNOWN["global"], "n_agreeing": 1}
+    agreed = {"held": {}, "n_agreeing": 2}
+    assert {key: summary[key] for key in alone} == (agreed if gain else alone)
+
+
 def test_a_second_model_that_explains_less_is_not_kept(guessed):
     run, _ = guessed
     summary, asked, _ = run(lambda number, found: bent(found, 0.5 if number < 3 else 2.0))
     assert len(asked) == 6 and summary["held"] == {} and summary["mapper"] == "global"
-    assert summary["explained"]["image_share"] < mapping.DOUBTED
+    assert summary["explained"]["image_share"] < mapping.AGAIN["global"]["incremental"]
     assert (summary["n_attempts"], summary["n_agreeing"]) == (6, 2)
 
 
@@ -365,4 +380,7 @@ def test_a_model_that_explains_enough_is_not_mapped_again(guessed):
     summary, asked, _ = run(lambda number, found: found)
     assert asked == [(7, {}), (8, {})] and summary["explained"]["image_share"] == 1.0
     summary, asked, _ = run(lambda number, found: bent(found, 0.5), mapper="incremental")
-    assert summary["explained"]["image_share"] < mapping.DOUBTED and len(asked) == 2
+    assert (
+        summary["explained"]["image_share"] < mapping.AGAIN["global"]["incremental"]
+        and len(asked) == 2
+    )

@@ -29,11 +29,12 @@ KNOWN = {
     },
     "incremental": {"ba_refine_focal_length": False, "ba_refine_extra_params": False},
 }
-# Mappers that map again in turn, as long as the best model is doubtful.
-AGAIN = {"global": ("global", "incremental")}
-# Of an image's verified matches, as its model explains them. Chosen on small halls with ten
-# images (docs/measured.md): a wrong map had 0.55, and mapping again costs little.
-DOUBTED = 0.65
+# Mappers that map again in turn, while the best model explains less than this of any image's
+# verified matches. Chosen on small halls with ten images (docs/measured.md): a wrong map had 0.66.
+AGAIN = {"global": {"global": 0.75, "incremental": 0.65}}
+# Of all verified matches: of two halls whose lone model explained 0.01 and 0.10 more than two that
+# agreed, the first lone model was wrong and the second right.
+LONE_GAIN = 0.05
 # Of the extent of the images, root mean square: models of good sessions differ by 0 to 0.5 % from
 # seed to seed, one whose focal lengths have diverged to two thirds or to twice by more.
 AGREE = 0.01
@@ -57,8 +58,8 @@ class _Found(NamedTuple):
     n_agreeing: int
     n_attempts: int
 
-    def is_doubtful(self) -> bool:
-        return self.support.image_share < DOUBTED or self.n_agreeing == 1 < self.n_attempts
+    def is_doubtful(self, least_share: float) -> bool:
+        return self.support.image_share < least_share or self.n_agreeing == 1 < self.n_attempts
 
 
 def map_images(
@@ -83,10 +84,9 @@ def map_images(
 
     Maps can agree on a wrong shape: the global mapper starts from two-view geometries of unknown
     lenses, which pictures of mostly one plane do not determine, and its focal lengths run away.
-    Where no whole models agree, or the model explains less than `DOUBTED` of any image's verified
-    matches, all is mapped again with the first guess of every lens, at last by the incremental
-    mapper. The model whose worst image is explained best is kept. The adjustment that follows frees
-    the lenses.
+    Where no whole models agree, or the model explains too little of any image's verified matches,
+    all is mapped again with the first guess of every lens, at last by the incremental mapper. The
+    model whose worst image is explained best is kept. The adjustment that follows frees the lenses.
 
     Parameters
     ----------
@@ -139,8 +139,8 @@ def _explaining(matches_db, images, mapper, seed, options, attempts) -> _Found:
         return _Found(best, support, *counts)
 
     found = mapped(matches_db, mapper, options)
-    for other in AGAIN.get(mapper, ()) if _is_whole(found.best, images) else ():
-        if not found.is_doubtful():
+    for other, least_share in AGAIN.get(mapper, {}).items():
+        if not (found.is_doubtful(least_share) and _is_whole(found.best, images)):
             break
         known = {name: on for name, on in KNOWN[other].items() if name not in options}
         with two_views.with_known_lenses(matches_db, images, seed=seed) as copy:
@@ -148,14 +148,23 @@ def _explaining(matches_db, images, mapper, seed, options, attempts) -> _Found:
             again = mapped(copy, other, (options if other == mapper else {}) | known)
         again = again._replace(best=again.best._replace(held=known | dict(again.best.held)))
         tried = found.n_attempts + again.n_attempts
-        found = max((found, again), key=_soundness)._replace(n_attempts=tried)
+        found = (again if _is_better(again, found) else found)._replace(n_attempts=tried)
     return found
 
 
-def _soundness(found: _Found) -> tuple[int, bool, float]:
-    """Return what ranks models: images, whether it fits, how well its worst image is explained."""
-    best = found.best
-    return len(_places(best)), _error_px(best) <= SOUND_PX, found.support.image_share
+def _is_better(again: _Found, found: _Found) -> bool:
+    """Return whether a model has as many images and explains the worst of them better.
+
+    One that no other confirms must explain much more of all matches than one that is confirmed.
+    """
+    is_lone = again.n_agreeing == 1 < found.n_agreeing
+    if is_lone and again.support.share < found.support.share + LONE_GAIN:
+        return False
+    ranks = [
+        (len(_places(one.best)), _error_px(one.best) <= SOUND_PX, one.support.image_share)
+        for one in (again, found)
+    ]
+    return ranks[0] > ranks[1]
 
 
 def _agreed(matches_db, images, mapper, seed, options, attempts) -> tuple[_Attempt, int, int]:
