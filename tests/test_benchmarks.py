@@ -1,19 +1,26 @@
-"""What the benchmarks conclude from their times: ratios, growth, limits, what a run's log says."""
+"""What the benchmarks conclude from their times; that they give scripts what these take."""
 
+import inspect
+import runpy
 import sqlite3
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 import onnx
 import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
+import long_take
+import mapping_seeds
 import rows
 import run_log
 import structure_from_motion
 from comparisons import pose
 
+ROOT = Path(__file__).parents[1]
 LOG = """Provided cores: 2
 [Sat Nov 21 16:12:02 2026]
 localrule film:
@@ -94,3 +101,39 @@ def test_every_pair_of_features_of_matched_images_is_compared(tmp_path):
     count = structure_from_motion.compared_features
     assert count(tmp_path / "f.db") == 2 * 3 + 2 * 5 + 3 * 5
     assert count(tmp_path / "f.db", [("a", "c")]) == 10
+
+
+def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
+    calling = {
+        path.stem
+        for path in (ROOT / "benchmarks").rglob("*.py")
+        if '"workflow" / "scripts"' in path.read_text()
+    }
+    assert calling == {"long_take", "mapping_seeds"}
+
+
+def test_long_take_gives_each_script_what_it_takes(tmp_path):
+    given = SimpleNamespace(
+        cameras="cameras.toml", covariance=None, persons=["p1"], model="blazepose-full",
+        skeleton="blazepose33",
+    )  # fmt: skip
+    steps = list(long_take.steps(tmp_path, given))
+    assert steps[-1][0] == "measure_kinematics"
+    for script, arguments, options in steps:
+        main = runpy.run_path(str(ROOT / "workflow" / "scripts" / f"{script}.py"))["main"]
+        inspect.signature(main).bind(*arguments, **options)
+
+
+def test_mapping_seeds_gives_each_script_what_it_takes(tmp_path, monkeypatch):
+    called = []
+    for script in (mapping_seeds.map_images, mapping_seeds.adjust_network):
+        name = script.__name__
+        main = mock.create_autospec(
+            script.main, side_effect=lambda *_, name=name, **__: called.append(name)
+        )
+        monkeypatch.setattr(script, "main", main)
+    monkeypatch.setattr(mapping_seeds.session_truth, "read", mock.Mock())
+    monkeypatch.setattr(mapping_seeds.tie_points, "read", mock.Mock())
+    for mapper in ("global", "incremental"):
+        assert mapping_seeds.errors(tmp_path, "plain-dev", mapper, 0, 40, 10) == {}
+    assert called == 2 * ["map_images", "adjust_network"]

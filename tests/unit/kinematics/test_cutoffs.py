@@ -63,7 +63,7 @@ def test_gaps_are_left_out():
 def test_nothing_but_noise_gets_the_lowest_and_too_little_is_refused():
     noise = np.random.default_rng(0).normal(0, 0.01, (600, 3))
     assert cutoffs.choose_cutoff(noise, 30.0).cutoff_hz == 1.0
-    with pytest.raises(InputError, match=r"expected 30 frames or more.*found 20; state a number"):
+    with pytest.raises(InputError, match=r"expected 30 known points.*found 20; state a number of"):
         cutoffs.choose_cutoff(noise[:20], 30.0)
 
 
@@ -73,15 +73,19 @@ def test_a_group_is_chosen_for_or_has_its_number():
         footwork.body(neck, time_s)[0], time_s, 0.01, 0.0, np.random.default_rng(0)
     )
     wanted = {"head": 6, "trunk": "residual", "arms": 10.0, "legs": "residual"}
-    found = cutoffs.by_group(record, walker.SKELETON, wanted)
+    found = cutoffs.by_group(record, walker.SKELETON, wanted, path="raw.npz")
     assert (found["head"].cutoff_hz, found["arms"].cutoff_hz) == (6.0, 10.0)
     assert len(found["head"].candidates_hz) == 0
     assert found["trunk"].noise_m == pytest.approx(0.01, rel=0.1)
     legs = [walker.SKELETON.index(joint) for joint in walker.SKELETON.groups["legs"]]
     still = record.xyz.copy()
     still[:, :, legs] += 1.0
-    moved = cutoffs.by_group(replace(record, xyz=still), walker.SKELETON, wanted)
+    moved = cutoffs.by_group(replace(record, xyz=still), walker.SKELETON, wanted, path="raw.npz")
     assert moved["legs"].cutoff_hz == pytest.approx(found["legs"].cutoff_hz, rel=1e-3)
+    unseen = still.copy()
+    unseen[:, :, legs] = np.nan
+    with pytest.raises(InputError, match=r"raw\.npz: filter_motion\.cutoff_hz\.legs: .*found 0;"):
+        cutoffs.by_group(replace(record, xyz=unseen), walker.SKELETON, wanted, path="raw.npz")
 
 
 def test_cutoffs_say_how_they_were_chosen(tmp_path):

@@ -1,6 +1,5 @@
 """Cut-off frequencies for groups of joints: by residual analysis, or as stated."""
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -12,7 +11,7 @@ from courtside.kinematics import filtering
 from courtside.records import tables
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 RESIDUAL = "residual"  # in place of a number: choose by residual analysis
 TAIL = 0.5  # ASSUME: above this share of the highest candidate the residual is noise alone
@@ -40,14 +39,19 @@ def candidates(rate_hz: float) -> NDArray:
 
 
 def choose_cutoff(
-    xyz: NDArray, rate_hz: float, candidates_hz: ArrayLike | None = None, order: int = 4
+    xyz: NDArray,
+    rate_hz: float,
+    candidates_hz: ArrayLike | None = None,
+    order: int = 4,
+    *,
+    place: str = "filter_motion.cutoff_hz",
 ) -> Choice:
     """Choose by residual analysis the lowest cut-off that removes no more motion than noise passes.
 
     `xyz` (T, ..., 3) are raw paths of one group of joints, short gaps filled, NaN in gaps; with
     fewer than 30 known frames, an `InputError`. `candidates_hz` (N,) rise, below half the frame
     rate; the lowest or highest is the result where none fits. `order` is the effective order of the
-    filter.
+    filter, `place` what the error names: file and key.
 
     Winter 2009, sec. 2.2.4.3 fits a straight line to the tail of the residual over the cut-off and
     takes the cut-off whose residual equals the line's value at 0 Hz, the noise. That tail is
@@ -66,8 +70,8 @@ def choose_cutoff(
     n_known = int(np.isfinite(lines).all(axis=2).sum())
     if n_known < MIN_FRAMES:
         raise InputError(
-            f"filter_motion.cutoff_hz: expected {MIN_FRAMES} frames or more to choose a cut-off "
-            f"from, found {n_known}; state a number"
+            f"{place}: expected {MIN_FRAMES} known points or more to choose a cut-off from, found "
+            f"{n_known}; state a number of Hz in config.yaml, or in `override` of the session"
         )
     residual = np.array([_residual(lines, rate_hz, cutoff, order) for cutoff in candidates_hz])
     shares = [_shares(rate_hz, float(cutoff), order) for cutoff in candidates_hz]
@@ -102,12 +106,17 @@ def _crossing(candidates_hz: NDArray, excess: NDArray) -> float:
 
 
 def by_group(
-    points: Keypoints3D, skeleton: Skeleton, wanted: Mapping[str, float | str], order: int = 4
+    points: Keypoints3D,
+    skeleton: Skeleton,
+    wanted: Mapping[str, float | str],
+    order: int = 4,
+    *,
+    path: StrPath,
 ) -> dict[str, Choice]:
     """Return the cut-off of each group of joints: the stated number, or `RESIDUAL`'s choice.
 
-    `points` are of `skeleton_filter.prepare`. `wanted` maps groups of the skeleton to Hz or
-    `RESIDUAL`.
+    `points` are of `skeleton_filter.prepare`, from the file `path`, which errors name. `wanted`
+    maps groups of the skeleton to Hz or `RESIDUAL`.
     """
     choices = {}
     for group, value in wanted.items():
@@ -116,7 +125,9 @@ def by_group(
                 at for at, joint in enumerate(points.joints) if joint in skeleton.groups[group]
             ]
             paths = points.xyz[:, :, chosen].swapaxes(0, 1)
-            choices[group] = choose_cutoff(paths, points.rate_hz, order=order)
+            choices[group] = choose_cutoff(
+                paths, points.rate_hz, order=order, place=f"{path}: filter_motion.cutoff_hz.{group}"
+            )
         else:
             choices[group] = Choice(float(value), np.zeros(0), np.zeros(0), float("nan"))
     return choices
@@ -137,7 +148,7 @@ def table(choices: Mapping[str, Choice], order: int) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=COLUMNS).round(4)
 
 
-def read(path: str | os.PathLike) -> tuple[dict[str, float], int]:
+def read(path: StrPath) -> tuple[dict[str, float], int]:
     """Read a `table`: the cut-off of each group (Hz), and the effective order of the filter."""
     rows = tables.read(path, "a table of cut-offs", _fault).drop_duplicates("group")
     chosen = dict(zip(rows["group"], rows["cutoff_hz"].astype(float), strict=True))
