@@ -25,12 +25,10 @@ def main(paths, pdf, png, csv, *, n_frames, start_s, blur_faces):
     figure = stick_figure.stick(joints, derived_joints.read(paths.derived))
     frames = round_trip.span(points, n_frames, start_s).frames
     frame = (frames.start + frames.stop - 1) // 2
-    images = {}
-    for one in seen:
-        at = one.frame_at(points.time_s[frame])
-        both, when_s = (one.view.xy[:, at], one.reprojected(points, at)), one.view.time_s[at]
-        image = picture_crops.read(one.video, when_s, both, joints, hidden=blur_faces)
-        images[one.camera.name] = image
+    images = {
+        one.camera.name: picture_crops.at_frame(one, points, frame, joints, hidden=blur_faces)[0]
+        for one in seen
+    }
     court = court_files.read(paths.court) if paths.get("court") else None
     rows, cameras = fig09.table(points, seen, frame, figure), [one.camera for one in seen]
     measured = pd.read_csv(paths.measures)

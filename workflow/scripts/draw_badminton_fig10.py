@@ -27,15 +27,11 @@ def main(paths, pdf, png, csv, *, n_instants, n_frames, start_s, blur_faces):
     frames = round_trip.span(points, n_frames, start_s).frames
     shown = fig10.instants(frames, n_instants)
 
-    def picture(one, time_s):
-        at = one.frame_at(time_s)
-        both, when_s = (one.view.xy[:, at], one.reprojected(points, at)), one.view.time_s[at]
-        image = picture_crops.read(one.video, when_s, both, joints, hidden=blur_faces)
-        return image, figure.of(one.view.xy[:, at])
+    def picture(one, frame):
+        image, detected, _ = picture_crops.at_frame(one, points, frame, joints, hidden=blur_faces)
+        return image, figure.of(detected)
 
-    pictures = [
-        {one.camera.name: picture(one, points.time_s[frame]) for one in seen} for frame in shown
-    ]
+    pictures = [{one.camera.name: picture(one, frame) for one in seen} for frame in shown]
     court = court_files.read(paths.court) if paths.get("court") else None
     drawing = fig10.draw(points, figure, frames, shown, pictures, court)
     style.save(drawing, fig10.table(points, figure, frames, shown), pdf, png, csv)

@@ -30,10 +30,8 @@ def main(paths, pdf, png, csv, *, limit_torso, n_frames, start_s, blur_faces):
     rows = fig11.table(points, seen, limbs, joints.mirror(), frame, limit)
     images, detected, reprojected = {}, {}, {}
     for one in seen:
-        at = one.frame_at(points.time_s[frame])
-        both = one.view.xy[:, at], one.reprojected(points, at)
-        name, when_s = one.camera.name, one.view.time_s[at]
-        images[name] = picture_crops.read(one.video, when_s, both, joints, hidden=blur_faces)
+        name = one.camera.name
+        images[name], *both = picture_crops.at_frame(one, points, frame, joints, hidden=blur_faces)
         detected[name], reprojected[name] = map(figure.of, both)
     drawing = fig11.draw(rows, images, detected, reprojected, figure, limit_torso)
     style.save(drawing, rows, pdf, png, csv)

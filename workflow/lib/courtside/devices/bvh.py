@@ -1,5 +1,6 @@
 """BVH files: header, rows of motion, and the poses of the joints."""
 
+import contextlib
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -139,42 +140,31 @@ def read_rows(path: str | PathLike, text: str, at: int, n_frames: int, n_channel
         return np.empty((0, n_channels))
     if not n_channels:
         raise InputError(f"{path}: expected a channel in some joint, found none; {EXPORT_AGAIN}")
-    _check_width(path, lines, text.count("\n", 0, at) + 1, n_channels)
-    try:
-        rows = np.loadtxt(filled, comments=None, ndmin=2)
-    except ValueError:
-        rows = np.empty((0, 0))
+    rows = np.empty((0, 0))
+    if max(map(len, filled)) <= MAX_PER_CHANNEL * n_channels:
+        with contextlib.suppress(ValueError):
+            rows = np.loadtxt(filled, comments=None, ndmin=2)
     if rows.shape != (n_frames, n_channels) or not (np.abs(rows) <= LARGEST).all():
         raise _bad_row(path, lines, text.count("\n", 0, at) + 1, n_channels)
     return rows
 
 
-def _check_width(path: str | PathLike, lines: Sequence[str], first: int, n_channels: int) -> None:
-    """Raise `InputError` on rows so wide that splitting them would already take long."""
-    most = MAX_PER_CHANNEL * n_channels
-    for number, line in enumerate(lines, start=first):
-        if len(line) > most:
-            raise InputError(
-                f"{path}: line {number}: expected {n_channels} numbers, one for each channel, "
-                f"found a line of {len(line)} characters; {EXPORT_AGAIN}"
-            )
-
-
 def _bad_row(path: str | PathLike, lines: Sequence[str], first: int, n_channels: int) -> InputError:
     """Return the error of the first row that is not `n_channels` numbers."""
     for number, line in enumerate(lines, start=first):
-        words = line.split()
-        if words and len(words) != n_channels:
-            return InputError(
-                f"{path}: line {number}: expected {n_channels} numbers, one for each channel, "
-                f"found {len(words)}; {EXPORT_AGAIN}"
-            )
-        for word in words:
-            if not is_number(word):
-                return InputError(
-                    f"{path}: line {number}: expected finite numbers of at most {LARGEST:g}, "
-                    f"found {shown(word)}; {EXPORT_AGAIN}"
-                )
+        is_wide = len(line) > MAX_PER_CHANNEL * n_channels  # splitting it could take long
+        words = [] if is_wide else line.split()
+        others = [word for word in words if not is_number(word)]
+        if is_wide or len(words) not in (0, n_channels):
+            expected = f"{n_channels} numbers, one for each channel"
+            found = f"a line of {len(line)} characters" if is_wide else len(words)
+        elif others:
+            expected, found = f"finite numbers of at most {LARGEST:g}", shown(others[0])
+        else:
+            continue
+        return InputError(
+            f"{path}: line {number}: expected {expected}, found {found}; {EXPORT_AGAIN}"
+        )
     return InputError(
         f"{path}: expected rows of {n_channels} numbers, found others; {EXPORT_AGAIN}"
     )

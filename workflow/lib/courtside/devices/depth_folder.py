@@ -70,18 +70,21 @@ def read(path: str | PathLike, name: str = "rgbd") -> DepthRecording:
     cameras.check_size(colour, reader.probe(film).size, film)
     back = rotations.invert(depth.cam_from_world)
     turn, shift = colour.cam_from_world[:, :3], colour.cam_from_world[:, 3]
-    return DepthRecording(
-        name=name,
-        colour=replace(colour, name=f"{name}-colour", cam_from_world=STANDING_STILL),
-        depth=replace(depth, name=f"{name}-depth", cam_from_world=STANDING_STILL),
-        colour_from_depth=np.column_stack([turn @ back[:, :3], turn @ back[:, 3] + shift]),
-        depth_unit_m=depth_unit_m,
-        colour_frames=lambda: _colour(film, colour_index.time_s),
-        depth_frames=lambda: _depth(pictures, depth_index.time_s, depth.size),
-        colour_index=lambda: colour_index,
-        baseline_m=baseline_m,
-        remarks=remarks,
-    )
+    try:
+        return DepthRecording(
+            name=name,
+            colour=replace(colour, name=f"{name}-colour", cam_from_world=STANDING_STILL),
+            depth=replace(depth, name=f"{name}-depth", cam_from_world=STANDING_STILL),
+            colour_from_depth=np.column_stack([turn @ back[:, :3], turn @ back[:, 3] + shift]),
+            depth_unit_m=depth_unit_m,
+            colour_frames=lambda: _colour(film, colour_index.time_s),
+            depth_frames=lambda: _depth(pictures, depth_index.time_s, depth.size),
+            colour_index=lambda: colour_index,
+            baseline_m=baseline_m,
+            remarks=remarks,
+        )
+    except ValueError as error:
+        raise InputError(f"{toml}: {error}; correct it") from error
 
 
 def _metadata(toml: Path) -> tuple[float, float, tuple[str, ...]]:
@@ -96,10 +99,6 @@ def _metadata(toml: Path) -> tuple[float, float, tuple[str, ...]]:
         remarks = (f"no depth_unit_m in {toml}: {DEFAULT_UNIT_M} m assumed",)
     unit = metadata.get("depth_unit_m", DEFAULT_UNIT_M)
     depth_unit_m = float(camera_fields.numbers(where, "depth_unit_m", unit, ()))
-    if not 1e-6 <= depth_unit_m <= 0.1:  # ASSUME: a micrometre to 10 cm covers any sensor
-        raise InputError(
-            f"{where}: expected depth_unit_m of 0.000001 to 0.1, found {depth_unit_m}; correct it"
-        )
     baseline = metadata.get("baseline_m")
     baseline_m = (
         np.nan if baseline is None else camera_fields.numbers(where, "baseline_m", baseline, ())

@@ -45,7 +45,10 @@ class DepthRecording:
         rotation = moved[:, :3]
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-4 or np.linalg.det(rotation) < 0:
             raise ValueError("expected colour_from_depth with a right-handed rotation, found none")
-        if not 0 < self.depth_unit_m < 1:
-            raise ValueError(f"expected a depth unit between 0 and 1 m, found {self.depth_unit_m}")
+        if not 1e-6 <= self.depth_unit_m <= 0.1:  # ASSUME: a micrometre to 10 cm covers any sensor
+            raise ValueError(
+                "expected a depth unit (depth_unit_m) of 0.000001 to 0.1 m, found "
+                f"{self.depth_unit_m}"
+            )
         moved.setflags(write=False)
         object.__setattr__(self, "colour_from_depth", moved)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry.camera import Camera, undistort
+from courtside.geometry.rotations import skew
 
 TINY = 1e-12  # keeps divisions finite; far below any distance in px
 
@@ -21,19 +22,23 @@ def focal_px(camera: Camera) -> float:
     return (camera.K[0, 0] + camera.K[1, 1]) / 2
 
 
+def relative_pose(camera_a: Camera, camera_b: Camera) -> tuple[NDArray, NDArray]:
+    """Return rotation (3, 3) and shift (3,) from the first camera's axes to the second's."""
+    rotation = camera_b.cam_from_world[:, :3] @ camera_a.cam_from_world[:, :3].T
+    return rotation, camera_b.cam_from_world[:, 3] - rotation @ camera_a.cam_from_world[:, 3]
+
+
 def fundamental(camera_a: Camera, camera_b: Camera) -> NDArray:
     """Return the fundamental matrix (3, 3) for homogeneous straight px (x, y, 1): `b' F a = 0`.
 
     Hartley & Zisserman 2004, sec. 9.6.
     """
-    b_from_a = camera_b.cam_from_world[:, :3] @ camera_a.cam_from_world[:, :3].T
-    shift = camera_b.cam_from_world[:, 3] - b_from_a @ camera_a.cam_from_world[:, 3]
-    cross = np.array([[0, -shift[2], shift[1]], [shift[2], 0, -shift[0]], [-shift[1], shift[0], 0]])
+    b_from_a, shift = relative_pose(camera_a, camera_b)
     to_plane_a, to_plane_b = (
         np.diag([1 / focal_px(camera), 1 / focal_px(camera), 1.0])
         for camera in (camera_a, camera_b)
     )
-    matrix = to_plane_b @ cross @ b_from_a @ to_plane_a
+    matrix = to_plane_b @ skew(shift) @ b_from_a @ to_plane_a
     return matrix / np.linalg.norm(matrix)
 
 

@@ -13,6 +13,7 @@ import pycolmap
 from numpy.typing import NDArray
 
 from courtside.calibration.records.support import Support
+from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera, undistort
 from courtside.sfm import database
 from courtside.sfm.model import HALF_PIXEL
@@ -134,8 +135,7 @@ def _verified(opened: Any, chosen: Mapping[str, Any]) -> Iterator[tuple[tuple[st
 
 def _meet(one: Camera, other: Camera, rays: NDArray, others: NDArray) -> NDArray:
     """Return which pairs of rays (N, 3), on the planes z = 1, meet before both cameras, (N,)."""
-    turn = other.cam_from_world[:, :3] @ one.cam_from_world[:, :3].T
-    shift = other.cam_from_world[:, 3] - turn @ one.cam_from_world[:, 3]
+    turn, shift = epipolar.relative_pose(one, other)
     turned = rays @ turn.T
     lines, back = np.cross(shift, turned), np.cross(others, shift) @ turn
     slope = np.hypot(np.hypot(*lines[:, :2].T), np.hypot(*back[:, :2].T))

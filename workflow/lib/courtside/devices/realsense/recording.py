@@ -118,10 +118,6 @@ def _depth_unit(bag: Bag, stream: str) -> tuple[float, str]:
             DEFAULT_UNIT_M,
             f"no depth unit in the recording: {DEFAULT_UNIT_M} m assumed, as cameras have it",
         )
-    if not 1e-6 <= unit <= 0.1:
-        raise InputError(
-            f"{bag.path}: expected a depth unit of 0.000001 to 0.1 m, found {unit}; {RECORD}"
-        )
     return float(f"{unit:.7g}"), ""  # stored as a 32-bit float: 0.001 there is 0.0010000000475
 
 

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from courtside.figures.style import style
 from courtside.pose import privacy
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.video import reader
 
@@ -52,6 +54,18 @@ def read(
     face = [skeleton.index(name) for name in skeleton.groups["face"]]
     faces = np.concatenate([xy[:, face] for xy in persons], axis=1)
     return privacy.hide(image, np.concatenate(persons), skeleton.bone_indices(), faces)
+
+
+def at_frame(
+    one: Footage, points: Keypoints3D, frame: int, skeleton: Skeleton, *, hidden: bool
+) -> tuple[NDArray, NDArray, NDArray]:
+    """Return a camera's picture at a frame of a take, as `read`, and the joints in it.
+
+    The joints (P, J, 2) px are those detected, and those of `points` reprojected.
+    """
+    at = one.frame_at(points.time_s[frame])
+    both = one.view.xy[:, at], one.reprojected(points, at)
+    return read(one.video, one.view.time_s[at], both, skeleton, hidden=hidden), *both
 
 
 def box(xy: ArrayLike, size: tuple[int, int], aspect: float = 1.0) -> Box:

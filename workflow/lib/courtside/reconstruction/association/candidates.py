@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from courtside.geometry import camera as camera_models
 from courtside.geometry import epipolar, triangulation
 from courtside.geometry.camera import Camera
+from courtside.geometry.rotations import skew
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 GATE = 4.0  # standard deviations: a view further off does not see this person
@@ -254,9 +255,8 @@ def epipolar_distance(first: Camera, second: Camera, one: NDArray, other: NDArra
     Zisserman 2004, sec. 9.1 and 11.1), inf where fewer than three joints are seen in both. `one`
     (P, N, J, 2) and `other` (Q, N, J, 2) are on the undistorted, normalised plane; NaN if missing.
     """
-    rotation = second.cam_from_world[:, :3] @ first.cam_from_world[:, :3].T
-    x, y, z = second.cam_from_world[:, 3] - rotation @ first.cam_from_world[:, 3]
-    essential = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ rotation
+    rotation, shift = epipolar.relative_pose(first, second)
+    essential = skew(shift) @ rotation
     # Epipolar lines of one view's joints in the other view.
     in_second = one @ essential[:, :2].T + essential[:, 2]
     in_first = other @ essential[:2] + essential[2]
