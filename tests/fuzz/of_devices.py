@@ -182,7 +182,9 @@ def read_openpose(path):
     """Read a camera's keypoints."""
     joints = {"coco": COCO, "body": BODY25}.get(path.name)
     joints = joints or skeleton.read(SKELETONS / "body25b.yaml")
-    found = openpose.read(path, joints, camera="c", model="theirs", size=SIZE, rate_hz=30)
+    found = openpose.read(
+        path, joints, camera="c", model="theirs", size=SIZE, time_s=np.arange(9) / 30
+    )
     require(isinstance(found, Keypoints2D) and not np.isinf(found.xy).any(), "an infinite place")
     return found
 

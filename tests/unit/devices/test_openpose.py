@@ -30,10 +30,8 @@ def write(folder, name, *people):
     (folder / name).write_text(json.dumps(content))
 
 
-def read(folder, joints=COCO, **options):
-    options = {"size": (640, 480), "rate_hz": 30} | options
-    if "time_s" in options:
-        del options["rate_hz"]
+def read(folder, joints=COCO, *, n_frames=4, **options):
+    options = {"size": (640, 480), "time_s": np.arange(n_frames) / 30} | options
     return openpose.read(folder, joints, camera="left", model="theirs", **options)
 
 
@@ -119,12 +117,6 @@ def test_other_folders_are_refused(tmp_path):
         read(tmp_path / "k")
 
 
-def test_exactly_one_of_times_and_rate_is_taken():
-    for options in ({}, {"rate_hz": 30, "time_s": np.arange(3)}):
-        with pytest.raises(ValueError, match="time_s and rate_hz"):
-            openpose.read(".", COCO, camera="left", model="theirs", size=(640, 480), **options)
-
-
 @pytest.mark.parametrize("name", ["body25", "body25b"])
 def test_25_points_in_the_other_order_are_recognised(tmp_path, name):
     """A standing person's points by name, written in each order."""
@@ -138,7 +130,7 @@ def test_25_points_in_the_other_order_are_recognised(tmp_path, name):
         sign = {"left": 1, "right": -1}.get(side, 0)
         row += [300 + 30.0 * sign, 20.0 + heights[part if sign else joint], 0.9]
     write(tmp_path / "j", "0.json", row)
-    assert read(tmp_path / "j", joints).xy.shape == (1, 1, 25, 2)
+    assert read(tmp_path / "j", joints, n_frames=1).xy.shape == (1, 1, 25, 2)
     other = {"body25": "body25b", "body25b": "body25"}[name]
     with pytest.raises(InputError, match=f"points of {other}, found what looks like {name},"):
         read(tmp_path / "j", skeleton.read(SKELETONS / f"{other}.yaml"))
@@ -151,7 +143,7 @@ def test_real_keypoints_lie_where_another_program_puts_the_joints(number):
     real = REAL / "walk-4cams"
     joints = skeleton.read(SKELETONS / "body25b.yaml")
     folder = real / "openpose_body25b" / f"cam{number}_json"
-    found = read(folder, joints, size=(1088, 1920), rate_hz=60)
+    found = read(folder, joints, size=(1088, 1920), n_frames=100)
     assert found.xy.shape[1:] == (100, 25, 2)
     names, _, _, xyz = trc.read(real / "trc" / "Balancing_for_IK.trc")
     camera = {c.name: c for c in file_formats.read(real / "calibration" / "Calib.qca.txt")}
@@ -167,7 +159,7 @@ def test_real_keypoints_lie_where_another_program_puts_the_joints(number):
     assert np.nanmedian(list(off.values())) < 22  # px; the person is 750 px tall
     assert max(np.nanmedian(error) for error in off.values()) < 60
     with pytest.raises(InputError, match="looks like body25b"):
-        read(folder, replace(joints, name="body25"), size=(1088, 1920), rate_hz=60)
+        read(folder, replace(joints, name="body25"), size=(1088, 1920), n_frames=100)
 
 
 def person(x, y=100.0, seen=6):

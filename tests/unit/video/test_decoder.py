@@ -290,28 +290,6 @@ def test_pictures_of_odd_sizes_decode_as_with_opencv(tmp_path, name, how):
         np.testing.assert_array_equal(images, [draw(k, (101, 77)) for k in range(8)])
 
 
-def test_a_crop_is_a_part_of_the_upright_picture(tmp_path):
-    path = write(tmp_path / "turned.mp4", n=3, turn=(90, False))
-    whole = [image for _, image in reader.frames(path)]
-    assert whole[0].shape == (160, 120, 3)
-    part = [image for _, image in reader.frames(path, crop_px=(7, 100, 113, 60))]
-    np.testing.assert_array_equal(part, [image[100:160, 7:120] for image in whole])
-    assert part[0].flags.c_contiguous and part[0].base is None
-
-
-@pytest.mark.parametrize(
-    "crop_px", [(-1, 0, 5, 5), (0, 0, 161, 5), (0, 118, 5, 3), (0, 0, 0, 5), (0, 0, 5, -1)]
-)
-def test_a_crop_outside_is_refused(files, crop_px):
-    with pytest.raises(InputError, match=r"crop .* within 160x120"):
-        next(reader.frames(files["b_frames.mp4"], crop_px=crop_px))
-
-
-def test_a_crop_is_whole_pixels(files):
-    with pytest.raises(TypeError):
-        next(reader.frames(files["b_frames.mp4"], crop_px=(0.5, 0, 5, 5)))
-
-
 def test_pictures_kept_are_not_overwritten(files):
     kept = list(reader.frames(files["b_frames.mp4"]))
     copies = [image.copy() for _, image in reader.frames(files["b_frames.mp4"])]
@@ -341,7 +319,7 @@ def test_a_change_of_size_is_refused(tmp_path):
 
 def test_only_the_wanted_frames_come(files):
     listing = list_packets(files["b_frames.mp4"])
-    read = list(decoder.pictures(listing, [3, 14, 15, 40], None))
+    read = list(decoder.pictures(listing, [3, 14, 15, 40]))
     assert (
         [index for index, _ in read] == [number_in(image) for _, image in read] == [3, 14, 15, 40]
     )

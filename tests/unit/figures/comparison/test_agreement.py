@@ -41,8 +41,11 @@ def test_written_tables_are_read_back(tmp_path):
 
 def test_points_and_limits_are_drawn_at_the_tables_values():
     pairs, table = made()
-    drawing = agreement.draw(pairs, table, NETWORKS, ["b"])
-    panel, summary = drawing.axes
+    drawing = agreement.draw(pairs, table, NETWORKS)
+    shown = agreement.choose(table)
+    *panels, summary = drawing.axes
+    assert len(panels) == len(shown)
+    panel = panels[shown.index("b")]
     own = pairs[(pairs["measure"] == "b") & (pairs["subject"] == "p1")]
     np.testing.assert_allclose(panel.lines[0].get_ydata(), own["second"] - own["first"])
     np.testing.assert_allclose(panel.lines[0].get_xdata(), (own["second"] + own["first"]) / 2)

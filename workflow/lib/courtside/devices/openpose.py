@@ -30,26 +30,21 @@ def read(
     camera: str,
     model: str,
     size: tuple[int, int],
-    time_s: NDArray | None = None,
-    rate_hz: float | None = None,
+    time_s: NDArray,
     trim_s: tuple[float, float] | None = None,
 ) -> Keypoints2D:
     """Read the keypoints of one camera: a tracklet for each person that could be followed.
 
     The `folder` holds files `*.json`; the last number in a name counts the frames, the lowest is
     the first frame. Their points are in the order of the `skeleton`; `size` is the width and height
-    of the video, px. Either `time_s` (T,) gives the times of the video's frames, those without a
-    file unseen, or `rate_hz` the frames per second, else a `ValueError`. With `trim_s`, only frames
-    from its start to before its stop.
+    of the video, px. `time_s` (T,) are the times of the video's frames; in those without a file
+    nobody is seen. With `trim_s`, only frames from its start to before its stop.
 
     An `InputError` if there are no such files, one is damaged or has another number of points,
     there are more frames than in the video, or the points are those of another skeleton.
     """
-    if (time_s is None) == (rate_hz is None):
-        raise ValueError("expected one of time_s and rate_hz")
     files = _numbered(Path(folder))
-    first, last = min(files), max(files)
-    n_frames = last - first + 1 if time_s is None else len(time_s)
+    first, last, n_frames = min(files), max(files), len(time_s)
     if last - first >= n_frames:
         raise InputError(
             f"{folder}: expected frames of a video that has {n_frames}, found numbers {first} to "
@@ -60,7 +55,7 @@ def read(
     for number, path in files.items():
         people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
     _check_order(folder, skeleton.name, people)
-    times = np.asarray(time_s, dtype=float) if rate_hz is None else np.arange(n_frames) / rate_hz
+    times = np.asarray(time_s, dtype=float)
     kept = np.flatnonzero((times >= trim_s[0]) & (times < trim_s[1]) if trim_s else times >= 0)
     tracks = link([people[at] for at in kept])
     return _keypoints(tracks, skeleton, camera, model, size, times[kept])

@@ -13,36 +13,31 @@ from courtside.study.errors import InputError
 from courtside.study.execution.files import atomic
 
 INDENT = "  "
+ORDER, UNIT_M = "ZXY", 0.01  # of rotations; of lengths
 NO_TIP = np.zeros(3)
 EVEN_S = 1e-4  # deviation of a frame from an even grid: BVH has one frame time. ASSUME: harmless
 
 
-def write(
-    path: str | PathLike, posed: PosedHierarchy, *, order: str = "ZXY", unit_m: float = 0.01
-) -> None:
+def write(path: str | PathLike, posed: PosedHierarchy) -> None:
     """Write a posed hierarchy with one root, its frames even in time.
 
-    Every joint gets six channels, as in mocopi's files: its position in its parent, in units of
-    `unit_m` metres, then its rotation, with six decimals each. Joints stand depth first, each chain
-    to its end. BVH has no start time: the first frame's time is lost. A joint at the end of a chain
-    without a tip gets one of length zero, because many readers require one. If the middle angle is
-    90 degrees the other two are not unique; the last is then zero. Raises `InputError` if a value
-    is missing, two joints have one name, a name is blank or has blanks in it, or the frames are not
-    even in time, `ValueError` if there is not one root at the front, or `order`, of the rotation
-    channels, is no permutation of XYZ ("ZXY" is R = Rz Rx Ry).
+    Every joint gets six channels, as in mocopi's files: its position in its parent, cm, then its
+    rotation R = Rz Rx Ry, with six decimals each. Joints stand depth first, each chain to its end.
+    BVH has no start time: the first frame's time is lost. A joint at the end of a chain without a
+    tip gets one of length zero, because many readers require one. If the middle angle is 90 degrees
+    the other two are not unique; the last is then zero. Raises `InputError` if a value is missing,
+    two joints have one name, a name is blank or has blanks in it, or the frames are not even in
+    time, `ValueError` if there is not one root at the front.
     """
     shape = posed.hierarchy
-    if list(shape.parents).count(NO_PARENT) != 1 or sorted(order) != ["X", "Y", "Z"]:
-        raise ValueError(
-            f"expected one root and an order of X, Y and Z, found parents {shape.parents}, order "
-            f"{order!r}"
-        )
+    if list(shape.parents).count(NO_PARENT) != 1:
+        raise ValueError(f"expected one root, found parents {shape.parents}")
     frame_time_s = _check(path, posed)
     sequence = _depth_first(shape.parents)
-    head = ["HIERARCHY", *_lines(shape, sequence, order, unit_m), "MOTION"]
+    head = ["HIERARCHY", *_lines(shape, sequence), "MOTION"]
     head += [f"Frames: {len(posed.time_s)}", f"Frame Time: {frame_time_s:.9g}"]
     values = np.concatenate(
-        [posed.translation / unit_m, _angles_deg(posed.parent_from_joint, order)], axis=-1
+        [posed.translation / UNIT_M, _angles_deg(posed.parent_from_joint)], axis=-1
     )
     rows = values[:, sequence].reshape(len(values), 6 * len(sequence))
     with atomic(path) as temporary, temporary.open("w", encoding="utf-8", newline="\n") as stream:
@@ -93,10 +88,10 @@ def _depth_first(parents: NDArray) -> list[int]:
     return sequence
 
 
-def _lines(shape: Hierarchy, sequence: Sequence[int], order: str, unit_m: float) -> Iterator[str]:
+def _lines(shape: Hierarchy, sequence: Sequence[int]) -> Iterator[str]:
     """Yield the lines of the hierarchy."""
     channels = " ".join(
-        [f"{axis}position" for axis in "XYZ"] + [f"{axis}rotation" for axis in order]
+        [f"{axis}position" for axis in "XYZ"] + [f"{axis}rotation" for axis in ORDER]
     )
     inner = set(shape.parents.tolist())
     open_joints: list[int] = []
@@ -107,11 +102,11 @@ def _lines(shape: Hierarchy, sequence: Sequence[int], order: str, unit_m: float)
         indent = INDENT * len(open_joints)
         yield f"{indent}{'JOINT' if open_joints else 'ROOT'} {shape.joints[joint]}"
         yield f"{indent}{{"
-        yield f"{indent}{INDENT}OFFSET {_three(shape.offsets[joint] / unit_m)}"
+        yield f"{indent}{INDENT}OFFSET {_three(shape.offsets[joint] / UNIT_M)}"
         yield f"{indent}{INDENT}CHANNELS 6 {channels}"
         open_joints.append(joint)
         if joint not in inner or shape.joints[joint] in shape.ends:
-            tip = shape.ends.get(shape.joints[joint], NO_TIP) / unit_m
+            tip = shape.ends.get(shape.joints[joint], NO_TIP) / UNIT_M
             yield from (f"{indent}{INDENT}{line}" for line in ("End Site", "{"))
             yield f"{indent}{INDENT * 2}OFFSET {_three(tip)}"
             yield f"{indent}{INDENT}}}"
@@ -124,11 +119,11 @@ def _three(values: NDArray) -> str:
     return " ".join(f"{value:.6f}" for value in values)
 
 
-def _angles_deg(rotations: NDArray, order: str) -> NDArray:
+def _angles_deg(rotations: NDArray) -> NDArray:
     """Return the angles of (T, J, 3, 3) rotations in their channels' order, (T, J, 3) degrees."""
     if not len(rotations):
         return np.empty(rotations.shape[:3])
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Gimbal lock", category=UserWarning)
         turns = Rotation.from_matrix(rotations.reshape(-1, 3, 3))
-        return turns.as_euler(order, degrees=True).reshape(rotations.shape[:3])
+        return turns.as_euler(ORDER, degrees=True).reshape(rotations.shape[:3])

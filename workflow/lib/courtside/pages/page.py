@@ -38,7 +38,6 @@ def build(
     js: Iterable[str | os.PathLike] = (),
     data: Mapping[str, object] | None = None,
     images: Mapping[str, Picture] | None = None,
-    evaluates: bool = False,
 ) -> str:
     """Return the content of a page, to be written by `write`.
 
@@ -51,7 +50,6 @@ def build(
         arrays; numbers that are not finite become null
     images : picture, or picture and MIME type ("image/png" if left out); scripts get pictures that
         `body_html` does not show by `courtside.image(name)`, as a data address
-    evaluates : whether a script makes code from text, as some plotting libraries do
 
     `ValueError` if a name has characters other than letters, digits, _ . and -, or a picture is
     missing.
@@ -69,7 +67,6 @@ def build(
     stores = {f"data-{name}": value for name, value in data.items()} | {"images": rest}
     html = render(
         "page.html",
-        evaluates=evaluates,
         title=title,
         styles=[Markup(_read(item).replace("</", "<\\/")) for item in [f"{ALWAYS}.css", *css]],
         body=Markup(PICTURE.sub(lambda match: f'src="{addresses[match.group(1)]}"', body_html)),

@@ -56,15 +56,13 @@ class LandmarkNetwork(Protocol):
         ...
 
 
-def open_network(path: StrPath, threads: int = 1) -> onnxruntime.InferenceSession:
-    """Open an ONNX file for inference on the processor.
+def open_network(path: StrPath) -> onnxruntime.InferenceSession:
+    """Open an ONNX file for inference on one thread of the processor.
 
-    `threads` work within one operator. One is fastest when several files are processed in
-    parallel: idle threads of onnxruntime spin.
+    That is fastest when several files are processed in parallel: idle threads of onnxruntime spin.
     """
     options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = threads
-    options.inter_op_num_threads = 1
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
     options.log_severity_level = 3
     return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
 

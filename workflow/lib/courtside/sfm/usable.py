@@ -16,25 +16,24 @@ BLOCKS = (9, 16)  # ASSUME: rows and columns of blocks in which two pictures are
 # second the motion.
 FLAT, RICH = 25, 50
 BLACK_LEVEL, BLACK_SHARE = 20, 0.8  # ASSUME: dark: so much of the picture is below that level
+WINDOW = 15  # ASSUME: frames, the judged one in the middle; fewer at the ends
+MIN_SHARE = 0.6  # ASSUME: of the median sharpness in the window
+# Of a picture's width, from the last kept frame: 0.6 px of 1280 is about the noise of a feature's
+# place.
+STILL_SHARE = 5e-4
 # ASSUME: squared grey levels per pixel; with less in most blocks motion cannot be measured.
 MIN_TEXTURE = 1.0
 
 
-def judge(
-    table: pd.DataFrame,
-    images: Sequence[NDArray],
-    *,
-    window: int = 15,
-    min_share: float = 0.6,
-    still_share: float = 5e-4,
-) -> tuple[NDArray, NDArray]:
+def judge(table: pd.DataFrame, images: Sequence[NDArray]) -> tuple[NDArray, NDArray]:
     """Judge which frames of a walk's grid are usable for structure from motion.
 
     Raises `ValueError` if table and images differ in number, or the images in size.
 
-    A frame is dark where 80 % of it is below 20 of 255. A stretch of blur longer than half the
-    window becomes its own measure and is kept: those frames are all there is of that part of the
-    walk. Of a walker who stands still the first frame is kept.
+    A frame is dark where 80 % of it is below 20 of 255. It is blurred where its sharpness is below
+    a share of the median in a window around it. A stretch of blur longer than half the window
+    becomes its own measure and is kept: those frames are all there is of that part of the walk. Of
+    a walker who stands still the first frame is kept; the others are duplicates.
 
     Parameters
     ----------
@@ -42,11 +41,6 @@ def judge(
         the Laplacian), `name`
     images : (h, w) uint8, length G; the same frames, grey, reduced by averaging to one small size,
         about 320 pixels wide
-    window : frames, the judged one in the middle, whose median sharpness is the measure; fewer at
-        the ends
-    min_share : a frame is blurred where its sharpness is below this share of that median
-    still_share : a frame is a duplicate where it moved less than this, in picture widths, from the
-        last kept frame. The default, 0.6 px of 1280, is about the noise of a feature's place
 
     Returns
     -------
@@ -57,12 +51,12 @@ def judge(
     shapes = {np.shape(image) for image in images}
     if len(sharpness) != len(images) or len(shapes) > 1:
         raise ValueError(f"{len(sharpness)} rows, {len(images)} images, shapes {shapes}")
-    medians = table["sharpness"].rolling(window, center=True, min_periods=1).median().to_numpy()
-    why = np.where(sharpness < min_share * medians, "blurred", "").astype("<U9")
+    medians = table["sharpness"].rolling(WINDOW, center=True, min_periods=1).median().to_numpy()
+    why = np.where(sharpness < MIN_SHARE * medians, "blurred", "").astype("<U9")
     why[[np.mean(np.asarray(image) < BLACK_LEVEL) > BLACK_SHARE for image in images]] = "dark"
     last = None
     for at in np.flatnonzero(why == "").tolist():
-        limit_px = still_share * images[at].shape[1]
+        limit_px = STILL_SHARE * images[at].shape[1]
         if last is not None and motion_px(images[last], images[at]) < limit_px:
             why[at] = "duplicate"
         else:

@@ -27,7 +27,7 @@ def frames_per_trial(hits: ArrayLike) -> float:
     return float(np.clip(2 * pairs[:last].sum() - 1, 1, len(hits)))
 
 
-def interval(share: float, n_effective: float, level: float = LEVEL) -> tuple[float, float]:
+def interval(share: float, n_effective: float) -> tuple[float, float]:
     """Return Wilson's interval of a share (0 to 1) of so many independent trials.
 
     Wilson 1927, J. Am. Stat. Assoc. 22, 209. It holds near 0 and 1 as well, where the normal
@@ -35,7 +35,7 @@ def interval(share: float, n_effective: float, level: float = LEVEL) -> tuple[fl
     """
     if not n_effective > 0:
         return 0.0, 1.0
-    z = special.ndtri((1 + level) / 2)
+    z = special.ndtri((1 + LEVEL) / 2)
     middle = share + z**2 / (2 * n_effective)
     half = z * np.sqrt(share * (1 - share) / n_effective + z**2 / (4 * n_effective**2))
     scale = 1 + z**2 / n_effective

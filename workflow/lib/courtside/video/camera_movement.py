@@ -52,7 +52,7 @@ def unknown(n_matches: int = 0) -> Movement:
     return Movement(np.full(2, np.nan), np.nan, np.nan, n_matches)
 
 
-def movement(reference: NDArray, other: NDArray, *, min_matches: int = MIN_MATCHES) -> Movement:
+def movement(reference: NDArray, other: NDArray) -> Movement:
     """Measure how a fixed camera's picture moved, from its background.
 
     Corners are tracked forth and back (Lucas & Kanade 1981, pyramidal) on pictures of normalised
@@ -62,7 +62,7 @@ def movement(reference: NDArray, other: NDArray, *, min_matches: int = MIN_MATCH
     its picture moves a little more.
 
     Pictures are (H, W, 3) uint8, BGR, such as a camera's static picture and a frame of a take;
-    ValueError if sizes differ. With fewer than `min_matches` agreeing points the result is NaN.
+    ValueError if sizes differ. With fewer than `MIN_MATCHES` agreeing points the result is NaN.
     """
     if reference.shape != other.shape:
         raise ValueError(f"pictures of two sizes: {reference.shape} and {other.shape}")
@@ -74,7 +74,7 @@ def movement(reference: NDArray, other: NDArray, *, min_matches: int = MIN_MATCH
     starts = [np.eye(2, 3), *_roughly(before, after)]
     fits = [_fit(*_track(before, after, corners, start)) for start in starts]
     matrix, inliers = max(fits, key=lambda fit: len(fit[1]))
-    if len(inliers) < min_matches or inliers.std(axis=0).min() < MIN_SPREAD * min(before.shape):
+    if len(inliers) < MIN_MATCHES or inliers.std(axis=0).min() < MIN_SPREAD * min(before.shape):
         return unknown(len(inliers))
     centre = (np.array([width, before.shape[0]]) - 1) / 2
     return Movement(

@@ -5,7 +5,6 @@ still decode: they are rare in H.264 and MPEG-4 and common in MJPEG, VP8 and VP9
 redundancy.
 """
 
-import operator
 from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -109,14 +108,11 @@ def _decode(listing: Listing, key_pts: int, seek: int | None) -> Iterator[av.Vid
             yield from (f for f in decoded if f.pts is None or f.pts >= key_pts)
 
 
-def pictures(
-    listing: Listing, wanted: Sequence[int], crop_px: tuple[int, int, int, int] | None
-) -> Iterator[tuple[int, NDArray]]:
+def pictures(listing: Listing, wanted: Sequence[int]) -> Iterator[tuple[int, NDArray]]:
     """Decode wanted frames into upright pictures; those between are decoded but not converted.
 
-    `wanted` are one or more increasing indices into `listing.pts`, `crop_px` left, top, width and
-    height, px of the upright picture. Pictures (H, W, 3) uint8, BGR, come with their indices.
-    Raises `InputError` as `decode_checked`; also if the size changes or the crop lies outside.
+    `wanted` are one or more increasing indices into `listing.pts`. Pictures (H, W, 3) uint8, BGR,
+    come with their indices. Raises `InputError` as `decode_checked`; also if the size changes.
     """
     reformatter, matrix = VideoReformatter(), None
     shape, rest = None, iter(wanted)
@@ -137,7 +133,7 @@ def pictures(
                 "export the video again at one size"
             )
         shape = image.shape
-        yield index, image if crop_px is None else _cropped(listing.path, image, crop_px)
+        yield index, image
 
 
 def _picture(frame: av.VideoFrame, reformatter: VideoReformatter, matrix: NDArray) -> NDArray:
@@ -170,15 +166,3 @@ def display_matrix(path: Path, frame: av.VideoFrame) -> NDArray:
             f"{matrix.round(3).tolist()}: export the video again, upright"
         )
     return rounded
-
-
-def _cropped(path: Path, image: NDArray, crop_px: Sequence[int]) -> NDArray:
-    """Copy the part (left, top, width, height) of a picture."""
-    left, top, width, height = crop = tuple(operator.index(value) for value in crop_px)
-    right, bottom = left + width, top + height
-    if not (0 <= left < right <= image.shape[1] and 0 <= top < bottom <= image.shape[0]):
-        raise InputError(
-            f"{path}: expected a crop (left, top, width, height) within "
-            f"{image.shape[1]}x{image.shape[0]}, found {crop}: correct it"
-        )
-    return image[top:bottom, left:right].copy()

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 from courtside.video.decoder import decode_checked, display_matrix, pictures
-from courtside.video.packets import Listing, list_packets
+from courtside.video.packets import list_packets
 
 
 @dataclass(frozen=True)
@@ -70,48 +70,41 @@ def frame_times(path: StrPath, *, stop_s: float | None = None) -> NDArray:
 
 
 def frames(
-    path: StrPath,
-    *,
-    start_s: float | None = None,
-    stop_s: float | None = None,
-    crop_px: tuple[int, int, int, int] | None = None,
+    path: StrPath, *, start_s: float | None = None, stop_s: float | None = None
 ) -> Iterator[tuple[float, NDArray]]:
     """Decode a video one frame at a time: seconds since its first frame, and picture.
 
     Pictures are (H, W, 3) uint8, BGR, upright. Only frames with `start_s <= time_s < stop_s` are
-    wanted (None: the file's start or end), and of them the part `crop_px`: left, top, width and
-    height, px of the upright picture. Raises `InputError` if the file is missing, no video, damaged
-    or cut short within the range, holds no frame in it, or is smaller than the crop.
+    wanted (None: the file's start or end). Raises `InputError` if the file is missing, no video,
+    damaged or cut short within the range, or holds no frame in it.
     """
-    listing, first, stop = _range(path, start_s, stop_s)
+    listing = list_packets(path, stop_s=stop_s)
     times_s = listing.times_s
-    for index, image in pictures(listing, range(first, stop), crop_px):
+    first = 0 if start_s is None else int(np.count_nonzero(times_s < start_s))
+    stop = len(times_s) if stop_s is None else int(np.count_nonzero(times_s < stop_s))
+    if first >= stop:
+        raise InputError(
+            f"{path}: expected frames from {start_s} s to before {stop_s} s, found none: "
+            f"choose a range within the video, which runs from 0 to {listing.duration_s:.3f} s"
+        )
+    for index, image in pictures(listing, range(first, stop)):
         yield float(times_s[index]), image
 
 
-def extract_frames(
-    path: StrPath,
-    every_s: float,
-    *,
-    start_s: float | None = None,
-    stop_s: float | None = None,
-    crop_px: tuple[int, int, int, int] | None = None,
-) -> Iterator[tuple[int, float, NDArray]]:
+def extract_frames(path: StrPath, every_s: float) -> Iterator[tuple[int, float, NDArray]]:
     """Decode the frames nearest to a regular grid of times: index in the file, time and picture.
 
-    The grid begins at `start_s` (or 0) and ends with the last frame. A frame nearest to several
-    grid times comes once; of two equally near, the earlier is taken. ValueError if the spacing
-    `every_s` is not positive; all else is as for `frames`.
+    The grid begins at 0 and ends with the last frame. A frame nearest to several grid times comes
+    once; of two equally near, the earlier is taken. ValueError if the spacing `every_s` is not
+    positive; all else is as for `frames`.
     """
     if not every_s > 0:
         raise ValueError(f"every_s must be positive, not {every_s}")
-    listing, first, stop = _range(path, start_s, stop_s)
+    listing = list_packets(path)
     times_s = listing.times_s
-    origin_s = start_s or 0.0
-    n_grid = int(np.floor((times_s[stop - 1] - origin_s) / every_s + 1e-9)) + 1
-    grid_s = origin_s + every_s * np.arange(n_grid)
-    wanted = first + np.unique(_nearest(times_s[first:stop], grid_s))
-    for index, image in pictures(listing, wanted.tolist(), crop_px):
+    n_grid = int(np.floor(times_s[-1] / every_s + 1e-9)) + 1
+    wanted = np.unique(_nearest(times_s, every_s * np.arange(n_grid)))
+    for index, image in pictures(listing, wanted.tolist()):
         yield index, float(times_s[index]), image
 
 
@@ -128,7 +121,7 @@ def read_frame(path: StrPath, time_s: float) -> tuple[float, NDArray]:
             f"found {time_s}: correct it"
         )
     index = int(_nearest(listing.times_s, time_s))
-    _, image = next(pictures(listing, [index], None))
+    _, image = next(pictures(listing, [index]))
     return float(listing.times_s[index]), image
 
 
@@ -158,20 +151,6 @@ def sharpness(image: NDArray) -> float:
     (Pech-Pacheco et al. 2000, Diatom autofocusing in brightfield microscopy).
     """
     return float(cv2.Laplacian(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.CV_64F).var())
-
-
-def _range(path, start_s, stop_s) -> tuple[Listing, int, int]:
-    """List a file's packets and convert a range of times into a range of indices."""
-    listing = list_packets(path, stop_s=stop_s)
-    times_s = listing.times_s
-    first = 0 if start_s is None else len(times_s) - np.count_nonzero(times_s >= start_s)
-    stop = len(times_s) if stop_s is None else np.count_nonzero(times_s < stop_s)
-    if first >= stop:
-        raise InputError(
-            f"{path}: expected frames from {start_s} s to before {stop_s} s, found none: "
-            f"choose a range within the video, which runs from 0 to {listing.duration_s:.3f} s"
-        )
-    return listing, int(first), int(stop)
 
 
 def _nearest(times_s: NDArray, wanted_s: NDArray | float) -> NDArray:

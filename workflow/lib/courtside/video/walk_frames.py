@@ -42,7 +42,7 @@ def frames(
         yield from reader.extract_frames(_paths(source)[0], every_s)
     elif every_s is None and isinstance(every_frame, int) and every_frame > 0:
         listing = list_packets(_paths(source)[0])
-        for index, image in pictures(listing, range(0, len(listing.times_s), every_frame), None):
+        for index, image in pictures(listing, range(0, len(listing.times_s), every_frame)):
             yield index, float(listing.times_s[index]), image
     else:
         raise ValueError(f"one of every_s and every_frame, not {every_s} and {every_frame}")
@@ -57,7 +57,7 @@ def spread(source: Source, n_frames: int) -> list[NDArray]:
     if paths:
         return list(_photos([paths[at] for at in _evenly(len(paths), n_frames)]))
     listing = list_packets(_paths(source)[0])
-    return [image for _, image in pictures(listing, _evenly(len(listing.pts), n_frames), None)]
+    return [image for _, image in pictures(listing, _evenly(len(listing.pts), n_frames))]
 
 
 def _evenly(n_available: int, n_wanted: int) -> list[int]:

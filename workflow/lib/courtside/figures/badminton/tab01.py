@@ -23,15 +23,15 @@ LEGEND = (
 )
 
 
-def table(rows: pd.DataFrame, published: pd.DataFrame, person: str | None = None) -> pd.DataFrame:
-    """Put the published values beside the rows of one person, by default the first.
+def table(rows: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Put the published values beside the rows of the first person.
 
     The columns stay the same; published rows have `published` as row, no person and 2 cameras.
     Joints are in the published order, others follow, and `all` is last. `rows` are of
     `courtside.evaluation.round_trip.table`, for one or more sets of cameras; `published` has joint,
     mean_mm, sd_mm, n_frames, source.
     """
-    own = rows[rows["person"] == (person or rows["person"].iloc[0])]
+    own = rows[rows["person"] == rows["person"].iloc[0]]
     names = {"source": "cameras", "mean_mm": "mean", "sd_mm": "sd", "n_frames": "n"}
     theirs = published.rename(columns=names)[["joint", *names.values()]]
     theirs = theirs.assign(person="", n_cameras=2, row="published", unit="mm")

@@ -42,18 +42,13 @@ def choose(table: pd.DataFrame, count: int = SHOWN) -> list[str]:
     return order.iloc[at].tolist()
 
 
-def draw(
-    pairs: pd.DataFrame,
-    table: pd.DataFrame,
-    networks: tuple[str, str],
-    measures: list[str] | None = None,
-) -> Figure:
-    """Draw differences against means of some measures (by default `choose`), and the limits of all.
+def draw(pairs: pd.DataFrame, table: pd.DataFrame, networks: tuple[str, str]) -> Figure:
+    """Draw differences against means of some measures (`choose`), and the limits of all.
 
     `pairs` and `table` are of `courtside.statistics.agreement`.
     """
     known = table[table["verdict"].isin(COLOURS)]
-    measures = measures or choose(table)
+    measures = choose(table)
     drawing = style.figure(80 + 3.4 * len(known))
     above, below = drawing.subfigures(2, 1, height_ratios=[62, 18 + 3.4 * len(known)])
     axes = above.subplots(1, len(measures), squeeze=False)[0]

@@ -89,19 +89,19 @@ def net(axis: Axes, sight: Sight, court: Court | None) -> None:
     line(axis, sight, xyz, color="#999999", linewidth=0.8, zorder=2)
 
 
-def camera(axis: Axes, sight: Sight, one: Camera, depth_m: float, colour: str = "black") -> None:
+def camera(axis: Axes, sight: Sight, one: Camera, depth_m: float) -> None:
     """Draw a camera as its viewing pyramid of height `depth_m`, with its name."""
     width, height = one.size
     pixels = np.array([[0, 0], [width, 0], [width, height], [0, height]], dtype=float)
     in_cam = np.column_stack([(pixels - one.K[:2, 2]) / np.diag(one.K)[:2], np.ones(4)]) * depth_m
     corners = one.centre_in_world + in_cam @ one.cam_from_world[:, :3]
-    look: dict = {"color": colour, "linewidth": 0.7, "zorder": 4}
+    look: dict = {"color": "black", "linewidth": 0.7, "zorder": 4}
     for corner in corners:
         line(axis, sight, np.stack([one.centre_in_world, corner]), **look)
     line(axis, sight, corners[[0, 1, 2, 3, 0]], **look)
     place = sight.seen(one.centre_in_world)
     look = {"textcoords": "offset points", "ha": "center", "va": "top", "fontsize": 7}
-    axis.annotate(one.name, place, (0, -4), color=colour, **look)
+    axis.annotate(one.name, place, (0, -4), **look)
 
 
 def limits(xyz: NDArray, percentiles: tuple[float, float] = (0, 100)) -> tuple[NDArray, NDArray]:

@@ -17,6 +17,7 @@ from courtside.records.keypoints.skeleton import Skeleton
 PATHS = ("left_wrist", "right_wrist", "left_ankle", "right_ankle")
 PERCENTILES = (0.5, 99.5)  # of the joints' positions, shown: without gross outliers
 ARROW_M = 0.6
+N_POSES = 5
 
 
 def table(points: Keypoints3D) -> pd.DataFrame:
@@ -37,23 +38,19 @@ def table(points: Keypoints3D) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(
-    points: Keypoints3D, cameras: list[Camera], skeleton: Skeleton, n_poses: int = 5
-) -> Figure:
+def draw(points: Keypoints3D, cameras: list[Camera], skeleton: Skeleton) -> Figure:
     """Draw skeletons at several times, in perspective and from above."""
     drawing = style.figure(95)
     space = drawing.add_subplot(1, 2, 1, projection="3d")
     above = drawing.add_subplot(1, 2, 2)
-    _draw_space(space, points, skeleton, n_poses)
-    _draw_above(above, points, cameras, skeleton, n_poses)
+    _draw_space(space, points, skeleton)
+    _draw_above(above, points, cameras, skeleton)
     return drawing
 
 
-def _bones(
-    points: Keypoints3D, skeleton: Skeleton, n_poses: int
-) -> Iterator[tuple[NDArray, str, float]]:
+def _bones(points: Keypoints3D, skeleton: Skeleton) -> Iterator[tuple[NDArray, str, float]]:
     """Yield both ends (2, 3), colour and opacity of every bone to draw."""
-    frames = np.unique(np.linspace(0, len(points.time_s) - 1, n_poses).round().astype(int))
+    frames = np.unique(np.linspace(0, len(points.time_s) - 1, N_POSES).round().astype(int))
     for frame, opacity in zip(frames, np.linspace(0.35, 1.0, len(frames)), strict=True):
         for person in range(len(points.person_id)):
             xyz = points.xyz[person, frame]
@@ -69,9 +66,9 @@ def _paths(points: Keypoints3D) -> Iterator[tuple[NDArray, str]]:
             yield points.xyz[person, :, at], style.side_colour(joint)
 
 
-def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton, n_poses: int) -> None:
+def _draw_space(axis: Axes, points: Keypoints3D, skeleton: Skeleton) -> None:
     low, high = oblique_view.limits(points.xyz, PERCENTILES)
-    for ends, colour, opacity in _bones(points, skeleton, n_poses):
+    for ends, colour, opacity in _bones(points, skeleton):
         axis.plot(*ends.T, color=colour, alpha=opacity, linewidth=1.2)
     for path, colour in _paths(points):
         axis.plot(*path.T, color=colour, linewidth=0.6, alpha=0.8)
@@ -92,10 +89,8 @@ def _floor(axis: Axes, low: NDArray, high: NDArray) -> None:
         axis.plot([low[0], high[0]], [y, y], [0, 0], color="#cccccc", linewidth=0.5)
 
 
-def _draw_above(
-    axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton: Skeleton, n_poses: int
-) -> None:
-    for ends, colour, opacity in _bones(points, skeleton, n_poses):
+def _draw_above(axis: Axes, points: Keypoints3D, cameras: list[Camera], skeleton: Skeleton) -> None:
+    for ends, colour, opacity in _bones(points, skeleton):
         axis.plot(*ends[:, :2].T, color=colour, alpha=opacity, linewidth=1.0)
     for path, colour in _paths(points):
         axis.plot(*path[:, :2].T, color=colour, linewidth=0.6, alpha=0.8)

@@ -57,7 +57,7 @@ def of_truth(truth: Any, person: str) -> DeviceMotion:
     return DeviceMotion("truth", "cameras", truth.joints, truth.time_s, xyz, reason, complete)
 
 
-def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> DeviceMotion:
+def of_person(points: Keypoints3D, person: str) -> DeviceMotion:
     """Return one person of the fixed cameras as a source: in world, on the reference clock.
 
     An `InputError` if there is no such person.
@@ -70,7 +70,7 @@ def of_person(points: Keypoints3D, person: str, source: str = "cameras") -> Devi
         )
     xyz, reason = points.xyz[known.index(person)], points.reason[known.index(person)]
     complete = np.ones(len(points.time_s), dtype=bool)
-    return DeviceMotion(source, "cameras", points.joints, points.time_s, xyz, reason, complete)
+    return DeviceMotion("cameras", "cameras", points.joints, points.time_s, xyz, reason, complete)
 
 
 def write(path: StrPath, motion: DeviceMotion) -> None:

@@ -42,16 +42,12 @@ def finished(made: Iterable[str], seconds: float, look_at: Iterable[str] = ()) -
 
 
 def failed(
-    faults: Sequence[tuple[str, list[str]]],
-    n_finished: int,
-    n_wanted: int,
-    seconds: float,
-    whole_log: str = "",
+    faults: Sequence[tuple[str, list[str]]], n_finished: int, n_wanted: int, seconds: float
 ) -> str:
     """Return a few lines on a run that stopped: what failed and why, what to do.
 
     `faults` are the jobs that failed, each a name with its log files; `n_wanted` counts the jobs to
-    do at the start; `whole_log` is Snakemake's own log of the run.
+    do at the start.
     """
     lines = [f"Courtside: stopped after {n_finished} of {n_wanted} jobs, {duration(seconds)}."]
     for name, logs in faults[:N_FAULTS]:
@@ -64,7 +60,6 @@ def failed(
         "What is finished is kept: mend the fault and give the same command again. If it says that "
         "the folder is locked and no other run is going on in it: snakemake --unlock."
     )
-    lines += [f"Log of the run: {whole_log}"] if whole_log else []
     return "\n".join(lines)
 
 
