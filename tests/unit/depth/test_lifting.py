@@ -8,7 +8,7 @@ from courtside.depth import lifting
 from courtside.depth.surfaces import Sampling
 from courtside.geometry import camera
 from courtside.records.keypoints import missing_reason, skeleton
-from courtside.records.keypoints.keypoints import Keypoints2D
+from fixtures.people import keypoints_made
 from fixtures.recordings import depth_scenes
 from fixtures.recordings.depth_scenes import BONES, RADIUS_M, STANDING
 
@@ -19,19 +19,8 @@ N = 12
 
 def view(xyz):
     """Return the keypoints of joints (T, J, 3) as the colour camera sees them."""
-    n_frames = len(xyz)
-    shape = (1, n_frames, len(NAMES))
-    return Keypoints2D(
-        camera="c",
-        model="m",
-        joints=np.array(NAMES),
-        size=np.array(RIG.colour.size),
-        time_s=5 + np.arange(n_frames) / 30,
-        xy=camera.project(RIG.colour, xyz)[np.newaxis],
-        score=np.ones(shape),
-        reason=np.zeros(shape, np.uint8),
-        xyz_in_body=np.full((*shape, 3), np.nan),
-    )
+    xy = camera.project(RIG.colour, xyz)[np.newaxis]
+    return keypoints_made.view(RIG.colour, NAMES, 5 + np.arange(len(xyz)) / 30, xy)
 
 
 def joints(**moved):

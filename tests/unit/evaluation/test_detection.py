@@ -7,9 +7,9 @@ import pytest
 
 from courtside.evaluation import detection
 from courtside.records.devices.clocks import Clock
-from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
+from fixtures.people import keypoints_made
 
 LIMBS = [
     f"{s}_{j}"
@@ -55,18 +55,8 @@ def seen(real, time_s=None, camera=CAMERA, order=None):
     )
     xy = scene.opencv_projection(camera, moved.reshape(-1, 3)).reshape(*moved.shape[:3], 2)
     xy = xy[list(order or range(len(xy))), :, 1:]
-    shape = xy.shape[:3]
-    return Keypoints2D(
-        camera=camera.name,
-        model="m",
-        joints=np.array(LIMBS),
-        size=np.array(camera.size),
-        time_s=real.time_s if time_s is None else time_s,
-        xy=xy,
-        score=np.ones(shape),
-        reason=np.zeros(shape, np.uint8),
-        xyz_in_body=np.full((*shape, 3), np.nan),
-    )
+    own_s = real.time_s if time_s is None else time_s
+    return keypoints_made.view(camera, LIMBS, own_s, xy)
 
 
 def evaluate(view, real, clock=None, camera=CAMERA):

@@ -9,10 +9,9 @@ import pytest
 from courtside.evaluation import joints as pose_errors
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
-from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
-from fixtures.people import walker
+from fixtures.people import keypoints_made, walker
 
 
 def record(n_frames=40, n_persons=1, **changes):
@@ -187,17 +186,7 @@ def test_a_view_that_was_left_out_is_compared_with_its_own_tracklets():
         ]
     )
     xy = np.stack([xy[1] + [40.0, 0.0], xy[0] + [0.0, 3.0]])
-    view = Keypoints2D(
-        camera="c3",
-        model="m",
-        joints=points.joints,
-        size=np.array([1920, 1080]),
-        time_s=points.time_s + 0.25,
-        xy=xy,
-        score=np.ones(xy.shape[:-1]),
-        reason=np.zeros(xy.shape[:-1], np.uint8),
-        xyz_in_body=np.full((*xy.shape[:-1], 3), np.nan),
-    )
+    view = keypoints_made.view(cameras[3], points.joints, points.time_s + 0.25, xy)
     error = pose_errors.left_out(points, cameras[3], view, Clock(offset_s=0.25))
     known = np.isfinite(points.xyz[..., 0])
     np.testing.assert_allclose(error[0][known[0]], 3.0, atol=1e-6)

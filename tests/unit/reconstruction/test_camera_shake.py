@@ -18,7 +18,7 @@ from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from courtside.synchronisation import cameras as camera_sync
 from fixtures.cameras import scene, shaken, sync_takes
-from fixtures.people import stick_figures, walker
+from fixtures.people import keypoints_made, stick_figures, walker
 
 SIZE = np.array([1920, 1080])
 K = np.array([[1450.0, 0, 985.0], [0, 1440.0, 515.0], [0, 0, 1]])
@@ -53,18 +53,9 @@ def view(vectors, seed=1, joints=12):
     rotation = Rotation.from_rotvec(vectors).as_matrix()
     still = projected(xyz.reshape(-1, 3)).reshape(*shape, 2)
     turned = np.einsum("tij,ptkj->ptki", rotation, xyz)
-    made = Keypoints2D(
-        camera="mirror",
-        model="m",
-        joints=np.array([f"j{at}" for at in range(joints)]),
-        size=SIZE,
-        time_s=np.arange(len(vectors)) / RATE_HZ,
-        xy=projected(turned.reshape(-1, 3)).reshape(*shape, 2),
-        score=np.ones(shape),
-        reason=np.full(shape, missing_reason.OK, np.uint8),
-        xyz_in_body=turned,
-    )
-    return made, still, xyz
+    names, time_s = [f"j{at}" for at in range(joints)], np.arange(len(vectors)) / RATE_HZ
+    xy = projected(turned.reshape(-1, 3)).reshape(*shape, 2)
+    return keypoints_made.view(CAMERA, names, time_s, xy, xyz_in_body=turned), still, xyz
 
 
 def without(table, frames):
@@ -135,7 +126,7 @@ def test_association_gets_the_people_of_the_still_cameras():
         views = []
         for camera, seen in zip(cameras, xy, strict=True):
             vectors = shaken.knock(camera, 120, 40, shift_px, tremor_px=shift_px / 10)
-            still = keypoints_of(camera, time_s, seen)
+            still = keypoints_made.view(camera, stick_figures.NAMES, time_s, seen)
             table = shaken.table(camera, vectors, time_s)
             moved = shaken.view(still, camera, vectors)
             views.append((moved, camera_shake.steady(moved, camera, table)))
@@ -149,21 +140,6 @@ def test_association_gets_the_people_of_the_still_cameras():
     np.testing.assert_array_equal(np.array(steadied.index), np.array(still.index))
     np.testing.assert_allclose(steadied.path, still.path, atol=1e-4)
     assert (np.array(moved.index) != np.array(still.index)).any()
-
-
-def keypoints_of(camera, time_s, xy):
-    shape = xy.shape[:-1]
-    return Keypoints2D(
-        camera=camera.name,
-        model="m",
-        joints=np.arange(shape[-1]).astype(str),
-        size=np.array(camera.size),
-        time_s=time_s,
-        xy=xy,
-        score=np.ones(shape),
-        reason=np.zeros(shape, np.uint8),
-        xyz_in_body=np.full((*shape, 3), np.nan),
-    )
 
 
 def test_skeletons_reproject_onto_the_persons_in_the_shaken_pictures():

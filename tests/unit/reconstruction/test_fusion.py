@@ -13,9 +13,8 @@ from courtside.calibration.records import covariance as camera_covariance
 from courtside.reconstruction import fusion, resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import missing_reason, skeleton
-from courtside.records.keypoints.keypoints import Keypoints2D
 from fixtures.cameras import scene
-from fixtures.people import walker
+from fixtures.people import keypoints_made, walker
 
 SKELETON = skeleton.read(Path(__file__).parents[3] / "config" / "skeletons" / "cpm14.yaml")
 OPTIONS = {"min_score": 0.3, "min_views": 2, "max_error_px": 15, "fade_px": 20, "fix_sides": True}
@@ -33,19 +32,8 @@ def body(time_s):
 def view(camera, time_s, own_time_s=None):
     xyz = body(time_s)
     xy = scene.opencv_projection(camera, xyz.reshape(-1, 3)).reshape(1, len(time_s), 14, 2)
-    shape = xy.shape[:-1]
     own = time_s if own_time_s is None else own_time_s
-    return Keypoints2D(
-        camera=camera.name,
-        model="m",
-        joints=np.array(SKELETON.joints),
-        size=np.array(camera.size),
-        time_s=own,
-        xy=xy,
-        score=np.ones(shape),
-        reason=np.zeros(shape, np.uint8),
-        xyz_in_body=np.full((*shape, 3), np.nan),
-    )
+    return keypoints_made.view(camera, SKELETON.joints, own, xy)
 
 
 def test_cameras_of_other_rates_meet_on_common_times():

@@ -10,10 +10,10 @@ from courtside.calibration import file_formats
 from courtside.geometry import camera as camera_models
 from courtside.records.devices import clocks as sync
 from courtside.records.devices.clocks import Clock
-from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
 from courtside.synchronisation import cameras as camera_sync
 from fixtures.cameras import scene, sync_takes
+from fixtures.people import keypoints_made
 from fixtures.recordings.real_data import REAL, needs_real
 
 CAMERAS = sync_takes.rig(3)
@@ -160,17 +160,8 @@ def openpose(camera):
 
 
 def keypoints_of(camera, time_s, rows):
-    return Keypoints2D(
-        camera=camera.name,
-        model="body25b",
-        joints=np.array(sync_takes.JOINTS),
-        size=np.array(camera.size),
-        time_s=time_s,
-        xy=rows[..., :2],
-        score=rows[..., 2],
-        reason=np.zeros(rows.shape[:-1], np.uint8),
-        xyz_in_body=np.full((*rows.shape[:-1], 3), np.nan),
-    )
+    xy, score = rows[..., :2], rows[..., 2]
+    return keypoints_made.view(camera, sync_takes.JOINTS, time_s, xy, score=score)
 
 
 def later(view, n_frames):

@@ -103,12 +103,19 @@ def test_a_joint_without_3d_is_not_known_and_not_marked():
     assert (own.take_frames == 0).all() and own.take_disagree_percent.isna().all()
 
 
-def test_sides_that_the_fusion_exchanged_are_taken_as_it_took_them():
+@pytest.fixture
+def knees():
+    """Return a take whose first camera has the knees exchanged, and the indices of these."""
     record, seen = takes_made.take()
     pair = [AT("left_knee"), AT("right_knee")]
     xy = seen[0].view.xy.copy()
     xy[:, :, pair] = xy[:, :, pair[::-1]]
     seen[0] = replace(seen[0], tracklets=replace(seen[0].view, xy=xy))
+    return record, seen, pair
+
+
+def test_sides_that_the_fusion_exchanged_are_taken_as_it_took_them(knees):
+    record, seen, pair = knees
     record.swapped[:, FRAME, pair, 0] = True  # and its errors stay 0
     rows = table(record, seen)
     changed = rows.sides_exchanged
@@ -119,12 +126,8 @@ def test_sides_that_the_fusion_exchanged_are_taken_as_it_took_them():
     np.testing.assert_allclose(rows.detected_x_px, rows.reprojected_x_px, atol=1e-6)
 
 
-def test_a_keypoint_near_the_other_sides_joint_is_no_exchange_unless_the_fusion_says_so():
-    record, seen = takes_made.take()
-    pair = [AT("left_knee"), AT("right_knee")]
-    xy = seen[0].view.xy.copy()
-    xy[:, :, pair] = xy[:, :, pair[::-1]]
-    seen[0] = replace(seen[0], tracklets=replace(seen[0].view, xy=xy))
+def test_a_keypoint_near_the_other_sides_joint_is_no_exchange_unless_the_fusion_says_so(knees):
+    record, seen, _ = knees
     assert not table(record, seen).sides_exchanged.any()
 
 
