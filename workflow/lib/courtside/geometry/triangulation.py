@@ -162,8 +162,8 @@ def _solve(
     if len(at):
         found = _select_and_refine(views.of(at), max_error_px, fade_px, min_views)
         xyz[at], accepted[:, at] = found
-    covariance = noise_covariance(views, xyz, accepted, sigma_px)
-    return Triangulated(xyz, covariance, accepted, reprojection_px(cameras, xy, xyz))
+    covariance = _noise_covariance(views, xyz, accepted, sigma_px)
+    return Triangulated(xyz, covariance, accepted, _reprojection_px(cameras, xy, xyz))
 
 
 def _select_and_refine(
@@ -204,7 +204,7 @@ def _faded(views: Views, xyz: NDArray, scale_px: float, widest_px: float) -> NDA
     return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)
 
 
-def noise_covariance(views: Views, xyz: NDArray, accepted: NDArray, sigma_px: NDArray) -> NDArray:
+def _noise_covariance(views: Views, xyz: NDArray, accepted: NDArray, sigma_px: NDArray) -> NDArray:
     """Return the covariance (N, 3, 3) m2 of points from the noise of their accepted views (C, N).
 
     `sigma_px` (N,) is the standard deviation per axis of a keypoint with weight 1.
@@ -214,7 +214,7 @@ def noise_covariance(views: Views, xyz: NDArray, accepted: NDArray, sigma_px: ND
     return inverse_3x3(weighted @ rows) * (sigma_px**2)[:, None, None]
 
 
-def reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDArray:
+def _reprojection_px(cameras: Sequence[Camera], xy: NDArray, xyz: NDArray) -> NDArray:
     """Return the distance (C, N) px of keypoints to projected points."""
     projected = np.stack([project(camera, xyz) for camera in cameras])
     return np.linalg.norm(projected - xy, axis=-1)
@@ -298,9 +298,9 @@ def triangulate_plain(
     xyz = triangulate(views.xy, views.weight, views.matrix)
     return Triangulated(
         xyz=xyz,
-        covariance=noise_covariance(views, xyz, used, np.broadcast_to(sigma_px, len(xyz))),
+        covariance=_noise_covariance(views, xyz, used, np.broadcast_to(sigma_px, len(xyz))),
         accepted=used & np.isfinite(xyz[:, 0]),
-        error_px=reprojection_px(cameras, xy, xyz),
+        error_px=_reprojection_px(cameras, xy, xyz),
     )
 
 

@@ -109,7 +109,7 @@ def gather(
     return blocks, right
 
 
-def to_band(blocks: NDArray) -> NDArray:
+def _to_band(blocks: NDArray) -> NDArray:
     """Return the lower band (4 P, K P) of `gather`'s blocks, as LAPACK reads it."""
     n, _, size, _ = blocks.shape
     band = np.zeros((REACH * size, n * size))
@@ -149,7 +149,7 @@ def solve(
     (K, P, Q) is between both kinds of parameters; the border's own are (Q, Q) and (Q,).
     """
     n, size = right.shape
-    factor = cholesky_banded(to_band(blocks), lower=True, overwrite_ab=True)
+    factor = cholesky_banded(_to_band(blocks), lower=True, overwrite_ab=True)
     sides = np.column_stack([border.reshape(n * size, -1), right.reshape(-1)])
     done, _ = lapack.dpbtrs(factor, sides, lower=1)
     schur = border_matrix - sides[:, :-1].T @ done[:, :-1]

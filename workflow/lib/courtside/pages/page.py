@@ -59,7 +59,7 @@ def build(
         if not NAME.fullmatch(name):
             raise ValueError(f"expected a name of letters, digits, _ . and -, found {name!r}")
     typed = {name: (one, PNG) if isinstance(one, bytes) else one for name, one in images.items()}
-    addresses = {name: data_uri(*picture) for name, picture in typed.items()}
+    addresses = {name: _data_uri(*picture) for name, picture in typed.items()}
     shown = set(PICTURE.findall(body_html))
     if shown - set(addresses):
         raise ValueError(f"pictures shown but not given: {', '.join(sorted(shown - set(images)))}")
@@ -92,7 +92,7 @@ def write(path: str | os.PathLike, page: str) -> None:
         temporary.write_text(page, encoding="utf-8", newline="\n")
 
 
-def data_uri(content: bytes, mime: str = PNG) -> str:
+def _data_uri(content: bytes, mime: str = PNG) -> str:
     """Return bytes as an address that holds them."""
     return f"data:{mime};base64,{base64.b64encode(content).decode('ascii')}"
 

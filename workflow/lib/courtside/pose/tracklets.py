@@ -152,7 +152,7 @@ class _Crowd:
         """Drop, of two bodies with one pose, the one further off its course; end both tracklets."""
         kept: list[tuple[_Body, Pose]] = []
         for body, pose in sorted(pairs, key=lambda pair: pair[0].off_px(pair[1])):
-            twin = next((k for k in kept if are_twins(k[1], pose)), None)
+            twin = next((k for k in kept if _are_twins(k[1], pose)), None)
             if twin is None:
                 kept.append((body, pose))
                 continue
@@ -170,7 +170,7 @@ class _Crowd:
                 pose = self.landmarks.estimate(image, region)
                 if pose.presence < self.min_presence:
                     continue
-                if not any(are_twins(pose, other) for other in known + poses):
+                if not any(_are_twins(pose, other) for other in known + poses):
                     poses.append(pose)
         return poses[: self.max_people - len(known)]
 
@@ -229,7 +229,7 @@ class _Crowd:
         return row
 
 
-def are_twins(one: Pose, other: Pose) -> bool:
+def _are_twins(one: Pose, other: Pose) -> bool:
     """Return whether two poses are of one body."""
     apart = np.linalg.norm(one.xy - other.xy, axis=1).mean()
     return bool(apart < TWINS * max(size_px(one), size_px(other)))

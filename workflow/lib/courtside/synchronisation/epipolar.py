@@ -43,7 +43,7 @@ class Epipolar:
             (a, b): epipolar.fundamental(cameras[a], cameras[b])
             for a, b in permutations(range(len(cameras)), 2)
         }
-        self.scale_px = [SCALE_OF_PERSON * spread_px(track.values) for track in tracks]
+        self.scale_px = [SCALE_OF_PERSON * _spread_px(track.values) for track in tracks]
         self.matches: dict[tuple[int, int], list[tuple[int, int]]] = {}
 
     def scan(self, a: int, b: int, lags_s: NDArray) -> NDArray:
@@ -154,7 +154,7 @@ class Epipolar:
         return here, (after - before) / (2 * PROBE_S), (after - 2 * here + before) / PROBE_S**2
 
 
-def spread_px(values: NDArray) -> float:
+def _spread_px(values: NDArray) -> float:
     """Return the median spread of a person's joints in the picture, px; of tracks (P, T, J, 2)."""
     seen = np.isfinite(values).all(axis=-1)
     usual = values[seen.mean(axis=-1) > 0.5]

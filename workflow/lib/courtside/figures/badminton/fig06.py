@@ -52,19 +52,14 @@ def table(records: dict[int, Record]) -> pd.DataFrame:
             rows = {"kind": "outcome", "order": 0, "name": [record.outcome or record.fault]}
             parts.append(pd.DataFrame({"n_bridging": count, **rows}))
             continue
-        names, centres = in_order(record)
+        names = np.asarray(record.images, dtype=str)
+        order = np.lexsort([names, image_names.are_static(names)])  # bridging by frame, then fixed
+        names, centres = names[order], record.centres[order]
         kind = np.where(image_names.are_static(names), "fixed", "bridging")
         parts.append(_rows(count, kind, names, centres))
         parts.append(_rows(count, "tie", "", record.xyz))
     columns = ["n_bridging", "kind", "order", "name", "x_m", "y_m", "z_m"]
     return pd.concat(parts, ignore_index=True).reindex(columns=columns)
-
-
-def in_order(record: Record) -> tuple[NDArray, NDArray]:
-    """Return names (V,), positions (V, 3) of registered images: bridging by frame, then fixed."""
-    names = np.asarray(record.images, dtype=str)
-    order = np.lexsort([names, image_names.are_static(names)])
-    return names[order], record.centres[order]
 
 
 def draw(rows: pd.DataFrame, court: Court, n_images: dict[int, int] | None = None) -> Figure:

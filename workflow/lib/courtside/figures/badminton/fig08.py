@@ -64,7 +64,7 @@ def _published() -> pd.DataFrame:
     return rows.assign(method="published", mapper="", in_sample=True)
 
 
-def series(numbers: pd.DataFrame) -> list[Series]:
+def _series(numbers: pd.DataFrame) -> list[Series]:
     """Return the `Series` to draw against the number of bridging images, the paper's own first."""
     name = "paper's eq 2-5, incremental"
     paper = Series(name, "paper", "incremental", 3, True, style.CYCLE[1], "s")
@@ -145,7 +145,7 @@ def _draw_errors(axis: Axes, numbers: pd.DataFrame, quantity: str) -> None:
             x = np.array([beside * np.exp(1.3 * DODGE * (2 * at + back - 2.5))])
             look = {"colour": level.colour, "marker": level.marker, "filled": not row["in_sample"]}
             bars.draw(axis, x, row.to_frame().T, line="none", **look)
-    shown = series(numbers)
+    shown = _series(numbers)
     for at, each in enumerate(shown):
         keys = ("method", "mapper", "n_clicks", "in_sample")
         rows = calibration.pick(of, **{key: getattr(each, key) for key in keys}).sort_values(
@@ -194,7 +194,7 @@ def _draw_mappers(
 
 def _legend(numbers: pd.DataFrame) -> list[Line2D]:
     """Return the marks to explain: series, strong calibrations, published values, lower panels."""
-    named = {each.label: each for each in series(numbers)}
+    named = {each.label: each for each in _series(numbers)}
     handles = [bars.mark(e.colour, marker=e.marker, label=label) for label, e in named.items()]
     for label, _, level in levels(numbers, "xy_cm"):
         handles.append(bars.mark(level.colour, marker=level.marker, line=level.line, label=label))

@@ -42,7 +42,7 @@ def draw(court: Court) -> Figure:
     return drawing
 
 
-def groups(court: Court) -> list[tuple[list[str], str]]:
+def _groups(court: Court) -> list[tuple[list[str], str]]:
     """Return the points that name the same edges: list of (names, edges), in the court's order."""
     named: dict[str, list[str]] = {}
     for point, edges in zip(court.points, court.edges, strict=True):
@@ -87,7 +87,7 @@ def _number(axis: Axes, court: Court, place: NDArray, text: str) -> None:
 
 def _write_list(axis: Axes, court: Court) -> None:
     lines = []
-    for points, edges in groups(court):
+    for points, edges in _groups(court):
         lines += [" ".join(points)]
         lines += textwrap.wrap(edges, LINE_LENGTH, initial_indent="   ", subsequent_indent="   ")
     axis.axis("off")
@@ -100,7 +100,7 @@ def _write_list(axis: Axes, court: Court) -> None:
 
 def _details(court: Court) -> list[int]:
     """Return the indices of points to enlarge, one for each wording of the edges."""
-    flat = [court.points.index(points[0]) for points, _ in groups(court)]
+    flat = [court.points.index(points[0]) for points, _ in _groups(court)]
     near = [n for n in flat if court.xyz[n, 2] == 0 and _lines_at(court, n) >= 2]
     return near or flat
 

@@ -65,6 +65,8 @@ def at_frame(
     """
     at = one.frame_at(points.time_s[frame])
     both = one.view.xy[:, at], one.reprojected(points, at)
+    if one.video is None:
+        raise ValueError(f"expected a video of camera {one.camera.name}, found none")
     return read(one.video, one.view.time_s[at], both, skeleton, hidden=hidden), *both
 
 

@@ -36,7 +36,7 @@ class Warned(NamedTuple):
     text: str
 
 
-def level_of(quantity: str, value: float | None) -> int:
+def _level_of(quantity: str, value: float | None) -> int:
     """Return the level of a quantity of `LIMITS`; `LOOK` if its value is unknown."""
     if value is None or math.isnan(value):
         return LOOK
@@ -87,7 +87,7 @@ def moved(row: dict, max_shift_px: float, max_zoom_percent: float) -> Warned | N
     if math.isnan(share):
         text = "the picture shows too little background to tell whether it moved"
         return Warned(LOOK, f"Camera {row['camera']}: {text}.")
-    level = level_of("moved", share)
+    level = _level_of("moved", share)
     text = f"it moved by {shift:.2g} px and zoomed by {row['zoom_percent']:.2g} %"
     return Warned(level, f"Camera {row['camera']}: {text}.") if level else None
 
@@ -114,7 +114,7 @@ def clock(camera: str, found: Clock) -> Warned | None:
         words = {"ambiguous": "several offsets fit the recording", "unknown": "no offset was found"}
         return Warned(DOUBT, f"Camera {camera}: its clock is unknown: {words[found.status]}.")
     ms = MS_90 * found.uncertainty_s
-    level = level_of("clock_ms", ms)
+    level = _level_of("clock_ms", ms)
     if not level:
         return None
     price = f"a wrist at {WRIST_M_S:.0f} m/s is off by up to {ms * WRIST_M_S / 10:.0f} cm"
@@ -128,7 +128,7 @@ def device(row: dict) -> Warned | None:
         text = "its clock is unknown; do not compare it with the other sources"
         return Warned(DOUBT, f"{source}: {text}.")
     ms = MS_90 * row.get("uncertainty_s", 0.0)
-    level = level_of("clock_ms", ms)
+    level = _level_of("clock_ms", ms)
     text = f"{source}: its clock is known only to {ms:.0f} ms (90 %)."
     return Warned(min(level, LOOK), text) if level else None
 
@@ -143,9 +143,9 @@ def calibration(name: str, quality: dict) -> list[Warned]:
         ("expected_cm", expected, "the expected error over the playing volume is {:.1f} cm"),
         ("tie_px", ties, "the residual of tie points between pictures of the walk is {:.1f} px"),
     ):
-        if value is not None and level_of(quantity, value):
+        if value is not None and _level_of(quantity, value):
             text = f"Calibration {name}: {words.format(value)}."
-            found.append(Warned(level_of(quantity, value), text))
+            found.append(Warned(_level_of(quantity, value), text))
     if isinstance(quality.get("left_out"), str):
         found.append(Warned(LOOK, f"Calibration {name}: {quality['left_out']}."))
     if error is None and expected is None:
@@ -166,7 +166,7 @@ def left_out_cm(quality: dict) -> float | None:
 def registered(model: dict) -> Warned | None:
     """Return a warning if pictures were not registered; `model` is the summary of the model."""
     lost = model["n_images"] - model["n_registered"]
-    level = level_of("unregistered", lost / model["n_images"])
+    level = _level_of("unregistered", lost / model["n_images"])
     text = f"{lost} of {model['n_images']} pictures of cameras and walk were not registered"
     return Warned(level, f"Structure from motion: {text}.") if level else None
 
@@ -175,7 +175,7 @@ def contradicts(camera: str, found: dict) -> Warned | None:
     """Return a warning if other cameras contradict one; `found` is of `facts.of_skeleton`."""
     if found["accepted"] is None:
         return Warned(LOOK, f"Camera {camera}: nobody was tracked in it.")
-    level = level_of("contradicts", 1 - found["accepted"])
+    level = _level_of("contradicts", 1 - found["accepted"])
     text = f"the other cameras contradict {1 - found['accepted']:.0%} of its joints"
     hint = "it may have moved, be calibrated wrongly, or be on another clock"
     return Warned(level, f"Camera {camera}: {text}; {hint}.") if level else None
@@ -188,14 +188,14 @@ def joints(found: dict) -> list[Warned]:
     missing = sum(row["missing"] for row in found.values()) / len(found)
     few = [row["few"] for row in found.values() if row["few"] is not None]
     alone = sum(few) / len(few) if few else math.nan
-    made, level = [], level_of("missing", missing)
+    made, level = [], _level_of("missing", missing)
     if level:
         name, row = max(found.items(), key=lambda pair: pair[1]["missing"])
         worst_one = f"most often the {name.replace('_', ' ')} ({row['missing']:.0%})"
         made.append(Warned(level, f"{missing:.0%} of the joints are missing, {worst_one}."))
-    if few and level_of("two_views", alone):
+    if few and _level_of("two_views", alone):
         text = f"only two cameras see {alone:.0%} of the joints: no third camera can confirm these."
-        made.append(Warned(min(level_of("two_views", alone), LOOK), text))
+        made.append(Warned(min(_level_of("two_views", alone), LOOK), text))
     return made
 
 
@@ -205,7 +205,7 @@ def distance(person: str, measures: dict) -> Warned | None:
     if math.isnan(value):
         return Warned(DOUBT, f"{person}: the distance of the neck could not be measured.")
     share = half / value if value > 0 else math.nan
-    level = level_of("distance", share)
+    level = _level_of("distance", share)
     if math.isnan(share):
         return Warned(level, f"{person}: the error of the distance is unknown.")
     return Warned(level, f"{person}: the distance is known only to {share:.0%}.") if level else None
@@ -223,7 +223,7 @@ def true_path(row: dict) -> Warned | None:
 
 def frames(person: str, lost: int, total: int, why: dict[str, int]) -> Warned | None:
     """Return a warning if many frames are left out of distance and speed; `why` counts reasons."""
-    level = level_of("frames", lost / total) if total else LOOK
+    level = _level_of("frames", lost / total) if total else LOOK
     if not level:
         return None
     words = {"uncertain": "the position of the neck is too uncertain there"}

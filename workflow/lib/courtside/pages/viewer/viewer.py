@@ -53,7 +53,7 @@ def build(
     names = [layer.name for layer in layers]
     if not names or len(set(names)) < len(names):
         raise ValueError(f"expected layers with names that differ, found {names}")
-    low, high = extent(layers)
+    low, high = _extent(layers)
     middle = (low + high) / 2
     contents, every = _within(layers, middle)
     if every > 1:
@@ -87,7 +87,7 @@ def _within(layers: Sequence[Layer], middle: NDArray) -> tuple[list[dict], int]:
         every *= 2
 
 
-def extent(layers: Sequence[Layer]) -> tuple[NDArray, NDArray]:
+def _extent(layers: Sequence[Layer]) -> tuple[NDArray, NDArray]:
     """Return the corners low and high (3,) of a box that holds nearly all joints, metres."""
     known = np.concatenate([layer.xyz.reshape(-1, 3) for layer in layers])
     known = known[np.isfinite(known).all(axis=1)]

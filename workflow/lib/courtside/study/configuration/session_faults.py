@@ -101,7 +101,7 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
             f"{file}: court: expected a court to build the virtual hall around, found 'none'; "
             "name one"
         )
-    yield from setting_faults(f"{file}: virtual", content["virtual"])
+    yield from _setting_faults(f"{file}: virtual", content["virtual"])
 
 
 def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
@@ -138,7 +138,7 @@ def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
         )
 
 
-def setting_faults(where: str, virtual: Content) -> list[str]:
+def _setting_faults(where: str, virtual: Content) -> list[str]:
     """Return what contradicts itself in the settings of a virtual session, one line each."""
     if "baseline_deg" in virtual and virtual["layout"] != "a":
         return [
@@ -162,7 +162,7 @@ def conditions(config_file: str, config: Content, found: dict[str, tuple]) -> li
             keys = {**found[base][1]["virtual"], **condition.get("set", {}), **condition["vary"]}
             # Any of the varied layouts may be wrong; a name in `vary` stands for its values.
             layouts = condition["vary"].get("layout", [keys["layout"]])
-            faults += [f for at in layouts for f in setting_faults(where, {**keys, "layout": at})]
+            faults += [f for at in layouts for f in _setting_faults(where, {**keys, "layout": at})]
         faults += [
             f"{where}: expected {key} in either `set` or `vary`, found it in both; remove one"
             for key in sorted(set(condition.get("set", {})) & set(condition["vary"]))

@@ -95,7 +95,7 @@ def upstream(jobs: Sequence[Job]) -> list[frozenset[int]]:
 
     A `ValueError` if two jobs make one file, or jobs depend on one another in a circle.
     """
-    maker = makers(jobs)
+    maker = _makers(jobs)
     before = {
         at: {maker[name] for name in job["inputs"] if maker.get(name, at) != at}
         for at, job in enumerate(jobs)
@@ -110,7 +110,7 @@ def upstream(jobs: Sequence[Job]) -> list[frozenset[int]]:
     return [found[at] for at in range(len(jobs))]
 
 
-def makers(jobs: Sequence[Job]) -> dict[str, int]:
+def _makers(jobs: Sequence[Job]) -> dict[str, int]:
     """Return {file: index of the job that makes it}."""
     maker: dict[str, int] = {}
     for at, job in enumerate(jobs):

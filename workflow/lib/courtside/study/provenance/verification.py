@@ -108,17 +108,11 @@ def _of_surroundings(sidecar: dict[str, Any], now: dict[str, Any]) -> list[str]:
     return reasons
 
 
-def unrecorded(root: StrPath, sidecars: Iterable[dict[str, Any]]) -> list[str]:
+def _unrecorded(root: StrPath, sidecars: Iterable[dict[str, Any]]) -> list[str]:
     """Return the files in folders named figures below `root` that have no sidecar."""
     known = {Path(sidecar["file"]).resolve() for sidecar in sidecars}
     drawn = (p for p in Path(root).glob("**/figures/*") if p.suffix in DRAWN)
     return sorted(path.as_posix() for path in drawn if path.resolve() not in known)
-
-
-def changed_configuration(run: dict[str, Any], now: dict[str, Any]) -> list[str]:
-    """Return the configuration files that changed since the run of a record, as text."""
-    pairs = run["config_files"].items()
-    return [line for path, sha in pairs for line in _of_file(path, sha, now["sha256"](path))]
 
 
 def planned(run: dict[str, Any], repository: StrPath) -> set[str]:
@@ -156,7 +150,8 @@ def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[st
     """
     sidecars, now = read(folder), present(repository)
     run = _read(Path(folder) / "provenance.json", OF_RUN)
-    changed = changed_configuration(run, now)
+    files = run["config_files"].items()
+    changed = [line for path, sha in files for line in _of_file(path, sha, now["sha256"](path))]
     anew = planned(run, repository) if changed else set()
     lines: list[str] = []
     causes: Counter[str] = Counter()
@@ -169,7 +164,7 @@ def report(folder: StrPath, root: StrPath, repository: StrPath) -> tuple[list[st
     lines += [
         f"{name}: has no record; remake it, or delete it if the study no longer names it: "
         + command(again, name)
-        for name in unrecorded(root, sidecars)
+        for name in _unrecorded(root, sidecars)
     ]
     n_faults = len(lines)
     lines += [f"since the last run, {line}" for line in changed]
