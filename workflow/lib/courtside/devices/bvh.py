@@ -5,7 +5,6 @@ import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from urllib.parse import quote, unquote
 
@@ -14,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 CENTIMETRES_M = 0.01
 TURNED = {"X": (1, 2), "Y": (2, 0), "Z": (0, 1)}  # columns that a rotation about an axis mixes
 
 
-def read(path: str | PathLike, *, unit_m: float = CENTIMETRES_M) -> PosedHierarchy:
+def read(path: StrPath, *, unit_m: float = CENTIMETRES_M) -> PosedHierarchy:
     """Read a BVH file: joints by its names, which need not be unique, in its order and axes.
 
     `unit_m` is the length of the file's unit, metres: BVH does not say it; mocopi's is the
@@ -124,7 +123,7 @@ def shown(word: str) -> str:
     return repr(word if len(word) <= MAX_DIGITS else word[:MAX_DIGITS] + "...")
 
 
-def read_rows(path: str | PathLike, text: str, at: int, n_frames: int, n_channels: int) -> NDArray:
+def read_rows(path: StrPath, text: str, at: int, n_frames: int, n_channels: int) -> NDArray:
     """Read the rows of motion, (T, C) float, which begin at `at` of the whole file's text.
 
     An `InputError` if there are more or fewer rows, or a row is not so many finite numbers.
@@ -149,7 +148,7 @@ def read_rows(path: str | PathLike, text: str, at: int, n_frames: int, n_channel
     return rows
 
 
-def _bad_row(path: str | PathLike, lines: Sequence[str], first: int, n_channels: int) -> InputError:
+def _bad_row(path: StrPath, lines: Sequence[str], first: int, n_channels: int) -> InputError:
     """Return the error of the first row that is not `n_channels` numbers."""
     for number, line in enumerate(lines, start=first):
         is_wide = len(line) > MAX_PER_CHANNEL * n_channels  # splitting it could take long
@@ -200,7 +199,7 @@ class BvhText:
 class _Words:
     """The words of a text in order, and their positions."""
 
-    def __init__(self, path: str | PathLike, text: str) -> None:
+    def __init__(self, path: StrPath, text: str) -> None:
         self.path, self.text = path, text
         self.found = re.compile(r"\S+").finditer(text)
         self.start = self.end = 0
@@ -310,7 +309,7 @@ class _Reader:
         self.words.expect("}", f"at the end {where}")
 
 
-def read_text(path: str | PathLike) -> BvhText:
+def read_text(path: StrPath) -> BvhText:
     """Read the text of a BVH file and check it: one ROOT, keywords in any case, any whitespace.
 
     An `InputError` if the file cannot be read, is not BVH, or is larger than any take; the message
@@ -335,7 +334,7 @@ def read_text(path: str | PathLike) -> BvhText:
     )
 
 
-def _load(path: str | PathLike) -> str:
+def _load(path: StrPath) -> str:
     path = Path(path)
     try:
         if not path.is_file():

@@ -30,7 +30,6 @@ The folder holds
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from os import PathLike
 from pathlib import Path
 
 import cv2
@@ -42,7 +41,7 @@ from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
 from courtside.geometry import camera as cameras
 from courtside.geometry import camera_fields, rotations
 from courtside.records.cameras.frame_times import FrameTimes
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.video import images, reader
 
 VIDEOS = (".mp4", ".mkv", ".mov", ".avi")
@@ -50,7 +49,7 @@ EXPORT = "export depth again, without conversion"
 STANDING_STILL = np.eye(3, 4)
 
 
-def read(path: str | PathLike, name: str = "rgbd") -> DepthRecording:
+def read(path: StrPath, name: str = "rgbd") -> DepthRecording:
     """Read such a folder; `name` is the device's in the study.
 
     An `InputError` if a file is missing or not as described above. A damaged picture is found only

@@ -8,7 +8,6 @@ model, all rotations zero.
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.skeleton import Skeleton
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 KIND = "inertial"
 RATES_HZ = (30.0, 50.0, 60.0)  # of the app
@@ -27,7 +26,7 @@ WRITTEN_TO_S = 0.6e-6  # the app writes its frame time with six decimals: 0.0166
 NO_TURN = 1e-6  # rounding: largest entry by which a rotation may differ from the identity
 
 
-def read(path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi") -> DeviceMotion:
+def read(path: StrPath, skeleton: Skeleton, *, source: str = "mocopi") -> DeviceMotion:
     """Read a BVH file of the app.
 
     The `names` of the skeleton, `config/skeletons/mocopi27.yaml`, are the file's. The motion, named
@@ -62,9 +61,7 @@ def read(path: str | PathLike, skeleton: Skeleton, *, source: str = "mocopi") ->
     )
 
 
-def _check_joints(
-    path: str | PathLike, name: str, found: Sequence[str], wanted: Collection[str]
-) -> None:
+def _check_joints(path: StrPath, name: str, found: Sequence[str], wanted: Collection[str]) -> None:
     missing = [joint for joint in wanted if joint not in found]
     unknown = [joint for joint in found if joint not in wanted]
     twice = [joint for joint, count in Counter(found).items() if count > 1]

@@ -19,7 +19,6 @@ y is negated, which gives the axes of a camera.
 
 import json
 from collections.abc import Mapping, Sequence
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +28,7 @@ from numpy.typing import NDArray
 
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
-from courtside.study.errors import InputError, reading, require_scalar, require_type
+from courtside.study.errors import InputError, StrPath, reading, require_scalar, require_type
 from courtside.study.execution import log
 
 COLLARS = ("left_collar", "right_collar")  # one point under two names
@@ -45,7 +44,7 @@ MIN_CONFIDENCE = 0.5  # ASSUME: Nuitrack tells nothing in between; less sure joi
 EXPORT = "export the skeletons from Nuitrack again"
 
 
-def read(path: str | PathLike, joints: Sequence[str], source: str) -> DeviceMotion:
+def read(path: StrPath, joints: Sequence[str], source: str) -> DeviceMotion:
     """Read the skeleton of the user seen in most frames, from a `.csv` or `.json` as above.
 
     `joints` are those of `config/skeletons/nuitrack19.yaml`; `collar` is the mean of the two that

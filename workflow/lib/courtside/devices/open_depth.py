@@ -1,6 +1,5 @@
 """Read a recording of colour and depth in any supported form."""
 
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +7,11 @@ import numpy as np
 from courtside.devices import depth_folder
 from courtside.devices.depth_recording import DepthRecording
 from courtside.devices.realsense import recording as realsense
+from courtside.study.errors import StrPath
 from courtside.study.execution import log
 
 
-def read(path: str | PathLike, name: str) -> DepthRecording:
+def read(path: StrPath, name: str) -> DepthRecording:
     """Read a `.bag` or `.db3` file or a folder of plain files; `name` is the device's in the study.
 
     Raises `InputError` if it is none of these, or damaged.

@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Mapping, Sequence
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.records.keypoints.skeleton import Skeleton
-from courtside.study.errors import RAISED_BY_READERS, InputError, reading, require_type
+from courtside.study.errors import RAISED_BY_READERS, InputError, StrPath, reading, require_type
 
 # BODY_25 and BODY_25B have 25 points each, in another order: the 9th is the mid-hip, or an elbow.
 MISTAKEN = ("body25", "body25b")
@@ -24,7 +23,7 @@ MIDDLE = 0.05
 
 
 def read(
-    folder: str | PathLike,
+    folder: StrPath,
     skeleton: Skeleton,
     *,
     camera: str,
@@ -107,7 +106,7 @@ def _people(path: Path, n_joints: int, skeleton: str) -> NDArray:
     return people[~unseen.all(axis=1)]
 
 
-def _check_order(folder: str | PathLike, skeleton: str, people: Sequence[NDArray]) -> None:
+def _check_order(folder: StrPath, skeleton: str, people: Sequence[NDArray]) -> None:
     """Raise `InputError` if the points of BODY_25 are named BODY_25B, or the other way round."""
     if skeleton not in MISTAKEN:
         return

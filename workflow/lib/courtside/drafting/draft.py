@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from os import PathLike
 from pathlib import Path
 
 import yaml
@@ -11,7 +10,7 @@ import yaml
 from courtside.drafting import guess as file_names
 from courtside.drafting.guess import Guess, Recording, Take
 from courtside.study.configuration import configuration, schemas, yaml_files
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 MARK = "# guess:"
 PLAIN = re.compile(r"[A-Za-z0-9_./+-]+( [A-Za-z0-9_./+-]+)*")
@@ -238,9 +237,7 @@ def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
     return f"Wrote {path}."
 
 
-def to_check(
-    guess: Guess, path: str | PathLike, court_points: str, study: str | PathLike
-) -> list[str]:
+def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> list[str]:
     """List what a user should check after drafting, in order.
 
     `path` is the draft, `court_points` where clicked court points are expected, `study` the study

@@ -4,14 +4,13 @@ import csv
 import math
 import os
 from collections.abc import Callable
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from courtside.calibration import file_formats
 from courtside.drafting.guess import Recording
 from courtside.records.cameras import clicks
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.video import reader as video
 from courtside.video import walk_frames
 
@@ -22,7 +21,7 @@ CALIBRATIONS = {".toml", ".txt", ".xml"}  # a YAML file in a folder of recording
 RACKET = {"take", "camera", "frame_idx", "end"}
 
 
-def survey(folder: str | PathLike, *, root: str | PathLike) -> list[Recording]:
+def survey(folder: StrPath, *, root: StrPath) -> list[Recording]:
     """Describe every recording of a folder and of the folders in it, in name order.
 
     Files that are clearly no recordings are left out; unreadable ones come as `unusable` with the
@@ -52,7 +51,7 @@ def survey(folder: str | PathLike, *, root: str | PathLike) -> list[Recording]:
 
 
 def _described(
-    path: Path, folder: Path, root: str | PathLike, reader: Callable[[Path], dict[str, Any] | None]
+    path: Path, folder: Path, root: StrPath, reader: Callable[[Path], dict[str, Any] | None]
 ) -> Recording | None:
     """Return the `Recording` of a file; None if it is none."""
     inside = path.relative_to(folder)
@@ -66,7 +65,7 @@ def _described(
     return Recording(**keys, **more) if more else None
 
 
-def written(path: Path, root: str | PathLike) -> str:
+def written(path: Path, root: StrPath) -> str:
     """Return a path as a session names it: relative to `root` if below it, else absolute."""
     whole, start = path.absolute(), Path(root).absolute()
     return (whole.relative_to(start) if whole.is_relative_to(start) else whole).as_posix()

@@ -1,7 +1,6 @@
 """Errors of a take's sources (devices, cameras) against the truth, and the parts of the errors."""
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -19,7 +18,7 @@ from courtside.geometry.interpolation import cubic_bend
 from courtside.geometry.similarity import Sim3
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.body_motion import BodyMotion
-from courtside.study.errors import RAISED_BY_READERS, reading, require_scalar, require_type
+from courtside.study.errors import RAISED_BY_READERS, StrPath, reading, require_scalar, require_type
 
 ALIGNMENTS = ("body_frame", "trunk_frame", "root_relative", "procrustes_take", "procrustes_frame")
 PARTS = ("origin", "scale", "rotation", "time")
@@ -253,7 +252,7 @@ def _fit(
 REMAKE = "make it again with the rule align_bodies"
 
 
-def read(path: str | os.PathLike) -> Sim3:
+def read(path: StrPath) -> Sim3:
     """Read `body_from_device` from the JSON of a body frame; `InputError` for other content."""
     # numpy raises TypeError for entries other than numbers.
     with reading(path, "a body frame", REMAKE, kinds=(*RAISED_BY_READERS, TypeError)):

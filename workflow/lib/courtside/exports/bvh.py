@@ -2,14 +2,13 @@
 
 import warnings
 from collections.abc import Iterator, Sequence
-from os import PathLike
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHierarchy
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
 INDENT = "  "
@@ -18,7 +17,7 @@ NO_TIP = np.zeros(3)
 EVEN_S = 1e-4  # deviation of a frame from an even grid: BVH has one frame time. ASSUME: harmless
 
 
-def write(path: str | PathLike, posed: PosedHierarchy) -> None:
+def write(path: StrPath, posed: PosedHierarchy) -> None:
     """Write a posed hierarchy with one root, its frames even in time.
 
     Every joint gets six channels, as in mocopi's files: its position in its parent, cm, then its
@@ -45,7 +44,7 @@ def write(path: str | PathLike, posed: PosedHierarchy) -> None:
         np.savetxt(stream, rows, fmt="%.6f")
 
 
-def _check(path: str | PathLike, posed: PosedHierarchy) -> float:
+def _check(path: StrPath, posed: PosedHierarchy) -> float:
     """Check what BVH can hold; return the frame time, zero without two frames."""
     joints = posed.hierarchy.joints
     bad = [name for at, name in enumerate(joints) if name.split() != [name] or name in joints[:at]]

@@ -5,14 +5,13 @@ World axes, z up, as POINT:X_SCREEN and Y_SCREEN say.
 """
 
 import struct
-from os import PathLike
 
 import ezc3d
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
 MM_PER_M = 1000.0
@@ -23,7 +22,7 @@ FIRST_DATA_BLOCK = slice(16, 18)  # of the header: the block, from 1, in which t
 MOST_FRAMES = 65535  # the header counts frames in 16 bits
 
 
-def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
+def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     """Write one person, by index.
 
     A point's residual is its root-mean-square standard deviation from the keypoints, mm, 127 where
@@ -56,7 +55,7 @@ def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
         _check_whole(path, temporary.read_bytes(), points.size * 4)
 
 
-def _check_whole(path: str | PathLike, content: bytes, n_bytes: int) -> None:
+def _check_whole(path: StrPath, content: bytes, n_bytes: int) -> None:
     """Check what only a finished file has, because ezc3d does not notice a full disk.
 
     It writes last where the points begin.

@@ -1,11 +1,10 @@
 """An OpenSim marker set for the joints of a TRC file: the body of the model for each marker."""
 
 from collections.abc import Sequence
-from os import PathLike
 from xml.etree import ElementTree
 
 from courtside.exports import markers
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
 VERSION = "40000"
@@ -41,7 +40,7 @@ ROUGH = {
 }
 
 
-def write_markers(path: str | PathLike, joints: Sequence[str]) -> None:
+def write_markers(path: StrPath, joints: Sequence[str]) -> None:
     """Write the marker set (`.xml`) of joints, named as in `pose2sim.write_project`'s TRC files.
 
     For models with the bodies `head`, `torso`, `pelvis` and those of the limbs, as Pose2Sim's has.
@@ -62,7 +61,7 @@ def write_markers(path: str | PathLike, joints: Sequence[str]) -> None:
         ElementTree.ElementTree(root).write(temporary, encoding="UTF-8", xml_declaration=True)
 
 
-def _place(path: str | PathLike, joint: str) -> tuple[str, tuple[float, float, float], bool]:
+def _place(path: StrPath, joint: str) -> tuple[str, tuple[float, float, float], bool]:
     """Return body, position and whether the position is exact."""
     side, part = markers.side_and_part(joint)
     letter = markers.SIDES.get(side, "").lower()

@@ -8,7 +8,6 @@ times of the 3D keypoints: the clocks of the cameras are already taken into acco
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ from courtside.geometry.camera import Camera
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic_folder
 
 # Skeletons with a name of their own in Pose2Sim, points in the same order.
@@ -39,7 +38,7 @@ LEAST_VIEWS = 2  # of a point in a file that does not say: triangulation needs t
 
 
 def write_project(
-    folder: str | PathLike,
+    folder: StrPath,
     cameras: Sequence[Camera],
     views: Mapping[str, tuple[NDArray, NDArray]],
     points: Keypoints3D,
@@ -117,9 +116,7 @@ def _settings(points: Keypoints3D, skeleton: str) -> dict[str, Any]:
     }
 
 
-def read_takes(
-    files: Mapping[str, str | PathLike], skeleton: Skeleton, *, model: str
-) -> Keypoints3D:
+def read_takes(files: Mapping[str, StrPath], skeleton: Skeleton, *, model: str) -> Keypoints3D:
     """Read 3D keypoints of another program, one TRC file for each person.
 
     They stay in the file's frame with z up, without views or known covariances, and get the name

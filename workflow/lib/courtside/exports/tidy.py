@@ -1,7 +1,5 @@
 """CSV: one row per frame and joint, for spreadsheets and statistics programs."""
 
-from os import PathLike
-
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
@@ -9,6 +7,7 @@ from numpy.typing import NDArray
 from courtside.records import tables
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.study.errors import StrPath
 
 # The data dictionary of config/README.md describes them.
 COLUMNS = (
@@ -48,6 +47,6 @@ def _mean_error(keypoints: Keypoints3D, person: int) -> NDArray:
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
+def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     """Write `table` as CSV."""
     tables.write(path, table(keypoints, person), float_format=None)

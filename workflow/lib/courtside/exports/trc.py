@@ -4,14 +4,13 @@ Axes: TRC's X, Y, Z are the world's y, z, x, so that Y points up and the system 
 Metres; Frame# counts from 1; a missing marker is blank.
 """
 
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
 WORLD_AXES = [1, 2, 0]  # TRC X, Y, Z <- world axis
@@ -20,7 +19,7 @@ METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 HEADER_LINES = 5
 
 
-def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
+def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     """Write one person, by index; raise `InputError` for a take of one frame, which has no rate."""
     if len(keypoints.time_s) < 2:
         raise InputError(
@@ -50,7 +49,7 @@ def write(path: str | PathLike, keypoints: Keypoints3D, person: int) -> None:
         temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
-def read(path: str | PathLike) -> tuple[list[str], float, NDArray, NDArray]:
+def read(path: StrPath) -> tuple[list[str], float, NDArray, NDArray]:
     """Read joints, rate (Hz), times (T,) s and positions (T, J, 3) of any program's TRC file.
 
     Positions are metres along world axes, NaN where blank. Raises `InputError` if the file is not a
@@ -80,7 +79,7 @@ def read(path: str | PathLike) -> tuple[list[str], float, NDArray, NDArray]:
     return joints, rate_hz, table[:, 1], xyz
 
 
-def _row(path: str | PathLike, number: int, line: str, wanted: int) -> list[float]:
+def _row(path: StrPath, number: int, line: str, wanted: int) -> list[float]:
     cells = line.rstrip("\r\n").split("\t")
     cells += [""] * (wanted - len(cells)) if len(cells) >= 2 else []
     if any(cell.strip() for cell in cells[wanted:]) or len(cells) < wanted:

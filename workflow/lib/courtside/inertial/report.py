@@ -1,6 +1,5 @@
 """What the correction of an inertial skeleton by vision changed, and what it rests on."""
 
-import os
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from courtside.geometry import rotations
 from courtside.inertial.fit import Fit
 from courtside.records.devices.hierarchy import PosedHierarchy, forward
+from courtside.study.errors import StrPath
 from courtside.study.execution.files import write_json
 
 
@@ -43,7 +43,7 @@ class CorrectionReport:
     rounds: int
     rms_change_mm: list[float]  # change of all joints in each round of the fit
 
-    def write(self, path: str | os.PathLike[str]) -> None:
+    def write(self, path: StrPath) -> None:
         """Write as JSON."""
         write_json(path, asdict(self))
 

@@ -3,7 +3,6 @@
 import base64
 import json
 import math
-import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -12,6 +11,7 @@ import jinja2
 import numpy as np
 from markupsafe import Markup
 
+from courtside.study.errors import StrPath
 from courtside.study.execution.files import atomic
 
 ASSETS = Path(__file__).with_name("assets")
@@ -34,8 +34,8 @@ def build(
     title: str,
     body_html: str,
     *,
-    css: Iterable[str | os.PathLike] = (),
-    js: Iterable[str | os.PathLike] = (),
+    css: Iterable[StrPath] = (),
+    js: Iterable[StrPath] = (),
     data: Mapping[str, object] | None = None,
     images: Mapping[str, Picture] | None = None,
 ) -> str:
@@ -86,7 +86,7 @@ def macro(template: str, name: str) -> Callable[..., Markup]:
     return getattr(TEMPLATES.get_template(template).module, name)
 
 
-def write(path: str | os.PathLike, page: str) -> None:
+def write(path: StrPath, page: str) -> None:
     """Write a page as UTF-8, whole or not at all."""
     with atomic(path) as temporary:
         temporary.write_text(page, encoding="utf-8", newline="\n")
@@ -97,7 +97,7 @@ def _data_uri(content: bytes, mime: str = PNG) -> str:
     return f"data:{mime};base64,{base64.b64encode(content).decode('ascii')}"
 
 
-def _read(item: str | os.PathLike) -> str:
+def _read(item: StrPath) -> str:
     path = item if isinstance(item, Path) else ASSETS / item
     return path.read_text(encoding="utf-8")
 

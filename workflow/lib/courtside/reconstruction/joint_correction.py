@@ -1,6 +1,5 @@
 """Correction of a network's joints: offsets by body part and view, and limbs of constant length."""
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise, product
@@ -13,7 +12,7 @@ from courtside.geometry import rotations
 from courtside.kinematics import skeleton_filter
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 
 # Lines (from, to) of a joint's own side that may explain its offset.
 BONES = {
@@ -163,7 +162,7 @@ def correct_then_filter(
     return replace(correct(filtered, table, sex_of), xyz=xyz)
 
 
-def read(path: str | os.PathLike) -> pd.DataFrame:
+def read(path: StrPath) -> pd.DataFrame:
     """Read a CSV table of offsets with `COLUMNS`; raise `InputError` if it is not one."""
     with reading(path, "a table of joint offsets", REMAKE):
         table = pd.read_csv(path, comment="#")

@@ -1,7 +1,6 @@
 """COLMAP databases as single, finished files: an open one has a write-ahead log beside it."""
 
 import contextlib
-import os
 import shutil
 import sqlite3
 import tempfile
@@ -10,14 +9,14 @@ from pathlib import Path
 
 import pycolmap
 
-from courtside.study.errors import reading
+from courtside.study.errors import StrPath, reading
 from courtside.study.execution.files import atomic
 
 pycolmap.logging.minloglevel = pycolmap.logging.Level.ERROR.value
 
 
 @contextlib.contextmanager
-def new(path: str | os.PathLike, source: str | os.PathLike | None = None) -> Iterator[Path]:
+def new(path: StrPath, source: StrPath | None = None) -> Iterator[Path]:
     """Yield a database to write; it appears at `path`, complete, when the block succeeds.
 
     It starts as a copy of the finished database `source`, empty without.
@@ -29,7 +28,7 @@ def new(path: str | os.PathLike, source: str | os.PathLike | None = None) -> Ite
 
 
 @contextlib.contextmanager
-def working_copy(source: str | os.PathLike | None = None) -> Iterator[Path]:
+def working_copy(source: StrPath | None = None) -> Iterator[Path]:
     """Yield a copy of a finished database that pycolmap may write to; it is deleted in the end."""
     # Windows does not delete what pycolmap may still hold open.
     with tempfile.TemporaryDirectory(prefix="courtside-", ignore_cleanup_errors=True) as folder:
@@ -42,19 +41,19 @@ def working_copy(source: str | os.PathLike | None = None) -> Iterator[Path]:
         yield database
 
 
-def fold(path: str | os.PathLike) -> None:
+def fold(path: StrPath) -> None:
     """Fold the write-ahead log into the database file, and give free pages back."""
     with contextlib.closing(sqlite3.connect(path)) as connection:
         connection.execute("PRAGMA journal_mode=DELETE")
         connection.execute("VACUUM")
 
 
-def image_ids(path: str | os.PathLike) -> dict[str, int]:
+def image_ids(path: StrPath) -> dict[str, int]:
     """Return the id of each image by name, in order of ids; `InputError` if a file is damaged."""
     return _ids(path, path)
 
 
-def _ids(path: str | os.PathLike, where: str | os.PathLike) -> dict[str, int]:
+def _ids(path: StrPath, where: StrPath) -> dict[str, int]:
     with (
         reading(where, "a COLMAP database", "delete it and run the study again"),
         contextlib.closing(pycolmap.Database.open(path)) as database,

@@ -1,6 +1,5 @@
 """Extract features of all images of a session once, into a COLMAP database with stable ids."""
 
-import os
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from typing import Any
 import pycolmap
 
 from courtside.sfm import database
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 MODEL = "OPENCV"  # fx fy cx cy k1 k2 p1 p2
 
@@ -24,8 +23,8 @@ class Group:
 
 
 def extract(
-    path: str | os.PathLike,
-    image_root: str | os.PathLike,
+    path: StrPath,
+    image_root: StrPath,
     groups: Sequence[Group],
     *,
     max_features: int,
@@ -77,7 +76,7 @@ def extract(
         return _content(temporary, groups)
 
 
-def _check_imported(path: Path, image_root: str | os.PathLike, group: Group) -> None:
+def _check_imported(path: Path, image_root: StrPath, group: Group) -> None:
     there = database.image_ids(path)
     missing = [name for name in group.images if name not in there]
     if missing:

@@ -1,6 +1,5 @@
 """The grid of a session's walks: all frames that may bridge, in order, by their image names."""
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.records.cameras import frame_table, image_names
 from courtside.sfm import bridging, pairs
+from courtside.study.errors import StrPath
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Grid:
         return near + among + [(a, b) for a in fixed for b in usable]
 
 
-def read(tables: Mapping[str, str | os.PathLike]) -> Grid:
+def read(tables: Mapping[str, StrPath]) -> Grid:
     """Read the frame tables of the walks: CSV by walk, as `extract_frames` writes it.
 
     Raises `InputError` if a file is missing or no frame table.

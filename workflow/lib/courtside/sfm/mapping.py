@@ -1,6 +1,5 @@
 """Mapping: from matches of some images to a COLMAP model."""
 
-import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from courtside.calibration.records.support import Support
 from courtside.geometry import similarity
 from courtside.sfm import database, model, two_views
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 # An image with fewer points has no reliable pose (6 unknowns), but COLMAP calls it registered.
 LEAST_POINTS = 6
@@ -63,9 +62,9 @@ class _Found(NamedTuple):
 
 
 def map_images(
-    matches_db: str | os.PathLike,
+    matches_db: StrPath,
     images: Sequence[str],
-    folder: str | os.PathLike,
+    folder: StrPath,
     *,
     mapper: str,
     seed: int,

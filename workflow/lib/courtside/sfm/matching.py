@@ -1,7 +1,6 @@
 """Match image pairs once, and verify the matches by two-view geometries."""
 
 import contextlib
-import os
 import sqlite3
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,11 +8,12 @@ from pathlib import Path
 import pycolmap
 
 from courtside.sfm import database
+from courtside.study.errors import StrPath
 
 
 def match(
-    features_db: str | os.PathLike,
-    matches_db: str | os.PathLike,
+    features_db: StrPath,
+    matches_db: StrPath,
     pairs: Sequence[tuple[str, str]],
     *,
     seed: int,

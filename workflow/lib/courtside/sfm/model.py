@@ -1,6 +1,5 @@
 """Read a COLMAP model as a network of images, lenses and points."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -12,7 +11,7 @@ from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import LENS, Network
 from courtside.geometry.camera import Camera
 from courtside.sfm import model_files
-from courtside.study.errors import reading
+from courtside.study.errors import StrPath, reading
 
 HALF_PIXEL = 0.5  # COLMAP has the first pixel's corner at (0, 0), the project its centre
 # ASSUME: unknown focal length, square pixels within 0.1 %, a principal point within 2 % of the
@@ -21,7 +20,7 @@ HALF_PIXEL = 0.5  # COLMAP has the first pixel's corner at (0, 0), the project i
 LENS_SIGMA = (np.inf, 1e-3, 0.02, 0.02, 0.2, 0.2, 2e-3, 2e-3)
 
 
-def read(folder: str | os.PathLike) -> tuple[Network, list[str], list[tuple[int, int]]]:
+def read(folder: StrPath) -> tuple[Network, list[str], list[tuple[int, int]]]:
     """Read the network of a model from COLMAP's binary files, names of images, and sizes, px.
 
     The network is in the model's own frame and unit, of registered images only, in the order of

@@ -1,8 +1,9 @@
 """Check that a COLMAP model's files are complete: COLMAP itself reads past their end."""
 
-import os
 import struct
 from pathlib import Path
+
+from courtside.study.errors import StrPath
 
 PARAMETERS = 8  # of the lens model that the project uses, OPENCV
 OPENCV = 4
@@ -74,7 +75,7 @@ RECORDS = {
 }
 
 
-def check(folder: str | os.PathLike) -> None:
+def check(folder: StrPath) -> None:
     """Walk through the binary files of a model (`RECORDS`), each to its end.
 
     colmap/scene/reconstruction_io_binary.cc of COLMAP 4. Raises `ValueError` if a file is longer or

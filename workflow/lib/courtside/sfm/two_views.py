@@ -1,7 +1,6 @@
 """Two-view geometries of a database: how many matches a map explains, and known lenses."""
 
 import contextlib
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -17,6 +16,7 @@ from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera, undistort
 from courtside.sfm import database
 from courtside.sfm.model import HALF_PIXEL
+from courtside.study.errors import StrPath
 
 NEAR_PX = 4.0  # from an epipolar line, as COLMAP verifies matches
 PAIR_MATCHES = 50  # ASSUME: fewer verified matches may all be false
@@ -31,7 +31,7 @@ class Verified:
     matches: Mapping[tuple[str, str], NDArray]  # (M, 2) indices of features, of pairs with any
 
 
-def read(matches_db: str | os.PathLike, images: Sequence[str]) -> Verified:
+def read(matches_db: StrPath, images: Sequence[str]) -> Verified:
     """Read the verified matches of some images of a finished database."""
     with (
         database.working_copy(matches_db) as copy,  # opening one for reading writes to it
@@ -85,9 +85,7 @@ def _share(counts: Sequence[tuple[int, int]]) -> float:
 
 
 @contextlib.contextmanager
-def with_known_lenses(
-    matches_db: str | os.PathLike, images: Sequence[str], *, seed: int
-) -> Iterator[Path]:
+def with_known_lenses(matches_db: StrPath, images: Sequence[str], *, seed: int) -> Iterator[Path]:
     """Yield a copy of a database whose two-view geometries take the first guess of lenses as known.
 
     A plane does not determine a fundamental matrix, and many pictures of a walk show mostly floor.

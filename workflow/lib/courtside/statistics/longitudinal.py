@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 from scipy import special
 
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 # What must not change unnoticed; the definition is checked beside them.
 CONDITIONS = ("model", "calibration")
@@ -170,9 +169,7 @@ def _verdict(change: float, detectable: float, mixed: str) -> str:
     return REAL if abs(change) > detectable else WITHIN
 
 
-def read(
-    paths: Sequence[str | os.PathLike[str]], labels: Sequence[Mapping[str, str]]
-) -> pd.DataFrame:
+def read(paths: Sequence[StrPath], labels: Sequence[Mapping[str, str]]) -> pd.DataFrame:
     """Read the summaries of takes into one table of `COLUMNS`; `subject` is the person's pseudonym.
 
     Each path is a CSV with a row for each person and measure: person, measure, value, unit; sigma

@@ -4,7 +4,6 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from os import PathLike
 from typing import Any
 
 import lz4.frame  # comes with rosbags
@@ -15,6 +14,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from scipy.spatial.transform import Rotation
 
 from courtside.geometry.camera import Camera
+from courtside.study.errors import StrPath
 from courtside.study.execution.files import atomic
 
 STATIC_NS = 1  # time in the recording of everything constant
@@ -43,7 +43,7 @@ class Device:
 
 
 def write(
-    path: str | PathLike,
+    path: StrPath,
     colour: Camera,
     depth: Camera,
     colour_from_depth: NDArray,

@@ -11,7 +11,6 @@ import functools
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from courtside.devices.realsense.rosbag import Bag
 from courtside.geometry import camera_fields, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.cameras.frame_times import FrameTimes
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution import log
 
 PICTURES = re.compile(
@@ -34,7 +33,7 @@ RECORD = "record depth and colour together in the camera's program"
 STANDING_STILL = np.eye(3, 4)
 
 
-def read(path: str | PathLike, name: str = "realsense") -> DepthRecording:
+def read(path: StrPath, name: str = "realsense") -> DepthRecording:
     """Read a `.bag` or `.db3` file; `name` is the device's in the study.
 
     Times are the camera's own (its hardware clock where both streams have it). Frames that are not

@@ -5,7 +5,6 @@ import itertools
 import struct
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,7 @@ from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_typestore
 
 from courtside.geometry import camera_fields
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 READERS: dict[str, tuple[Callable[[Path], Any], Stores, str]] = {
     ".bag": (rosbag1.Reader, Stores.ROS1_NOETIC, "deserialize_ros1"),
@@ -70,7 +69,7 @@ class Bag:
 
 
 @contextlib.contextmanager
-def opened(path: str | PathLike) -> Iterator[Bag]:
+def opened(path: StrPath) -> Iterator[Bag]:
     """Open a recording: `.bag` of ROS 1 or `.db3` of ROS 2.
 
     An `InputError` if the file is missing, neither of these, cut short or damaged.

@@ -1,6 +1,5 @@
 """The calibration table: errors over sessions, calibrations and numbers of pictures."""
 
-import os
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,6 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from courtside.evaluation import calibration
+from courtside.study.errors import StrPath
 
 TEXT = ("session", "preset", "layout", "condition", "mapper", "method", "outcome")
 CHOICE = ["method", "n_clicks", "in_sample"]
@@ -18,7 +18,7 @@ USUAL = pd.DataFrame([*USED, ("paper", 3, True)], columns=CHOICE)
 REPLICATES = 2000  # of the bootstrap: the limit is a 95 % quantile of them
 
 
-def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+def read(paths: Sequence[StrPath]) -> pd.DataFrame:
     """Read evaluation tables, of structures from motion and of known points, into one (`tidy`)."""
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
     return tidy(pd.concat(tables, ignore_index=True))

@@ -1,6 +1,5 @@
 """The table of simulated players: errors of skeletons, clocks and kinematics, by views and rule."""
 
-import os
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,6 +7,7 @@ import pandas as pd
 
 from courtside.evaluation import joints
 from courtside.records.keypoints import skeleton
+from courtside.study.errors import StrPath
 from courtside.study.methods import Fusion
 
 TAKE = ["session", "take", "calibration", "model"]
@@ -21,7 +21,7 @@ GAIN = ["median_mm", "p95_mm"]
 ENDS = [f"{name}_{end}_mm" for name in ("median", "p95") for end in ("from", "to")]
 
 
-def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+def read(paths: Sequence[StrPath]) -> pd.DataFrame:
     """Read evaluations of takes, all of one kind, into one table; empty if there are no files."""
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
     tables = [table for table in tables if len(table)]

@@ -1,10 +1,11 @@
 """Runs of measuring a racket: spreads, differences by run, agreement with the published values."""
 
-import os
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pandas as pd
+
+from courtside.study.errors import StrPath
 
 OURS, FLOOR, REFERENCES = "sfm18", "perfect", ("known8", "dlt8")  # method and number of clicks
 ERRORS = ("mean_abs_mm", "std_below_mm", "std_above_mm")
@@ -22,7 +23,7 @@ COLUMNS = (
 )
 
 
-def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+def read(paths: Sequence[StrPath]) -> pd.DataFrame:
     """Read evaluations of a racket, of one or more sessions, into one table.
 
     No text is missing; `way` is method and number of clicks.

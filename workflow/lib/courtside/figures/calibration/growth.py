@@ -1,6 +1,5 @@
 """Run time of each step by number of bridging images."""
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,13 +8,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, style
+from courtside.study.errors import StrPath
 from courtside.study.methods import VARIANT, Variant
 
 ONCE = "once per session"
 MARKERS = "osv^Dx"
 
 
-def table(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+def table(paths: Sequence[StrPath]) -> pd.DataFrame:
     """Read benchmark files `{step}/{mapper}-n{N}-o{offset}.tsv`; other names are steps done once.
 
     The seconds and memory are means if a file has several runs.

@@ -1,13 +1,12 @@
 """Bland-Altman plots of two networks; limits of agreement and smallest detectable changes."""
 
-import os
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from courtside.figures.style import style
+from courtside.study.errors import StrPath
 
 COLOURS = {"yes": "#009E73", "unsure": "#E69F00", "no": "#D55E00"}
 WORDS = {
@@ -22,9 +21,7 @@ SHOWN = 4
 FURTHEST = 8.0  # smallest detectable changes: limits beyond are cut off
 
 
-def read(
-    pairs_csv: str | os.PathLike, table_csv: str | os.PathLike
-) -> tuple[pd.DataFrame, pd.DataFrame]:
+def read(pairs_csv: StrPath, table_csv: StrPath) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Read the two tables of `courtside.statistics.agreement`, with missing text as empty text."""
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in (pairs_csv, table_csv)]
     for table in tables:

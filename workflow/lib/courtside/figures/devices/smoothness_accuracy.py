@@ -1,6 +1,5 @@
 """Smoothness of the wrists against accuracy, source by source: the thesis's finding as numbers."""
 
-import os
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,6 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from courtside.figures.style import bars, source_styles, style
+from courtside.study.errors import StrPath
 
 TAKE = ["session", "take"]
 ALIGNMENT = "body_frame"
@@ -48,10 +48,10 @@ def table(
 
 
 def read(
-    distortion_csv: Sequence[str | os.PathLike],
+    distortion_csv: Sequence[StrPath],
     labels: Sequence[dict[str, str]],
-    errors_csv: Sequence[str | os.PathLike] = (),
-    truth_csv: Sequence[str | os.PathLike] = (),
+    errors_csv: Sequence[StrPath] = (),
+    truth_csv: Sequence[StrPath] = (),
 ) -> pd.DataFrame:
     """Read the tables of several takes into one of `table`.
 
@@ -62,7 +62,7 @@ def read(
     return table(distortion, _read(errors_csv), _read(truth_csv))
 
 
-def _read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame | None:
+def _read(paths: Sequence[StrPath]) -> pd.DataFrame | None:
     text = dict.fromkeys(TAKE, str)
     found = [pd.read_csv(path, dtype=text) for path in paths]
     return pd.concat(found, ignore_index=True) if found else None

@@ -1,6 +1,5 @@
 """The distance of the wrists over time with T-poses and claps, and each clap enlarged."""
 
-import os
 import textwrap
 from string import ascii_lowercase
 
@@ -13,6 +12,7 @@ from matplotlib.patches import Patch
 
 from courtside.calibration import point_covariance
 from courtside.figures.style import bars, source_styles, style
+from courtside.study.errors import StrPath
 
 ROW_MM, TICKS_MM, ZOOM_MM, LINE_MM = 19, 4, 48, 3.4
 N_COLUMNS, MOST_PANELS, MOST_NOTES = 3, 9, 18
@@ -25,9 +25,7 @@ WRAP = 128
 MS = 1000
 
 
-def read(
-    wrists_csv: str | os.PathLike, events_csv: str | os.PathLike
-) -> tuple[pd.DataFrame, pd.DataFrame]:
+def read(wrists_csv: StrPath, events_csv: StrPath) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Read wrists and events as `courtside.events.detect` has them."""
     events = pd.read_csv(events_csv)
     why = events["why"].astype(object).where(events["why"].notna(), "").astype(str)

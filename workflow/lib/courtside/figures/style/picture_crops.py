@@ -1,6 +1,5 @@
 """Parts of a picture around a person, with stick figures drawn on them as vector lines."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ from courtside.pose import privacy
 from courtside.records.cameras.footage import Footage
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
+from courtside.study.errors import StrPath
 from courtside.video import reader
 
 MARGIN = 1.2  # of the person's extent, around it
@@ -36,7 +36,7 @@ class Box:
 
 
 def read(
-    video: str | os.PathLike,
+    video: StrPath,
     time_s: float,
     persons: Sequence[NDArray],
     skeleton: Skeleton,

@@ -1,13 +1,12 @@
 """One look for all figures, and saving them with the numbers drawn."""
 
-import os
-
 import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from courtside.study.errors import StrPath
 from courtside.study.execution.files import atomic
 
 WIDTH_MM = 180
@@ -70,9 +69,9 @@ def side_colour(*joints: str) -> str:
 def save(
     drawing: Figure,
     table: pd.DataFrame,
-    pdf: str | os.PathLike,
-    png: str | os.PathLike,
-    csv: str | os.PathLike,
+    pdf: StrPath,
+    png: StrPath,
+    csv: StrPath,
 ) -> None:
     """Write a figure and its numbers (floats to 4 decimals), the same bytes each time."""
     with atomic(pdf) as temporary:

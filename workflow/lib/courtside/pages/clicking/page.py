@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from courtside.calibration.court import line_edges
 from courtside.calibration.court.court import Court
 from courtside.pages import page
+from courtside.study.errors import StrPath
 from courtside.video import images
 
 SCRIPTS = [f"clicking{part}.js" for part in ("_table", "_fit", "_court", "_view", "")]
@@ -51,7 +51,7 @@ class Frame:
 
 def frame(
     camera: str,
-    path: str | os.PathLike,
+    path: StrPath,
     *,
     jpeg_quality: int | None = None,
     clicks: dict | None = None,

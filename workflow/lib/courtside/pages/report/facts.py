@@ -1,6 +1,5 @@
 """What the report says of a take and a session, read from the files of the study."""
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from courtside.records import tables
 from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints, missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.study.errors import StrPath
 from courtside.study.execution.files import read_json
 
 NINE_IN_TEN = 1.645  # half of the 90 % interval of normal errors, in standard deviations
@@ -117,7 +117,7 @@ def _left_out(rows: pd.DataFrame) -> tuple[int, int, dict[str, int]]:
     return len(lost), len(rows), {str(word): int(n) for word, n in lost.value_counts().items()}
 
 
-def _table(path: str | os.PathLike, columns: Sequence[str]) -> pd.DataFrame:
+def _table(path: StrPath, columns: Sequence[str]) -> pd.DataFrame:
     def fault(table: pd.DataFrame) -> str:
         missing = [name for name in columns if name not in table.columns]
         return f"found no column {', '.join(missing)}" if missing else ""
@@ -131,6 +131,6 @@ def _rows(files: dict, key: str, columns: Sequence[str]) -> list[dict]:
     return _table(files[key], columns).to_dict("records")
 
 
-def _row(path: str | os.PathLike) -> dict:
+def _row(path: StrPath) -> dict:
     rows = _table(path, ("camera", "shift_x_px", "shift_y_px", "zoom_percent", "n_matches"))
     return rows.to_dict("records")[0]

@@ -1,6 +1,5 @@
 """Layers of the viewer: the joints, bones and errors of one method, under a name."""
 
-import os
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +13,7 @@ from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import keypoints, missing_reason
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
-from courtside.study.errors import DAMAGED, InputError
+from courtside.study.errors import DAMAGED, InputError, StrPath
 
 PX = 0.01  # unit of stored errors: the logarithmic scale then runs from 0.001 to 1000 px
 NEAR = 0.5  # of the frame interval: frames of two layers this close show the same moment
@@ -109,7 +108,7 @@ def of_device(
 
 
 def read(
-    path: str | os.PathLike,
+    path: StrPath,
     name: str,
     skeleton: Skeleton,
     *,
@@ -128,7 +127,7 @@ def read(
     return replace(layer, time_s=(clock or Clock()).to_reference(layer.time_s))
 
 
-def _form(path: str | os.PathLike) -> str:
+def _form(path: StrPath) -> str:
     """Return the format that an npz file names; empty if none, which its reader reports."""
     try:
         with np.load(path, allow_pickle=False) as stored:
