@@ -19,13 +19,13 @@ from courtside.geometry.similarity import Sim3, kabsch
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import TPose
 from courtside.records.keypoints.derived_joints import DerivedJoints
+from courtside.records.keypoints.skeleton import TRUNK
 from courtside.study.errors import InputError
 
 ORIGIN = "pelvis_thorax"
 # ASSUME: the middle of the shoulders shows where the head is. It has one definition in every
 # skeleton; the head itself is another point for each (ears, eyes, base of the skull), and nods.
 TOP = "mid_shoulder"
-TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
 HEADS = (("left_ear", "right_ear"), ("head",), ("left_eye", "right_eye"), ("nose",))
 FORWARDS = (  # pairs of joints, the second in front of the first
     ("left_heel", "left_foot_index"),

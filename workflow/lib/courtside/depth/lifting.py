@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.depth.surfaces import TRUNK, DepthRig, Sampler, Sampling
+from courtside.depth.surfaces import DepthRig, Sampler, Sampling
 from courtside.geometry import camera, rotations
 from courtside.geometry.camera import Camera
 from courtside.records.devices.device_motion import DeviceMotion
@@ -80,7 +80,7 @@ def lift_take(
     names = list(map(str, view.joints))
     sampling = sampling or Sampling()
     skin = by_joint(names, SKIN_TO_JOINT_M if skin_m is None else skin_m)
-    is_trunk = np.isin(names, TRUNK)
+    is_trunk = np.isin(names, skeleton.TRUNK)
     radius_m = np.maximum(skin, LEAST_RADIUS_M)
     sampler = Sampler(rig, radius_m, is_trunk, baseline_m, sampling)
     xy = np.where((view.reason[0] == missing_reason.OK)[..., np.newaxis], view.xy[0], np.nan)

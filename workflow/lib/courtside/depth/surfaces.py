@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from courtside.geometry import camera, depth_registration, rotations
 from courtside.geometry.camera import Camera
 
-TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 N_SURFACES = 3  # of a joint: the limb, one in front, one behind
 COARSE_PX = 6.0  # half a window while the size of the body in the picture is unknown

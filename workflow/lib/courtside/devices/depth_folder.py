@@ -37,7 +37,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
+from courtside.devices.depth_recording import DEFAULT_UNIT_M, STANDING_STILL, DepthRecording
 from courtside.geometry import camera as cameras
 from courtside.geometry import camera_fields, rotations
 from courtside.records.cameras.frame_times import FrameTimes
@@ -46,7 +46,6 @@ from courtside.video import images, reader
 
 VIDEOS = (".mp4", ".mkv", ".mov", ".avi")
 EXPORT = "export depth again, without conversion"
-STANDING_STILL = np.eye(3, 4)
 
 
 def read(path: StrPath, name: str = "rgbd") -> DepthRecording:

@@ -12,6 +12,7 @@ from courtside.geometry.camera import Camera
 from courtside.records.cameras.frame_times import FrameTimes
 
 DEFAULT_UNIT_M = 0.001  # one step of a D400's depth unless its option says otherwise
+STANDING_STILL = np.eye(3, 4)  # pose of both cameras
 Frames = Callable[[], Iterator[tuple[float, NDArray]]]
 
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.geometry.camera_fields import METRES
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
 WORLD_AXES = [1, 2, 0]  # TRC X, Y, Z <- world axis
 TRC_AXES = [2, 0, 1]  # world x, y, z <- TRC axis
-METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 HEADER_LINES = 5
 
 

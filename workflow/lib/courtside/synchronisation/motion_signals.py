@@ -14,6 +14,7 @@ from courtside.body_frame import frame
 from courtside.events import tpose
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.devices.events import TPose
+from courtside.records.keypoints.skeleton import TRUNK
 from courtside.synchronisation import smooth_tracks
 
 SMOOTH_S = 0.03  # ASSUME: least standard deviation of the Gaussian
@@ -22,7 +23,6 @@ SLOW_S = 0.2  # ASSUME: slower changes are removed: errors of depth depend on wh
 LIMBS = tuple(
     f"{side}_{p}" for p in ("elbow", "wrist", "knee", "ankle") for side in ("left", "right")
 )
-TRUNK = tuple(f"{side}_{p}" for p in ("shoulder", "hip") for side in ("left", "right"))
 CLIP = 6.0  # ASSUME: signals are limited to this many standard deviations
 PAIRS = (
     ("left_wrist", "right_wrist"),

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.devices.depth_recording import DEFAULT_UNIT_M, DepthRecording
+from courtside.devices.depth_recording import DEFAULT_UNIT_M, STANDING_STILL, DepthRecording
 from courtside.devices.realsense import lens, rosbag, text
 from courtside.devices.realsense.rosbag import Bag
 from courtside.geometry import camera_fields, rotations
@@ -30,7 +30,6 @@ PICTURES = re.compile(
     r"(/device_\d+/sensor_\d+/(Depth|Color)_\d+)/image/data(/compressed|/compressedDepth)?"
 )
 RECORD = "record depth and colour together in the camera's program"
-STANDING_STILL = np.eye(3, 4)
 
 
 def read(path: StrPath, name: str = "realsense") -> DepthRecording:

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from courtside.calibration import point_covariance
+from courtside.events.claps import HELD_S
 from courtside.figures.style import bars, source_styles, style
 from courtside.study.errors import StrPath
 
@@ -19,7 +20,6 @@ N_COLUMNS, MOST_PANELS, MOST_NOTES = 3, 9, 18
 SAME_S = 0.5  # ASSUME: claps of different sources closer than this are one clap
 BEFORE_S, AFTER_S = 0.15, 0.3  # shown about a clap
 TOP_M = 0.6  # shown of it
-HELD_S = (0.03, 0.2)  # ASSUME: after the contact, while the hands are held together
 TPOSE, NOT = "#dddddd", "#888888"
 WRAP = 128
 MS = 1000

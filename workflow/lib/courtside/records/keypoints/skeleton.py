@@ -108,3 +108,4 @@ CHAINS = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
 LIMBS = tuple(limb for chain in CHAINS for limb in chain)
 PARENT = {stop: start for chain in CHAINS for start, stop in pairwise(chain)}
 JOINTS = tuple(f"{side}_{limb}" for side in ("left", "right") for limb in LIMBS)
+TRUNK = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
