@@ -12,7 +12,6 @@ from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import joint_correction
 from courtside.records.cameras import click_proposals, clicks
-from courtside.records.keypoints import skeleton
 from fixtures.people import walker
 from fixtures.recordings.real_data import REAL
 from fuzz.format import Format, require
@@ -156,13 +155,6 @@ def read_proposals(path):
 def read_offsets(path):
     """Read joint offsets and subtract them."""
     return joint_correction.correct(walker.points(6), joint_correction.read(path))
-
-
-def read_skeleton(path):
-    """Read a skeleton and use all that it says."""
-    found = skeleton.read(path)
-    require(len(found.mirror()) == len(found.joints), "a mirror of other joints")
-    return found.bone_indices(), found.device_names()
 
 
 def read_cameras(path):

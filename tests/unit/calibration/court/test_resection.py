@@ -13,7 +13,6 @@ from courtside.study.errors import InputError
 from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
-EIGHT = COURT.indices("eight")
 SIZE = (1280, 720)
 CENTRES = {"side": (-18, 6.7, 1.9), "back": (3.05, -14.3, 2.1), "oblique": (-17, -11.3, 1.9)}
 SIGMA_PX = 0.23  # of a click, 0.7 px in a picture 3840 px wide

@@ -20,8 +20,6 @@ from fixtures.recordings.depth_recordings_made import (
 )
 from fixtures.recordings.real_data import REAL, needs_real
 
-TEXT = "std_msgs/msg/String"
-
 
 def plain(image, encoding):
     """Return a picture as the camera's program records it without compression."""

@@ -11,7 +11,6 @@ from courtside.study.errors import InputError
 from fixtures.cameras import scene
 from fixtures.people import stick_figures
 
-MIRROR = [1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10]
 COURT = SimpleNamespace(size_m=np.array([6.1, 13.4]), net={"y_m": 6.7})
 
 
