@@ -256,7 +256,8 @@ def test_clicks_of_another_court_are_refused(good, clicked, tmp_path, name):
     size = f"{other.size_m[0]:g} m by {other.size_m[1]:g} m"
     found = calibrated(good, tmp_path, marked, path)
     assert_says(found.error, [f"near those of {name} ({size})", "give the right court file"])
-    with pytest.raises(InputError, match=r"^camera (side|back): expected .* check the names of") as caught:
+    named = r"^camera (side|back): expected .* check the names of"
+    with pytest.raises(InputError, match=named) as caught:
         resected(good, tmp_path, marked, f"known{len(other.points)}", path)
     assert_says(str(caught.value), [])
 

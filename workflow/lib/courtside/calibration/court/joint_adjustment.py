@@ -150,7 +150,7 @@ def _adjusted_freely(network: Network, fixed: Sequence[int]) -> Network:
 def _adjusted(network: Network, court: Court, **marked: Any) -> Network:
     """Return a network adjusted with clicked court points, without these.
 
-    Adjusted from two starts, the second with a wide loss first: a graduated loss (Blake and
+    Adjusted from two starts, the second with a wide loss first: a graduated loss (Blake &
     Zisserman 1987). The lower cost wins.
     """
     n_ties, n_seen = len(network.xyz), len(network.xy)
