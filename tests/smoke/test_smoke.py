@@ -24,6 +24,7 @@ LARGER_STUDY = {
     "draw_capture",
     "evaluate_clocks",
     "draw_clock_errors",
+    "evaluate_joint_errors",
     "evaluate_joint_offsets",
     "evaluate_skin_depths",
 }

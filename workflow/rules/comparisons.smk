@@ -2,8 +2,8 @@
 
 Inputs: 3D keypoints, kinematics, errors. Outputs: results/{session}/takes/{take}/views/,
 results/figures/.
-Steps: compare_views (real takes), tabulate_players, draw_clock_errors, compare_networks,
-draw_agreement, compare_sessions.
+Steps: compare_views (real takes), tabulate_players, draw_clock_errors, draw_reliability,
+compare_networks, draw_agreement, compare_sessions.
 """
 
 
@@ -51,6 +51,19 @@ rule draw_clock_errors:
         code=code("draw_clock_errors.py"),
     script:
         "../scripts/draw_clock_errors.py"
+
+
+rule draw_reliability:
+    input:
+        counts_csv=lambda w: targets.takes.evaluations(STUDY, "reliability"),
+    output:
+        **study_figure("reliability", "reliability", ("players", "joints"), figure="joints"),
+    log:
+        "results/figures/logs/draw_reliability/all.log",
+    params:
+        code=code("draw_reliability.py"),
+    script:
+        "../scripts/draw_reliability.py"
 
 
 rule compare_networks:

@@ -4,10 +4,10 @@ Only this file and evaluation_calibration.smk read truth.
 
 Inputs: 2D and 3D keypoints, clocks, truth of takes.
 Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
-Steps: evaluate_take, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_body_frames,
+Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_body_frames,
 evaluate_detection, evaluate_round_trip (table 1), evaluate_fusions (paired differences with
 intervals); of development sessions, asked for by name: evaluate_joint_offsets,
-evaluate_skin_depths.
+evaluate_joint_errors, evaluate_skin_depths.
 """
 
 
@@ -24,6 +24,21 @@ rule evaluate_take:
         labels=of_job(evaluation.skeleton_labels),
     script:
         "../scripts/evaluate_take.py"
+
+
+rule evaluate_reliability:
+    input:
+        pose3d_npz=of_job(evaluation.exported_skeletons),
+        truth_npz=paths.TRUE_TAKE,
+    output:
+        counts_csv=paths.RELIABILITY,
+    log:
+        "results/{session}/logs/evaluate_reliability/{take}.{calibration}.{model}.log",
+    params:
+        code=code("evaluate_reliability.py"),
+        labels=of_job(evaluation.exported_labels),
+    script:
+        "../scripts/evaluate_reliability.py"
 
 
 rule evaluate_clocks:
@@ -115,6 +130,28 @@ rule evaluate_joint_offsets:
         about=lambda w, output: evaluation.estimated_by(w.session, output.offsets),
     script:
         "../scripts/evaluate_joint_offsets.py"
+
+
+rule evaluate_joint_errors:
+    input:
+        cameras=paths.part(paths.CAMERAS, calibration="known18"),
+        pose2d=of_job(evaluation.fitted_keypoints),
+        people=of_job(takes.every_take, paths.PEOPLE, calibration="known18"),
+        sync=of_job(takes.every_take, paths.CAMERA_CLOCKS, calibration="known18"),
+        truth=of_job(evaluation.true_takes),
+        offsets=lambda w: CONFIG / paths.OFFSETS_CSV.format(model=w.model),
+        skeleton=of_job(Job.skeleton_file),
+    output:
+        errors_csv=paths.JOINT_ERRORS,
+    log:
+        "results/{session}/logs/evaluate_joint_errors/{model}.log",
+    params:
+        code=code("evaluate_joint_errors.py"),
+        takes=of_job(evaluation.fitted_takes),
+        about=lambda w, output: evaluation.estimated_by(w.session, output.errors_csv),
+        step=step("triangulate"),
+    script:
+        "../scripts/evaluate_joint_errors.py"
 
 
 rule evaluate_skin_depths:

@@ -69,6 +69,8 @@ rule triangulate:
         sync=paths.CAMERA_CLOCKS,
         people=paths.PEOPLE,
         skeleton=of_job(Job.skeleton_file),
+        offsets=of_job(takes.known_of_network, paths.OFFSETS_CSV),
+        errors=of_job(takes.known_of_network, paths.ERRORS_CSV),
     output:
         pose3d_npz=paths.POSE3D,
     log:
@@ -80,7 +82,7 @@ rule triangulate:
     params:
         code=code("triangulate.py"),
         step=step("triangulate"),
-        persons=lambda w: list(take_of(w).subjects),
+        sex_of=of_job(takes.sexes),
         fusion=of_job(takes.fusion),
     script:
         "../scripts/triangulate.py"

@@ -1,17 +1,19 @@
 """Triangulate one take: 2D keypoints of every camera -> 3D keypoints in the world."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from courtside.calibration.records import covariance
+from courtside.reconstruction import error_signs, joint_correction, joint_errors, resampling
 from courtside.reconstruction import fusion as camera_error
-from courtside.reconstruction import resampling
 from courtside.records.cameras import footage
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, pose3d_npz, *, persons, fusion, **options):
+def main(paths, pose3d_npz, *, sex_of, fusion, **options):
     used, rule, joints = fusion["used"], fusion["rule"], skeleton.read(paths.skeleton)
     seen = footage.read(paths.cameras, paths.pose2d, paths.people, paths.sync, sure_clocks=True)
     seen = {one.camera.name: one for one in seen}
@@ -24,17 +26,23 @@ def main(paths, pose3d_npz, *, persons, fusion, **options):
         cameras, views = [one.camera for one in own], [one.view for one in own]
         clocks = [one.clock for one in own]
         found = camera_error.triangulate_take(
-            cameras, views, joints, persons, clocks=clocks, time_s=time_s, rule=rule, **options
+            cameras, views, joints, list(sex_of), clocks=clocks, time_s=time_s, rule=rule, **options
         )
+        if rule == "robust" and paths.errors:
+            xy, score = error_signs.keypoints_used(views, clocks, found, joints)
+            signs = error_signs.of_points(cameras, found, xy, score, joints)
+            found = joint_errors.state(found, joint_errors.read(paths.errors), signs)
         report(found)
         if shared:
             found = camera_error.with_cameras(found, cameras, shared.of(names).of_columns())
         return found
 
     halves = [fuse((used[0], side), "dlt") for side in used[1:]] if rule == "halfbody" else []
-    keypoints.write_3d(
-        pose3d_npz, camera_error.merge(*halves, used) if halves else fuse(used, rule)
-    )
+    points = camera_error.merge(*halves, used) if halves else fuse(used, rule)
+    if paths.offsets:
+        table = joint_correction.read(paths.offsets)
+        points = replace(points, offset=joint_correction.offsets(points, table, sex_of))
+    keypoints.write_3d(pose3d_npz, points)
 
 
 def report(points):

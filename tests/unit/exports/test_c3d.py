@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from courtside.exports import c3d
+from courtside.records.keypoints.keypoints import unknown_errors
 from courtside.study.errors import InputError
 from fixtures.people import walker
 from fixtures.study.small_disk import limited_to
@@ -114,7 +115,7 @@ def one_joint(n_frames):
         joints=np.array(["nose"]),
         time_s=np.arange(n_frames) / 50,
         xyz=np.zeros((1, n_frames, 1, 3)),
-        covariance_2d=np.zeros((1, n_frames, 1, 3, 3)),
+        **unknown_errors(np.zeros((1, n_frames, 1, 3))),
     )
 
 

@@ -88,6 +88,9 @@ def test_appending_keeps_what_was_there():
     for key in (
         "covariance_2d",
         "covariance_camera",
+        "covariance_network",
+        "offset",
+        "outlier",
         "reproj_error_px",
         "accepted",
         "swapped",

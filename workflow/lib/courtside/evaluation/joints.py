@@ -31,6 +31,8 @@ SETS = {  # joints taken together, by the start of their names
 COLUMNS = ["person", "joint", "n", "missing_percent", "median_mm", "p95_mm", "mean_mm", "rms_mm"]
 COLUMNS += ["bias_x_mm", "bias_y_mm", "bias_z_mm", "bias_mm", "sd_mm", "sigma_mm"]
 COLUMNS += [f"coverage_{100 * level:.0f}_percent" for level in LEVELS]
+LARGE_M = 0.1  # errors above it are counted by themselves
+COLUMNS += ["n_large", "coverage_90_large_percent"]
 
 
 class Truth(Protocol):
@@ -71,14 +73,13 @@ def errors(
     """Return the differences of a record from the truth, joint by joint.
 
     The names of the M joints of both; measured minus true (P, T, M, 3) m, NaN where missing; and
-    the covariance (P, T, M, 3, 3) m2 that the record states: of keypoints, and of cameras where
-    known. `joints` name those of the truth, `true_xyz` (P, T, K, 3) m: at the record's times,
-    persons in the record's order.
+    the covariance (P, T, M, 3, 3) m2 that the record states (`Keypoints3D.covariance`).
+    `joints` name those of the truth, `true_xyz` (P, T, K, 3) m: at the record's times, persons in
+    the record's order.
     """
     names, own, other = _of_both(points, joints)
     error = points.xyz[:, :, own] - true_xyz[:, :, other]
-    covariance = points.covariance_2d[:, :, own]
-    return names, error, covariance + np.nan_to_num(points.covariance_camera[:, :, own])
+    return names, error, points.covariance[:, :, own]
 
 
 def _of_both(points: Keypoints3D, joints: Sequence[str]) -> tuple[list[str], list[int], list[int]]:
@@ -144,6 +145,11 @@ def _summary(error: NDArray, covariance: NDArray) -> dict:
         for level in LEVELS:
             inside = distance <= 2 * gammaincinv(3 / 2, level)
             row[f"coverage_{100 * level:.0f}_percent"] = 100 * inside.mean()
+        large = np.linalg.norm(error[stated], axis=1) > LARGE_M
+        row["n_large"] = int(large.sum())
+        if large.any():
+            inside = distance[large] <= 2 * gammaincinv(3 / 2, 0.9)
+            row["coverage_90_large_percent"] = 100 * inside.mean()
     return row
 
 

@@ -162,7 +162,8 @@ def round_trips(
 
 
 def _part(points: Keypoints3D, frames: slice, at: list[int]) -> Keypoints3D:
-    keys = ("xyz", "covariance_2d", "covariance_camera", "reproj_error_px")
+    keys = ["xyz", "covariance_2d", "covariance_camera", "covariance_network", "offset"]
+    keys += ["outlier", "reproj_error_px"]
     cut = {key: getattr(points, key)[:, frames][:, :, at] for key in keys}
     return replace(points, joints=points.joints[at], time_s=points.time_s[frames], **cut)
 

@@ -25,10 +25,11 @@ MOST_FRAMES = 65535  # the header counts frames in 16 bits
 def write(path: StrPath, keypoints: Keypoints3D, person: int) -> None:
     """Write one person, by index.
 
-    A point's residual is its root-mean-square standard deviation from the keypoints, mm, 127 where
-    it is larger; -1 marks a missing point, 0 one without a known uncertainty (interpolated, for
-    one). Raises `InputError` if the take is longer than C3D's frame counter allows, or one frame,
-    which has no rate; if the disk refuses the file.
+    A point's residual is its root-mean-square standard deviation over the axes, mm, of all errors
+    that are known (`Keypoints3D.covariance`), 127 where it is larger; -1 marks a
+    missing point, 0 one without a known uncertainty (interpolated, for one). Raises `InputError` if
+    the take is longer than C3D's frame counter allows, or one frame, which has no rate; if the disk
+    refuses the file.
     """
     xyz = keypoints.xyz[person] * MM_PER_M
     n_frames, n_joints, _ = xyz.shape
@@ -71,7 +72,7 @@ def _check_whole(path: StrPath, content: bytes, n_bytes: int) -> None:
 
 def _residuals(keypoints: Keypoints3D, person: int) -> NDArray:
     """Return (T, J) in mm."""
-    variance = np.trace(keypoints.covariance_2d[person], axis1=-2, axis2=-1) / 3
+    variance = np.trace(keypoints.covariance[person], axis1=-2, axis2=-1) / 3
     residual = np.sqrt(np.nan_to_num(variance, nan=0.0)) * MM_PER_M
     residual = np.minimum(residual, MOST_RESIDUAL_MM)
     return np.where(np.isfinite(keypoints.xyz[person]).all(axis=-1), residual, MISSING)

@@ -19,7 +19,7 @@ from courtside.exports import markers, opensim, trc
 from courtside.geometry import camera as camera_files
 from courtside.geometry.camera import Camera
 from courtside.records.keypoints import missing_reason
-from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.keypoints import Keypoints3D, unknown_errors
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic_folder
@@ -148,8 +148,7 @@ def read_takes(files: Mapping[str, StrPath], skeleton: Skeleton, *, model: str) 
         person_id=np.array(list(files)),
         time_s=times,
         xyz=np.where(there[..., None], xyz, np.nan),
-        covariance_2d=np.full((*xyz.shape, 3), np.nan),
-        covariance_camera=np.full((*xyz.shape, 3), np.nan),
+        **unknown_errors(xyz),
         n_views=np.where(there, LEAST_VIEWS, 0),
         reproj_error_px=np.empty((*there.shape, 0)),
         accepted=np.empty((*there.shape, 0), dtype=bool),

@@ -12,7 +12,8 @@ from courtside.study.errors import StrPath
 # The data dictionary of config/README.md describes them.
 COLUMNS = (
     "frame_idx", "time_s", "person", "joint", "x_m", "y_m", "z_m", "sd_x_mm", "sd_y_mm", "sd_z_mm",
-    "n_views", "reproj_error_px", "reason",
+    "sd_keypoints_mm", "sd_cameras_mm", "sd_network_mm", "outlier", "n_views", "reproj_error_px",
+    "reason",
 )  # fmt: skip
 
 
@@ -23,8 +24,14 @@ def table(keypoints: Keypoints3D, person: int) -> pd.DataFrame:
     """
     n_frames, n_joints = keypoints.xyz.shape[1:3]
     xyz = keypoints.xyz[person].reshape(-1, 3)
-    variances = np.diagonal(keypoints.covariance_2d[person], axis1=-2, axis2=-1)
+    variances = np.diagonal(keypoints.covariance[person], axis1=-2, axis2=-1)
     deviation_mm = np.sqrt(variances).reshape(-1, 3) * 1000
+    parts = {
+        "keypoints": keypoints.covariance_2d,
+        "cameras": keypoints.covariance_camera,
+        "network": keypoints.covariance_network,
+    }
+    deviations = {name: _deviation_mm(part[person]) for name, part in parts.items()}
     columns = {
         "frame_idx": np.repeat(np.arange(n_frames), n_joints),
         "time_s": np.repeat(keypoints.time_s, n_joints).round(6),
@@ -32,11 +39,18 @@ def table(keypoints: Keypoints3D, person: int) -> pd.DataFrame:
         "joint": np.tile(keypoints.joints, n_frames),
         **{f"{axis}_m": xyz[:, at].round(5) for at, axis in enumerate("xyz")},
         **{f"sd_{axis}_mm": deviation_mm[:, at].round(2) for at, axis in enumerate("xyz")},
+        **{f"sd_{name}_mm": deviation.round(2) for name, deviation in deviations.items()},
+        "outlier": keypoints.outlier[person].ravel().round(3),
         "n_views": keypoints.n_views[person].ravel(),
         "reproj_error_px": _mean_error(keypoints, person).round(2),
         "reason": pd.Series(keypoints.reason[person].ravel()).map(missing_reason.WORDS),
     }
     return pd.DataFrame(columns, columns=list(COLUMNS))
+
+
+def _deviation_mm(covariance: NDArray) -> NDArray:
+    """Return the root-mean-square standard deviation over the axes, by row of the table."""
+    return 1000 * np.sqrt(np.trace(covariance, axis1=-2, axis2=-1) / 3).ravel()
 
 
 def _mean_error(keypoints: Keypoints3D, person: int) -> NDArray:

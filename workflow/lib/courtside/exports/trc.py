@@ -1,7 +1,8 @@
 """TRC: marker trajectories as OpenSim and Pose2Sim read them.
 
 Axes: TRC's X, Y, Z are the world's y, z, x, so that Y points up and the system stays right-handed.
-Metres; Frame# counts from 1; a missing marker is blank.
+Metres; Frame# counts from 1; a missing marker is blank. The format has no place for standard
+deviations: those of every marker and frame are in the CSV of `exports.tidy` beside it.
 """
 
 from pathlib import Path

@@ -14,7 +14,7 @@ from courtside.geometry.camera import Camera
 from courtside.reconstruction import left_right, resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import missing_reason
-from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D
+from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D, unknown_errors
 from courtside.records.keypoints.skeleton import Skeleton
 
 
@@ -85,16 +85,16 @@ def _fix_sides(cameras, xy, score, skeleton, max_error_px) -> tuple[NDArray, NDA
 def _record(cameras, view, person_id, time_s, found, swapped) -> Keypoints3D:
     per_view, shape = swapped.shape, swapped.shape[1:]
     accepted = np.moveaxis(found.accepted.reshape(per_view), 0, -1)
-    covariance = found.covariance.reshape(*shape, 3, 3)
+    xyz = found.xyz.reshape(*shape, 3)
+    errors = unknown_errors(xyz) | {"covariance_2d": found.covariance.reshape(*shape, 3, 3)}
     return Keypoints3D(
         cameras=np.array([camera.name for camera in cameras]),
         model=view.model,
         joints=view.joints,
         person_id=np.array(person_id),
         time_s=time_s,
-        xyz=found.xyz.reshape(*shape, 3),
-        covariance_2d=covariance,
-        covariance_camera=np.full_like(covariance, np.nan),
+        xyz=xyz,
+        **errors,
         n_views=accepted.sum(axis=-1),
         reproj_error_px=np.moveaxis(found.error_px.reshape(per_view), 0, -1),
         accepted=accepted,

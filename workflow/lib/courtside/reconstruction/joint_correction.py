@@ -123,20 +123,37 @@ def correct(
     `sex_of` gives "m", "f" or None for persons; for others the mean of both is used. Joints without
     a row stay. A joint's offset needs shoulders, hips and the joint's own limb; if one of them is
     missing the joint keeps its place and its offset. `sigma_m` of a corrected joint is added to its
-    `covariance_2d`.
+    `covariance_2d`, and its square is taken out of `covariance_network`, which contains it.
     """
-    joints, xyz = list(points.joints), points.xyz.copy()
-    covariance = points.covariance_2d.copy()
+    covariance, network = points.covariance_2d.copy(), points.covariance_network.copy()
+    moved = offsets(points, table, sex_of)
+    for joint, side in product(table["joint"].unique(), ("left", "right")):
+        at = list(points.joints).index(f"{side}_{joint}")
+        sigma_m = table.loc[table["joint"] == joint, "sigma_m"].iloc[0]
+        covariance[:, :, at] += sigma_m**2 * np.eye(3)
+        variance = np.trace(network[:, :, at], axis1=-2, axis2=-1)[..., None, None] / 3
+        network[:, :, at] = np.maximum(variance - sigma_m**2, 0.0) * np.eye(3)
+    return replace(
+        points,
+        xyz=points.xyz - np.nan_to_num(moved),
+        covariance_2d=covariance,
+        covariance_network=network,
+        offset=np.where(np.isfinite(moved), 0.0, points.offset),
+    )
+
+
+def offsets(
+    points: Keypoints3D, table: pd.DataFrame, sex_of: Mapping[str, str | None] | None = None
+) -> NDArray:
+    """Return the offsets (P, T, J, 3) m of `correct`, NaN where unknown."""
+    joints, found = list(points.joints), np.full(points.xyz.shape, np.nan)
     sexes = [(sex_of or {}).get(str(person)) for person in points.person_id]
     for joint, rows in table.groupby("joint"):
         for side, (person, sex) in product(("left", "right"), enumerate(sexes)):
-            at = joints.index(f"{side}_{joint}")
             basis = vectors(points.xyz[person], joints, side, joint, sex)
             offset = sum(basis[row.vector] * row.share for row in rows.itertuples())
-            known = np.isfinite(offset).all(axis=-1)
-            xyz[person, :, at] -= np.where(known[..., None], offset, 0.0)
-            covariance[person, :, at] += rows["sigma_m"].iloc[0] ** 2 * np.eye(3)
-    return replace(points, xyz=xyz, covariance_2d=covariance)
+            found[person, :, joints.index(f"{side}_{joint}")] = offset
+    return found
 
 
 def correct_then_filter(

@@ -60,6 +60,7 @@ def table(
     in_one = rows[rows["joint"] == "limbs"].set_index([*KEY, "stage"])
     names = ["n", "missing_percent", "median_mm", "p95_mm", "sigma_mm"]
     covered = [f"coverage_{level}_percent" for level in LEVELS]
+    covered += ["n_large", "coverage_90_large_percent"]
     found = in_one.reindex(columns=[*names, *covered, "identity_percent"])
     found = found.join(_over_joints(rows[rows["joint"].isin(skeleton.JOINTS)])).reset_index()
     found = _gains(found, gains)

@@ -24,6 +24,7 @@ TITLES = {
     "growth": "Time and memory",
     "court_points": "Court points",
     "clock_errors": "Errors of clocks against the truth",
+    "reliability": "How far stated errors of joints hold",
     "agreement": "Agreement of two networks",
     "archive": "One subject over sessions",
     "wrist_distance": "Distance of the wrists, and claps",

@@ -136,7 +136,8 @@ def append(
     """Return a record with derived joints behind its own; names that it already has are left.
 
     A derived joint has the fewest views of its parts, is accepted in a camera where all parts are,
-    swapped where one is, and has the mean of their reprojection errors.
+    swapped where one is, and has the mean of their reprojection errors. It is an outlier as
+    probably as the most probable of its parts.
     """
     for name in names:
         if name not in points.joints:
@@ -145,12 +146,21 @@ def append(
 
 
 def _append_one(points: Keypoints3D, table: DerivedJoints, skeleton: str, name: str) -> Keypoints3D:
-    used = np.flatnonzero(table.weights(skeleton, name, points.joints))
+    every = table.weights(skeleton, name, points.joints)
+    used = np.flatnonzero(every)
+    weights = np.abs(every[used])
     xyz, covariance, camera, reason = of(points, table, skeleton, name)
     made = {
         "xyz": xyz,
         "covariance_2d": covariance,
         "covariance_camera": camera,
+        # Errors of a network are one side's and one joint's: as for cameras, a mean that is not too
+        # small.
+        "covariance_network": np.einsum(
+            "j,ptjkl->ptkl", weights, points.covariance_network[:, :, used]
+        ),
+        "offset": np.einsum("j,ptjk->ptk", every[used], points.offset[:, :, used]),
+        "outlier": points.outlier[:, :, used].max(axis=2),
         "reason": reason,
         "n_views": points.n_views[:, :, used].min(axis=2),
         "accepted": points.accepted[:, :, used].all(axis=2),

@@ -3,13 +3,14 @@
 from dataclasses import dataclass, replace
 from typing import Annotated
 
+import numpy as np
 from numpy.typing import NDArray
 
 from courtside.records import npz
 from courtside.study.errors import StrPath
 
 FORM_2D = "courtside keypoints2d 1"
-FORM_3D = "courtside keypoints3d 2"
+FORM_3D = "courtside keypoints3d 3"
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,12 @@ class Keypoints3D:
     # From the keypoints, square metres; NaN where unknown
     covariance_2d: Annotated[NDArray, "float P T J 3 3"]
     covariance_camera: Annotated[NDArray, "float P T J 3 3"]  # the same from the calibration
+    # The same from what the residuals do not show: a wrong part, a hidden limb
+    covariance_network: Annotated[NDArray, "float P T J 3 3"]
+    # Known systematic error of the network, metres, not taken away; 0 once it is; NaN where unknown
+    offset: Annotated[NDArray, "float P T J 3"]
+    # Probability that, besides `offset`, the joint is over 100 mm off; NaN where unknown
+    outlier: Annotated[NDArray, "float P T J"]
     n_views: Annotated[NDArray, "int P T J"]  # views used for the point; 0 where it is missing
     # Distance of each camera's keypoint to the projected point, accepted or not; NaN without either
     reproj_error_px: Annotated[NDArray, "float P T J C"]
@@ -52,6 +59,18 @@ class Keypoints3D:
     # Whether the fusion took that camera's keypoint of the other side: its network confused them
     swapped: Annotated[NDArray, "bool P T J C"]
     reason: Annotated[NDArray, "int P T J"]  # uint8: codes of `missing_reason`
+
+    @property
+    def covariance(self) -> NDArray:
+        """The covariance (P, T, J, 3, 3) m2 of all errors: NaN where that of keypoints is unknown.
+
+        Of the keypoints and, where known, of cameras and network; an offset that is not taken away
+        counts with its square.
+        """
+        more = (self.covariance_camera, self.covariance_network)
+        offset = np.nan_to_num(self.offset)
+        squared = offset[..., :, None] * offset[..., None, :]
+        return self.covariance_2d + sum(map(np.nan_to_num, more)) + squared
 
     @property
     def rate_hz(self) -> float:
@@ -67,6 +86,17 @@ class Keypoints3D:
         per_frame = [key for key, (_, shape) in spec.items() if shape[:2] == ("P", "T")]
         cut = {key: getattr(self, key)[:, at] for key in per_frame}
         return replace(self, time_s=self.time_s[at], **cut)
+
+
+def unknown_errors(xyz: NDArray) -> dict[str, NDArray]:
+    """Return the fields of a `Keypoints3D` with points `xyz` whose errors nothing is known of."""
+    return {
+        "covariance_2d": np.full((*xyz.shape, 3), np.nan),
+        "covariance_camera": np.full((*xyz.shape, 3), np.nan),
+        "covariance_network": np.full((*xyz.shape, 3), np.nan),
+        "offset": np.full(xyz.shape, np.nan),
+        "outlier": np.full(xyz.shape[:-1], np.nan),
+    }
 
 
 def write_2d(path: StrPath, keypoints: Keypoints2D) -> None:

@@ -42,6 +42,31 @@ def skeleton_labels(job: Job) -> list[dict[str, str]]:
     return [{**job.wildcards, "stage": stage, "fusion": fusion} for stage, fusion in pairs]
 
 
+def exported_skeletons(job: Job) -> list[str]:
+    """Return the skeletons of every stage, of the fusion that is exported first."""
+    return job.of_each(paths.SKELETONS, stage=job.stages(), fusion=job.session.fusions()[:1])
+
+
+def exported_labels(job: Job) -> list[dict[str, str]]:
+    """Return the labels of these skeletons."""
+    return [{**job.wildcards, "stage": stage} for stage in job.stages()]
+
+
+def fitted_keypoints(job: Job) -> list[str]:
+    """Return the 2D keypoints of every take of a session."""
+    return [path for take in fitted_takes(job) for path in take["pose2d"]]
+
+
+def fitted_takes(job: Job) -> list[dict[str, Any]]:
+    """Return 2D keypoints and the sexes of the persons of every take of a session."""
+    found = []
+    for name, take in job.session.takes.items():
+        pose2d = job.of_each(paths.POSE2D, take=name, camera=take.videos)
+        known = {who: job.session.subjects[who].sex for who in take.subjects}
+        found.append({"pose2d": pose2d, "sex_of": known})
+    return found
+
+
 def pairs(job: Job) -> list[tuple[str, str]]:
     """Return the pairs of fusions of a session that are compared."""
     return [pair for pair in PAIRS if set(pair) <= set(every_fusion(job))]

@@ -1,5 +1,6 @@
 """Files and settings of takes: keypoints, skeletons, measures, exports."""
 
+from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
@@ -62,6 +63,12 @@ def sexes(job: Job) -> dict[str, str | None]:
     known = job.session.subjects
     people = job.take.subjects if "take" in job.wildcards else known
     return {name: known[name].sex if known[name].sex in ("m", "f") else None for name in people}
+
+
+def known_of_network(job: Job, pattern: str) -> Path | list:
+    """Return a file of `config/` on a network, where there is one of it."""
+    path = job.study.folder / pattern.format(model=job["model"])
+    return path if path.is_file() else []
 
 
 def exported(job: Job) -> str:

@@ -40,6 +40,7 @@ def every_players_figure(study: Study) -> list[str]:
         stems += takes.files(paths.CALIBRATED_FIGURE, session, take, **known)
     there = {
         "clock_errors": takes.evaluations(study, "clocks"),
+        "reliability": takes.evaluations(study, "reliability"),
         "agreement": compared_takes(study),
         "archive": archived_takes(study),
     }

@@ -1,0 +1,78 @@
+"""How often ellipsoids of 3D joints hold the truth, and how well outliers are flagged."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy.special import gammaincinv
+
+from courtside.evaluation import joints
+from courtside.records.keypoints import skeleton
+from courtside.records.keypoints.keypoints import Keypoints3D
+
+LEVELS = (10, 20, 30, 40, 50, 60, 70, 80, 90, 95, 99)  # percent: nominal shares
+HELD = [f"held_{level}" for level in LEVELS]
+COUNTS = ["n", *HELD, "n_large", "n_flagged", "n_flagged_large"]
+SIZES_MM = (0, 50, 100, 300)  # lower ends of the groups by size of the error
+MOST_VIEWS = 4  # more count as these
+FLAGGED = 0.5  # a joint is flagged if it is more probably an outlier than not
+
+
+def counts(points: Keypoints3D, names: Sequence[str], true_xyz: NDArray) -> pd.DataFrame:
+    """Count the limbs' joints whose error lies in their ellipsoids, by groups.
+
+    `names` are those of the true joints, `true_xyz` (P, T, K, 3) m: at the record's times. A row
+    for all joints and for each joint, size of the error and number of views (`by`, `group`): `n`
+    joints with truth and covariance; `held_90` of them in the ellipsoid that should hold 90 %, and
+    so on; `n_large` with an error above 100 mm, `n_flagged` as outliers, `n_flagged_large` with
+    both.
+    """
+    found, error, covariance = joints.errors(points, names, true_xyz)
+    limbs = [at for at, name in enumerate(found) if name in skeleton.JOINTS]
+    own = [points.joints.tolist().index(found[at]) for at in limbs]
+    error, covariance = error[:, :, limbs], covariance[:, :, limbs]
+    known = np.isfinite(error).all(axis=-1) & np.isfinite(covariance).all(axis=(-2, -1))
+    part = np.array([found[at].split("_")[1] for at in limbs])
+    rows = _rows(error[known], covariance[known], points.outlier[:, :, own][known])
+    rows["all"] = "limbs"
+    rows["joint"] = np.broadcast_to(part, known.shape)[known]
+    rows["views"] = np.minimum(points.n_views[:, :, own][known], MOST_VIEWS)
+    groups = [
+        rows.groupby(by)[COUNTS].sum().rename_axis("group").reset_index().assign(by=by)
+        for by in ("all", "joint", "error", "views")
+    ]
+    whole = pd.concat(groups, ignore_index=True)
+    whole["group"] = whole["group"].astype(str)
+    return whole[["by", "group", *COUNTS]]
+
+
+def _rows(error: NDArray, covariance: NDArray, outlier: NDArray) -> pd.DataFrame:
+    """Return one row for each joint, with ones and zeros in `COUNTS`."""
+    solved = np.linalg.solve(covariance, error[..., None])[..., 0]
+    distance = np.einsum("ni,ni->n", error, solved)
+    size_m = np.linalg.norm(error, axis=1)
+    large, flagged = size_m > joints.LARGE_M, outlier > FLAGGED
+    held = {
+        name: distance <= 2 * gammaincinv(3 / 2, level / 100)
+        for name, level in zip(HELD, LEVELS, strict=True)
+    }
+    numbers = {"n": np.ones(len(error)), **held, "n_large": large, "n_flagged": flagged}
+    numbers["n_flagged_large"] = large & flagged
+    size = np.array(SIZES_MM)[np.searchsorted(SIZES_MM, 1000 * size_m, side="right") - 1]
+    return pd.DataFrame(numbers).astype(int).assign(error=size)
+
+
+def pooled(rows: pd.DataFrame, keys: Sequence[str]) -> pd.DataFrame:
+    """Add up tables of `counts` by keys, and say shares in percent.
+
+    `held_90_percent` and so on; `precision_percent` and `recall_percent` of the flag for errors
+    above 100 mm, empty where none is flagged or none is as large.
+    """
+    found = rows.groupby([*keys, "by", "group"], sort=False)[COUNTS].sum().reset_index()
+    for name in HELD:
+        found[f"{name}_percent"] = 100 * found.pop(name) / found["n"]
+    for name, of in (("precision", "n_flagged"), ("recall", "n_large")):
+        share = found["n_flagged_large"] / found[of].replace(0, np.nan)
+        found[f"{name}_percent"] = 100 * share
+    return found

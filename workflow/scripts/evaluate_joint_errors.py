@@ -1,0 +1,33 @@
+"""Fit the errors that residuals do not show, on development players, all and fewer cameras."""
+
+from itertools import combinations
+
+import numpy as np
+
+from courtside.evaluation import error_fit
+from courtside.reconstruction import joint_correction, joint_errors
+from courtside.records import tables
+from courtside.records.cameras import footage
+from courtside.records.keypoints import skeleton
+from courtside.records.truth import take_truth
+from courtside.study.execution import log
+from courtside.study.execution.script import run
+
+
+def main(paths, errors_csv, *, takes, about, step):
+    table, joints = joint_correction.read(paths.offsets), skeleton.read(paths.skeleton)
+    parts = []
+    for take, people, sync, true in zip(takes, paths.people, paths.sync, paths.truth, strict=True):
+        seen = footage.read(paths.cameras, take["pose2d"], people, sync)
+        truth = take_truth.read(true)
+        for count in range(2, len(seen) + 1):
+            for used in combinations(seen, count):
+                parts.append(error_fit.joints_of(used, joints, take["sex_of"], table, truth, step))
+    columns, error, covariance, weight = map(np.concatenate, zip(*parts, strict=True))
+    log.logger.info("joints: %d", len(columns))
+    model = joint_errors.fit(columns, error, covariance, weight)
+    tables.write(errors_csv, joint_errors.table(model), about=about)
+
+
+if __name__ == "__main__":
+    run(main, snakemake)
