@@ -82,9 +82,12 @@ def steps(folder, given):
     names = [path.stem for path in pose2d]
     made = {key: folder / "made" / f"{key}.npz" for key in ("people", "raw", "filtered", "last")}
     sync = folder / "made" / "sync.json"
+    offsets, errors = (
+        ROOT / "config" / name / f"{given.model}.csv" for name in ("joint_offsets", "joint_errors")
+    )
     paths = Paths(
         cameras=given.cameras, covariance=given.covariance, pose2d=pose2d, sync=sync,
-        skeleton=shape, people=made["people"],
+        skeleton=shape, people=made["people"], offsets=offsets, errors=errors,
     )  # fmt: skip
     yield (
         "synchronise_cameras",
@@ -92,12 +95,11 @@ def steps(folder, given):
         {"synchronised": False, "stated": {}, **parameters["synchronise_cameras"]},
     )
     yield "associate_people", (paths, made["people"]), {"persons": given.persons}
-    fusion = {"persons": given.persons, "fusion": {"used": names, "rule": "robust"}}
+    fusion = {"sex_of": dict.fromkeys(given.persons), "fusion": {"used": names, "rule": "robust"}}
     yield "triangulate", (paths, made["raw"]), {**fusion, **parameters["triangulate"]}
     tables = {key: folder / "made" / f"{key}.csv" for key in ("cutoffs", "frames", "summary")}
     filtering = parameters["filter_motion"]
     yield "filter_motion", (made["raw"], shape, made["filtered"], tables["cutoffs"]), filtering
-    offsets = ROOT / "config" / "joint_offsets" / f"{given.model}.csv"
     paths = Paths(
         raw=made["raw"], filtered=made["filtered"], cutoffs=tables["cutoffs"],
         skeleton=shape, offsets=offsets,

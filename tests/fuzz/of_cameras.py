@@ -10,7 +10,7 @@ from courtside.calibration import file_formats
 from courtside.calibration.court import court
 from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
-from courtside.reconstruction import joint_correction
+from courtside.reconstruction import error_signs, joint_correction, joint_errors
 from courtside.records.cameras import click_proposals, clicks
 from fixtures.people import walker
 from fixtures.recordings.real_data import REAL
@@ -157,6 +157,13 @@ def read_offsets(path):
     return joint_correction.correct(walker.points(6), joint_correction.read(path))
 
 
+def read_errors(path):
+    """Read a model of joint errors and state them."""
+    record = walker.points(6)
+    signs = {name: record.xyz[..., 0] for name in error_signs.NAMES}
+    return joint_errors.state(record, joint_errors.read(path), signs)
+
+
 def read_cameras(path):
     """Read cameras of any program."""
     return checked(file_formats.read(path))
@@ -177,4 +184,5 @@ FORMATS = [
     Format("clicks-csv", 1200, clicked, read_clicks),
     Format("proposals-csv", 400, proposed, read_proposals),
     Format("joint-offsets-csv", 400, copies("config/joint_offsets/*.csv"), read_offsets),
+    Format("joint-errors-csv", 400, copies("config/joint_errors/*.csv"), read_errors),
 ]

@@ -70,6 +70,21 @@ def test_coverage_is_that_of_the_covariance_the_errors_are_drawn_from():
     assert found["rms_mm"] == pytest.approx(found["sigma_mm"], rel=0.05)
 
 
+def test_large_errors_are_counted_by_themselves():
+    points, sigma_m = record(100), 0.03
+    spread = np.broadcast_to(sigma_m**2 * np.eye(3), (*points.xyz.shape, 3))
+    true, at = points.xyz.copy(), points.joints.tolist().index("left_knee")
+    true[0, :10, at, 0] += 0.05  # 1.7 standard deviations: inside, not large
+    true[0, 10:30, at, 0] += 0.3  # outside
+    network = np.zeros_like(spread)
+    network[0, 25:30, at] = 0.2**2 * np.eye(3)  # said to be so: inside
+    points = replace(points, covariance_2d=spread, covariance_network=network)
+    rows = pose_errors.table(["p1"], *pose_errors.errors(points, points.joints.tolist(), true))
+    row = rows.set_index("joint").loc["left_knee"]
+    assert (row["n_large"], row["coverage_90_large_percent"]) == (20, 25)
+    assert row["coverage_90_percent"] == 85
+
+
 def test_bias_and_scatter_are_separated():
     rng = np.random.default_rng(1)
     points = record(4000)

@@ -300,3 +300,19 @@ def test_corrected_skeletons_are_filtered_last():
     assert fast(done) < 0.2 * fast(before)
     np.testing.assert_allclose(done.xyz, before.xyz, atol=0.04)  # and otherwise the same
     np.testing.assert_array_equal(done.covariance_2d, before.covariance_2d)
+
+
+def test_a_correction_takes_the_offset_and_its_scatter_out_of_what_is_unknown():
+    rows = joint_correction.read(CONFIG / "joint_offsets" / "blazepose-full.csv")
+    time_s, neck = footwork.neck(30.0, 2, seed=3)
+    raw = footwork.record(footwork.body(neck, time_s)[0], time_s, 0.0, 0.0, np.random.default_rng())
+    offset = joint_correction.offsets(raw, rows, {"p1": "m"})
+    network = np.full((*raw.xyz.shape, 3), np.nan)
+    network[..., :, :] = 0.05**2 * np.eye(3)
+    raw = replace(raw, covariance_network=network, offset=offset)
+    done = joint_correction.correct(raw, rows, {"p1": "m"})
+    at = [list(raw.joints).index(name) for name in JOINTS]
+    np.testing.assert_allclose(done.xyz[:, :, at], (raw.xyz - offset)[:, :, at])
+    assert (done.offset[:, :, at] == 0).all()
+    beside = raw.covariance - offset[..., :, None] * offset[..., None, :]
+    np.testing.assert_allclose(done.covariance[:, :, at], beside[:, :, at], atol=1e-12)

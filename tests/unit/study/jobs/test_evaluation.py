@@ -32,6 +32,25 @@ def test_skeletons_of_every_stage_and_fusion_are_compared_and_labelled(job):
     assert [row["fusion"] for row in labels] == fusions * 2
 
 
+def test_stated_errors_are_judged_in_the_fusion_that_is_exported(job):
+    folder = "results/players-tiny/takes/shot"
+    stages = ["pose3d", "pose3d_filtered"]
+    assert evaluation.exported_skeletons(job(**NET)) == [
+        f"{folder}/{stage}/known18/all-robust/blazepose-static.npz" for stage in stages
+    ]
+    assert evaluation.exported_labels(job(**NET)) == [{**NET, "stage": one} for one in stages]
+
+
+def test_errors_are_fitted_on_every_take_of_a_session(job):
+    one = job(session="players-tiny", model="net")
+    shot, rally = evaluation.fitted_takes(one)
+    folder = "results/players-tiny/takes/{}/pose2d/net/{}.npz"
+    assert shot["pose2d"] == [folder.format("shot", c) for c in ("oblique", "back", "mirror")]
+    assert evaluation.fitted_keypoints(one) == [*shot["pose2d"], *rally["pose2d"]]
+    sexes = {name: one.session.subjects[name].sex for name in one.session.takes["shot"].subjects}
+    assert shot["sex_of"] == sexes and set(sexes.values()) <= {"m", "f", None}
+
+
 def test_pairs_of_fusions_are_those_that_a_session_has(job):
     found = evaluation.pairs(job(**NET))
     assert found == [("three-robust", "three-dlt"), ("three-robust", "halfbody")]

@@ -102,3 +102,10 @@ def test_files_for_other_programs_are_made_of_a_stage_with_consent(job, study):
 def test_faces_are_blurred_in_real_sessions(job):
     assert takes.blur_faces(job(**REAL))
     assert not takes.blur_faces(job(**SHOT))
+
+
+def test_tables_of_a_network_are_there_or_not(job, study):
+    known = job(**SHOT, model="blazepose-full")
+    found = takes.known_of_network(known, paths.ERRORS_CSV)
+    assert found == study.folder / "joint_errors" / "blazepose-full.csv"
+    assert takes.known_of_network(job(**SHOT, model="net"), paths.OFFSETS_CSV) == []

@@ -14,6 +14,7 @@ def test_figures_of_players(study):
         f"{SHOT}/figures/badminton_fig11.{method}",
         "results/figures/badminton_fig05",
         f"{SHOT}/figures/three_cameras.known18.blazepose-full",
+        "results/figures/reliability",
         "results/figures/archive",
     ]
     figures = [f"{stem}.{suffix}" for stem in stems for suffix in ("pdf", "png", "csv")]

@@ -2,6 +2,8 @@
 
 joints: `errors`, `table`, `true`, `left_out`: errors of 3D joints, against the truth and
     against other views
+reliability: `counts`, `pooled`: how often ellipsoids hold, and how well outliers are flagged
+error_fit: `joints_of`: what the model of joint errors is fitted on
 detection: `evaluate`, `torso_px`: errors of a network's 2D joints in the pictures
 kinematics: `table`: errors of paths and speeds
 sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts

@@ -6,7 +6,9 @@ fusion: `triangulate_take`, `merge`, `with_cameras`: half bodies, the cameras' c
 camera_shake: `steady`, `put_back`, `read_as_filmed`: shake removed from keypoints, and put back for
     pictures; `find`, `say`: knocks described
 joint_correction: `estimate`, `correct`: a network's joint offsets; `keep`: constant limb lengths;
-    `correct_then_filter`
+    `correct_then_filter`, `offsets`
+error_signs: `keypoints_used`, `of_points`: what a method sees of wrong joints
+joint_errors: `fit`, `state`, `design`, `read`, `table`: errors that residuals do not show
 
 Folder: `association` (who is who across cameras and over time).
 """

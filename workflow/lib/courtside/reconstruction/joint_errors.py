@@ -7,7 +7,6 @@ the first is and how probable the second. Their weights are a network's, fitted 
 players (`evaluate_joint_errors`); views share these errors, so that a filter does not remove them.
 """
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 from courtside.reconstruction import error_signs
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
-from courtside.study.errors import InputError, reading
+from courtside.study.errors import InputError, StrPath, reading
 
 OUTLIER_M = 0.1  # an error above it is an outlier's: half the length of a forearm
 # Variance stated over variance fitted. Bodies that are not in the fit have more outliers than the
@@ -148,7 +147,7 @@ def table(model: Model) -> pd.DataFrame:
     return pd.DataFrame([*rows, (LAST, 0.0, 1.0, GOOD_M[1], model.sigma_m)], columns=COLUMNS)
 
 
-def read(path: str | os.PathLike) -> Model:
+def read(path: StrPath) -> Model:
     """Read a CSV table of `table`; raise `InputError` if it is not one."""
     with reading(path, "a table of joint errors", REMAKE):
         rows = pd.read_csv(path, comment="#")

@@ -1,5 +1,6 @@
-"""Figures of agreement between networks, and of measures over sessions.
+"""Figures of agreement between networks, of stated errors, and of measures over sessions.
 
 agreement: `read`, `choose`, `draw`: limits of agreement of two networks
 archive: `table`, `draw`: measures of one subject over sessions
+reliability: `table`, `draw`: how far the stated errors of joints hold
 """

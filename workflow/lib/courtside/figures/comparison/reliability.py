@@ -70,9 +70,7 @@ def _held(rows: pd.DataFrame) -> np.ndarray:
 def _title(rows: pd.DataFrame, stage: str) -> str:
     whole = rows[(rows["session"] == EVERY) & (rows["by"] == "all")].iloc[0]
     words = f"{players.STAGES[stage]}: 90 % hold {whole['held_90_percent']:.0f} %"
-    return f"{words}\nflag: {_flag(whole)}"
-
-
-def _flag(row: pd.Series) -> str:
-    shares = [row[f"{name}_percent"] for name in ("precision", "recall")]
-    return " / ".join("-" if np.isnan(share) else f"{share:.0f} %" for share in shares)
+    precision, recall = (whole[f"{name}_percent"] for name in ("precision", "recall"))
+    if np.isnan([precision, recall]).any():
+        return words
+    return f"{words}\nof flags {precision:.0f} % right, {recall:.0f} % of large errors flagged"

@@ -1,0 +1,41 @@
+"""The figure of stated errors: sessions are added up, every stage has its column."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.evaluation import reliability as counting
+from courtside.figures.comparison import reliability
+
+
+def made():
+    rows = []
+    for session, n in (("a", 100), ("b", 300)):
+        for stage in ("pose3d", "pose3d_corrected"):
+            for by, group in (("all", "limbs"), ("joint", "knee"), ("views", "2"), ("error", "0")):
+                held = {f"held_{level}": int(n * level / 100) for level in counting.LEVELS}
+                held["held_90"] = 50 if session == "a" else 290
+                flags = {"n_large": 10, "n_flagged": 5, "n_flagged_large": 4}
+                about = {"session": session, "stage": stage, "by": by, "group": group, "n": n}
+                rows.append({**about, **held, **flags})
+    return pd.DataFrame(rows)
+
+
+def test_all_sessions_together_are_weighted_by_their_joints():
+    rows = reliability.table(made())
+    whole = rows[(rows["session"] == "all") & (rows["by"] == "all")].set_index("stage")
+    assert (whole["n"] == 400).all() and np.allclose(whole["held_90_percent"], 100 * 340 / 400)
+    assert np.allclose(whole["precision_percent"], 80) and np.allclose(whole["recall_percent"], 40)
+    one = rows[(rows["session"] == "a") & (rows["by"] == "all")]
+    assert np.allclose(one["held_90_percent"], 50)
+
+
+def test_the_figure_draws_what_the_table_says():
+    rows = reliability.table(made())
+    drawing = reliability.draw(rows)
+    assert len(drawing.axes) == 3 * 2
+    titles = [axis.get_title() for axis in drawing.axes if axis.get_title()]
+    flags = "of flags 80 % right, 40 % of large errors flagged"
+    assert titles == [f"{w}: 90 % hold 85 %\n{flags}" for w in ("raw", "corrected")]
+    (line,) = (line for line in drawing.axes[0].lines if line.get_label() == "knee")
+    at = counting.LEVELS.index(90)
+    assert np.ravel(line.get_ydata())[at] == 85
