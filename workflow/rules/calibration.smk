@@ -21,6 +21,7 @@ rule import_cameras:
         code=code("import_cameras.py"),
         names=lambda w: session_of(w).calibration_camera_names(),
         crops_px=of_job(calibration.crops_px),
+        override=lambda w: session_of(w).calibration_override,
     script:
         "../scripts/import_cameras.py"
 

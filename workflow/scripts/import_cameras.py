@@ -6,15 +6,23 @@ from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
 
 
-def main(calibration_path, cameras_toml, quality_json, *, names, crops_px):
-    found = file_formats.rename(file_formats.read(calibration_path), names)
-    found = [camera.crop(c, crops_px[c.name]) if c.name in crops_px else c for c in found]
-    camera.write_toml(cameras_toml, found, source=f"imported from {calibration_path}")
+def main(calibration_path, cameras_toml, quality_json, *, names, crops_px, override):
+    theirs = file_formats.rename(file_formats.read(calibration_path), names)
+    points_px = override.get("principal_point_px", {})
+    found = file_formats.with_principal_points(theirs, points_px)
+    source = f"imported from {calibration_path}"
+    if points_px:
+        source += f", principal points of {', '.join(points_px)} replaced: {override['reason']}"
+    cropped = [camera.crop(c, crops_px[c.name]) if c.name in crops_px else c for c in found]
+    camera.write_toml(cameras_toml, cropped, source=source)
     quality = {
         "source": str(calibration_path),
-        "cameras": {c.name: {"size_px": list(map(int, c.size))} for c in found},
+        "cameras": {c.name: {"size_px": list(map(int, c.size))} for c in cropped},
         "covariance": "unknown: the file gives none",
     }
+    if points_px:
+        in_file = {c.name: c.K[:2, 2].tolist() for c in theirs if c.name in points_px}
+        quality["override"] = {**override, "principal_point_px_in_file": in_file}
     write_json(quality_json, quality)
 
 

@@ -71,15 +71,19 @@ def test_qualisys_is_as_pose2sim_converted_it_but_for_distortion():
 
 
 @needs_real
-def test_chessboards_confirm_qualisys_distortion_without_the_64():
-    """Stills of a flat board: reprojection with the focal length and principal point left free."""
+@pytest.mark.parametrize("at", range(4))
+def test_chessboards_confirm_qualisys_distortion_without_the_64(at):
+    """Stills of a flat board: reprojection with the focal length and principal point left free.
+
+    All stills show one lens of the four (test_chessboard.py); the lenses' distortions are alike.
+    """
     board = np.zeros((28, 3), np.float32)
     board[:, :2] = np.mgrid[0:4, 0:7].T.reshape(-1, 2) * 0.06
     ours = file_formats.read(WALK / "Calib.qca.txt")
     theirs = file_formats.read(WALK / "Calib_qualisys.toml")
     stills = sorted((WALK / "boards" / "int_cam2_img").glob("*.jpg"))
     corners = [found for found in map(found_corners, stills) if found is not None]
-    rms_px = [board_error_px(camera, board, corners) for camera in (ours[1], theirs[1])]
+    rms_px = [board_error_px(camera, board, corners) for camera in (ours[at], theirs[at])]
     assert rms_px[0] < 0.6 * rms_px[1]
 
 
@@ -384,3 +388,16 @@ def test_a_coefficient_of_next_to_nothing_is_none(small):
     assert (
         found.fold_radius == pytest.approx(plain.fold_radius) == pytest.approx(np.sqrt(2))
     )  # 1 - 0.6 s + 0.05 s^2 = 0 at s = 2
+
+
+def test_principal_points_are_replaced_by_name():
+    found = file_formats.with_principal_points(named("left", "right"), {"right": [900.5, 531.0]})
+    np.testing.assert_array_equal(found[0].K, K)
+    np.testing.assert_array_equal(found[1].K[:2, 2], [900.5, 531.0])
+    np.testing.assert_array_equal(found[1].K[:2, :2], np.asarray(K)[:2, :2])
+
+
+@pytest.mark.parametrize("point", [[1920.0, 500.0], [900.0, 1080.0], [-1.0, 5.0]])
+def test_a_principal_point_outside_the_picture_is_refused(point):
+    with pytest.raises(InputError, match=r"camera left: expected principal_point_px inside .*1920"):
+        file_formats.with_principal_points(named("left"), {"left": point})

@@ -74,3 +74,19 @@ def test_a_missing_file_and_a_wrong_shape_are_refused(tmp_path):
     with pytest.raises(ValueError, match="left"):
         clicks.write(tmp_path / "x.csv", {"left": np.zeros((2, 2))}, POINTS)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_points_at_rest_have_names_of_their_own(tmp_path):
+    text = HEADER + "left,bolt,0,1,2\ncentre,mark,0,5,6\ncentre,bolt,0,3,4\nleft,mark,0,7,8\n"
+    points, xy = clicks.read_static(saved(tmp_path, text), [*CAMERAS, "right"])
+    assert points == ["bolt", "mark"]
+    np.testing.assert_array_equal(xy[:2], [[[1, 2], [7, 8]], [[3, 4], [5, 6]]])
+    assert np.isnan(xy[2]).all()
+
+
+def test_a_point_at_rest_that_one_camera_shows_is_refused(tmp_path):
+    text = HEADER + "left,bolt,0,1,2\ncentre,bolt,0,3,4\nleft,mark,0,7,8\n"
+    with pytest.raises(InputError, match="point mark: expected clicks in two cameras or more"):
+        clicks.read_static(saved(tmp_path, text), CAMERAS)
+    with pytest.raises(InputError, match="camera of left, centre, found 'side'"):
+        clicks.read_static(saved(tmp_path, HEADER + "side,bolt,0,1,2\n"), CAMERAS)

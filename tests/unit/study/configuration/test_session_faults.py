@@ -11,6 +11,13 @@ RECORDED = {
     "walks": {"w": {"video": "w.mp4"}},
     "court_points": "p.csv",
 }
+OVERRIDDEN = {
+    "calibration": {
+        "file": "c.toml",
+        "principal_point_px": {"a": [960.0, 540.0]},
+        "reason": "mirrored in the file",
+    }
+}
 VIRTUAL = {
     "court": "badminton",
     "cameras": {"side": None, "back": None},
@@ -60,6 +67,8 @@ PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
         without(RECORDED, "court_points") | {"court": "none"},
         RECORDED | {"walks": {"w": {"video": "w.mp4"}, "v": {"images": "a.mp4"}}},
         without(RECORDED, "walks") | {"calibration": {"file": "c.toml"}},
+        without(RECORDED, "walks") | OVERRIDDEN | {"static_points": "p.csv"},
+        RECORDED | OVERRIDDEN | {"static_points": "config/courts/badminton.yaml"},
         RECORDED | {"cameras": {"a": {"static": "a.mp4"}}},
         {"court": "none", "cameras": {}, "walks": {"w": {"images": "w.mp4"}}},
         VIRTUAL
@@ -104,6 +113,27 @@ def test_good_sessions_have_no_fault(root, content):
             ["court_points: expected a file", "q.csv"],
         ),
         (RECORDED | {"court": "none"}, ["court_points: expected none without a court"]),
+        (
+            RECORDED
+            | {"calibration": OVERRIDDEN["calibration"] | {"principal_point_px": {"q": 1}}},
+            ["calibration.principal_point_px: expected", "'q'"],
+        ),
+        (
+            RECORDED | {"calibration": without(OVERRIDDEN["calibration"], "reason")},
+            ["calibration: expected `reason` beside `principal_point_px`, found none"],
+        ),
+        (
+            RECORDED | {"calibration": without(OVERRIDDEN["calibration"], "principal_point_px")},
+            ["calibration: expected `principal_point_px` beside `reason`, found none"],
+        ),
+        (
+            RECORDED | {"static_points": "p.csv"},
+            ["static_points: expected a calibration file that they check, found none"],
+        ),
+        (
+            RECORDED | OVERRIDDEN | {"static_points": "q.csv"},
+            ["static_points: expected a file, found none at q.csv"],
+        ),
         (
             without(RECORDED, "court_points"),
             ["expected `court_points`", "a page to click them on, or set court: none"],

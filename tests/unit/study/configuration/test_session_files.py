@@ -170,3 +170,20 @@ def test_court_points_that_nobody_has_clicked_are_waited_for(tmp_path):
     found = session_files.session("s", "s.yaml", content, parameters, tmp_path)
     assert (found.court_points, found.unclicked) == ("p.csv", None)
     assert found.calibrations() == ["sfm-n40", "known18"]
+
+
+def test_a_session_replaces_numbers_of_its_calibration_file():
+    stated = {"principal_point_px": {"a": [1.0, 2.0]}, "reason": "mirrored in the file"}
+    content = CONTENT | {"calibration": {"file": "c.toml", **stated}, "static_points": "p.csv"}
+    found = session_files.session("s", "s.yaml", content, {})
+    assert (found.calibration_file, found.calibration_override) == ("c.toml", stated)
+    assert found.static_points == "p.csv"
+    plain = session_files.session("s", "s.yaml", CONTENT, {})
+    assert (plain.calibration_override, plain.static_points) == ({}, None)
+
+
+def test_points_at_rest_may_lie_beside_the_configuration(tmp_path):
+    content = CONTENT | {"static_points": "config/static_points/s.csv"}
+    file = tmp_path / "config" / "sessions" / "s.yaml"
+    found = session_files.session("s", file, content, {})
+    assert found.static_points == str(tmp_path / "config" / "static_points" / "s.csv")

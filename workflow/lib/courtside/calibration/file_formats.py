@@ -88,6 +88,31 @@ def rename(found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
     return [replace(by_name[theirs], name=ours) for ours, theirs in names.items()]
 
 
+def with_principal_points(
+    found: Iterable[Camera], principal_point_px: Mapping[str, Sequence[float]]
+) -> list[Camera]:
+    """Replace the principal points (x, y) px of some cameras, by their names.
+
+    They are of the calibrated picture, before it is cropped. Raises `InputError` if one lies
+    outside it.
+    """
+    replaced = []
+    for camera in found:
+        if camera.name not in principal_point_px:
+            replaced.append(camera)
+            continue
+        x, y = principal_point_px[camera.name]
+        if not (0 <= x < camera.size[0] and 0 <= y < camera.size[1]):
+            raise InputError(
+                f"camera {camera.name}: expected principal_point_px inside the calibrated "
+                f"{camera_fields.times(camera.size)} px, found {[float(x), float(y)]}; correct it "
+                "in the session file"
+            )
+        matrix = [[camera.K[0, 0], 0, x], [0, camera.K[1, 1], y], [0, 0, 1]]
+        replaced.append(replace(camera, K=np.array(matrix)))
+    return replaced
+
+
 def _text(path: Path) -> str:
     with reading(path, f"a text file, {FORMS}", "check it"):
         if path.stat().st_size > LARGEST_BYTES:

@@ -1,6 +1,7 @@
 """Clicks, frames, shake and footage of cameras.
 
-clicks, click_proposals: `read`, `write`: court points clicked, and those proposed for clicking
+clicks, click_proposals: `read`, `write`: court points clicked, and those proposed for clicking;
+    `clicks.read_static`: points at rest
 frame_table, frame_times, shake_table: `read`, `write`: CSV tables of frames;
     `frame_times.on_device_clock`, `shake_table.read_all`
 footage: `read`, `between`: a take by its cameras

@@ -41,6 +41,25 @@ def read(path: StrPath, cameras: Sequence[str], points: Sequence[str]) -> dict[s
     return clicks
 
 
+def read_static(path: StrPath, cameras: Sequence[str]) -> tuple[list[str], NDArray]:
+    """Read points at rest: their names (P,) and clicks (C, P, 2) px, NaN where not clicked.
+
+    The table is as for `read`, with names of one's own. An `InputError` also if a point is clicked
+    in one camera only, which nothing can check.
+    """
+    rows = _rows(path)
+    points = list(dict.fromkeys(row["point"] for _, row in rows))
+    clicks = read(path, cameras, points)
+    xy = np.stack([clicks[camera] for camera in cameras])
+    for point, n_views in zip(points, np.isfinite(xy[..., 0]).sum(axis=0), strict=True):
+        if n_views < 2:
+            raise InputError(
+                f"{path}: point {point}: expected clicks in two cameras or more, found one; click "
+                "it in another or delete the line"
+            )
+    return points, xy
+
+
 def write(path: StrPath, clicks: Mapping[str, NDArray], points: Sequence[str]) -> None:
     """Write clicked points, (P, 2) px by camera, as `read` takes them; NaN rows are left out."""
     for camera, xy in clicks.items():

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from courtside.study.configuration import consent, take_faults
-from courtside.study.configuration.session_files import is_there
+from courtside.study.configuration.session_files import is_there, of_configuration
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
@@ -31,12 +31,15 @@ def find(
     for name in sorted(set(cameras) & set(content.get("walks", {}))):
         yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content)
+    yield from _override_faults(file, content)
     yield from consent.faults(file, content)
     for key, views in content.get("views", {}).items():
         yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
     players = content.get("halfbody", {}).values()
     yield from take_faults.unknown(f"{file}: halfbody", players, cameras)
     paths = dict(_paths(content))
+    if static := of_configuration(content.get("static_points"), folder):
+        paths["static_points"] = static
     for name, given in content.get("takes", {}).items():
         take: Content = given or {}
         yield from take_faults.find(f"{file}: takes.{name}", take, cameras, subjects, virtual)
@@ -46,6 +49,24 @@ def find(
     yield from take_faults.of_other_programs(folder, file, content)
     for where, path in paths.items():
         yield from _path_faults(f"{file}: {where}", path, known, root)
+
+
+def _override_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield the faults of static points and of numbers that replace those of a calibration file."""
+    calibration, where = content.get("calibration", {}), f"{file}: calibration"
+    if "static_points" in content and not calibration:
+        yield (
+            f"{file}: static_points: expected a calibration file that they check, found none; "
+            "remove them or add `calibration`"
+        )
+    points = calibration.get("principal_point_px", {})
+    yield from take_faults.unknown(f"{where}.principal_point_px", points, content["cameras"])
+    if bool(points) != ("reason" in calibration):
+        missing, there = ("reason", "principal_point_px")[:: 1 if points else -1]
+        yield (
+            f"{where}: expected `{missing}` beside `{there}`, found none; numbers of a file are "
+            "replaced for a stated reason only"
+        )
 
 
 def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:

@@ -22,6 +22,8 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
 # Of a take, as its record has them.
 AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d")
 
+OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them
+
 
 def is_there(path: Path) -> bool:
     """Tell whether a file or folder exists; one whose name no disk takes does not."""
@@ -29,6 +31,12 @@ def is_there(path: Path) -> bool:
         return path.exists()
     except OSError:
         return False
+
+
+def of_configuration(path: str | None, folder: Path) -> str | None:
+    """Return a path of a session; one that begins with `config/` is below the `folder` config/."""
+    inside = (path or "").removeprefix("config/")
+    return path if inside == (path or "") else str(folder / inside)
 
 
 def session(
@@ -40,6 +48,7 @@ def session(
     """
     clicked, unclicked = _clicks(content, root)
     subjects, walks = _subjects(content), content.get("walks", {}).items()
+    given = content.get("calibration", {})
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     takes = {
         key: _take(key, value or {}, recordings.get("takes", {}).get(key), subjects)
@@ -58,7 +67,9 @@ def session(
         cameras=cameras,
         takes={key: take for key, take in takes.items() if key not in withheld},
         withheld=withheld,
-        calibration_file=content.get("calibration", {}).get("file"),
+        calibration_file=given.get("file"),
+        calibration_override={key: given[key] for key in OVERRIDDEN if key in given},
+        static_points=of_configuration(content.get("static_points"), Path(file).parent.parent),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
         unclicked=unclicked,

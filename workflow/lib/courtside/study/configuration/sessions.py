@@ -93,6 +93,9 @@ class Session:
     halfbody: dict[str, str] | None
     parameters: dict[str, Any]  # the steps' parameters of the study, with this session's overrides
     unclicked: str | None = None  # where court points that nobody has clicked yet are to be saved
+    # Of `calibration`, where numbers of the file are replaced: `principal_point_px` and `reason`
+    calibration_override: dict[str, Any] = field(default_factory=dict)
+    static_points: str | None = None  # points at rest, clicked in several cameras
     # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
     # by take
     withheld: dict[str, tuple[str, ...]] = field(default_factory=dict)
