@@ -70,6 +70,7 @@ onerror:
 rule all:
     input:
         targets.calibration.every_calibration(STUDY),
+        targets.calibration.every_file_check(STUDY),
         targets.calibration.every_photo_model(STUDY),
         targets.calibration.every_evaluation(STUDY),
         targets.takes.every_check(STUDY),

@@ -27,6 +27,7 @@ PLACES = {
     "virtual/*/racket.csv": [": `racket.csv` of virtual takes"],
     "plans/*/growth.csv": [f"{FIGURES} | plans/\\<plan>/growth"],
     "plans/*/map.csv": [f"{FIGURES} | error_map"],
+    "*/calibration/file/check.csv": ["Columns of the check of a calibration file"],
     "*/calibration/*/proposals.csv": [": `calibration/<calibration>/proposals.csv`: `camera`"],
     "*/sfm/*.csv": [": `sfm/features.csv`:"],
     "*/frames/*.csv": [FRAMES],

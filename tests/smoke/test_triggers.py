@@ -46,6 +46,7 @@ def together(*parts):
 REAL_FUSED = {
     "synchronise_cameras": 1,
     "associate_people": 1,
+    "check_cameras": 1,
     "triangulate": 2,  # all-robust, two-dlt
     "compare_views": 1,
     "filter_motion": 1,  # two-dlt is only compared, raw

@@ -3,7 +3,7 @@
 Inputs: a calibration made elsewhere, or ties from structure from motion and clicked court points,
 or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
-Steps: import_cameras (`file`), calibrate_cameras (`sfm-n40`, the default), align_cameras
+Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras (`sfm-n40`, the default), align_cameras
 (`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
 `known8-board`, `dlt18`); propose_court_points (where the points probably are), build_clicking_page.
 """
@@ -24,6 +24,27 @@ rule import_cameras:
         override=lambda w: session_of(w).calibration_override,
     script:
         "../scripts/import_cameras.py"
+
+
+rule check_cameras:
+    input:
+        calibration_path=lambda w: session_of(w).calibration_file,
+        cameras_toml=paths.part(paths.CAMERAS, calibration="file"),
+        static_csv=lambda w: session_of(w).static_points or [],
+        seen=of_job(calibration.checked_files),
+    output:
+        check_json=paths.part(paths.CALIBRATION_CHECK, suffix="json"),
+        check_csv=paths.part(paths.CALIBRATION_CHECK, suffix="csv"),
+    log:
+        "results/{session}/logs/check_cameras/file.log",
+    params:
+        code=code("check_cameras.py"),
+        names=lambda w: session_of(w).calibration_camera_names(),
+        crops_px=of_job(calibration.crops_px),
+        override=lambda w: session_of(w).calibration_override,
+        takes=of_job(calibration.checked),
+    script:
+        "../scripts/check_cameras.py"
 
 
 rule calibrate_cameras:

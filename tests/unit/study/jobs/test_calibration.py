@@ -93,3 +93,16 @@ def test_clicks_are_saved_where_the_session_says_or_in_its_folder_of_data(job, s
         waiting = replace(session, court_points=None, unclicked=unclicked)
         one = job(replace(study, sessions={"plain-tiny": waiting}), **PLAIN)
         assert calibration.clicking(one)["targets"] == {"court_points.csv": path}
+
+
+def test_a_calibration_file_is_checked_by_what_cameras_see(job):
+    folder = "results/walk-4cams-tiny/takes/balancing"
+    cameras = ("cam01", "cam02", "cam03", "cam04")
+    (take,) = calibration.checked(job(session="walk-4cams-tiny"))
+    assert take == {
+        "pose2d": [f"{folder}/pose2d/blazepose-full/{camera}.npz" for camera in cameras],
+        "sync": f"{folder}/sync/file/cameras.blazepose-full.json",
+        "people": f"{folder}/people/file/blazepose-full.npz",
+    }
+    files = calibration.checked_files(job(session="walk-4cams-tiny"))
+    assert files == [*take["pose2d"], take["sync"], take["people"]]

@@ -80,3 +80,14 @@ def test_walks_without_fixed_cameras_become_models_only(study):
         "results/plain-tiny/sfm/global-n12-o0/summary.json",
         "results/plain-tiny/sfm/incremental-n12-o0/summary.json",
     ]
+
+
+def test_calibration_files_that_are_used_are_checked(study):
+    assert calibration.every_file_check(study) == [
+        "results/walk-4cams-tiny/calibration/file/check.json"
+    ]
+    session = study.sessions["walk-4cams-tiny"]
+    empty = replace(session, takes={}, static_points=None)
+    assert not calibration.checks_file(empty)
+    assert calibration.checks_file(replace(empty, static_points="points.csv"))
+    assert not calibration.checks_file(study.sessions["players-tiny"])

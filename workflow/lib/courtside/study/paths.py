@@ -64,6 +64,7 @@ CALIBRATION = SESSION + "/calibration/{calibration}"
 CAMERAS = CALIBRATION + "/cameras.toml"
 CAMERA_COVARIANCE = CALIBRATION + "/covariance.npz"
 CALIBRATION_QUALITY = CALIBRATION + "/quality.json"
+CALIBRATION_CHECK = SESSION + "/calibration/file/check.{suffix}"  # json or csv
 COURT_PROPOSALS = CALIBRATION + "/proposals.csv"
 LENS = SESSION + "/calibration/lens/{camera}.toml"
 CLICKS = "data/{session}/court_points.csv"  # where clicks are saved if the session does not say it

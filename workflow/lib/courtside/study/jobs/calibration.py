@@ -3,7 +3,7 @@
 from typing import Any
 
 from courtside.study import paths
-from courtside.study.jobs import recordings
+from courtside.study.jobs import recordings, takes
 from courtside.study.jobs.job import Job
 from courtside.study.methods import Calibration
 
@@ -35,6 +35,26 @@ def clicks(job: Job) -> dict[str, Any]:
 def crops_px(job: Job) -> dict[str, tuple]:
     """Return the parts of the calibrated pictures that videos show, by camera."""
     return {name: camera.crop_px for name, camera in job.session.cameras.items() if camera.crop_px}
+
+
+def checked(job: Job) -> list[dict[str, Any]]:
+    """Return of each filmed take the files that check a calibration file: what cameras see.
+
+    `pose2d` of each camera by the session's first network, `sync` and `people`.
+    """
+    model, found = job.session.parameters["models"][0], []
+    for name in (name for name, take in job.session.takes.items() if take.videos):
+        known = {**job.wildcards, "take": name, "model": model, "calibration": "file"}
+        one = Job(job.study, known)
+        files = {"sync": one.fill(paths.CAMERA_CLOCKS), "people": one.fill(paths.PEOPLE)}
+        found.append({"pose2d": takes.keypoints_2d(one), **files})
+    return found
+
+
+def checked_files(job: Job) -> list[str]:
+    """Return these files in one list."""
+    every = [[*one["pose2d"], one["sync"], one["people"]] for one in checked(job)]
+    return [path for files in every for path in files]
 
 
 def ties(job: Job) -> str:

@@ -133,6 +133,9 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "model": paths.SFM_SUMMARY.format(**known),
         "static": [paths.STATIC_CHECK.format(**known, camera=camera) for camera in session.cameras],
     }
+    checked = {}
+    if calibration.checks_file(session):
+        checked["check"] = paths.CALIBRATION_CHECK.format(**known, suffix="json")
     limits = session.parameters["extract_static"]
     return {
         "name": session.name,
@@ -146,7 +149,7 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
         "overrides": _overrides(study, session),
         "withheld": consent.left_out(session),
         "limits": {key: limits[key] for key in ("max_shift_px", "max_zoom_percent")},
-        "files": {"quality": quality, **(model if mapped else {})},
+        "files": {"quality": quality, **checked, **(model if mapped else {})},
         "takes": [_take(study, session, take) for take in session.takes.values()],
     }
 

@@ -16,6 +16,21 @@ def every_calibration(study: Study) -> list[str]:
     ]
 
 
+def every_file_check(study: Study) -> list[str]:
+    """Return the check of every calibration file that takes are measured with."""
+    return [
+        paths.CALIBRATION_CHECK.format(session=session.name, suffix="json")
+        for session in study.sessions.values()
+        if checks_file(session)
+    ]
+
+
+def checks_file(session: Session) -> bool:
+    """Return whether the calibration file of a session is used and something can check it."""
+    filmed = any(take.videos for take in session.takes.values())
+    return "file" in session.take_calibrations() and (filmed or bool(session.static_points))
+
+
 def every_photo_model(study: Study) -> list[str]:
     """Return the models of sessions without fixed cameras, which have walks or photos only."""
     return [
