@@ -138,10 +138,20 @@ def test_faults_of_files_are_one_line(folder, tmp_path):
 
 
 @needs_real
-@pytest.mark.parametrize("number", [1, 2, 3])
-def test_real_boards_give_the_focal_length_that_qualisys_measured(number):
-    theirs = file_formats.read(WALK / "Calib.qca.txt")[number - 1]
-    boards = chessboard.find(WALK / "boards" / f"int_cam{number}_img", (4, 7))
-    lens = chessboard.calibrate(boards)
-    assert lens.size == theirs.size and lens.n_used >= 6 and lens.rms_px < 0.15
-    assert lens.K[0, 0] == pytest.approx(theirs.K[0, 0], rel=0.01)
+def test_all_real_boards_show_one_lens():
+    """The stills are sorted into four cameras, yet one lens fits them as well as each set its own.
+
+    So they cannot confirm the lenses of a calibration file camera by camera: its principal points
+    differ by 27 px, these by less than 3.
+    """
+    folders = [WALK / "boards" / f"int_cam{number}_img" for number in (1, 2, 3, 4)]
+    lenses = [chessboard.calibrate(chessboard.find(folder, (4, 7))) for folder in folders]
+    pictures = [picture for folder in folders for picture in sorted(folder.glob("*.jpg"))]
+    assert len(pictures) == 28
+    together = chessboard.calibrate(chessboard.find(pictures, (4, 7)))
+    assert together.n_used == sum(lens.n_used for lens in lenses) >= 24
+    assert together.rms_px < 1.1 * max(lens.rms_px for lens in lenses) < 0.12
+    for lens in lenses:
+        assert np.abs(lens.K - together.K).max() < 3
+    theirs = [camera.K for camera in file_formats.read(WALK / "Calib.qca.txt")]
+    assert np.ptp(theirs, axis=0)[0, 2] > 20
