@@ -76,6 +76,7 @@ PLACES = {
     "figures/smoothness.csv": [f"{FIGURES} | smoothness"],
     "figures/thesis_fig3_?.csv": [f"{FIGURES} | thesis_fig3_1", PATHS, *SOURCE],
     "figures/court_points.*.csv": [f"{FIGURES} | court_points"],
+    "figures/worlds*.csv": [f"{FIGURES} | worlds", QUANTILES],
     "figures/capture_*.csv": [f"{FIGURES} | capture_...", QUANTILES],
     **{
         f"*/figures/badminton_fig{n}.*": [f"{FIGURES} | badminton_fig{n}"]

@@ -2,7 +2,7 @@
 
 Inputs: ties, errors against the truth, courts, cameras. Outputs: results/figures/,
 results/{session}/figures/.
-Steps: draw_court_points, draw_coverage, draw_growth, draw_error_map, draw_capture.
+Steps: draw_court_points, draw_coverage, draw_growth, draw_error_map, draw_capture, draw_worlds.
 """
 
 
@@ -87,3 +87,19 @@ rule draw_capture:
         step=of_job(figures.condition_axes),
     script:
         "../scripts/draw_capture.py"
+
+
+rule draw_worlds:
+    input:
+        errors_csv=of_job(figures.world_errors),
+        quality_json=of_job(figures.world_qualities),
+    output:
+        **study_figure("{condition}", "worlds", ("calibration", "wrong worlds")),
+    log:
+        "results/figures/logs/draw_worlds/{condition}.log",
+    wildcard_constraints:
+        condition="|".join(targets.calibration.world_conditions(STUDY)) or "(?!)",
+    params:
+        code=code("draw_worlds.py"),
+    script:
+        "../scripts/draw_worlds.py"

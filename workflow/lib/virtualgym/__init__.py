@@ -5,4 +5,5 @@ cameras, rendering: where cameras stand and how they shake; pictures with exact 
 devices: inertial suits, depth cameras, chessboards
 session: videos, clicks, device recordings and truth of a session and its takes
 presets: named settings of halls, players and cameras
+worlds: what real halls and cameras do and no calibration knows of, by strength
 """

@@ -396,6 +396,15 @@ def test_a_calibration_that_is_none_is_named(folder, name):
         ({"virtual": VIRTUAL["virtual"] | {"baseline_deg": 181}}, ["baseline_deg", "at most 180"]),
         ({"virtual": VIRTUAL["virtual"] | {"static_frames": 0}}, ["static_frames", "at least 1"]),
         ({"virtual": VIRTUAL["virtual"] | {"stabilizer": True}}, ["did you mean 'stabiliser'?"]),
+        (
+            {"virtual": VIRTUAL["virtual"] | {"world": {"lens": 3}}},
+            ["virtual.world.lens: expected at most 2 (strength: 0 off, 1 realistic, 2 twice)"],
+        ),
+        (
+            {"virtual": VIRTUAL["virtual"] | {"world": {"flikker": 1}}},
+            ["virtual.world: expected keys of", "did you mean 'flicker'?"],
+        ),
+        ({"virtual": VIRTUAL["virtual"] | {"world": {"court": "5 mm"}}}, ["world.court", "number"]),
         ({"walks": {"walk": {"vido": "w.mp4"}}}, ["walks.walk", "did you mean 'video'?"]),
         ({"walks": {"walk": {"video": "w", "images": "i"}}}, ["walks.walk", "found {"]),
         ({"walks": {"Walk": {}}}, ["walks: expected", "lower-case letters"]),

@@ -142,3 +142,19 @@ def test_table_1_is_of_the_sets_of_cameras_that_a_session_names(job):
         "published_width": 3840,
         "start_s": None,
     }
+
+
+def test_a_wrong_world_is_labelled_by_its_effect_and_strength(study, job):
+    session = study.sessions["plain-tiny"]
+    expected = [
+        ({}, ("none", 0)),
+        ({"lens": 0}, ("none", 0)),
+        ({"lens": 2, "court": 0}, ("lens", 2)),
+        ({"lens": 1, "court": 1}, ("together", 1)),
+    ]
+    for world, found in expected:
+        varied = replace(session, condition={"condition": "worlds", "world": world})
+        one = job(replace(study, sessions={"plain-tiny": varied}), **PLAIN)
+        labels = evaluation.known_errors(one)["labels"]
+        assert (labels["effect"], labels["strength"]) == found
+        assert "world" not in labels

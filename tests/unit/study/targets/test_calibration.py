@@ -65,6 +65,22 @@ def test_variations_are_evaluated_and_those_with_a_figure_are_not_in_the_table(s
     assert "results/fast-er-1/evaluation/known.csv" in calibration.every_evaluation(study)
 
 
+def test_worlds_have_a_figure_of_their_own_and_are_not_in_the_table(studies):
+    sweep = {"n_images": [12], "n_offsets": 1, "mappers": ["global"]}
+    wrong = {
+        "session": "plain-tiny",
+        "vary": {"world": [{}, {"lens": 1}], "walk_seed": [3]},
+        "override": {"calibrations": ["sfm-n12"], "sweep": sweep},
+    }
+    study = studies(variations=["wrong-er"], conditions={"wrong-er": wrong})
+    assert calibration.drawn_conditions(study) == {}
+    assert calibration.world_conditions(study) == {"wrong_er": "wrong-er"}
+    assert [session.name for session in calibration.tabulated(study)] == ["plain-tiny"]
+    assert "results/figures/wrong_er.csv" in calibration.every_study_figure(study)
+    assert study.sessions["wrong-er-1"].virtual["world"] == {"lens": 1}
+    assert study.sessions["wrong-er-1"].calibrations() == ["sfm-n12"]
+
+
 def test_a_racket_is_measured_with_global_models_of_one_number_of_images(study, studies):
     assert calibration.racket_sessions(study) == ["plain-tiny"]
     models = calibration.racket_models(study, study.sessions["plain-tiny"])

@@ -51,6 +51,19 @@ def test_a_knock_turns_the_camera_for_good():
     assert 0 < moved.max() <= movement.reach_px()
 
 
+@pytest.mark.parametrize("strength", [1.0, 2.0])
+def test_a_tripod_creeps_by_a_pixel_and_one_more_a_minute(strength):
+    still = camera_shake.Shake()
+    movement = camera_shake.Shaking(still, CAMERA, np.random.default_rng(7), strength)
+    ahead = CAMERA.cam_from_world[2, :3] * 5 + CAMERA.centre_in_world
+    for minutes in (0, 1, 3):
+        moved = np.hypot(*moved_px(movement.camera_at(60.0 * minutes), ahead[None])[0])
+        expected_px = strength * camera_shake.CREEP_PX * 320 / 1280 * (1 + minutes)
+        assert moved == pytest.approx(expected_px, rel=0.02)
+        assert moved <= movement.reach_px(60.0 * minutes)
+    assert (shaking_of().still_from_shaken(60.0) == np.eye(3)).all()
+
+
 def test_positive_about_y_turns_the_view_to_the_right():
     turn = Rotation.from_rotvec([0, 0.01, 0]).as_matrix()
     moved = moved_px(camera_shake.turned(CAMERA, turn), np.array([[6.5, 7.5, 1.0]]))[0]

@@ -87,3 +87,20 @@ def test_the_tape_hangs_from_both_tips():
     net = paint_court(EXACT).net
     np.testing.assert_allclose(net.tape([0, 1]), net.tips)
     np.testing.assert_allclose(net.tape([0.5]), [[3.05, 6.7, 1.524]])
+
+
+def test_lines_and_posts_stand_off_the_file_by_three_to_ten_millimetres():
+    for strength in (1.0, 2.0):
+        lines_m, posts_m = painted_lines.misplacement(BADMINTON, strength, np.random.default_rng(4))
+        assert len(lines_m) == len(BADMINTON.lines_m) and posts_m.shape == (2, 2)
+        for off_m in (np.abs(lines_m) / strength, np.abs(posts_m) / strength):
+            assert off_m.min() >= 0.003 and off_m.max() <= 0.010
+        assert {-1, 1} == set(np.sign(lines_m))
+        rng = np.random.default_rng(0)
+        made = painted_lines.paint_court(BADMINTON, EXACT, rng, (lines_m, posts_m))
+        at = dict(zip(BADMINTON.points, made.court_xyz - BADMINTON.xyz, strict=True))
+        # p01 lies on the lines 0 (along y) and 4 (along x).
+        np.testing.assert_allclose(at["p01"], [lines_m[0], lines_m[4], 0], atol=1e-12)
+        feet = [[x, BADMINTON.net["y_m"]] for x in BADMINTON.net["x_m"]]
+        np.testing.assert_allclose(made.net.feet[:, :2] - feet, posts_m, atol=1e-12)
+    assert painted_lines.misplacement(BADMINTON, 0.0, np.random.default_rng(4)) is None

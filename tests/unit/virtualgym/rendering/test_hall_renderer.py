@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from fixtures.cameras import scene as projection
 from fixtures.cameras import small_hall
+from virtualgym.cameras import row_warp
 from virtualgym.hall import quads
 from virtualgym.rendering import hall_renderer
 
@@ -149,3 +150,41 @@ def test_cameras_of_one_name_with_other_lenses_do_not_share_rays(room):
     room.render(first)
     fresh = hall_renderer.Renderer(room.scene)
     np.testing.assert_array_equal(room.render(second), fresh.render(second))
+
+
+WARP_PX = np.array([[3.0, -2.0], [1.5, 2.5]])
+
+
+@pytest.mark.parametrize("warp_px", [None, WARP_PX])
+def test_corners_are_where_a_long_lens_and_a_stabiliser_show_them(room, warp_px):
+    """Nine coefficients against OpenCV's twelve, whose k4 to k6 are 0; bent rows by their rule."""
+    prism = (0.01, 0.03, -0.02, 0.04)
+    camera = small_hall.camera(
+        target=(6.5, 7.5, 1.0), size=(1280, 720), dist=(*small_hall.DIST, *prism)
+    )
+    grey = cv2.cvtColor(room.render(camera, row_warp_px=warp_px), cv2.COLOR_BGR2GRAY)
+    xyz = small_hall.corners()
+    in_cam = xyz @ camera.cam_from_world[:, :3].T + camera.cam_from_world[:, 3]
+    xyz = xyz[(in_cam[:, 2] > 0.5) & (np.abs(in_cam[:, :2]).max(axis=1) < in_cam[:, 2])]
+    turn, move = cv2.Rodrigues(camera.cam_from_world[:, :3])[0], camera.cam_from_world[:, 3]
+    twelve = np.array([*small_hall.DIST, 0.0, 0.0, 0.0, *prism])
+    lens_px = cv2.projectPoints(xyz, turn, move, camera.K, twelve)[0][:, 0]
+    xy = lens_px
+    for _ in range(20 if warp_px is not None else 0):
+        xy = lens_px - row_warp.shifts(warp_px, xy[:, 1], 720).T
+    wide = np.array([square_px(point, dataclasses.replace(camera, dist=small_hall.DIST)) > 20
+                     for point in xyz])  # fmt: skip
+    xy = xy[wide & ((xy > 12) & (xy < np.array(camera.size) - 13)).all(axis=1)]
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-4)
+    start = np.ascontiguousarray(xy[:, None], np.float32)
+    error = cv2.cornerSubPix(grey, start, (6, 6), (-1, -1), stop)[:, 0] - xy
+    assert len(error) > 80
+    assert np.sqrt((error**2).mean()) < 0.05
+    assert np.abs(error.mean(axis=0)).max() < 0.015
+
+
+def test_light_of_rows_scales_the_picture(room):
+    camera = small_hall.camera(size=(320, 180))
+    rows = np.linspace(0.5, 1.0, 180)
+    usual, lit = (room.render(camera, light=light).astype(float) for light in (None, rows))
+    np.testing.assert_allclose(lit[10:-10], usual[10:-10] * rows[10:-10, None, None], atol=1.5)

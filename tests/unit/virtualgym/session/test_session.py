@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from courtside.calibration.court import court as court_files
+from courtside.geometry import camera as projection
 from courtside.geometry.camera import Camera
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
 from courtside.video import reader
 from fixtures.cameras import scene
-from virtualgym.cameras import layouts
+from virtualgym import worlds
+from virtualgym.cameras import layouts, row_warp
 from virtualgym.session import session
 
 COURT = court_files.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
@@ -28,10 +30,10 @@ def halls():
     """Build each hall once: it takes most of the time."""
     built, build = {}, session.hall.build
 
-    def build_once(preset, court, seed):
-        key = (preset.name, court.name, seed.entropy, seed.spawn_key)
+    def build_once(preset, court, seed, **more):
+        key = (preset.name, court.name, seed.entropy, seed.spawn_key, str(more))
         if key not in built:
-            built[key] = build(preset, court, seed)
+            built[key] = build(preset, court, seed, **more)
         return built[key]
 
     with pytest.MonkeyPatch.context() as patch:
@@ -172,3 +174,77 @@ def test_an_error_of_a_rendering_process_is_passed_on(tmp_path):
     with pytest.raises(ValueError, match="expected a layout"):
         session.simulate(odd, COURT, tmp_path, threads=2)
     assert list(tmp_path.iterdir()) == []
+
+
+ALL = dict.fromkeys(worlds.EFFECTS, 1.0)
+
+
+def shown(camera, walk, at, xyz):
+    """Return where a frame of the walk shows points (N, 3) at its middle row, (N, 2) px."""
+    lens_px = projection.project(camera, xyz)
+    xy = lens_px
+    for _ in range(20):  # a pixel of the frame shows what the lens showed a shift further on
+        xy = lens_px - row_warp.shifts(walk.row_warp_px[at], xy[:, 1], camera.size[1]).T
+    return xy
+
+
+def test_a_world_of_no_strength_changes_no_byte(tmp_path, folder):
+    session.simulate(replace(SETTINGS, world=dict.fromkeys(worlds.EFFECTS, 0)), COURT, tmp_path)
+    assert files(tmp_path) == files(folder)
+
+
+def test_each_effect_changes_what_it_should_and_nothing_else():
+    usual_fixed, usual_walk = session.plan(SETTINGS, COURT)
+    for effect in worlds.EFFECTS:
+        fixed, walk = session.plan(replace(SETTINGS, world={effect: 1}), COURT)
+        for camera, usual in zip(fixed, usual_fixed, strict=True):
+            assert len(camera.dist) == (9 if effect == "lens" else 5)
+            np.testing.assert_array_equal(camera.dist[:4], usual.dist[:4])
+            np.testing.assert_array_equal(camera.K, usual.K)
+        times_s = walk.grid(200)
+        assert (walk.row_warp_px(0.0) is not None) == (effect == "stabiliser")
+        scale = np.array([walk.focal_scale(time_s) for time_s in times_s])
+        assert np.std(scale) == pytest.approx(1e-3 if effect == "breathing" else 0, rel=0.3)
+        np.testing.assert_array_equal(walk.pose(3.0), usual_walk.pose(3.0))
+
+
+def test_a_stabiliser_that_is_off_bends_no_rows():
+    off = replace(SETTINGS, world={"stabiliser": 1}, stabiliser=False)
+    assert session.plan(off, COURT)[1].row_warp_px(1.0) is None
+
+
+def test_rows_are_bent_by_the_stated_amount():
+    walk = session.plan(replace(SETTINGS, world={"stabiliser": 2}), COURT)[1]
+    warps = np.array([walk.row_warp_px(time_s) for time_s in np.linspace(0, 3000, 6000)])
+    expected_px = 2 * row_warp.WARP_PX * 480 / 1280
+    np.testing.assert_allclose(warps.std(axis=0), expected_px, rtol=0.05)
+
+
+def test_pictures_show_what_the_truth_of_a_wrong_world_says(tmp_path):
+    """Corners of the net's tape and posts would be few: lines, by their brightness, at 640 px."""
+    settings = replace(SETTINGS, size_px=(640, 360), people=0, boards=False, world=ALL)
+    session.simulate(settings, COURT, tmp_path)
+    known = session_truth.read(tmp_path / "truth.npz")
+    own_s = [settings.readout_s(at) for at in (0, 1)]
+    np.testing.assert_array_equal(known.readout_s, own_s)
+    assert own_s[0] != own_s[1]
+    assert known.walks["walk"].readout_s == settings.readout_s(None)
+    still = [image for _, image in reader.frames(tmp_path / "back.mp4")]
+    assert contrast(still[0], lambda xyz: projection.project(known.cameras[1], xyz)) > 15
+    walk = known.walks["walk"]
+    frames = [image for _, image in reader.frames(tmp_path / "walk.mp4")]
+    matrix = walk.K.copy()
+    matrix[[0, 1], [0, 1]] *= walk.focal_scale[3]
+    matrix[:2, 2] = walk.principal_point_px[3]
+    camera = Camera("walk", (640, 360), matrix, walk.dist, walk.cam_from_world[3])
+    assert contrast(frames[3], lambda xyz: shown(camera, walk, 3, xyz)) > 10
+
+
+def contrast(image, project):
+    grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.float32)
+    middles = np.array([[x, y, 0] for x in (0.02, 6.08) for y in np.linspace(0.3, 4.5, 60)])
+    level = {}
+    for aside_m in (-0.15, 0.0, 0.15):
+        xy = project(middles + np.array([aside_m, 0, 0])).astype(np.float32)
+        level[aside_m] = cv2.remap(grey, xy[:, 0], xy[:, 1], cv2.INTER_LINEAR).mean()
+    return level[0.0] - max(level[-0.15], level[0.15])

@@ -19,12 +19,13 @@ OTHER_TABLES = ("metadata", "capture_volume", "charuco", "checkerboard")  # as P
 TOLERANCE_PX = 1e-10  # of `undistort`: far below the noise of any keypoint, above rounding errors
 MAX_ITERATIONS = 50  # ASSUME: enough for Newton's method; pixels not solved by then become NaN
 ENTRIES = 2048  # radii tabulated for its start, which so lies within about 1 %
+LONG_DIST = 9  # coefficients of a lens that no calibration here estimates
 NEGLIGIBLE = 1e-30  # dividing by a coefficient this much smaller than the others overflows
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A calibrated camera with OpenCV's five distortion coefficients.
+    """A calibrated camera with OpenCV's five distortion coefficients; a true one may have more.
 
     Raises `ValueError` if a shape or value is impossible, or the rotation not orthonormal to 1e-6.
     """
@@ -33,11 +34,13 @@ class Camera:
     size: tuple[int, int]  # width and height, px
     # (3, 3) px: focal lengths, principal point (the first pixel's centre is (0, 0)); no skew.
     K: NDArray
-    dist: NDArray  # (5,): k1 k2 p1 p2 k3
+    # (5,): k1 k2 p1 p2 k3; or (9,), with s1 s2 s3 s4 of a thin prism, of true cameras alone.
+    dist: NDArray
     cam_from_world: NDArray  # (3, 4): rotation, and translation in metres
 
     def __post_init__(self) -> None:
-        for field, shape in (("K", (3, 3)), ("dist", (5,)), ("cam_from_world", (3, 4))):
+        n_dist = LONG_DIST if np.shape(self.dist) == (LONG_DIST,) else 5
+        for field, shape in (("K", (3, 3)), ("dist", (n_dist,)), ("cam_from_world", (3, 4))):
             value = np.array(getattr(self, field), dtype=float)
             if value.shape != shape or not np.isfinite(value).all():
                 found = camera_fields.short(value)
@@ -67,7 +70,7 @@ class Camera:
 
         Beyond it the lens model maps several directions to one pixel.
         """
-        k1, k2, _, _, k3 = self.dist
+        k1, k2, _, _, k3 = self.dist[:5]
         coefficients = np.array([7 * k3, 5 * k2, 3 * k1, 1.0])
         coefficients[np.abs(coefficients) < NEGLIGIBLE * np.abs(coefficients).max()] = 0.0
         squares = np.roots(coefficients)
@@ -243,25 +246,35 @@ def write_toml(path: StrPath, cameras: Sequence[Camera], *, source: str, unit: s
 
 
 def distort(dist: NDArray, normalised: NDArray) -> NDArray:
-    """Return where a lens shows points (..., 2) of the plane z = 1 (Brown 1971, OpenCV's order)."""
+    """Return where a lens shows points (..., 2) of the plane z = 1 (Brown 1971, OpenCV's order).
+
+    Nine coefficients end in those of a thin prism, s1 s2 s3 s4 (Weng, Cohen & Herniou 1992).
+    """
     x, y = normalised[..., 0], normalised[..., 1]
     square, product = x * x + y * y, 2 * x * y
-    _, _, p1, p2, _ = dist
+    p1, p2 = dist[2:4]
     radial = _radial(dist, square)
-    return np.stack(
+    seen = np.stack(
         [
             x * radial + p1 * product + p2 * (square + 2 * x * x),
             y * radial + p1 * (square + 2 * y * y) + p2 * product,
         ],
         axis=-1,
     )
+    if len(dist) == LONG_DIST:
+        s1, s2, s3, s4 = dist[5:]
+        seen += np.stack([square * (s1 + square * s2), square * (s3 + square * s4)], axis=-1)
+    return seen
 
 
 def _slopes(dist: NDArray, normalised: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-    """Return the three elements (...) of the symmetric derivative of `distort`."""
+    """Return the three elements (...) of the symmetric derivative of `distort`.
+
+    The prism of nine coefficients is left out: `undistort` then takes a few steps more.
+    """
     x, y = normalised[..., 0], normalised[..., 1]
     square = x * x + y * y
-    k1, k2, p1, p2, k3 = dist
+    k1, k2, p1, p2, k3 = dist[:5]
     radial = _radial(dist, square)
     slope = 2 * (k1 + square * (2 * k2 + square * 3 * k3))  # of radial, over r
     mixed = x * y * slope + 2 * (p1 * x + p2 * y)

@@ -1,6 +1,8 @@
 """Cameras of a virtual session: layouts of fixed ones, the walked one's path, camera shake.
 
 - layouts: `fixed_cameras`, `LAYOUTS`, `lens`, `look_at`, `court_centre`
-- walk_path: `plan`, `Walk`, `way`
+- walk_path: `plan`, `worsened`, `Walk`, `way`
+- lens_errors: `added`
+- row_warp: `shifts`
 - camera_shake: `Shake`, `Shaking`, `Warp`, `turned`
 """

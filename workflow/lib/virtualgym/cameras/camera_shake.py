@@ -13,6 +13,9 @@ from courtside.geometry.camera import Camera
 # ASSUME: number of sines of a tremor per axis, and their frequencies, for a tripod on a floor.
 WAVES = 7
 WAVES_HZ = 0.5, 8.0
+# ASSUME: how far a tripod creeps between the pictures of the empty court and the take, and again in
+# each minute of the take, px at 1280 px width; no source is recorded.
+CREEP_PX = 1.0
 NODES = 16  # per axis: for small turns the interpolation is exact to 1e-4 px
 
 
@@ -45,9 +48,14 @@ class Shake:
 
 
 class Shaking:
-    """The movement of one camera from its pose at rest."""
+    """The movement of one camera from its pose at rest.
 
-    def __init__(self, shake: Shake, camera: Camera, rng: np.random.Generator) -> None:
+    Beside its shake it creeps in a random direction, by `creep` times `CREEP_PX`.
+    """
+
+    def __init__(
+        self, shake: Shake, camera: Camera, rng: np.random.Generator, creep: float = 0.0
+    ) -> None:
         self.shake, self.camera = shake, camera
         slowest, fastest = np.log(WAVES_HZ)
         self._hz = np.exp(rng.uniform(slowest, fastest, (2, WAVES)))
@@ -58,11 +66,15 @@ class Shaking:
         self._turn = strength * shake.tremor_px / np.diag(camera.K)[1::-1, None]
         axis = rng.standard_normal(3)
         self._knock = np.radians(shake.knock_deg) * axis / np.linalg.norm(axis)
+        way = rng.uniform(0, 2 * np.pi)
+        creep_px = creep * CREEP_PX * camera.size[0] / 1280
+        self._creep = creep_px * np.array([np.sin(way), np.cos(way)]) / np.diag(camera.K)[1::-1]
 
     def still_from_shaken(self, time_s: float) -> NDArray:
         """Return the rotation (3, 3) from the camera's axes at a time to its axes at rest."""
         wave = np.sin(2 * np.pi * self._hz * time_s + self._phase)
-        turn = Rotation.from_rotvec([*(self._turn * wave).sum(axis=1), 0.0])
+        crept = self._creep * (1 + time_s / 60)
+        turn = Rotation.from_rotvec([*((self._turn * wave).sum(axis=1) + crept), 0.0])
         if self.shake.knock_s is not None and time_s >= self.shake.knock_s:
             turn = Rotation.from_rotvec(self._knock) * turn
         return turn.as_matrix()
@@ -71,9 +83,10 @@ class Shaking:
         """Return the camera at a time."""
         return turned(self.camera, self.still_from_shaken(time_s))
 
-    def reach_px(self) -> int:
-        """Return an upper limit of the picture's movement, whole px."""
+    def reach_px(self, until_s: float = 0.0) -> int:
+        """Return an upper limit of the picture's movement up to a time, whole px."""
         angle = np.hypot(*np.abs(self._turn).sum(axis=1)) + np.linalg.norm(self._knock)
+        angle += np.linalg.norm(self._creep) * (1 + max(until_s, 0.0) / 60)
         # The picture moves most in its corners, which are farthest from the centre.
         corner = np.hypot(*self.camera.size) / 2 / np.diag(self.camera.K)[:2].min()
         return int(np.ceil(1.2 * angle * np.diag(self.camera.K).max() * (1 + corner**2)))

@@ -18,12 +18,22 @@ SQUARE_ON_M = 21.0  # layout a: distance from the court's centre
 BEHIND_M = 18.0  # layout b: from the court's centre to the line on which the cameras stand
 BESIDE_M = 20.0  # layout b: between neighbouring cameras
 VIEW = 0.5  # tangent of the half angle of view that the court may fill
-HEIGHTS_M = {"side": 1.9, "back": 2.1, "oblique": 1.9, "mirror": 2.0, "front": 2.2}
+CORNER_DEG = 62.0  # layout corners: of the cameras from behind the court, seen from its centre
+HEIGHTS_M = {
+    "side": 1.9,
+    "back": 2.1,
+    "oblique": 1.9,
+    "mirror": 2.0,
+    "front": 2.2,
+    "left": 2.9,
+    "right": 2.7,
+}
 LAYOUTS = {  # in the order in which a walk passes them
     "a": ("side", "back"),
     "b": ("oblique", "back"),
     "b-mirror": ("oblique", "back", "mirror"),
     "b-mirror-front": ("oblique", "back", "mirror", "front"),
+    "corners": ("left", "right"),
 }
 
 
@@ -45,6 +55,7 @@ def fixed_cameras(
         A key of `LAYOUTS`. In "a" two cameras look along the world's x (`side`) and y (`back`). In
         "b" one stands straight behind the court (`back`), one beside it on a line parallel to x
         (`oblique`); then the mirror image of that one (`mirror`); then one that faces the players.
+        In "corners" two stand high to the left and the right behind the court, 124 degrees apart.
     court : Court
     size_px : (int, int)
         Width and height of the pictures.
@@ -147,6 +158,10 @@ def _places(
             "side": (away_m * np.cos(angle), away_m * np.sin(angle)),
             "back": (0.0, -away_m),
         }
+    if layout == "corners":
+        away_m, angle = max(SQUARE_ON_M, needed_m), np.radians(CORNER_DEG)
+        across, behind = away_m * np.sin(angle), -away_m * np.cos(angle)
+        return {"left": (-across, behind), "right": (across, behind)}
     away_m = BEHIND_M + max(0.0, needed_m - SQUARE_ON_M)
     return {
         "oblique": (-BESIDE_M, -away_m),

@@ -1,7 +1,7 @@
 """The walked camera: carried past the fixed cameras, aimed at the court's centre."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.ndimage import gaussian_filter1d
 from courtside.calibration.court.court import Court
 from courtside.geometry import rotations
 from courtside.geometry.camera import Camera
-from virtualgym.cameras import layouts
+from virtualgym.cameras import layouts, lens_errors, row_warp
 from virtualgym.presets import Preset
 
 # ASSUME: path, speed and shake of a person who films carefully with a phone; no source is recorded.
@@ -35,6 +35,10 @@ BOB = (((0.012, 1.0),), ((0.012, 1.0),), ((0.015, 2.0),))
 SHAKE_DEG = (((0.3, 1.0), (0.7, 2.0)), ((0.7, 1.0), (0.3, 2.0)), ((0.6, 1.0), (0.3, 2.0)))
 TREMOR_DEG, TREMOR_HZ = 0.02, (4.1, 5.7, 7.3)
 SHIFT = ((1.26, 17.0), (0.63, 6.5))  # of variance 1
+# ASSUME: standard deviation of the focal length while a phone refocuses between 10 and 25 m, as a
+# share; no source is recorded.
+BREATH = 0.001
+ROWS = ((1.26, 5.3), (0.63, 1.7))  # of variance 1: changes of a stabiliser's error
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +64,11 @@ class Waves:
         return replace(self, amplitude=self.amplitude * factor)
 
 
+def _still(dimensions: int) -> Waves:
+    nothing = np.zeros((dimensions, 1))
+    return Waves(nothing, nothing, nothing)
+
+
 @dataclass(frozen=True, eq=False)
 class Walk:
     """One walk with the mobile camera, a smooth function of time.
@@ -79,6 +88,9 @@ class Walk:
         Of place (3) m; of the camera's own rotation (3) rad. Each is summed.
     wander, shift : Waves
         Of the aim (3) m; of the principal point (2) px.
+    breath, rows : Waves
+        Of the focal length (1), as a share; of the stabiliser's rows (4) px, in the order of
+        `row_warp.shifts`.
     """
 
     duration_s: float
@@ -91,6 +103,8 @@ class Walk:
     wander: Waves
     shake: tuple[Waves, ...]
     shift: Waves
+    breath: Waves = field(default_factory=lambda: _still(1))
+    rows: Waves = field(default_factory=lambda: _still(4))
 
     def pose(self, time_s: float) -> NDArray:
         """Return cam_from_world (3, 4) at a time, metres."""
@@ -122,9 +136,18 @@ class Walk:
         """Return the principal point (2,) px at a time."""
         return self.K[:2, 2] + self.shift.at(time_s)
 
+    def focal_scale(self, time_s: float) -> float:
+        """Return the focal length at a time over that of `K`."""
+        return float(1 + self.breath.at(time_s)[0])
+
+    def row_warp_px(self, time_s: float) -> NDArray | None:
+        """Return how the stabiliser bends the rows at a time, (2, 2) px; None: not at all."""
+        return self.rows.at(time_s).reshape(2, 2) if self.rows.amplitude.any() else None
+
     def camera(self, time_s: float) -> Camera:
-        """Return the camera, named "walk", at a time."""
+        """Return the camera, named "walk", at a time, before the stabiliser bends its rows."""
         matrix = self.K.copy()
+        matrix[[0, 1], [0, 1]] *= self.focal_scale(time_s)
         matrix[:2, 2] = self.principal_point_px(time_s)
         return Camera("walk", self.size, matrix, self.dist, self.pose(time_s))
 
@@ -195,6 +218,24 @@ def plan(
         wander=slow[1],
         shake=(shake.scaled(vigour * damping), tremor.scaled(damping)),
         shift=shift.scaled(shift_px),
+    )
+
+
+def worsened(
+    walked: Walk,
+    rng: np.random.Generator,
+    *,
+    lens: float = 0.0,
+    breathing: float = 0.0,
+    stabiliser: float = 0.0,
+) -> Walk:
+    """Return a walk whose camera is wrong by these strengths; see `worlds.World`."""
+    breath, rows = _waves((SHIFT,), rng, period=True), _waves((ROWS,) * 4, rng, period=True)
+    return replace(
+        walked,
+        dist=lens_errors.added(walked.dist, lens, rng),
+        breath=breath.scaled(breathing * BREATH),
+        rows=rows.scaled(stabiliser * row_warp.WARP_PX * walked.size[0] / 1280),
     )
 
 

@@ -4,7 +4,8 @@ All of it is textured parallelograms; where the court's lines and posts really a
 truth.
 
 - hall: `build`, `room`, `Scene`
-- painted_lines: `paint_court`, `PaintedCourt`, `Net`
+- look: `draw`, `Look` (size, colours and patterns of a hall)
+- painted_lines: `paint_court`, `misplacement`, `PaintedCourt`, `Net`
 - furniture: `gear`, `posters`, `stands`, `stage`, `ceiling`, `net`, `crate`
 - bystanders: `plan`, `quads`, `Person`
 - textures: `planks`, `wall`, `window`, `poster`, `crate`, `cloth`, `paint`, `scale_contrast`

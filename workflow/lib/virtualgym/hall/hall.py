@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from virtualgym.hall import furniture, painted_lines, textures
+from virtualgym.hall.look import USUAL, Look
 from virtualgym.hall.quads import Quad
 from virtualgym.presets import Preset
 
@@ -56,6 +57,8 @@ def build(
     seed: int | np.random.SeedSequence,
     *,
     floor_texel_m: float = FLOOR_TEXEL_M,
+    look: Look = USUAL,
+    off_m: tuple[NDArray, NDArray] | None = None,
 ) -> Scene:
     """Build a hall.
 
@@ -65,20 +68,24 @@ def build(
         The same seed gives the same hall, bit by bit.
     floor_texel_m : float
         A coarser floor is built faster.
+    look : Look
+        Size, colours and patterns.
+    off_m : tuple or None
+        How far lines and posts stand off the court's file, from `painted_lines.misplacement`.
 
     Returns
     -------
     scene : Scene
-        The hall is a square about the court's centre, large enough for cameras that see the whole
-        court.
+        The usual hall is a square about the court's centre, large enough for cameras that see the
+        whole court.
     """
     root = seed if isinstance(seed, np.random.SeedSequence) else np.random.SeedSequence(seed)
     state = np.random.SeedSequence(root.entropy, spawn_key=root.spawn_key)  # spawn leaves a trace
     paint, floor, shell, things = (np.random.default_rng(child) for child in state.spawn(4))
-    painted = painted_lines.paint_court(court, preset, paint)
-    room_m = room(court)
-    quads = [_floor(court, painted, room_m, preset, floor_texel_m, floor)]
-    quads += _walls(room_m, preset, shell)
+    painted = painted_lines.paint_court(court, preset, paint, off_m)
+    room_m = room(court, look)
+    quads = [_floor(court, painted, room_m, preset, floor_texel_m, floor, look)]
+    quads += _walls(room_m, preset, shell, look)
     quads += furniture.ceiling(room_m, preset, shell)
     for make in (furniture.posters, furniture.stands, furniture.stage):
         quads += make(room_m, preset, things)
@@ -88,12 +95,12 @@ def build(
     return Scene(quads, room_m, preset.gloss, painted.net, painted.court_xyz, painted.lines_m)
 
 
-def room(court: Court) -> NDArray:
+def room(court: Court, look: Look = USUAL) -> NDArray:
     """Return the lowest and the highest corner of a court's hall, (2, 3) m."""
     short, long = sorted(court.size_m)
-    half = max(NEAREST_M, short / 2 + long) + BEHIND_CAMERAS_M
+    half = (max(NEAREST_M, short / 2 + long) + BEHIND_CAMERAS_M) * np.array(look.room[:2])
     centre = court.size_m / 2
-    return np.array([[*(centre - half), 0.0], [*(centre + half), HEIGHT_M]])
+    return np.array([[*(centre - half), 0.0], [*(centre + half), HEIGHT_M * look.room[2]]])
 
 
 def _floor(
@@ -103,27 +110,23 @@ def _floor(
     preset: Preset,
     texel_m: float,
     rng: np.random.Generator,
+    look: Look,
 ) -> Quad:
     low, high = room_m[:, :2]
-    texture = textures.planks(high - low, texel_m, preset.contrast, preset.n_scuffs, rng)
+    texture = textures.planks(high - low, texel_m, preset.contrast, preset.n_scuffs, rng, look)
+    base = np.array(textures.FLOOR_BGR) + look.floor
     per_m = np.array(texture.shape[1::-1]) / (high - low)
     for lines_m, colour in _other_lines(court):
         # As weak as the other textures: at full contrast these lines would be the plain hall's best
         # features.
-        own = (
-            np.array(textures.FLOOR_BGR) * (1 - preset.contrast)
-            + np.array(colour) * preset.contrast
-        )
+        own = base * (1 - preset.contrast) + np.array(colour) * preset.contrast
         for line in lines_m:
             textures.paint(
                 texture, (line.reshape(2, 2) - low).ravel() * np.tile(per_m, 2), own, cover=COVER
             )
     centre = tuple(np.rint((court.size_m / 2 - low) * per_m * 16).astype(int).tolist())
     radius = round(1.8 * per_m[0] * 16)
-    mixed = (
-        np.array(textures.FLOOR_BGR) * (1 - preset.contrast)
-        + np.array(OTHER_BGR[2]) * preset.contrast
-    )
+    mixed = base * (1 - preset.contrast) + np.array(OTHER_BGR[2]) * preset.contrast
     cv2.circle(
         texture, centre, radius, mixed.tolist(), round(0.05 * per_m[0]), cv2.LINE_AA, shift=4
     )
@@ -159,7 +162,7 @@ def _outline(low: NDArray, high: NDArray, width: float) -> NDArray:
     )
 
 
-def _walls(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[Quad]:
+def _walls(room_m: NDArray, preset: Preset, rng: np.random.Generator, look: Look) -> list[Quad]:
     """Return four walls and the ceiling."""
     low, high = room_m
     wide, deep, tall = high - low
@@ -172,7 +175,7 @@ def _walls(room_m: NDArray, preset: Preset, rng: np.random.Generator) -> list[Qu
     made = []
     for light, (corner, along, length) in zip((0.9, 1.0, 0.86, 0.95), corners, strict=True):
         texture = textures.wall(
-            (length, tall), WALL_TEXEL_M, preset.contrast, preset.same_windows, rng
+            (length, tall), WALL_TEXEL_M, preset.contrast, preset.same_windows, rng, look
         )
         u = np.array([*along, 0.0]) * length
         made.append(Quad(np.array([*corner, tall]), u, np.array([0, 0, -tall]), texture, light))

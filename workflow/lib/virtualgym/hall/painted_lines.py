@@ -57,15 +57,45 @@ class PaintedCourt:
     net: Net | None
 
 
-def paint_court(court: Court, preset: Preset, rng: np.random.Generator) -> PaintedCourt:
+# ASSUME: how far lines stand off a court's file where nobody measured them, m; rules of badminton
+# state no tolerance, and halls are painted with a tape measure.
+OFF_M = 0.003, 0.010
+N_POSTS = 2
+
+
+def misplacement(
+    court: Court, strength: float, rng: np.random.Generator
+) -> tuple[NDArray, NDArray] | None:
+    """Draw how far lines (L,) and posts (2, 2) stand off the court's file, m; None at strength 0.
+
+    At strength 1 each line, across its width, and each post, along x and y, is off by 3 to 10 mm.
+    """
+    if not strength:
+        return None
+
+    def drawn(*shape: int) -> NDArray:
+        return strength * rng.uniform(*OFF_M, shape) * rng.choice([-1.0, 1.0], shape)
+
+    return drawn(len(court.lines_m)), drawn(N_POSTS, 2)
+
+
+def paint_court(
+    court: Court,
+    preset: Preset,
+    rng: np.random.Generator,
+    off_m: tuple[NDArray, NDArray] | None = None,
+) -> PaintedCourt:
     """Paint a court and put up its net, each line and post with an error of its own.
 
-    Each line is displaced across its width; lines that end at it follow it.
+    Each line is displaced across its width; lines that end at it follow it. `off_m` is from
+    `misplacement`.
     """
     low = np.minimum(court.lines_m[:, :2], court.lines_m[:, 2:])
     high = np.maximum(court.lines_m[:, :2], court.lines_m[:, 2:])
     across = np.argmin(high - low, axis=1)
     error = rng.normal(0, preset.line_sigma_m, len(low))
+    lines_off_m, posts_off_m = (0.0, 0.0) if off_m is None else off_m
+    error += lines_off_m
     ends = np.stack([low, high], axis=1)  # line, end, axis
     moved = ends.copy()
     for line in range(len(low)):
@@ -82,7 +112,7 @@ def paint_court(court: Court, preset: Preset, rng: np.random.Generator) -> Paint
             xyz[point, axis] += _shift(low, high, across, error, court.xyz[point, :2], axis)
     net = None
     if court.net is not None:
-        net = _net(court.net, preset, rng)
+        net = _net(court.net, preset, rng, posts_off_m)
         _move_posts(court.net, court.xyz, net, xyz)
     return PaintedCourt(moved.reshape(-1, 4), xyz, net)
 
@@ -112,9 +142,11 @@ def _shift(
     return error[nearest] if away[nearest] < ON_EDGE_M else 0.0
 
 
-def _net(table: dict, preset: Preset, rng: np.random.Generator) -> Net:
+def _net(
+    table: dict, preset: Preset, rng: np.random.Generator, off_m: NDArray | float = 0.0
+) -> Net:
     feet = np.array([[x, table["y_m"], 0.0] for x in table["x_m"]])
-    feet[:, :2] += rng.normal(0, preset.post_foot_sigma_m, (2, 2))
+    feet[:, :2] += rng.normal(0, preset.post_foot_sigma_m, (2, 2)) + off_m
     upright = np.array([0, 0, table["post_height_m"]])
     tips = feet + upright + rng.normal(0, preset.post_tip_sigma_m, (2, 3))
     return Net(feet, tips, table["post_height_m"] - table["mid_height_m"])

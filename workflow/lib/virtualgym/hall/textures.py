@@ -6,6 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from virtualgym.hall.look import USUAL, Look
+
 # ASSUME: sizes and colours chosen to look like a sports hall; they change pictures only.
 FLOOR_BGR = (98, 146, 188)
 PLANK_M = 0.075
@@ -92,6 +94,7 @@ def planks(
     contrast: float,
     n_scuffs: int,
     rng: np.random.Generator,
+    look: Look = USUAL,
 ) -> NDArray:
     """Return a wooden floor, (h, w, 3) uint8.
 
@@ -103,7 +106,8 @@ def planks(
         Number of dark scuff marks.
     """
     width, height = (round(length / texel_m) for length in size_m)
-    plank = (np.arange(width) * texel_m / PLANK_M).astype(np.intp)
+    base = FLOOR_BGR + np.array(look.floor)
+    plank = (np.arange(width) * texel_m / (PLANK_M * look.plank)).astype(np.intp)
     tone = _plank_tones(plank[-1] + 1, height, texel_m, rng).T.take(plank, axis=1)
     gap = np.flatnonzero(np.diff(plank)) + 1
     tone[:, gap] -= 9
@@ -112,13 +116,13 @@ def planks(
     stains = multiscale_noise((height // 8 + 1, width // 8 + 1), (5, 11, 23, 47, 95, 190), rng) * 22
     _add(tone, stains)
     step = np.arange(-128, 128)[:, None] * contrast * np.array([0.8, 0.95, 1.0])
-    palette = to_bytes(FLOOR_BGR + step)
+    palette = to_bytes(base + step)
     level = np.bitwise_xor(tone.view(np.uint8), 0x80)  # from 0 for the darkest
     texture = cv2.LUT(cv2.merge([level] * 3), palette[np.newaxis])
     for _ in range(n_scuffs):
         start = rng.uniform(0, (width, height))
         end = start + rng.normal(0, 0.15 / texel_m, 2)
-        shade = np.array(FLOOR_BGR) * (1 - contrast * rng.uniform(0.3, 0.7))
+        shade = base * (1 - contrast * rng.uniform(0.3, 0.7))
         first, last = (tuple(map(int, point)) for point in (start, end))
         thickness = int(rng.integers(1, 4))
         cv2.line(texture, first, last, shade.tolist(), thickness, cv2.LINE_AA)
@@ -153,6 +157,7 @@ def wall(
     contrast: float,
     same_windows: bool,
     rng: np.random.Generator,
+    look: Look = USUAL,
 ) -> NDArray:
     """Return a wall (h, w, 3) uint8: wooden panels below, paint above, a row of windows.
 
@@ -164,13 +169,19 @@ def wall(
         Whether all windows look alike and all gaps are equal.
     """
     width, height = (round(length / texel_m) for length in size_m)
-    texture = WALL_BGR + (multiscale_noise((height, width), (6, 17, 41, 97), rng) * 26)[..., None]
+    texture = (
+        WALL_BGR
+        + np.array(look.wall)
+        + (multiscale_noise((height, width), (6, 17, 41, 97), rng) * 26)[..., None]
+    )
     panel_px = round(PANEL_TOP_M / texel_m)
-    texture[-panel_px:] = _panels((panel_px, width), PANEL_WIDTH_M / texel_m, rng)
+    panel_width_px = PANEL_WIDTH_M * look.panels / texel_m
+    texture[-panel_px:] = _panels((panel_px, width), panel_width_px, rng) + look.panel
     course = max(3, round(0.5 / texel_m))
     texture[: height - panel_px : course] -= 14
     texture = scale_contrast(to_bytes(texture), contrast)
     first = window((WINDOW_M[0], WINDOW_M[1]), texel_m, rng)
+    spacing_m = max(WINDOW_SPACING_M * look.windows, 1.05 * WINDOW_M[0])
     x_m = WINDOW_SPACING_M / 2
     while x_m + WINDOW_M[0] < size_m[0]:
         pane = first if same_windows else window(WINDOW_M, texel_m, rng)
@@ -180,7 +191,7 @@ def wall(
             texture[top : top + pane.shape[0], left : left + pane.shape[1]] = scale_contrast(
                 pane, contrast
             )
-        x_m += WINDOW_SPACING_M * (1 if same_windows else rng.uniform(0.75, 1.25))
+        x_m += spacing_m * (1 if same_windows else rng.uniform(0.75, 1.25))
     return texture
 
 

@@ -9,5 +9,6 @@
 - shading: `Exposure`, `cross`
 - textured_quads: `Surfaces`, `View`, `shade`, `Atlas`, `pack`
 - rays: `grid`, `of_camera`, `Rays`
+- lamps: `light`, `Light`, `lit`, `readout` (flicker, exposure, readout times)
 - sensor: `develop`, `line_kernel`
 """

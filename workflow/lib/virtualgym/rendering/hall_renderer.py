@@ -31,6 +31,8 @@ class Renderer:
         extra: list[Quad] | None = None,
         noise: float = 0.0,
         rng: np.random.Generator | None = None,
+        row_warp_px: NDArray | None = None,
+        light: NDArray | None = None,
     ) -> NDArray:
         """Render a picture.
 
@@ -52,19 +54,25 @@ class Renderer:
             Standard deviation of the sensor's noise, 8-bit levels.
         rng : numpy.random.Generator or None
             For the noise.
+        row_warp_px : (2, 2) float or None
+            How a stabiliser bends the rows, by `row_warp.shifts`.
+        light : (H,) float or None
+            Factor on the light of each row.
 
         Returns
         -------
         picture : (H, W, 3) uint8
             BGR; the first pixel's centre is at (0, 0).
         """
-        xy = self._grid(camera)
+        xy = self._grid(camera, row_warp_px)
         seen = rays.of_camera(camera, xy, twist, readout_s)
         parts = [self.surfaces]
         if extra:
             self._extra = textured_quads.Surfaces(extra, earlier=self._extra)
             parts.append(self._extra)
         picture = shading.Exposure(self.scene, parts, seen).picture()
+        if light is not None:
+            picture *= np.asarray(light, np.float32)[:, None, None]
         return sensor.develop(
             picture,
             xy,
@@ -73,12 +81,13 @@ class Renderer:
             rng=rng,
         )
 
-    def _grid(self, camera: Camera) -> NDArray:
-        key = (camera.name, camera.size, camera.K.tobytes(), camera.dist.tobytes())
+    def _grid(self, camera: Camera, row_warp_px: NDArray | None) -> NDArray:
+        warp = b"" if row_warp_px is None else row_warp_px.tobytes()
+        key = (camera.name, camera.size, camera.K.tobytes(), camera.dist.tobytes(), warp)
         if key not in self._grids:
             while len(self._grids) >= GRIDS:
                 self._grids.pop(next(iter(self._grids)))
-            self._grids[key] = rays.grid(camera)
+            self._grids[key] = rays.grid(camera, row_warp_px)
         return self._grids[key]
 
     def _motion_px(

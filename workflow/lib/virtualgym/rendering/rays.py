@@ -11,12 +11,15 @@ from scipy.spatial.transform import Rotation
 from courtside.geometry import camera as cameras
 from courtside.geometry import rotations as transforms
 from courtside.geometry.camera import Camera
+from virtualgym.cameras import row_warp
 
 NODES = 28  # per axis: the lens is smooth, so this interpolation is exact to 1e-9 px
 
 
-def grid(camera: Camera) -> NDArray:
+def grid(camera: Camera, row_warp_px: NDArray | None = None) -> NDArray:
     """Return the point (2, H, W) float32 on the z = 1 plane that each pixel's centre sees.
+
+    A stabiliser may have moved the picture's rows, by `row_warp.shifts`.
 
     Raises
     ------
@@ -30,6 +33,8 @@ def grid(camera: Camera) -> NDArray:
     nodes = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
     places = [(nodes + 1) / 2 * length - 0.5 for length in camera.size]
     xy = np.stack(np.meshgrid(*places), axis=-1)
+    if row_warp_px is not None:
+        xy += np.moveaxis(row_warp.shifts(row_warp_px, xy[..., 1], camera.size[1]), 0, -1)
     seen = cameras.undistort(camera, xy)
     if not np.isfinite(seen).all():
         raise ValueError(

@@ -1,8 +1,9 @@
 """Film a virtual session: videos of the fixed cameras and of a walk, clicks, and the truth."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -14,11 +15,11 @@ from courtside.records.cameras import clicks as click_records
 from courtside.records.truth import session_truth
 from courtside.study.execution import log
 from courtside.video import writer
-from virtualgym import presets
-from virtualgym.cameras import layouts, walk_path
+from virtualgym import presets, worlds
+from virtualgym.cameras import layouts, lens_errors, walk_path
 from virtualgym.devices import chessboard
-from virtualgym.hall import bystanders, hall
-from virtualgym.rendering import background
+from virtualgym.hall import bystanders, hall, look, painted_lines
+from virtualgym.rendering import background, lamps
 from virtualgym.rendering.hall_renderer import Renderer
 from virtualgym.session import clicks, parallel
 
@@ -28,6 +29,8 @@ TREMBLE_PX = 0.03  # ASSUME: tremor of a tripod, standard deviation per axis, px
 # Independent streams of random numbers, so that a change of one part does not affect the others.
 HALL, LENSES, STATIC, CLICKS, BOARDS = range(5)  # of the scene's seed
 PATH, PEOPLE, GRAIN = range(5, 8)  # of the walk's seed
+SHUTTER, FLICKER, WORSE = range(8, 11)  # of both: how wrong the world is
+LENS, LOOK, COURT = range(3)  # of WORSE and the scene's seed
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,8 @@ class Settings:
         Whether each fixed camera also takes pictures of a chessboard.
     people : int or None
         Number of bystanders during the walk; None: the preset's.
+    world : World or dict of str to float
+        How wrong the world is.
     """
 
     preset: str
@@ -78,8 +83,10 @@ class Settings:
     zoom: float = 1.0
     boards: bool = False
     people: int | None = None
+    world: worlds.World | Mapping[str, float] = field(default_factory=worlds.World)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "world", worlds.build(self.world))
         object.__setattr__(self, "size_px", tuple(self.size_px))
         if self.preset not in presets.PRESETS:
             expected = sorted(presets.PRESETS)
@@ -87,6 +94,21 @@ class Settings:
         if self.walk_frames == 1 or self.walk_frames < 0 or self.static_frames < 1:
             found = f"{self.walk_frames} and {self.static_frames}"
             raise ValueError(f"expected walk_frames 0 or >= 2, static_frames >= 1, found {found}")
+
+    def strength(self, effect: str) -> float:
+        """Return how strong an effect of the world is."""
+        return float(getattr(self.world, effect))
+
+    def readout_s(self, at: int | None) -> float:
+        """Return the readout time of fixed camera `at`, or of the walked one."""
+        usual_s, strength = presets.PRESETS[self.preset].readout_s, self.strength("shutter")
+        seed, key = (self.walk_seed, ()) if at is None else (self.seed, (at,))
+        return lamps.readout(usual_s, strength, parallel.generator(seed, SHUTTER, *key))
+
+    def light(self, at: int | None) -> lamps.Light | None:
+        """Return the light of the pictures of fixed camera `at`, or of the walked one."""
+        seed, key = (self.walk_seed, ()) if at is None else (self.seed, (at,))
+        return lamps.light(self.strength("flicker"), parallel.generator(seed, FLICKER, *key))
 
 
 class Studio:
@@ -97,9 +119,8 @@ class Studio:
         self.fixed, self.walk = plan(settings, court)
         count = self.preset.n_people if settings.people is None else settings.people
         self.people = bystanders.plan(count, court, parallel.generator(settings.walk_seed, PEOPLE))
-        self._renderer = Renderer(
-            hall.build(self.preset, court, parallel.stream(settings.seed, HALL))
-        )
+        self._renderer = Renderer(build_hall(settings, court))
+        self._readout_s, self._light = settings.readout_s(None), settings.light(None)
 
     def court_xyz(self) -> NDArray:
         """Return the true places of the court's points, (P, 3) m."""
@@ -113,15 +134,32 @@ class Studio:
         """Return frame `index` of the walk."""
         settings, preset = self.settings, self.preset
         time_s = self.walk.grid(settings.walk_frames)[index]
+        shutter = self._readout_s, preset.exposure_s
+        lit = None if self._light is None else self._light.rows(time_s, self.walk.size[1], *shutter)
         return self._renderer.render(
             self.walk.camera(time_s),
             twist=self.walk.twist(time_s),
-            readout_s=preset.readout_s,
-            exposure_s=preset.exposure_s,
+            readout_s=shutter[0],
+            exposure_s=shutter[1],
             extra=bystanders.quads(self.people, time_s),
             noise=preset.noise_sigma,
             rng=parallel.generator(settings.walk_seed, GRAIN, index),
+            row_warp_px=self.walk.row_warp_px(time_s),
+            light=lit,
         )
+
+
+def build_hall(settings: Settings, court: Court) -> hall.Scene:
+    """Build the hall of a session."""
+    more: dict[str, Any] = {}
+    if settings.strength("hall"):
+        rng = parallel.generator(settings.seed, WORSE, LOOK)
+        more["look"] = look.draw(settings.strength("hall"), rng)
+    if settings.strength("court"):
+        rng = parallel.generator(settings.seed, WORSE, COURT)
+        more["off_m"] = painted_lines.misplacement(court, settings.strength("court"), rng)
+    seed = parallel.stream(settings.seed, HALL)
+    return hall.build(presets.PRESETS[settings.preset], court, seed, **more)
 
 
 def plan(settings: Settings, court: Court) -> tuple[list[Camera], walk_path.Walk]:
@@ -136,6 +174,10 @@ def plan(settings: Settings, court: Court) -> tuple[list[Camera], walk_path.Walk
         baseline_deg=settings.baseline_deg,
         zoom=settings.zoom,
     )
+    lens = settings.strength("lens")
+    for at, camera in enumerate(fixed):
+        rng = parallel.generator(settings.seed, WORSE, LENS, at)
+        fixed[at] = replace(camera, dist=lens_errors.added(camera.dist, lens, rng))
     walked = walk_path.plan(
         fixed,
         court,
@@ -144,6 +186,13 @@ def plan(settings: Settings, court: Court) -> tuple[list[Camera], walk_path.Walk
         parallel.generator(settings.walk_seed, PATH),
         speed_kmh=settings.speed_kmh,
         stabiliser=settings.stabiliser,
+    )
+    walked = walk_path.worsened(
+        walked,
+        parallel.generator(settings.walk_seed, WORSE),
+        lens=lens,
+        breathing=settings.strength("breathing"),
+        stabiliser=settings.strength("stabiliser") if settings.stabiliser else 0.0,
     )
     return fixed, walked
 
@@ -196,8 +245,10 @@ def simulate(
         rng=parallel.generator(settings.seed, CLICKS),
     )
     click_records.write(folder / "court_points.csv", marked, court.points)
-    walks = {WALK: _true_walk(walked, settings.walk_frames)} if settings.walk_frames else {}
-    session_truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz)
+    walks = {WALK: _true_walk(settings, walked)} if settings.walk_frames else {}
+    own = [settings.readout_s(at) for at in range(len(fixed))]
+    readout_s = own if settings.strength("shutter") else None
+    session_truth.write(folder / "truth.npz", fixed, walks, court.points, court_xyz, readout_s)
 
 
 def backdrops(
@@ -249,8 +300,17 @@ def _film_fixed(
     """Write the recording of a fixed camera, and its pictures of a chessboard."""
     preset = presets.PRESETS[settings.preset]
     rng = parallel.generator(settings.seed, STATIC, at)
-    count = range(settings.static_frames)
-    frames = (_trembled(picture, preset.noise_sigma, rng) for _ in count)
+    light, shutter = settings.light(at), (settings.readout_s(at), preset.exposure_s)
+    frames = (
+        _trembled(
+            picture
+            if light is None
+            else lamps.lit(picture, light.rows(number / STATIC_HZ, len(picture), *shutter)),
+            preset.noise_sigma,
+            rng,
+        )
+        for number in range(settings.static_frames)
+    )
     writer.write_video(folder / f"{camera.name}.mp4", frames, STATIC_HZ, crf=preset.crf)
     if settings.boards:
         rng = parallel.generator(settings.seed, BOARDS, at)
@@ -280,12 +340,17 @@ def _trembled(picture: NDArray, noise: float, rng: np.random.Generator) -> NDArr
     return np.clip(np.rint(moved), 0, 255).astype(np.uint8)
 
 
-def _true_walk(walked: walk_path.Walk, n_frames: int) -> session_truth.Walk:
-    time_s = walked.grid(n_frames)
+def _true_walk(settings: Settings, walked: walk_path.Walk) -> session_truth.Walk:
+    time_s = walked.grid(settings.walk_frames)
+    focal_scale = np.array([walked.focal_scale(time) for time in time_s])
+    rows = [walked.row_warp_px(time) for time in time_s]
     return session_truth.Walk(
         time_s=time_s,
         K=walked.K,
         dist=walked.dist,
         cam_from_world=np.array([walked.pose(time) for time in time_s]),
         principal_point_px=np.array([walked.principal_point_px(time) for time in time_s]),
+        focal_scale=focal_scale if settings.strength("breathing") else None,
+        row_warp_px=None if rows[0] is None else np.array(rows),
+        readout_s=settings.readout_s(None) if settings.strength("shutter") else None,
     )

@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +18,13 @@ from virtualgym import presets
 from virtualgym.body import athlete, shapes, skinned_body
 from virtualgym.cameras import camera_shake, layouts
 from virtualgym.movement import catalogue
-from virtualgym.rendering import player_renderer
+from virtualgym.rendering import lamps, player_renderer
 from virtualgym.rendering.background import Backdrop
 from virtualgym.session import clicks, parallel, session, take_devices
 
 PLAYER = {"body", "hand", "options"}
 CLOCK = {"offset_s", "drift_ppm"}
+LATE_S = 60.0  # greatest offset between two clocks, as the schema of sessions has it
 SHAKE = {part.name for part in fields(camera_shake.Shake)}
 # Independent streams of random numbers, of the take's seed.
 MOTION, GRAIN, SHAKING, CLICKS = range(4)
@@ -64,6 +65,8 @@ class TakeSettings:
     devices : dict of str to dict
         For each device its `kind`, `rgbd` or `inertial`, and parameters of
         `depth_camera.DepthCamera` or `inertial_suit.InertialSuit`.
+    creep : float
+        Strength of the tripods' creep, the session's `world.drift`.
     """
 
     motion: str
@@ -77,6 +80,7 @@ class TakeSettings:
     cameras: Sequence[str] | None = None
     start_s: float = 0.0
     devices: dict[str, dict] = field(default_factory=dict)
+    creep: float = 0.0
 
     def __post_init__(self) -> None:
         _known("motion", [self.motion], catalogue.MOTIONS)
@@ -134,10 +138,11 @@ class TakeSettings:
 
     def shaking(self, camera: Camera, at: int) -> camera_shake.Shaking | None:
         """Return the shake of a camera, the `at`-th of its layout; None if it is still."""
-        if camera.name not in self.shake:
+        if camera.name not in self.shake and not self.creep:
             return None
-        shake = camera_shake.Shake(**self.shake[camera.name])
-        return camera_shake.Shaking(shake, camera, parallel.generator(self.seed, SHAKING, at))
+        shake = camera_shake.Shake(**self.shake.get(camera.name, {}))
+        rng = parallel.generator(self.seed, SHAKING, at)
+        return camera_shake.Shaking(shake, camera, rng, self.creep)
 
 
 class FilmSet:
@@ -146,18 +151,20 @@ class FilmSet:
     def __init__(
         self,
         take: TakeSettings,
-        preset: presets.Preset,
+        settings: session.Settings,
         court: Court,
         body_folder: str | Path,
         backdrops: dict[int, Backdrop],
     ) -> None:
-        self.take, self.preset, self.backdrops = take, preset, backdrops
+        self.take, self.settings, self.backdrops = take, settings, backdrops
         self.athletes = perform(take, court, body_folder)
 
     def film(self, at: int, path: Path) -> str:
         """Write the video of a camera, and return its name."""
-        take, preset, backdrop = self.take, self.preset, self.backdrops[at]
+        take, backdrop = self.take, self.backdrops[at]
+        preset, light = _preset(self.settings, at), self.settings.light(at)
         film = player_renderer.Film(backdrop, preset.readout_s, preset.exposure_s)
+        shutter = film.camera.size[1], preset.readout_s, preset.exposure_s
         field_rng = parallel.generator(take.seed, GRAIN, at, FIELD)
         grain = player_renderer.Grain(film.camera.size, preset.noise_sigma, field_rng)
         shaken = take.shaking(film.camera, at)
@@ -167,6 +174,8 @@ class FilmSet:
             for index, time_s in enumerate(take.frame_times(film.camera.name)):
                 turn = None if shaken is None else shaken.still_from_shaken(time_s)
                 picture = film.picture(players, take.start_s + time_s, turn)
+                if light is not None:
+                    picture = lamps.lit(picture, light.rows(time_s, *shutter))
                 yield grain.added(picture, parallel.generator(take.seed, GRAIN, at, FRAMES, index))
 
         what = f"{film.camera.name}: frames"
@@ -239,24 +248,26 @@ def simulate_take(
     InputError
         If the files of the body or of the hall are damaged, or a file cannot be written.
     """
-    folder, preset = Path(folder), presets.PRESETS[settings.preset]
+    folder, take = Path(folder), replace(take, creep=settings.strength("drift"))
     chosen = take.filming(settings.layout)
     cameras = {at: session.plan(settings, court)[0][at] for at in chosen}
     shaken = {at: take.shaking(camera, at) for at, camera in cameras.items()}
-    margins = {at: each.reach_px() if each else 0 for at, each in shaken.items()}
+    margins = {
+        at: each.reach_px(take.seconds + LATE_S) if each else 0 for at, each in shaken.items()
+    }
     films = [(at, folder / f"{camera.name}.mp4") for at, camera in cameras.items()]
     workers = min(threads, len(chosen))
     if films:
         backdrops = session.backdrops(
             settings, court, margins, kept_npz=backdrops_npz, threads=workers
         )
-        film_set = take, preset, court, body_folder, backdrops
+        film_set = take, settings, court, body_folder, backdrops
         with parallel.workers(FilmSet, film_set, workers) as call:
             for name in call("film", films):
                 log.logger.info("%s: filmed", name)
     athletes = perform(take, court, body_folder)
     recorded = take_devices.record(take, settings, court, athletes, folder, threads=threads)
-    clicks.write(folder / "racket.csv", folder.name, _clicked(take, preset, cameras, athletes))
+    clicks.write(folder / "racket.csv", folder.name, _clicked(take, settings, cameras, athletes))
     truth = take_devices.of_take(take, cameras, athletes, recorded.truth)
     take_truth.write(folder / "truth.npz", truth)
     return recorded.inertial
@@ -264,7 +275,7 @@ def simulate_take(
 
 def _clicked(
     take: TakeSettings,
-    preset: presets.Preset,
+    settings: session.Settings,
     cameras: Mapping[int, Camera],
     athletes: Mapping[str, athlete.Athlete],
 ) -> Iterator[tuple[str, int, str, NDArray]]:
@@ -276,8 +287,13 @@ def _clicked(
         shaken, times_s = take.shaking(camera, at), take.frame_times(camera.name)
         seen = [camera if shaken is None else shaken.camera_at(time_s) for time_s in times_s]
         yield from clicks.of_camera(
-            list(athletes.values()), seen, times_s + take.start_s, preset, rng
+            list(athletes.values()), seen, times_s + take.start_s, _preset(settings, at), rng
         )
+
+
+def _preset(settings: session.Settings, at: int) -> presets.Preset:
+    """Return the preset with the readout time of fixed camera `at`."""
+    return replace(presets.PRESETS[settings.preset], readout_s=settings.readout_s(at))
 
 
 def _known(what: str, names: Iterable, known: Collection) -> None:

@@ -13,11 +13,9 @@ from courtside.geometry.camera import Camera
 from courtside.records.devices.hierarchy import PosedHierarchy
 from courtside.records.truth import take_truth
 from courtside.study.execution import log
-from virtualgym import presets
 from virtualgym.body import skinned_body
 from virtualgym.body.athlete import Athlete
 from virtualgym.devices import depth_camera, inertial_suit, realsense_writer
-from virtualgym.hall import hall
 from virtualgym.rendering.hall_renderer import Renderer
 from virtualgym.session import parallel, session
 
@@ -74,8 +72,7 @@ class Stage:
         athletes: Mapping[str, Athlete],
     ) -> None:
         self._take = take
-        preset = presets.PRESETS[settings.preset]
-        scene = hall.build(preset, court, parallel.stream(settings.seed, session.HALL))
+        scene = session.build_hall(settings, court)
         renderer = Renderer(scene)
         self._recorders: dict[str, depth_camera.Recorder] = {}
         for at, (name, device) in enumerate(take.made_devices().items()):

@@ -1,5 +1,5 @@
-"""Figures of calibrations: court points, error map, coverage, conditions, growth, plan.
+"""Figures of calibrations: court points, error map, coverage, conditions, worlds, growth, plan.
 
-court_points, error_map, coverage, conditions, plan: `table`, `draw`
+court_points, error_map, coverage, conditions, worlds, plan: `table`, `draw`
 growth: `table`, `exponents`, `draw`: run times and their power laws
 """

@@ -97,7 +97,7 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
     which every combination is one session; `set` has keys of `virtual` that are the same for all;
     `override` has parameters of steps that differ.
     """
-    found, vary = {}, content["vary"]
+    found, vary, override = {}, content["vary"], content.get("override", {})
     for k, values in enumerate(product(*vary.values())):
         varied = dict(zip(vary, values, strict=True))
         own = f"{name}-{k}"
@@ -115,8 +115,9 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
             court_points=files["court_points"],
             virtual={**(base.virtual or {}), "boards": False, **content.get("set", {}), **varied},
             condition={"condition": name, **varied},
-            # Only their errors are wanted, not camera files.
-            parameters=_merged(base.parameters, content.get("override", {})) | {"calibrations": []},
+            # Only their errors are wanted, and camera files where the condition names some.
+            parameters=_merged(base.parameters, override)
+            | {"calibrations": override.get("calibrations", [])},
         )
     return found
 

@@ -1,6 +1,6 @@
 """Truth of virtual sessions and takes, what is compared with it, and the labels of errors."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import product
 from typing import Any
 
@@ -99,7 +99,9 @@ def _drawn_clicks(job: Job, labels: dict[str, str], keys: Iterable[str]) -> dict
     session, draws = job.session, job.step("evaluate_calibration")
     made = {key: job.virtual[key] for key in ("preset", "layout")}
     made["width_px"] = job.virtual["size_px"][0]
-    varied = {key: value for key, value in session.condition.items() if key != "size_px"}
+    varied = {k: v for k, v in session.condition.items() if k not in ("size_px", "world")}
+    if "world" in session.condition:
+        varied |= _world(session.condition["world"])
     return {
         "labels": {"session": session.name, **made, **varied, **labels},
         "clicks": {
@@ -111,6 +113,13 @@ def _drawn_clicks(job: Job, labels: dict[str, str], keys: Iterable[str]) -> dict
         "sets": draws["sets"],
         **job.some("adjust_network", keys),
     }
+
+
+def _world(strengths: Mapping[str, float]) -> dict[str, Any]:
+    """Return the effect that is varied, or `none` or `together`, and its strength."""
+    there = {effect: strength for effect, strength in strengths.items() if strength}
+    effect = "together" if len(there) > 1 else next(iter(there), "none")
+    return {"effect": effect, "strength": max(there.values(), default=0)}
 
 
 def lenses(job: Job) -> list[str]:

@@ -6,7 +6,12 @@ from courtside.study import paths
 from courtside.study.configuration.sessions import Study
 from courtside.study.jobs import takes
 from courtside.study.jobs.job import Job
-from courtside.study.targets.calibration import drawn_conditions, every_error, varied
+from courtside.study.targets.calibration import (
+    drawn_conditions,
+    every_error,
+    varied,
+    world_conditions,
+)
 from courtside.study.targets.together import fig05_layouts
 
 
@@ -33,6 +38,20 @@ def condition_axes(job: Job) -> dict[str, Any]:
         "group": keys[1] if len(keys) > 1 else None,
         "n_bridging": counts.pop() if len(counts) == 1 else None,
     }
+
+
+def world_errors(job: Job) -> list[str]:
+    """Return all tables of errors of the worlds of a condition."""
+    return every_error(varied(job.study, world_conditions(job.study)[job["condition"]]))
+
+
+def world_qualities(job: Job) -> list[str]:
+    """Return what the calibrations of the worlds of a condition say of themselves."""
+    return [
+        paths.CALIBRATION_QUALITY.format(session=session.name, calibration=way)
+        for session in varied(job.study, world_conditions(job.study)[job["condition"]])
+        for way in session.calibrations()
+    ]
 
 
 def timings(job: Job) -> list[str]:

@@ -1,10 +1,12 @@
 """What the study makes of calibrations: cameras, errors, figures of the calibration study."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable
 
 from courtside.study import paths
 from courtside.study.configuration.sessions import Session, Study
 from courtside.study.methods import Calibration, Variant
+
+SEEDS = ("seed", "walk_seed")
 
 
 def every_calibration(study: Study) -> list[str]:
@@ -60,7 +62,8 @@ def every_error(sessions: Iterable[Session]) -> list[str]:
 def every_study_figure(study: Study) -> list[str]:
     """Return the figures and tables of the calibration study."""
     courts = sorted({session.court for session in study.sessions.values() if session.court})
-    names = [*(f"court_points.{court}" for court in courts), *drawn_conditions(study)]
+    names = [f"court_points.{court}" for court in courts]
+    names += [*drawn_conditions(study), *world_conditions(study)]
     stems = paths.each(paths.STUDY_FIGURE, figure=names)
     for session in swept(study):
         names = ["badminton_fig08", "coverage", "growth"]
@@ -88,7 +91,7 @@ def swept(study: Study) -> list[Session]:
 
 def tabulated(study: Study) -> list[Session]:
     """Return the sessions of the calibration table: without conditions that have a figure."""
-    drawn = drawn_conditions(study).values()
+    drawn = [*drawn_conditions(study).values(), *world_conditions(study).values()]
     return [s for s in filmed_for_calibration(study) if s.condition.get("condition") not in drawn]
 
 
@@ -99,13 +102,19 @@ def varied(study: Study, condition: str) -> list[Session]:
 
 
 def drawn_conditions(study: Study) -> dict[str, str]:
-    """Return {figure: condition} of the conditions that vary more than seeds."""
+    """Return {figure: condition} of the conditions that vary how a session is filmed."""
+    return _conditions(study, lambda keys: "world" not in keys and not set(keys) <= set(SEEDS))
+
+
+def world_conditions(study: Study) -> dict[str, str]:
+    """Return {figure: condition} of the conditions that vary how wrong the world is."""
+    return _conditions(study, lambda keys: "world" in keys)
+
+
+def _conditions(study: Study, wanted: Callable[[Collection[str]], bool]) -> dict[str, str]:
     conditions = study.parameters["conditions"]
-    return {
-        name.replace("-", "_"): name
-        for name in study.parameters["variations"]
-        if not all(key.endswith("seed") for key in conditions[name]["vary"])
-    }
+    names = study.parameters["variations"]
+    return {name.replace("-", "_"): name for name in names if wanted(conditions[name]["vary"])}
 
 
 def racket_models(study: Study, session: Session) -> list[Variant]:

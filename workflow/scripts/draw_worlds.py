@@ -1,0 +1,23 @@
+"""Draw what a wrong world costs: evaluations of its sessions, quality -> figure, CSV."""
+
+import json
+from pathlib import Path
+
+from courtside.evaluation.tables import calibration
+from courtside.figures.calibration import worlds
+from courtside.figures.style import style
+from courtside.study.execution.script import run
+
+
+def main(errors_csv, quality_json, pdf, png, csv):
+    warnings = {}
+    for path in map(Path, quality_json):  # results/{session}/calibration/{calibration}/quality.json
+        said = json.loads(path.read_text(encoding="utf-8"))["warnings"]
+        warnings.setdefault(path.parts[-4], []).extend(said)
+    rows = calibration.read(errors_csv)
+    numbers = worlds.table(rows, {name: len(said) for name, said in warnings.items()})
+    style.save(worlds.draw(numbers), numbers, pdf, png, csv)
+
+
+if __name__ == "__main__":
+    run(main, snakemake)
