@@ -23,7 +23,7 @@ def rows():
         found = {SFM: [1.0 + at, 3.0 + at], THREE: [4.0], OUT: [99.0, 99.0]}
         parts.append(trials_made.structure(2 if effect == "court" else found, **settings))
         parts.append(trials_made.known({KNOWN: [5.0, None]}, **settings))
-    return calibration.tidy(pd.concat(parts)).assign(coverage90=80.0)
+    return calibration.tidy(pd.concat(parts)).assign(coverage90=0.8)
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +39,7 @@ def test_errors_are_of_clicks_that_are_all_used(numbers):
     assert at(numbers, "walk, 18 clicks", "none", 0)["median"] == 2.0
     assert at(numbers, "walk, 18 clicks", "lens", 2)["median"] == 4.0
     assert at(numbers, "walk, 3 clicks", "lens", 1)["median"] == 4.0
+    assert at(numbers, "walk, 3 clicks", "lens", 1)["coverage90"] == pytest.approx(80)
 
 
 def test_failures_and_warnings_are_counted(numbers):

@@ -46,7 +46,7 @@ def table(rows: pd.DataFrame, warnings: Mapping[str, int]) -> pd.DataFrame:
             continue
         found = calibration.summary(of, SETTING, "volume_rms_cm").assign(way=words)
         groups = of.groupby(SETTING, sort=True)
-        found["coverage90"] = groups["coverage90"].mean().to_numpy(dtype=float)
+        found["coverage90"] = 100 * groups["coverage90"].mean().to_numpy(dtype=float)
         sessions = groups["session"].unique()
         counts = [sum(warnings.get(name, 0) for name in names) for names in sessions]
         found["n_warnings"] = np.array(counts, float) if method == "sfm" else np.nan
