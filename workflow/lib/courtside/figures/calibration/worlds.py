@@ -19,6 +19,7 @@ SETTING = ["effect", "strength"]
 COLUMNS = ["way", *SETTING, "n", "p05", "median", "p95", "n_failed", "coverage90", "n_warnings"]
 NONE, TOGETHER = "none", "together"
 STATED = 90.0  # percent, of the ellipsoids
+TICKS_CM = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100)
 DODGE = 0.2  # of the distance between neighbouring effects
 MARKERS = "os^"
 
@@ -65,16 +66,21 @@ def draw(numbers: pd.DataFrame) -> Figure:
         part = numbers[numbers["way"] == way]
         _draw_way(above, below, part, effects, at, label=way)
     bars.plain_log(above)
+    low, high = above.get_ylim()
+    above.set_yticks([tick for tick in TICKS_CM if low <= tick <= high])
     above.set_ylabel("error over the volume,\nRMS (cm)")
     below.axhline(STATED, color="0.5", linewidth=0.8, linestyle="--")
-    below.set(ylabel="inside 90 % (%)", ylim=(0, 100), xlim=(-0.5, len(effects) - 0.5))
+    below.set(ylabel="inside 90 % (%)", ylim=(0, 105), xlim=(-0.5, len(effects) - 0.5))
     below.set_xticks(range(len(effects)), effects)
     for axis in (above, below):
         axis.grid(axis="y")
     handles, labels = above.get_legend_handles_labels()
     drawing.legend(handles, labels, loc="outside lower center", ncols=len(ways))
     total = numbers["n"] + numbers["n_failed"]
-    text = f"median and 5-95 % of {total.min()} to {total.max()} trials; left to right: 1, 2"
+    upto = f" to {total.max()}" if total.nunique() > 1 else ""
+    text = (
+        f"median and 5-95 % of {total.min()}{upto} trials; of two marks the right one is stronger"
+    )
     drawing.suptitle(text, fontsize=8)
     return drawing
 
