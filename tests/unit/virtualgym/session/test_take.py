@@ -169,6 +169,30 @@ def test_a_knocked_camera_shows_hall_and_player_as_its_true_pose_does(runner, tm
     assert np.abs(shown[1] - shown[0]).mean() < 0.5 * np.abs(shown[2] - shown[0]).mean()
 
 
+def black_centre(image, near):
+    rows, columns = np.indices(image.shape[:2])
+    black = (image.sum(axis=2) < 120) & (np.hypot(columns - near[0], rows - near[1]) < 35)
+    return np.array([columns[black].mean(), rows[black].mean()])
+
+
+def test_a_tripod_that_crept_shows_the_ball_as_its_true_pose_does(runner, tmp_path):
+    runner.velocity[:] = 0
+    take = replace(TAKE, clocks={}, shake={}, start_s=0.0, racket=False, cameras=["back"])
+    creeping = replace(LARGE, world={"drift": 2.0})
+    for name, settings in (("still", LARGE), ("crept", creeping)):
+        takes.simulate_take(settings, take, COURT, None, tmp_path / name)
+    still = session.plan(LARGE, COURT)[0][1]
+    pose = take_truth.read(tmp_path / "crept" / "truth.npz").shaken["back"][0]
+    ball = runner.centre(0.0)[None]
+    cameras = {"still": still, "crept": replace(still, cam_from_world=pose)}
+    true_px = {name: scene.opencv_projection(camera, ball)[0] for name, camera in cameras.items()}
+    expected_px = true_px["crept"] - true_px["still"]
+    assert np.hypot(*expected_px) == pytest.approx(1.0, rel=0.2), "2 px at 1280, here 640"
+    shown = {name: frames(tmp_path / name / "back.mp4")[0] for name in cameras}
+    found_px = {name: black_centre(shown[name], true_px[name]) for name in cameras}
+    np.testing.assert_allclose(found_px["crept"] - found_px["still"], expected_px, atol=0.2)
+
+
 def test_noise_is_new_in_each_frame_and_camera(runner, tmp_path):
     runner.velocity[:] = 0
     take = replace(TAKE, clocks={}, shake={}, racket=False)
