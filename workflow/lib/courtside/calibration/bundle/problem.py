@@ -39,7 +39,7 @@ class Network:
     image_idx: NDArray  # (M,) int: of each observation
     point_idx: NDArray  # (M,) int
     xy: NDArray  # (M, 2): observed px
-    sigma_px: NDArray  # (M,): standard deviation of an observation per axis
+    sigma_px: NDArray  # (M,) or (M, 2): standard deviation of an observation, per axis
     loss_scale: NDArray  # (M,): scale of the Cauchy loss, in the observation's sigmas; inf: no loss
     flex_sigma: NDArray  # (V, 5): prior about 0; 0 keeps a number at 0
     lens_mean: NDArray  # (L, 8): prior
@@ -56,6 +56,12 @@ class Network:
                 found = len(getattr(self, name))
                 if found != length:
                     raise ValueError(f"expected {name} of length {length}, found {found}")
+
+    @property
+    def axis_sigma_px(self) -> NDArray:
+        """Standard deviation of each observation along x and y, (M, 2) px."""
+        per_view = self.sigma_px.reshape(len(self.xy), -1) if len(self.xy) else np.zeros((0, 1))
+        return np.broadcast_to(per_view, self.xy.shape)
 
     @property
     def n_columns(self) -> int:

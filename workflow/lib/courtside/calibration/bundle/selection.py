@@ -118,14 +118,14 @@ def add_control_points(
     xyz_sigma: NDArray,
     clicks: Mapping[int, NDArray],
     *,
-    sigma_px: Mapping[int, float],
+    sigma_px: Mapping[int, ArrayLike],
     loss_scale: float,
 ) -> Network:
     """Return a network with control points appended to its own points.
 
     Their places `xyz` (P, 3) m, in the network's frame, are known with `xyz_sigma` (P,). The clicks
     (P, 2) px, NaN where not clicked, and their sigma are by index of the image; points without a
-    click are left out. `loss_scale` is in sigmas.
+    click are left out. A sigma is a number or one for each axis; `loss_scale` is in sigmas.
     """
     clicked = [
         (v, p) for v, xy in clicks.items() for p in np.flatnonzero(np.isfinite(xy).all(axis=1))
@@ -133,7 +133,9 @@ def add_control_points(
     image_idx, point = np.array(clicked, dtype=int).reshape(-1, 2).T
     used, point_idx = np.unique(point, return_inverse=True)
     xyz, xyz_sigma = np.asarray(xyz)[used], np.asarray(xyz_sigma)[used]
-    sigma = np.array([sigma_px[v] for v in image_idx])
+    sigma, others = np.array([sigma_px[v] for v in image_idx], dtype=float), network.sigma_px
+    if sigma.ndim > 1:
+        others = network.axis_sigma_px
     places = np.array([clicks[v][p] for v, p in clicked]).reshape(-1, 2)
     return replace(
         network,
@@ -143,7 +145,7 @@ def add_control_points(
         image_idx=np.concatenate([network.image_idx, image_idx]),
         point_idx=np.concatenate([network.point_idx, point_idx + len(network.xyz)]),
         xy=np.concatenate([network.xy, places]),
-        sigma_px=np.concatenate([network.sigma_px, sigma]),
+        sigma_px=np.concatenate([others, sigma]) if len(sigma) else others,
         loss_scale=np.concatenate([network.loss_scale, np.full(len(places), float(loss_scale))]),
     )
 

@@ -38,6 +38,13 @@ def mean(knowledge: Sequence[Quadratic]) -> Quadratic:
     return Quadratic(reference, information, np.mean(gradients, axis=0))
 
 
+def scaled(knowledge: Quadratic, factor: float) -> Quadratic:
+    """Return a `Quadratic` that weighs `factor` times as much."""
+    return Quadratic(
+        knowledge.reference, factor * knowledge.information, factor * knowledge.gradient
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Normal:
     """Normal equations of a network with its points eliminated."""
@@ -113,7 +120,7 @@ def _descend(network, normal, quadratic, damping, hold) -> tuple[Network, float 
 
 def cost(network: Network, quadratic: Quadratic | None = None) -> float:
     """Return half the sum of squared residuals in sigmas, inf where a point is behind its image."""
-    scaled = problem.residuals(network) / network.sigma_px[:, None]
+    scaled = problem.residuals(network) / network.axis_sigma_px
     if not np.isfinite(scaled).all():
         return np.inf
     square = (scaled**2).sum(axis=1)
@@ -162,15 +169,16 @@ def _normal(network: Network, quadratic: Quadratic | None, total: float) -> Norm
 
 
 def _along(values: NDArray, terms: NDArray) -> NDArray:
-    """Return values (M,) shaped so that they apply to terms (M, ...)."""
-    return values.reshape(-1, *[1] * (terms.ndim - 1))
+    """Return values (M, 2) shaped so that they apply to terms (M, 2, ...)."""
+    return values.reshape(*values.shape, *[1] * (terms.ndim - 2))
 
 
 def _weight(network: Network, residual: NDArray) -> NDArray:
-    """Return the root of each observation's weight (M,); 0 where its point is behind its image."""
-    square = (residual**2).sum(axis=1) / network.sigma_px**2
+    """Return the root of each axis's weight (M, 2); 0 where its point is behind its image."""
+    sigma = network.axis_sigma_px
+    square = ((residual / sigma) ** 2).sum(axis=1)
     robust = 1 / np.sqrt(1 + square / network.loss_scale**2)
-    return np.where(np.isfinite(square), robust, 0.0) / network.sigma_px
+    return np.where(np.isfinite(square), robust, 0.0)[:, None] / sigma
 
 
 def _active(network: Network) -> NDArray:

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration import point_covariance as uncertainty
-from courtside.calibration.bundle import selection, solver, walk_parts
+from courtside.calibration.bundle import selection, solver, variance_components, walk_parts
 from courtside.calibration.bundle.problem import FLEX, IMAGE, POSE, Network
+from courtside.calibration.bundle.variance_components import Factors
 from courtside.calibration.bundle.walk_parts import Part
 from courtside.calibration.court import sfm_alignment
 from courtside.calibration.court.court import ClickedPoints, Court
@@ -30,6 +31,10 @@ MAX_ITERATIONS, TOLERANCE = 200, 1e-6
 # Of the clicks' loss. Where a lens is still wrong, a good click near the edge of the picture looks
 # like a false one, and the loss keeps it so: one session in thirty was 3.1 cm off instead of 0.8.
 WIDE_LOSS = 10.0
+# Of the variance factors: each round solves with the factors of the one before. They change by a
+# few percent after the fourth.
+FACTOR_ROUNDS, FACTOR_TOLERANCE = 6, 0.05
+STATE = ("cam_from_world", "flex", "lens")  # of a network, what a search moves besides points
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +63,13 @@ class Solution:
     covariance : (K, K) float; of the network's columns: for each camera rotation (3, rad, in its
         own frame) and translation of cam_from_world (3, m) and its flex (5, always 0), then for
         each camera its lens (`problem.LENS`)
+    factors : of the variances that it was weighted with
     """
 
     cameras: list[Camera]
     network: Network
     covariance: NDArray
+    factors: Factors
 
     def point_covariance(self, xyz: NDArray) -> NDArray:
         """Return the covariance (N, 3, 3) m2 of points (N, 3) triangulated from exact pixels."""
@@ -210,12 +217,23 @@ def free(ties: Ties) -> Solution:
     """Return the `Solution` of `condense_free`; its covariance leaves out frame and scale."""
     network = ties.knowledge.reference
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
-    return Solution(cameras, network, uncertainty.pseudo_inverse(ties.knowledge.information))
+    covariance = uncertainty.pseudo_inverse(ties.knowledge.information)
+    return Solution(cameras, network, covariance, variance_components.none(len(cameras)))
 
 
 def click_sigma(sigma_px_at_3840: float, size: tuple[int, int]) -> float:
     """Return the sigma of a click in a picture of this size, px."""
     return sigma_px_at_3840 * size[0] / UHD
+
+
+def found_click_sigma(sigma_px_at_3840: float, solved: Solution) -> float:
+    """Return the sigma of a click that the residuals say, px; of the picture where it is largest.
+
+    Over both axes: the root of their mean variance.
+    """
+    factor = np.sqrt(solved.factors.clicks.mean(axis=1))
+    stated = [click_sigma(sigma_px_at_3840, camera.size) for camera in solved.cameras]
+    return float(np.max(stated * factor))
 
 
 def largest_click_sigma(sigma_px_at_3840: float, cameras: Sequence[Camera]) -> float:
@@ -233,6 +251,8 @@ def solve(
     click_loss: float,
     points: NDArray | None = None,
     max_iterations: int = 8,
+    factors: Factors | None = None,
+    start: Network | None = None,
 ) -> Solution:
     """Find the fixed cameras from their tie-point constraints and any clicks.
 
@@ -244,28 +264,55 @@ def solve(
     click_bias_px : what all clicks in one picture have in common, standard deviation per axis, at a
         width of 3840 px
     points : (P,) bool; court points to use; by default all
+    factors : on the variances of clicks (scatter and bias) and ties; by default none
+    start : network of another solution, where the search starts; by default the ties' own
     """
-    network = _with_bias(ties, click_bias_px)
+    factors = factors or variance_components.none(len(ties.cameras))
+    network = _with_bias(ties, click_bias_px, factors)
+    if start is not None:
+        network = replace(network, **{name: getattr(start, name) for name in STATE})
     use = np.ones(len(court.points), dtype=bool) if points is None else np.asarray(points)
     images = {
         at: np.where(use[:, None], clicks[name], np.nan) for at, name in enumerate(ties.cameras)
     }
-    sigmas = {at: click_sigma(click_sigma_px, size) for at, size in enumerate(ties.sizes)}
+    sigmas = {
+        at: click_sigma(click_sigma_px, size) * np.sqrt(factors.clicks[at])
+        for at, size in enumerate(ties.sizes)
+    }
     network = selection.add_control_points(
         network, court.xyz, court.sigma_m, images, sigma_px=sigmas, loss_scale=click_loss
     )
+    knowledge = solver.scaled(ties.knowledge, 1 / factors.ties)
     network, normal = solver.adjust(
-        network, quadratic=ties.knowledge, max_iterations=max_iterations, tolerance=1e-7
+        network, quadratic=knowledge, max_iterations=max_iterations, tolerance=1e-7
     )
     _check_placed(ties, normal)
     cameras = selection.cameras(network, ties.cameras, ties.sizes)
     covariance = uncertainty.of_columns(normal)
     shifts = _shift_columns(network)
     covariance[shifts], covariance[:, shifts] = 0.0, 0.0  # of the clicks, not of the cameras
-    return Solution(cameras, network, covariance)
+    return Solution(cameras, network, covariance, factors)
 
 
-def _with_bias(ties: Ties, click_bias_px: float) -> Network:
+def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
+    """Do as `solve`, with weights and covariance by the residuals: `variance_components`.
+
+    The sigmas of clicks and ties say what is expected of them before their residuals are known.
+    `**options` are those of `solve`, without `factors`.
+    """
+    solved = solve(ties, clicks, court, **options)
+    for _ in range(FACTOR_ROUNDS):
+        before = solved.factors
+        knowledge = solver.scaled(ties.knowledge, 1 / before.ties)
+        found = variance_components.estimate(solved.network, knowledge, before)
+        solved = solve(ties, clicks, court, **options, factors=found, start=solved.network)
+        change = np.append(found.clicks / before.clicks, found.ties / before.ties)
+        if np.abs(np.log(change)).max() < FACTOR_TOLERANCE:
+            break
+    return solved
+
+
+def _with_bias(ties: Ties, click_bias_px: float, factors: Factors) -> Network:
     """Return the network of the fixed cameras, free to shift their clicks.
 
     The flex stands for the clicks' bias: the ties are marginalised and have no flex of their own.
@@ -273,6 +320,7 @@ def _with_bias(ties: Ties, click_bias_px: float) -> Network:
     network = ties.knowledge.reference
     flex_sigma = np.zeros((len(ties.cameras), len(FLEX)))
     flex_sigma[:, 3:] = [[click_sigma(click_bias_px, size)] for size in ties.sizes]
+    flex_sigma *= np.sqrt(factors.bias)
     return replace(network, flex_sigma=flex_sigma)
 
 

@@ -12,6 +12,9 @@ from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
 
 Found = resection.Linear | resection.Fitted
+# Of the expected scatter: that of a good click. Points alone carry the camera here, and with the
+# whole scatter mirrored points and another court find cameras that nearly fit.
+GOOD = 0.3
 NAME = re.compile(r"(dlt|known)(\d+)(-board)?")
 
 
@@ -69,7 +72,7 @@ def calibrate(
             xyz,
             xy,
             size,
-            sigma_px=joint_adjustment.click_sigma(click_sigma_px, size),
+            sigma_px=GOOD * joint_adjustment.click_sigma(click_sigma_px, size),
             xyz_sigma=court.sigma_m[way.points],
             name=name,
             **known,

@@ -70,23 +70,36 @@ def adjust_and_check(
 ) -> tuple[joint_adjustment.Solution, dict[str, Any]]:
     """Adjust the fixed cameras with the clicked court points, and check them, as `check_cameras`.
 
-    `**weights` are those of the clicks, as for `joint_adjustment.solve`. Raises `InputError` if the
-    points cannot be this court. A model of structure from motion is bent by what its ties leave
+    `**weights` are those of the clicks, as for `joint_adjustment.solve`; warnings judge clicks by
+    the scatter found. The result also holds `variance_factors`. Raises `InputError` if the points
+    cannot be this court. A model of structure from motion is bent by what its ties leave
     open, mostly focal lengths: with 12 small pictures by 0.02 to 0.4 m at the court points, where
     clicks are 1 cm off. The adjustment removes as much of the bend as the ties' own covariance
     allows: what is left is the fault of the clicks or the court.
     """
-    solved = joint_adjustment.solve(ties, clicks, court, max_iterations=30, **weights)
-    sigma_px = joint_adjustment.largest_click_sigma(weights["click_sigma_px"], solved.cameras)
+    solved = joint_adjustment.solve_with_factors(ties, clicks, court, max_iterations=30, **weights)
+    sigma_px = joint_adjustment.found_click_sigma(weights["click_sigma_px"], solved)
     quality = check_cameras(
         court,
         solved.cameras,
         clicks,
         click_sigma_px=sigma_px,
         point_covariance=solved.point_covariance,
-        inwards=click_checks.inward_shift(ties, clicks, court, **weights),
+        inwards=click_checks.inward_shift(ties, clicks, court, factors=solved.factors, **weights),
     )
-    return solved, quality
+    return solved, quality | {"variance_factors": _said(solved)}
+
+
+def _said(solved: joint_adjustment.Solution) -> dict[str, Any]:
+    """Return variance factors for JSON, with the redundancy that they rest on."""
+    factors = solved.factors
+    each = zip(solved.cameras, factors.clicks, factors.clicks_redundancy, strict=True)
+    clicks = {
+        camera.name: {"x": _number(x), "y": _number(y), "redundancy": _number(left.sum())}
+        for camera, (x, y), left in each
+    }
+    ties = {"factor": _number(factors.ties), "redundancy": _number(factors.ties_redundancy)}
+    return {"clicks": clicks, "ties": ties}
 
 
 def check_maps(n_agreeing: int, n_maps: int) -> dict[str, Any]:
@@ -195,13 +208,16 @@ def coverage(error_m: NDArray, covariance: NDArray) -> dict[str, float]:
     """Return how often errors lie within the ellipsoids of their covariance, and the size expected.
 
     Errors (N, 3) are in m, covariances (N, 3, 3) in m2. The result holds `coverage50`, `coverage90`
-    and `coverage95`, 0..1, and `predicted_volume_cm`, the expected root mean square.
+    and `coverage95`, 0..1, `squared_ratio`, the normalised estimation error squared (1 where the
+    covariance is right, more where it is too small), and `predicted_volume_cm`, the expected root
+    mean square.
     """
     square = mahalanobis(error_m, covariance)
     shares = {
         f"coverage{100 * level:.0f}": np.mean(square <= limit) for level, limit in LIMITS.items()
     }
-    return {**shares, "predicted_volume_cm": expected_rms_cm(covariance)}
+    size_cm = expected_rms_cm(covariance)
+    return {**shares, "squared_ratio": np.mean(square) / 3, "predicted_volume_cm": size_cm}
 
 
 def expected_rms_cm(covariance: NDArray) -> float:

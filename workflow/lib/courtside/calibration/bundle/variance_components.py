@@ -1,0 +1,159 @@
+"""Variance factors of clicks and ties from what their residuals say.
+
+Förstner 1979; Koch 1999, sec. 3.6: the weighted squared residuals of a group, over its redundancy
+(the part of its observations that its residuals show), estimate how far its variances are wrong.
+Few redundant observations say little. A prior carries the rest: an inverse gamma distribution of
+the factor with mean 1. It counts as `*_PRIOR` redundant observations, and the posterior mean is the
+mean of prior and estimate, weighted by their redundancy. It exceeds the mode, as the heavy tail of
+a variance from few observations requires.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import problem, solver
+from courtside.calibration.bundle.problem import IMAGE, POSE, Network
+
+# Redundant observations that the priors count for; chosen on development halls (docs/measured.md).
+CLICKS_PRIOR = 1.0  # of all clicks together, about the stated sigma
+CAMERA_PRIOR = 4.0  # of one camera's clicks along one axis, about the factor of all clicks
+TIES_PRIOR = 6.0  # of the ties, about the spread of their residuals
+LIMITS = 0.05, 400.0  # ASSUME: no variance is farther off; keeps a start far off from running away
+GAUGE = 7  # rotation, translation and scale of the frame, which ties leave open
+
+
+@dataclass(frozen=True, eq=False)
+class Factors:
+    """Factors on the variances that clicks and ties were stated to have.
+
+    Attributes
+    ----------
+    clicks : (V, 2) float; of the scatter of each image's clicks along x and y
+    ties : of all ties
+    clicks_redundancy : (V, 2) float; observations that tell the first; 0: the prior alone
+    ties_redundancy : the same of the ties
+    """
+
+    clicks: NDArray
+    ties: float
+    clicks_redundancy: NDArray
+    ties_redundancy: float
+
+    @property
+    def bias(self) -> float:
+        """Of the clicks' bias, which residuals hardly show: the harmonic mean of the scatters'.
+
+        Scatter is large along edges that cross at a small angle, and there it says nothing of the
+        person, whose hand is seen best where it is small.
+        """
+        return float(1 / np.mean(1 / self.clicks))
+
+
+def none(n_images: int) -> Factors:
+    """Return factors that change nothing."""
+    return Factors(np.ones((n_images, 2)), 1.0, np.zeros((n_images, 2)), 0.0)
+
+
+def estimate(network: Network, quadratic: solver.Quadratic, factors: Factors) -> Factors:
+    """Estimate the factors of a network of clicks adjusted with the `quadratic` of its ties.
+
+    `factors` are those that the network's sigmas and the quadratic contain.
+    """
+    sigma = network.axis_sigma_px
+    residual, rows = _rows(network)
+    covariance = _covariance(network, quadratic, rows)
+    square = (residual / sigma) ** 2
+    weight = 1 / (1 + square.sum(axis=1) / network.loss_scale**2)
+    rows = rows * np.sqrt(weight)[:, None, None]
+    used = 1 - np.einsum("mrk,mrk->mr", rows @ covariance, rows)
+    square *= (weight / _consistency(network.loss_scale))[:, None]
+    squares, redundancy = (_by_image(network, terms) for terms in (square, used))
+    squares, redundancy = squares * factors.clicks, np.maximum(redundancy, 0.0)
+    pooled = _posterior(squares.sum(), redundancy.sum(), CLICKS_PRIOR, 1.0)
+    misfit, left = _of_ties(network, quadratic, covariance)
+    return Factors(
+        _posterior(squares, redundancy, CAMERA_PRIOR, pooled),
+        float(_posterior(misfit * factors.ties, left, TIES_PRIOR, 1.0)),
+        redundancy,
+        left,
+    )
+
+
+def _posterior(square, redundancy, prior: float, mean: float | NDArray) -> NDArray:
+    """Return the posterior mean of factors: the squares are in stated variances."""
+    return np.clip((prior * mean + square) / (prior + redundancy), *LIMITS)
+
+
+def _by_image(network: Network, terms: NDArray) -> NDArray:
+    """Return the sums of terms (M, 2) by image, (V, 2)."""
+    found = np.zeros((len(network.cam_from_world), 2))
+    np.add.at(found, network.image_idx, terms)
+    return found
+
+
+def _rows(network: Network) -> tuple[NDArray, NDArray]:
+    """Return the residuals (M, 2) px and their derivatives (M, 2, K + 3 N), in sigmas."""
+    residual, by_camera, by_point = problem.linearised(network)
+    size = network.n_columns
+    rows = np.zeros((len(residual), 2, size + 3 * len(network.xyz)))
+    columns = network.columns()[:, None, :].repeat(2, axis=1)
+    np.put_along_axis(rows, columns, by_camera, axis=2)
+    places = size + 3 * network.point_idx[:, None, None] + np.arange(3)
+    np.put_along_axis(rows, places.repeat(2, axis=1), by_point, axis=2)
+    return residual, rows / network.axis_sigma_px[:, :, None]
+
+
+def _covariance(network: Network, quadratic: solver.Quadratic, rows: NDArray) -> NDArray:
+    """Return the covariance of images, lenses and points together; 0 for fixed columns."""
+    size, flat = network.n_columns, rows.reshape(-1, rows.shape[2])
+    information = flat.T @ flat
+    information[:size, :size] += quadratic.information
+    diagonal = np.zeros(len(information))
+    diagonal[size:] = np.repeat(network.xyz_sigma**-2.0, 3)
+    diagonal[_shift_columns(network)] = _shift_information(network)
+    information += np.diag(diagonal)
+    moves = np.concatenate([np.ones((len(network.flex), len(POSE))), network.flex_sigma], axis=1)
+    free = np.diag(information) > 0
+    free[: moves.size] &= moves.ravel() > 0
+    scale = 1 / np.sqrt(np.diag(information)[free])
+    inverse = np.linalg.inv(information[np.ix_(free, free)] * np.outer(scale, scale))
+    covariance = np.zeros_like(information)
+    covariance[np.ix_(free, free)] = inverse * np.outer(scale, scale)
+    return covariance
+
+
+def _shift_columns(network: Network) -> NDArray:
+    """Return the columns of each image's shift, (V, 2)."""
+    images = np.arange(len(network.cam_from_world))
+    return IMAGE * images[:, None] + [IMAGE - 2, IMAGE - 1]
+
+
+def _shift_information(network: Network) -> NDArray:
+    """Return the information of the prior of each image's shift, (V, 2); 0 where it is fixed."""
+    sigma = network.flex_sigma[:, 3:]
+    return np.divide(1.0, sigma**2, out=np.zeros_like(sigma), where=sigma > 0)
+
+
+def _consistency(loss_scale: NDArray) -> NDArray:
+    """Return the robustly weighted square of a normal residual over that without the loss.
+
+    Of two axes: s = x^2 + y^2 is exponential with mean 2; E[s / (1 + s / k^2)] / 2.
+    """
+    half = np.minimum(loss_scale, 30.0) ** 2 / 2  # beyond, the loss changes nothing
+    return half * (1 - half * np.exp(half) * special.exp1(half))
+
+
+def _of_ties(network, quadratic, covariance) -> tuple[float, float]:
+    """Return how far the ties are from their own minimum, squared, in sigmas; their redundancy."""
+    information = quadratic.information
+    size = len(information)
+    own = point_covariance.pseudo_inverse(information, GAUGE)
+    step = network.difference(quadratic.reference)
+    slope = quadratic.gradient + information @ step
+    known = np.count_nonzero(np.diag(information) > 0) - GAUGE
+    used = np.sum(information * covariance[:size, :size])
+    return float(slope @ own @ slope), max(float(known - used), 0.0)
