@@ -73,7 +73,7 @@ def errors(results, name, mapper, seed, n_images, n_draws):
     drawn = {"n_draws": n_draws, "seed": 0, "preset": session["virtual"]["preset"], "session": name}
     weights = {key: config["adjust_network"][key] for key in CLICKS}
     found = {}
-    for marked in clicks.clicks_of_persons(real.cameras, real.court_xyz, **drawn):
+    for marked in clicks.clicks_of_persons(real.cameras, court, real.court_xyz, **drawn):
         for row in calibration.of_ties(
             record, real.cameras, court, marked, sets=["all"], **weights
         ):

@@ -265,14 +265,17 @@ def test_clicks_of_another_court_are_refused(good, clicked, tmp_path, name):
 @pytest.mark.parametrize("seed", [0, 1])
 def test_line_centres_are_recognised(good, real, tmp_path, seed):
     drawn = {"n_draws": 1, "seed": seed, "preset": "plain", "session": "centres"}
+    drawn["strength"] = 0.25  # half a line is 0.1 to 0.8 px in such small pictures
     centres = real.court_xyz + court_files.to_line_centres(COURT)
     found = calibrated(
-        good, tmp_path, next(clicking.clicks_of_persons(real.cameras, centres, **drawn))
+        good, tmp_path, next(clicking.clicks_of_persons(real.cameras, COURT, centres, **drawn))
     )
     (warning,) = found.warnings
     assert "line centres seem to be clicked; click the edges" in warning and found.error == ""
     found = calibrated(
-        good, tmp_path, next(clicking.clicks_of_persons(real.cameras, real.court_xyz, **drawn))
+        good,
+        tmp_path,
+        next(clicking.clicks_of_persons(real.cameras, COURT, real.court_xyz, **drawn)),
     )
     assert found.warnings == []
 

@@ -20,27 +20,30 @@ CENTRE_HEIGHT_M = 1.0  # the angle between neighbouring views is measured there
 
 
 def main(
-    ties_npz, summary_json, truth_npz, court_yaml, errors_csv, *, labels, clicks, sets, **options
+    ties_npz,
+    summary_json,
+    truth_npz,
+    court_yaml,
+    errors_csv,
+    *,
+    labels,
+    clicks,
+    strengths,
+    sets,
+    **options,
 ):
-    court, real, record = (
-        court_files.read(court_yaml),
-        session_truth.read(truth_npz),
-        tie_points.read(ties_npz),
-    )
+    court, real = court_files.read(court_yaml), session_truth.read(truth_npz)
+    record = tie_points.read(ties_npz)
     summary = json.loads(Path(summary_json).read_text(encoding="utf-8"))
     rows = []
-    for draw, marked in enumerate(
-        clicking.clicks_of_persons(real.cameras, real.court_xyz, **clicks)
-    ):
+    seen = real.cameras, court, real.court_xyz
+    for drawn, marked in clicking.clicks_of_strengths(strengths, *seen, **clicks):
         if record.outcome:
-            rows.append({"draw": draw, "outcome": record.outcome})
+            rows.append({**drawn, "outcome": record.outcome})
             continue
         found = calibration.of_ties(record, real.cameras, court, marked, sets=sets, **options)
-        rows += [{"draw": draw, **row} for row in found]
-    angles = [np.nan]
-    if record.ties:
-        fixed, point = image_names.are_static(record.images), [*court.size_m / 2, CENTRE_HEIGHT_M]
-        angles = cameras.path_angles_deg(fixed, record.centres, point)
+        rows += [{**drawn, **row} for row in found]
+    angles = neighbour_angles_deg(record, court)
     about = {
         **labels,
         "n_registered": summary["n_registered"],
@@ -52,8 +55,15 @@ def main(
         "neighbour_deg_median": np.median(angles),
         "neighbour_deg_max": np.max(angles),
     }
-    table = pd.DataFrame(rows).reindex(columns=["draw", *calibration.COLUMNS])
+    table = pd.DataFrame(rows).reindex(columns=[*drawn, *calibration.COLUMNS])
     tables.write(errors_csv, table, about)
+
+
+def neighbour_angles_deg(record, court):
+    if not record.ties:
+        return [np.nan]
+    fixed, point = image_names.are_static(record.images), [*court.size_m / 2, CENTRE_HEIGHT_M]
+    return cameras.path_angles_deg(fixed, record.centres, point)
 
 
 if __name__ == "__main__":

@@ -12,20 +12,17 @@ from virtualgym.session import clicks as clicking
 
 
 def main(
-    truth_npz, court_yaml, lens_toml, errors_csv, *, cameras, labels, clicks, sets, click_sigma_px
+    truth_npz, court_yaml, lens_toml, errors_csv, *, cameras, labels, clicks, strengths, **options
 ):
     court, real = court_files.read(court_yaml), session_truth.read(truth_npz)
     lens_of = dict(zip(cameras, lens_toml, strict=False))
     lenses = {camera: camera_models.read_toml(path)[0] for camera, path in lens_of.items()}
     rows = []
-    for draw, marked in enumerate(
-        clicking.clicks_of_persons(real.cameras, real.court_xyz, **clicks)
-    ):
-        found = calibration.of_known(
-            real.cameras, court, marked, lenses, sets=sets, click_sigma_px=click_sigma_px
-        )
-        rows += [{"draw": draw, **row} for row in found]
-    table = pd.DataFrame(rows).reindex(columns=["draw", *calibration.COLUMNS])
+    seen = real.cameras, court, real.court_xyz
+    for drawn, marked in clicking.clicks_of_strengths(strengths, *seen, **clicks):
+        found = calibration.of_known(real.cameras, court, marked, lenses, **options)
+        rows += [{**drawn, **row} for row in found]
+    table = pd.DataFrame(rows).reindex(columns=[*drawn, *calibration.COLUMNS])
     tables.write(errors_csv, table, labels)
 
 

@@ -25,7 +25,7 @@ def main(
     views, records = real.cameras[:VIEWS], [tie_points.read(path) for path in ties_npz]
     rows = []
     for repeat, marked in enumerate(
-        clicking.clicks_of_persons(real.cameras, real.court_xyz, **clicks)
+        clicking.clicks_of_persons(real.cameras, court, real.court_xyz, **clicks)
     ):
         offset = repeat % len(records)
         ways = racket.calibrate(records[offset], views, court, marked, **options)

@@ -6,7 +6,8 @@ from courtside.study.execution.script import run
 
 
 def main(errors_csv, table_csv, *, n_reference):
-    found = calibration.table(calibration.read(errors_csv), n_reference=n_reference)
+    rows = calibration.read(errors_csv, click_strength=None)
+    found = calibration.table(rows, n_reference=n_reference)
     tables.write(table_csv, found, float_format="%.4f")
 
 

@@ -33,6 +33,17 @@ def test_files_are_read_into_one_table(tmp_path):
     assert (rows["condition"] == "").all()
 
 
+def test_trials_of_one_strength_are_read_or_all(tmp_path):
+    made = trials_made.structure({SFM: [1.0, 2.0]})
+    made.assign(click_strength=1.0).to_csv(tmp_path / "one.csv", index=False)
+    made.assign(click_strength=3.0).to_csv(tmp_path / "three.csv", index=False)
+    paths = sorted(tmp_path.glob("*.csv"))
+    assert set(calibration.read(paths)["click_strength"]) == {1.0}
+    every = calibration.read(paths, click_strength=None)
+    assert every["click_strength"].tolist() == [1.0, 1.0, 3.0, 3.0]
+    assert len(calibration.table(every)) == 2 * len(calibration.table(calibration.read(paths)))
+
+
 def test_if_all_structures_fail_the_usual_ways_count_as_failed():
     rows = calibration.tidy(trials_made.structure(3))
     assert len(rows) == 3 * len(calibration.USUAL)

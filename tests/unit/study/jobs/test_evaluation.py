@@ -7,7 +7,7 @@ from courtside.study.jobs import evaluation
 SHOT = {"session": "players-tiny", "take": "shot", "calibration": "known18"}
 NET = {**SHOT, "model": "blazepose-static"}
 PLAIN = {"session": "plain-tiny"}
-CLICKS = {"click_sigma_px": 0.7, "click_bias_px": 0.5, "click_loss": 4.0}
+CLICKS = {"click_sigma_px": 2.5, "click_bias_px": 1.25, "click_loss": 4.0}
 TRUE = "results/virtual/players-tiny/takes"
 
 
@@ -89,6 +89,7 @@ def test_errors_of_a_structure_from_motion_are_labelled_with_it(job, study):
     }
     assert {key: found[key] for key in CLICKS} == CLICKS
     assert found["sets"] == draws["sets"]
+    assert found["strengths"] == draws["click_strengths"]
 
 
 def test_variations_are_labelled_with_what_varies_but_the_size_twice(job, study):
@@ -110,7 +111,7 @@ def test_variations_are_labelled_with_what_varies_but_the_size_twice(job, study)
 
 def test_known_points_need_no_bias_nor_loss_of_clicks(job):
     found = evaluation.known_errors(job(**PLAIN))
-    assert set(found) == {"labels", "clicks", "sets", "click_sigma_px"}
+    assert set(found) == {"labels", "clicks", "strengths", "sets", "click_sigma_px"}
 
 
 def test_lenses_are_evaluated_where_every_camera_has_a_board(job):
@@ -124,7 +125,7 @@ def test_a_racket_is_measured_with_its_own_draws(job):
     found = evaluation.racket(job(**PLAIN))
     assert found["clicks"]["n_draws"] == 12
     assert (found["length_m"], found["tips_px"]) == (0.674, [0.7, 1.8])
-    assert "sets" not in found
+    assert not {"sets", "strengths"} & set(found)
     assert {key: found[key] for key in CLICKS} == CLICKS
 
 

@@ -12,7 +12,7 @@ from courtside.geometry import camera as cameras
 from fixtures.cameras import scene
 from virtualgym import presets
 from virtualgym.cameras import layouts
-from virtualgym.session import clicks
+from virtualgym.session import click_model, clicks
 
 POINTS = scene.points(500)
 CAMERAS = scene.ring(3, dist=(-0.1, 0.02, 1e-3, 1e-3, 0))
@@ -64,42 +64,72 @@ def test_a_click_does_not_depend_on_what_else_is_seen():
     np.testing.assert_array_equal(click()["c1"][1:], click(points=moved)["c1"][1:])
 
 
-def draws(n_draws=4, seed=1, session="plain-a", preset="plain", cameras=CAMERAS):
+COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
+PLACES = {"side": (-12, 6.7, 2.5), "back": (3.05, -12, 2.5), "near": (3.05, -6, 6)}
+FIXED = [
+    replace(CAMERAS[0], name=name, dist=np.zeros(5), cam_from_world=scene.look_at(at, (3, 6.7, 0)))
+    for name, at in PLACES.items()
+]
+
+
+def draws(n_draws=4, seed=1, session="plain-a", preset="plain", cameras=FIXED, strength=1.0):
     options = {"n_draws": n_draws, "seed": seed, "session": session, "preset": preset}
-    return list(clicks.clicks_of_persons(cameras, POINTS, **options))
+    return list(clicks.clicks_of_persons(cameras, COURT, COURT.xyz, **options, strength=strength))
+
+
+def errors_of(drawn, camera):
+    exact = scene.opencv_projection(camera, COURT.xyz)
+    return np.array([draw[camera.name] - exact for draw in drawn])
 
 
 def test_draws_are_the_same_whatever_their_number_and_the_cameras_after():
-    few, many = draws(2), draws(6, cameras=CAMERAS[:2])
+    few, many = draws(2), draws(6, cameras=FIXED[:2])
     for one, other in zip(few, many[:2], strict=True):
-        np.testing.assert_array_equal(one["c0"], other["c0"])
-        np.testing.assert_array_equal(one["c1"], other["c1"])
+        np.testing.assert_array_equal(one["side"], other["side"])
+        np.testing.assert_array_equal(one["back"], other["back"])
     assert len(many) == 6
 
 
 def test_draws_sessions_and_seeds_differ():
-    known = [d["c0"] for d in draws(3)] + [
-        draws(1, session="plain-b")[0]["c0"],
-        draws(1, 2)[0]["c0"],
+    known = [d["back"] for d in draws(3)] + [
+        draws(1, session="plain-b")[0]["back"],
+        draws(1, 2)[0]["back"],
     ]
     assert all(
-        np.abs(one - other).max() > 0.01
+        np.nanmax(np.abs(one - other)) > 0.01
         for at, one in enumerate(known)
         for other in known[at + 1 :]
     )
 
 
-def test_draws_scatter_as_their_preset_says():
-    """Scatter within a draw and its common bias, at half of the width that both are stated for."""
-    made = presets.PRESETS["plain"]
-    exact = {c.name: scene.opencv_projection(c, POINTS) for c in CAMERAS}
-    errors = np.array([[d[name] - xy for name, xy in exact.items()] for d in draws(80)])
-    within = errors - errors.mean(axis=(1, 2), keepdims=True)
-    assert np.std(within) == pytest.approx(made.click_sigma_px_at_3840 / 2, rel=0.02)
-    bias = errors.mean(axis=(1, 2))
-    # 160 numbers: their standard deviation scatters by 1 / sqrt(320)
-    assert np.std(bias) == pytest.approx(made.click_bias_px_at_3840 / 2, rel=0.2)
-    assert abs(np.mean(bias)) < 4 * made.click_bias_px_at_3840 / 2 / np.sqrt(160)
+def test_a_strength_multiplies_every_error():
+    one, three = draws(3), draws(3, strength=3.0)
+    for camera in FIXED:
+        expected = 3 * errors_of(one, camera)
+        found = errors_of(three, camera)
+        both = np.isfinite(expected) & np.isfinite(found)
+        assert both.sum() > 50
+        np.testing.assert_allclose(found[both], expected[both], atol=1e-7)
+
+
+def test_strengths_have_labels_and_a_third_of_the_persons():
+    options = {"n_draws": 6, "seed": 1, "preset": "plain", "session": "plain-a"}
+    found = clicks.clicks_of_strengths([1, 2], FIXED, COURT, COURT.xyz, **options)
+    labels = [(drawn["click_strength"], drawn["draw"]) for drawn, _ in found]
+    assert labels == [(1, draw) for draw in range(6)] + [(2, 0), (2, 1)]
+
+
+def test_clicks_scatter_as_the_model_says_and_persons_differ():
+    """Of many persons: the model's covariance times their mean square factor, plus the bias."""
+    camera = FIXED[1]
+    found = errors_of(draws(1500), camera)
+    model = click_model.covariance(camera, COURT.xyz, COURT, presets.PRESETS["plain"])
+    square_factor = np.exp(2 * click_model.HAND_SPREAD**2)
+    for point in (3, 11, 16):
+        known = found[:, point][np.isfinite(found[:, point]).all(axis=1)]
+        expected = square_factor * model[point] + click_model.bias_px(camera) ** 2 * np.eye(2)
+        assert len(known) > 1400
+        np.testing.assert_allclose(np.diag(np.cov(known.T)), np.diag(expected), rtol=0.15)
 
 
 # Clicked ends of rackets, against exact projection at the time of their row.

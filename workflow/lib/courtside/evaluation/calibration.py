@@ -18,7 +18,7 @@ FIRST = ("method", "n_clicks", "in_sample", "outcome")
 ERRORS = (
     "xo_cm", "yo_cm", "xy_cm", "volume_rms_cm", "volume_p95_cm", "camera_position_cm",
     "camera_rotation_deg", "focal_percent", "predicted_volume_cm", "coverage50", "coverage90",
-    "coverage95",
+    "coverage95", "squared_ratio",
 )  # fmt: skip
 COLUMNS = FIRST + ERRORS
 
@@ -52,7 +52,8 @@ def of_ties(
 
     Rows with the keys `COLUMNS`; `paper` with its three points only, which cannot be left out. The
     record has no outcome; `clicks` are those of this trial by camera, (P, 2) px; `sets` are of
-    court points; `settings` are `click_sigma_px` and `click_loss` of `joint_adjustment.solve`.
+    court points; `settings` are `click_sigma_px`, `click_bias_px` and `click_loss` of
+    `joint_adjustment.solve`.
     """
     rows, sfm = [], record.sfm_cameras
     xyz_in_sfm = sfm_alignment.reconstruct(sfm, clicks)
@@ -61,7 +62,9 @@ def of_ties(
         if record.fault or record.ties is None:
             rows.append({"method": "sfm", **row, "outcome": record.fault})
         else:
-            solved = joint_adjustment.solve(record.ties, clicks, court, points=use, **settings)
+            solved = joint_adjustment.solve_with_factors(
+                record.ties, clicks, court, points=use, **settings
+            )
             errors = score(solved.cameras, truth, court, clicks, solved.point_covariance)
             rows.append({"method": "sfm", **row, **errors})
         try:

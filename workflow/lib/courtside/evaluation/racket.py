@@ -102,7 +102,7 @@ def _by_ties(record, clicks, court: Court, truth, *, points, **settings):
     if record.ties is None:
         raise InputError(record.outcome or record.fault)
     use = np.isin(np.arange(len(court.points)), points)
-    solved = joint_adjustment.solve(record.ties, clicks, court, points=use, **settings)
+    solved = joint_adjustment.solve_with_factors(record.ties, clicks, court, points=use, **settings)
     return _cameras(solved.cameras, truth)
 
 

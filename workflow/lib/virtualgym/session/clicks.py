@@ -4,6 +4,7 @@ import csv
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from virtualgym import presets
 from virtualgym.body import mesh
 from virtualgym.body.athlete import Athlete
 from virtualgym.rendering import rolling_shutter
+from virtualgym.session import click_model
 
 FULL_WIDTH_PX = 3840  # clicking errors are stated for pictures of this width
 
@@ -59,38 +61,100 @@ def click_points(
     return clicks
 
 
+def click_court(
+    cameras: Iterable[Camera],
+    court: Court,
+    court_xyz: NDArray,
+    *,
+    preset: presets.Preset,
+    rng: np.random.Generator,
+    strength: float = 1.0,
+) -> dict[str, NDArray]:
+    """Click the points of a court as one person would, by `click_model`.
+
+    Parameters
+    ----------
+    cameras : iterable of Camera
+    court : Court
+    court_xyz : (P, 3) float
+        True places of its points, m.
+    preset : Preset
+    rng : numpy.random.Generator
+        It draws the same numbers whatever the cameras see, and whatever the strength.
+    strength : float
+        Factor on every error: 1 is an average person.
+
+    Returns
+    -------
+    clicks : dict of str to (P, 2) float
+        For each camera px; NaN where the point or its click is outside the picture.
+    """
+    factor, bias = click_model.person(rng)
+    clicks = {}
+    for camera in cameras:
+        covariance = click_model.covariance(camera, court_xyz, court, preset)
+        drawn = rng.standard_normal((len(court_xyz), 2, 1))
+        scatter = (np.linalg.cholesky(covariance) @ drawn)[..., 0]
+        error = strength * (factor * scatter + bias * click_model.bias_px(camera))
+        xy = projection.project(camera, court_xyz) + error
+        seen = projection.in_picture(camera, xy)
+        clicks[camera.name] = np.where(seen[:, np.newaxis], xy, np.nan)
+    return clicks
+
+
 def clicks_of_persons(
     cameras: Iterable[Camera],
-    points_xyz: NDArray,
+    court: Court,
+    court_xyz: NDArray,
     *,
     n_draws: int,
     seed: int,
     preset: str,
     session: str,
+    strength: float = 1.0,
 ) -> Iterator[dict[str, NDArray]]:
     """Yield the clicks of `n_draws` persons, the same for all methods and numbers of images.
 
     Parameters
     ----------
     cameras : iterable of Camera
-    points_xyz : (P, 3) float
-        True places of the points, metres.
+    court : Court
+    court_xyz : (P, 3) float
+        True places of its points, m.
     n_draws, seed : int
     preset : str
-        A key of `presets.PRESETS`, which gives the click errors.
+        A key of `presets.PRESETS`, which gives the noise of the pictures.
     session : str
         Name; other sessions get other random numbers.
+    strength : float
+        Factor on every error.
     """
     made = presets.PRESETS[preset]
     for draw in range(n_draws):
         rng = np.random.default_rng([seed, zlib.crc32(session.encode()), draw])
-        yield click_points(
-            cameras,
-            points_xyz,
-            sigma_px_at_3840=made.click_sigma_px_at_3840,
-            bias_px_at_3840=made.click_bias_px_at_3840,
-            rng=rng,
+        yield click_court(cameras, court, court_xyz, preset=made, rng=rng, strength=strength)
+
+
+def clicks_of_strengths(
+    strengths: Iterable[float],
+    cameras: Sequence[Camera],
+    court: Court,
+    court_xyz: NDArray,
+    *,
+    n_draws: int,
+    **drawn: Any,
+) -> Iterator[tuple[dict[str, float], dict[str, NDArray]]]:
+    """Yield labels `click_strength` and `draw`, and `clicks_of_persons` of each strength.
+
+    At other strengths than 1 click a third of the persons: they only show how errors grow.
+    """
+    for strength in strengths:
+        n_persons = n_draws if strength == 1 else max(1, n_draws // 3)
+        made = clicks_of_persons(
+            cameras, court, court_xyz, n_draws=n_persons, strength=strength, **drawn
         )
+        for draw, marked in enumerate(made):
+            yield {"click_strength": strength, "draw": draw}, marked
 
 
 COLUMNS = ("take", "camera", "frame_idx", "end", "x_px", "y_px")

@@ -237,13 +237,8 @@ def simulate(
             frames = call("walk_picture", [(at,) for at in range(settings.walk_frames)])
             _film_walk(settings, folder, walked, frames)
     preset = presets.PRESETS[settings.preset]
-    marked = clicks.click_points(
-        fixed,
-        court_xyz,
-        sigma_px_at_3840=preset.click_sigma_px_at_3840,
-        bias_px_at_3840=preset.click_bias_px_at_3840,
-        rng=parallel.generator(settings.seed, CLICKS),
-    )
+    rng = parallel.generator(settings.seed, CLICKS)
+    marked = clicks.click_court(fixed, court, court_xyz, preset=preset, rng=rng)
     click_records.write(folder / "court_points.csv", marked, court.points)
     walks = {WALK: _true_walk(settings, walked)} if settings.walk_frames else {}
     own = [settings.readout_s(at) for at in range(len(fixed))]

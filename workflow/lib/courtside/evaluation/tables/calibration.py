@@ -18,10 +18,14 @@ USUAL = pd.DataFrame([*USED, ("paper", 3, True)], columns=CHOICE)
 REPLICATES = 2000  # of the bootstrap: the limit is a 95 % quantile of them
 
 
-def read(paths: Sequence[StrPath]) -> pd.DataFrame:
-    """Read evaluation tables, of structures from motion and of known points, into one (`tidy`)."""
+def read(paths: Sequence[StrPath], *, click_strength: float | None = 1.0) -> pd.DataFrame:
+    """Read evaluation tables, of structures from motion and of known points, into one (`tidy`).
+
+    Trials of one `click_strength`; None: of all.
+    """
     tables = [pd.read_csv(path, dtype=dict.fromkeys(TEXT, str)) for path in paths]
-    return tidy(pd.concat(tables, ignore_index=True))
+    rows = tidy(pd.concat(tables, ignore_index=True))
+    return rows if click_strength is None else pick(rows, click_strength=click_strength)
 
 
 def tidy(rows: pd.DataFrame) -> pd.DataFrame:
@@ -36,6 +40,8 @@ def tidy(rows: pd.DataFrame) -> pd.DataFrame:
     for column in ("n_bridging", "offset", "in_sample"):
         if column not in rows:
             rows[column] = np.nan
+    if "click_strength" not in rows:
+        rows["click_strength"] = 1.0
     empty = (rows["method"] == "").to_numpy()
     done, failed = rows[~empty].copy(), rows[empty]
     done["in_sample"] = done["in_sample"].astype(str) == "True"
@@ -141,7 +147,7 @@ def _resampled_mean(rng: np.random.Generator, values: Sequence[NDArray] | NDArra
 
 
 SEEDS = ["seed", "walk_seed"]  # sessions of one condition that differ in these only are pooled
-METHOD = ["method", "mapper", "n_clicks", "in_sample"]
+METHOD = ["method", "mapper", "n_clicks", "in_sample", "click_strength"]
 LABELS = ["session", "preset", "layout", "condition"]
 # Columns of an evaluation table that are not settings of a session.
 OTHERS = {
@@ -154,15 +160,17 @@ OTHERS = {
 def table(rows: pd.DataFrame, *, n_reference: int = 40) -> pd.DataFrame:
     """Summarise trials.
 
-    One row per session, method, mapper, clicks, in-sample or not, and number of bridging images;
-    and one for all sessions of a condition together if they differ in their seeds only (session:
-    `all N`). Differences of the volume error are paired: `vs_reference_...` to `n_reference` images
-    (same draw, offset 0), `vs_known_...` to calibration from all known points (same session, draw
-    and choice of scored points). `rows` are of `tidy`.
+    One row per session, method, mapper, clicks, in-sample or not, strength of click errors, and
+    number of bridging images; and one for all sessions of a condition together if they differ in
+    their seeds only (session: `all N`). Differences of the volume error are paired:
+    `vs_reference_...` to `n_reference` images (same draw, offset 0), `vs_known_...` to calibration
+    from all known points (same session, draw and choice of scored points). `rows` are of `tidy`.
     """
     known = rows[rows["method"] == "known"]
     most = known.groupby("session")["n_clicks"].transform("max")
-    to_known = against(rows, known[known["n_clicks"] == most], ["session", "in_sample", "draw"])
+    to_known = against(
+        rows, known[known["n_clicks"] == most], ["session", "in_sample", "click_strength", "draw"]
+    )
     rows = rows.assign(vs_reference=_to_reference(rows, n_reference), vs_known=to_known)
     settings = [name for name in rows if name not in OTHERS | {"vs_reference", "vs_known"}]
     keys = [*LABELS, *settings, *METHOD, "n_bridging"]
@@ -203,6 +211,7 @@ def _row(group: pd.DataFrame) -> dict:
         "xy_cm_p95": xy["p95"],
         "predicted_volume_cm_median": group["predicted_volume_cm"].median(),
         "coverage90": group["coverage90"].mean(),
+        "squared_ratio_median": group["squared_ratio"].median(),
         **_differences(group, "vs_reference"),
         **_differences(group, "vs_known"),
     }

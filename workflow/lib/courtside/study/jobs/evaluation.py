@@ -110,6 +110,7 @@ def _drawn_clicks(job: Job, labels: dict[str, str], keys: Iterable[str]) -> dict
             "preset": job.virtual["preset"],
             "session": session.name,
         },
+        "strengths": draws["click_strengths"],
         "sets": draws["sets"],
         **job.some("adjust_network", keys),
     }
@@ -138,7 +139,7 @@ def racket(job: Job) -> dict[str, Any]:
     """Return what is known of the clicks of court and racket."""
     settings, step = _drawn_clicks(job, {}, CLICK_KEYS), job.study.parameters["evaluate_racket"]
     clicks = {**settings["clicks"], "n_draws": step["n_runs"]}
-    del settings["sets"]
+    del settings["sets"], settings["strengths"]
     return {**settings, "clicks": clicks, "length_m": step["length_m"], "tips_px": step["tips_px"]}
 
 
