@@ -18,7 +18,8 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import problem, solver
 from courtside.calibration.bundle.problem import IMAGE, POSE, Network
 
-# Redundant observations that the priors count for; chosen on development halls (docs/measured.md).
+# Redundant observations that the priors count for. The first was chosen on small halls
+# (docs/measured.md); ASSUME: the two others, which were not varied.
 CLICKS_PRIOR = 1.0  # of all clicks together, about the stated sigma
 CAMERA_PRIOR = 4.0  # of one camera's clicks along one axis, about the factor of all clicks
 TIES_PRIOR = 6.0  # of the ties, about the spread of their residuals
