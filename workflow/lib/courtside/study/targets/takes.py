@@ -103,8 +103,8 @@ def every_comparison_of_views(study: Study) -> list[str]:
 def evaluations(study: Study, kind: str) -> list[str]:
     """Return the tables of one kind of error of all takes of virtual sessions.
 
-    Kinds: errors, reliability (of stated errors), kinematics, clocks (of cameras without a common
-    one), gains (between fusions).
+    Kinds: errors, angles, reliability (of stated errors), kinematics, clocks (of cameras without a
+    common one), gains (between fusions).
     """
     found = []
     for session, take in ((session, take) for session, take in study.takes() if session.virtual):
@@ -112,6 +112,8 @@ def evaluations(study: Study, kind: str) -> list[str]:
             found += files(paths.ERRORS, session, take)
         elif kind == "reliability":
             found += files(paths.RELIABILITY, session, take)
+        elif kind == "angles":
+            found += files(paths.ANGLE_ERRORS, session, take)
         elif kind == "clocks" and not take.synchronised:
             found += files(paths.CLOCK_ERRORS, session, take)
         elif kind == "kinematics":
