@@ -12,6 +12,7 @@ camera_sets: `compare`, `gains`: fewer cameras, and other fusions
 skin_depths: `estimate`: depth of joints behind the skin
 calibration: `of_ties`, `of_known`, `score`: one trial of calibration
 racket: `calibrate`, `measure`, `score`, `rows`: one trial of measuring a racket
+numbers: Numbers of the documents, and where each comes from
 tables: Tables of the study from these
 
 `config/README.md` describes the columns of their tables.

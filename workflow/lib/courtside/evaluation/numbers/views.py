@@ -1,0 +1,227 @@
+"""The tables of the documents: which columns each shows of a table of the register."""
+
+from courtside.evaluation.numbers.markers import View
+
+STAGES = ("raw", "filtered", "corrected")
+HALL, HALLS = "^`", "^all "
+FOUND = {"by": "{found.origin}", "with": "{found.command}"}
+
+
+def _walk(name: str) -> str:
+    return f"{{{name}}} / {{{name}_p95}} / {{{name}_points}}"
+
+
+def _interval(name: str) -> str:
+    return f"{{{name}}} ({{{name}_from}} to {{{name}_to}})"
+
+
+def _stages(pattern: str) -> dict[str, str]:
+    return {stage: pattern.replace("STAGE", stage) for stage in STAGES}
+
+
+VIEWS = {
+    "calibration": View(
+        "calibration",
+        {
+            "hall": "{row}",
+            "walk + 18 clicks": _walk("walk18"),
+            "walk + 3 clicks": _walk("walk3"),
+            "18 points, no walk": _walk("known18"),
+            "18 points, known lens": _walk("board18"),
+            "the published walk, re-enacted": _walk("paper"),
+            "its trials, failed": "{paper.n}, {paper.n_failed}",
+            "walk less 18 points, 95 % interval": _interval("walk18_less_known18"),
+        },
+        HALL,
+    ),
+    "calibration-halls": View(
+        "calibration",
+        {
+            "over": "{row}",
+            **{
+                words: f"{_interval(name)}, worst {{{name}_worst}}"
+                for name, words in {
+                    "walk18": "walk + 18 clicks",
+                    "walk3": "walk + 3 clicks",
+                    "known18": "18 points, no walk",
+                    "board18": "18 points, known lens",
+                    "paper": "the published walk, re-enacted",
+                }.items()
+            },
+            "walk + 18 less 18 points": _interval("walk18_less_known18"),
+            "walk + 3 less 18 points": _interval("walk3_less_known18"),
+        },
+        HALLS,
+    ),
+    "calibration-ways": View(
+        "calibration-ways",
+        {
+            "way; session": "{row}",
+            "trial RMS, median / 95 %": "{median} / {p95}",
+            "95 % of points, median trial": "{points}",
+            "X_o, Y_o on the floor, median": "{xy}",
+            "trials, failed": "{median.n}, {median.n_failed}",
+        },
+    ),
+    "calibration-growth": View(
+        "calibration-growth",
+        {
+            "session, images": "{row}",
+            "trial RMS, median / 95 %": "{median} / {p95}",
+            "maps with a result, %": "{solved}",
+            "stated 90 % hold, %": "{coverage}",
+            "trials, failed": "{median.n}, {median.n_failed}",
+        },
+    ),
+    "calibration-coverage": View(
+        "calibration",
+        {
+            "hall": "{row}",
+            "walk + 18 clicks, %": "{walk18_coverage}",
+            "walk + 8 clicks, %": "{walk8_coverage}",
+            "walk + 3 clicks, %": "{walk3_coverage}",
+            "trials": "{walk18_coverage.n}",
+        },
+        HALL,
+    ),
+    "capture": View(
+        "capture",
+        {
+            "setting: way": "{row}",
+            "trial RMS, median / 95 %, cm": "{median} / {p95}",
+            "trials, failed": "{median.n}, {median.n_failed}",
+        },
+    ),
+    "players-sessions": View(
+        "players-sessions",
+        {
+            "virtual session": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p95} ({STAGE_median_worst} / {STAGE_p95_worst})"),
+            "90 % hold, raw / filtered / corrected (least take), %": " / ".join(
+                f"{{{stage}_coverage}} ({{{stage}_least}})" for stage in STAGES
+            ),
+            "joints": "{raw_median.n}",
+        },
+    ),
+    "players": View(
+        "players",
+        {
+            "take: cameras, rule": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p95}"),
+            "90 % hold, raw / filtered / corrected, %": " / ".join(
+                f"{{{stage}_coverage}}" for stage in STAGES
+            ),
+            "missing, raw / corrected, %": "{raw_missing} / {corrected_missing}",
+            "joints": "{raw_median.n}",
+        },
+    ),
+    "players-measures": View(
+        "players-measures",
+        {
+            "take: cameras": "{row}",
+            "speed RMSE of neck, centre, mass, m/s": "{neck_speed}, {centre_speed}, {mass_speed}",
+            "stated 90 % of speeds hold, %": "{neck_held}, {centre_held}, {mass_held}",
+            "error of their distances, %": "{neck_far}, {centre_far}, {mass_far}",
+            "largest clock error, ms (within their 90 %, of)": (
+                "{clock} ({clocks_within}, {clocks})"
+            ),
+        },
+    ),
+    "angles": View(
+        "angles",
+        {
+            "angle, session": "{row}",
+            **{
+                f"{stage}: bias, RMSE, 90 % hold": (
+                    f"{{{stage}_bias}}, {{{stage}_rmse}}, {{{stage}_coverage}} %"
+                )
+                for stage in STAGES
+            },
+            "angles": "{raw_bias.n}",
+        },
+    ),
+    "footage": View(
+        "footage",
+        {
+            "footage, against which reference": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p90} / {STAGE_p95}"),
+            "joints": "{raw_median.n}",
+            "measured": "{raw_median.origin}",
+            "with": "{raw_median.command}",
+        },
+    ),
+    "racket": View(
+        "racket",
+        {
+            "session, ends": "{row}",
+            "authors: 8 points; walk": "{their8}; {their_walk}",
+            "re-enacted: 8 points (DLT); walk": "{dlt8}; {paper3}",
+            "8 known points": "{known8}",
+            "walk + 18 clicks": "{sfm18}",
+            "perfect cameras": "{perfect}",
+            "walk + 18 clicks over perfect": "{sfm18_ratio}",
+            "runs, failed": "{sfm18.n}, {sfm18.n_failed}",
+        },
+    ),
+    "published-walk": View(
+        "published-walk",
+        {
+            "session: calibrated from": "{row}",
+            "authors: at two of its own points": "{published}",
+            "re-enacted: there; over the volume": "{again_xy}; {again_volume}",
+            "its trials, failed": "{again_xy.n}, {again_xy.n_failed}",
+            "ours, 18 clicks: there; over the volume": "{here_xy}; {here_volume}",
+        },
+    ),
+    "table-1": View(
+        "table-1",
+        {"take, cameras: what": "{row}", "mean (sd)": "{mean} ({sd}) {mean.unit}"},
+    ),
+    "devices": View(
+        "devices",
+        {
+            "take: source": "{row}",
+            "in the body frame of its T-pose, median / 95 %": "{body_median} / {body_p95}",
+            "hips laid together, median / 95 %": "{root_median} / {root_p95}",
+            "joints": "{body_median.n}",
+        },
+    ),
+    "body-frames": View(
+        "body-frames",
+        {"take: source": "{row}", "angle, degrees": "{angle}", "unit, %": "{unit}"},
+    ),
+    **{
+        name: View(name, {"what": "{row}", "target": "{target}", "found": "{found}", **FOUND})
+        for name in ("real-checks", "device-checks")
+    },
+    "speed": View(
+        "speed",
+        {
+            "comparison, largest work": "{row}",
+            "here": "{found}",
+            "other": "{other}",
+            "other / here": "{ratio}",
+            **FOUND,
+        },
+    ),
+    "stages": View(
+        "stages",
+        {
+            "stage": "{row}",
+            "before": "{before}",
+            "after": "{found}",
+            "ratio": "{ratio}",
+            "profile before": "{profile_before}",
+            "profile after": "{profile_after}",
+            **FOUND,
+        },
+    ),
+    "faults": View(
+        "faults",
+        {"fault": "{row}", "times": "{times}", "survived": "{found}", **FOUND},
+    ),
+    "trust": View(
+        "trust",
+        {"what was done": "{row}", "times": "{times}", "what happened": "{found}", **FOUND},
+    ),
+}
