@@ -41,30 +41,43 @@ CAPTURE = ("way", "in_sample", "n", "p05", "median", "p95", "n_failed")  # no se
 OVER_HALLS = ("walk18", "walk8", "walk3", "known18", "board18", "paper")
 
 
-def trials(source: Source, sessions: Sequence[str]) -> pd.DataFrame:
-    """Return the trials of some sessions, calibrated from all points or the walk of 40 images.
+def trials(
+    source: Source, sessions: Sequence[str], n_images: str = str(N_REFERENCE)
+) -> pd.DataFrame:
+    """Return the trials of some sessions: all ways of `WAYS`, of walks the ones of `n_images`.
 
-    `part`: the way of `WAYS`; `hall`, `structure`; `value`: the error over the volume (cm), NaN
-    where the trial failed; `points`: its 95 % quantile over the points of the volume.
+    Scored at points that were calibrated from; the volume is the same for all. `part`: the way;
+    `hall`, `structure`; `value`: the error over the volume (cm), NaN where the trial failed;
+    `points`: its 95 % quantile over the points of the volume. Choices of images that turn out to be
+    the same are counted once.
     """
     parts = []
     for session in sessions:
-        names = source.names(f"{session}/evaluation/*-n{N_REFERENCE}-o*.csv")
+        names = source.names(f"{session}/evaluation/*-n{n_images}-o*.csv")
         names += source.names(f"{session}/evaluation/known.csv")
         rows = calibration.read([source.folder / name for name in names])
-        rows = rows[rows["in_sample"] & rows["n_bridging"].isin([np.nan, N_REFERENCE])]
+        rows = rows[rows["in_sample"]]
         for part, (method, mapper, n_clicks) in WAYS.items():
             of = calibration.pick(rows, method=method, mapper=mapper, n_clicks=n_clicks)
-            parts.append(of.assign(part=part))
+            alike = of.groupby("n_bridging", dropna=False, group_keys=False)
+            parts.append(alike[of.columns.tolist()].apply(_different).assign(part=part))
     rows = pd.concat(parts, ignore_index=True)
-    seed = rows["seed"].fillna("").astype(str) if "seed" in rows else ""
-    hall = rows["preset"] + " " + rows["layout"] + (" " + seed if "seed" in rows else "")
+    seed = rows["seed"].astype(object).fillna("").astype(str) if "seed" in rows else ""
     return rows.assign(
-        hall=hall,
+        hall=(rows["preset"] + " " + rows["layout"] + " " + seed).str.strip(),
         structure=rows["session"] + " " + rows["offset"].fillna(0).astype(str),
         value=rows["volume_rms_cm"].astype(float),
         points=rows["volume_p95_cm"].astype(float),
     )
+
+
+def _different(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return trials of one way without the choices of images that repeat another one."""
+    kept: dict[tuple, float] = {}
+    for offset, of in rows.groupby("offset", dropna=False):
+        key = tuple(of.sort_values("draw")["volume_rms_cm"].fillna(-1.0))
+        kept.setdefault(key if max(key) > 0 else (offset,), offset)
+    return rows[rows["offset"].isin(list(kept.values()))]
 
 
 def sessions(source: Source) -> list[str]:
@@ -118,6 +131,9 @@ def _difference(build: Builder, row: str, rows: pd.DataFrame, cut: Cut) -> None:
     for part in ("walk18", "walk3"):
         pairs = differences(rows, part)
         halls = [v.dropna().to_numpy() for _, v in pairs.groupby("hall")["value"]]
+        halls = [values for values in halls if len(values)]
+        if not halls:
+            continue
         low, high = intervals.bootstrap(pairs, intervals.mean)
         count: Settings = {"n": int(pairs["value"].notna().sum()), "unit": "cm"}
         count["n_failed"] = len(pairs) - count["n"]
@@ -172,21 +188,22 @@ def _one_way(build: Builder, row: str, part: str, of: pd.DataFrame, cut: Cut) ->
 
 def growth(source: Source) -> list[Number]:
     """Return the errors of the default method by the number of images of the walk."""
-    build, table = Builder("calibration-growth"), source.table(TABLE)
-    of = table[(table["method"] == "sfm") & (table["mapper"] == MAPPER) & table["in_sample"]]
-    of = of[of["condition"].isna() & (of["n_clicks"] == 18)]
-    for _, row in of.iterrows():
-        where = f"session {row['session']}, N = {row['n_bridging']:.0f}, sfm, global, 18, in-sample"
-        cut = Cut(source, TABLE, where, row["session"])
-        name = f"`{row['session']}`, N = {row['n_bridging']:.0f}"
-        count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
-        for part in ("median", "p95"):
-            column = f"volume_rms_cm_{part}"
-            build.add(name, part, row[column], cut, column, unit="cm", **count)
-        share = 100 * row["solved_share"]
-        build.add(name, "solved", share, cut, "solved_share", unit="%", decimals=0, **count)
-        covered = 100 * row["coverage90"]
-        build.add(name, "coverage", covered, cut, "coverage90", unit="%", decimals=0, **count)
+    build = Builder("calibration-growth")
+    for session in sessions(source):
+        rows = trials(source, [session], "*")
+        rows = rows[rows["part"] == "walk18"]
+        for n_images, of in rows.groupby("n_bridging"):
+            where = f"N = {n_images:.0f}, walk18, in-sample"
+            file = f"{session}/evaluation/{MAPPER}-n{n_images:.0f}-o*.csv"
+            cut = Cut(source, file, where, session)
+            name = f"`{session}`, {of['structure'].nunique()} x {n_images:.0f} images"
+            found = calibration.spread(of["value"])
+            count: Settings = {"n": found["n"], "n_failed": len(of) - found["n"]}
+            for part in ("median", "p95"):
+                build.add(name, part, found[part], cut, "volume_rms_cm", unit="cm", **count)
+            count |= {"unit": "%", "decimals": 0}
+            covered = 100 * of["coverage90"].mean()
+            build.add(name, "coverage", covered, cut, "coverage90: mean", **count)
     return build.numbers
 
 

@@ -107,14 +107,18 @@ class Source:
         whole = each[0] if len(each) == 1 else hashlib.sha256("".join(each).encode()).hexdigest()
         return whole[:DIGITS]
 
-    def _table(self, name: str) -> pd.DataFrame:
+    def texts(self, name: str) -> pd.DataFrame:
+        """Return a table as it is written: all cells are text, empty where nothing stands."""
+        return self._table(name, dtype=str, keep_default_na=False)
+
+    def _table(self, name: str, **how: Any) -> pd.DataFrame:
         path = self.folder / name
         if not path.is_file():
             raise InputError(
                 f"{path}: expected this table of a full default run, found none; run snakemake"
             )
         try:
-            return pd.read_csv(path, keep_default_na=True)
+            return pd.read_csv(path, **how)
         except DAMAGED as error:
             raise InputError(f"{path}: expected a table, found {error}; delete it") from error
 

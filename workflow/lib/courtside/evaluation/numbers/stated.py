@@ -18,7 +18,7 @@ def numbers(documents: Source, table: str) -> list[Number]:
     """
     found = []
     for file in documents.names(f"{FOLDER}/*.csv"):
-        rows = documents.table(file).fillna("").astype(str)
+        rows = documents.texts(file)
         if missing := {*COLUMNS, "command"} - set(rows):
             raise InputError(f"{file}: expected columns {sorted(missing)}, found none; add them")
         for at, row in enumerate(rows.to_dict("records"), start=2):

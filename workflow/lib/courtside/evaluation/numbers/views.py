@@ -66,9 +66,8 @@ VIEWS = {
     "calibration-growth": View(
         "calibration-growth",
         {
-            "session, images": "{row}",
+            "session, choices of images": "{row}",
             "trial RMS, median / 95 %": "{median} / {p95}",
-            "maps with a result, %": "{solved}",
             "stated 90 % hold, %": "{coverage}",
             "trials, failed": "{median.n}, {median.n_failed}",
         },
