@@ -5,8 +5,12 @@ import pytest
 from courtside.evaluation.numbers import calibration
 
 
-def test_every_hall_has_its_median_and_its_difference_to_points_alone(source, value):
-    found = calibration.calibrations(source)
+@pytest.fixture(scope="module")
+def found(source):
+    return calibration.calibrations(source)
+
+
+def test_every_hall_has_its_median_and_its_difference_to_points_alone(found, value):
     assert value(found, "`plain-a`", "walk18").printed == "0.65"
     assert value(found, "`plain-a`", "walk18").n == 4
     assert value(found, "`plain-a`", "walk18_points").printed == "1.50"
@@ -16,19 +20,17 @@ def test_every_hall_has_its_median_and_its_difference_to_points_alone(source, va
     assert low.value <= -0.35 <= high.value < 0
 
 
-def test_choices_of_images_that_are_the_same_count_once(source, value):
-    found = calibration.calibrations(source)
+def test_choices_of_images_that_are_the_same_count_once(found, value):
     assert value(found, "`plain-b`", "walk18").n == 2
     assert value(found, "`plain-b`", "walk18_less_known18").value == pytest.approx(0.1)
 
 
-def test_failed_trials_are_counted(source, value):
-    paper = value(calibration.calibrations(source), "`plain-a`", "paper")
+def test_failed_trials_are_counted(found, value):
+    paper = value(found, "`plain-a`", "paper")
     assert (paper.printed, paper.n, paper.n_failed) == ("20.00", 1, 1)
 
 
-def test_over_halls_the_worst_stands_beside_the_median(source, value):
-    found = calibration.calibrations(source)
+def test_over_halls_the_worst_stands_beside_the_median(found, value):
     assert value(found, "all 2 halls", "walk18").value == pytest.approx((0.65 + 1.1) / 2)
     assert value(found, "all 2 halls", "walk18_worst").value == pytest.approx(1.1)
     assert value(found, "all 2 halls", "walk18_less_known18").value == pytest.approx(-0.125)

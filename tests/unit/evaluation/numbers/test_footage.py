@@ -15,3 +15,12 @@ def test_each_reference_is_named_and_has_all_three_stages(source):
     assert len(rows) >= 3
     assert all(" against " in row for row in rows)
     assert all(stages == {"raw", "filtered", "corrected"} for stages in rows.values())
+
+
+def test_single_joints_and_fewer_cameras_are_shown(source, value):
+    found = footage.joints(source)
+    assert {n.row.split(",")[0] for n in found} == {"left elbow"}
+    assert value(found, "left elbow, `players-a/shot`", "corrected_median").printed == "20"
+    (row,) = {n.row for n in footage.views(source)}
+    assert row == "`walk-4cams/balancing`: 2 cameras, plain DLT"
+    assert value(footage.views(source), row, "exchanged").value == 31

@@ -37,11 +37,11 @@ def test_halls_that_differ_widen_the_interval_however_many_trials_they_have():
 
 def test_the_interval_over_halls_holds_the_true_mean_as_often_as_it_says():
     held = 0
-    for seed in range(100):
-        of = trials(20, structures=1, draws=5, hall_sd=1.0, seed=seed)
-        low, high = intervals.bootstrap(of, intervals.mean, replicates=200)
+    for seed in range(60):
+        of = trials(16, structures=1, draws=3, hall_sd=1.0, seed=seed)
+        low, high = intervals.bootstrap(of, intervals.mean, replicates=120)
         held += low <= 0 <= high
-    assert 85 <= held <= 99
+    assert 50 <= held <= 59
 
 
 def test_failed_trials_are_left_out_and_one_value_gives_no_interval():

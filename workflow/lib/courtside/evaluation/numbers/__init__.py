@@ -7,7 +7,7 @@ study: `numbers`, `write`, `filled`, `report`: all of them
 intervals: `bootstrap`: intervals over halls
 calibration: `calibrations`, `ways`, `growth`, `capture`
 players: `sessions`, `takes`, `angles`, `measures`
-footage: `corrections`: raw and corrected joints, real beside virtual
+footage: `corrections`, `joints`, `views`: raw and corrected joints, real beside virtual
 published: `walk`, `racket`, `round_trip`
 devices: `sources`, `body_frames`
 stated: `numbers`: measured by hand or by benchmarks, or published by others

@@ -41,8 +41,8 @@ def bootstrap(
 
 
 def _resample(rng: np.random.Generator, structures: Sequence[NDArray]) -> NDArray:
-    drawn = rng.integers(len(structures), size=len(structures))
-    return np.concatenate([rng.choice(structures[at], len(structures[at])) for at in drawn])
+    drawn = [structures[at] for at in rng.integers(len(structures), size=len(structures))]
+    return np.concatenate([of[rng.integers(len(of), size=len(of))] for of in drawn])
 
 
 def mean(halls: Sequence[NDArray]) -> float:

@@ -28,6 +28,8 @@ MEASURED = (  # of the results of a default run
     players.takes,
     players.angles,
     players.measures,
+    footage.joints,
+    footage.views,
     published.walk,
     published.racket,
     published.round_trip,

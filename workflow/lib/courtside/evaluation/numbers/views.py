@@ -149,6 +149,26 @@ VIEWS = {
             "with": "{raw_median.command}",
         },
     ),
+    "joints": View(
+        "joints",
+        {
+            "joint, take": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p95}"),
+            "90 % hold, raw / filtered / corrected, %": " / ".join(
+                f"{{{stage}_coverage}}" for stage in STAGES
+            ),
+            "n": "{raw_median.n}",
+        },
+    ),
+    "views": View(
+        "views",
+        {
+            "take: cameras, rule": "{row}",
+            "from all cameras, median / 95 %, mm": "{median} / {p95}",
+            "left and right exchanged, % of frames": "{exchanged}",
+            "joints": "{median.n}",
+        },
+    ),
     "racket": View(
         "racket",
         {
