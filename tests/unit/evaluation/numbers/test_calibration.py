@@ -15,7 +15,6 @@ def test_every_hall_has_its_median_and_its_difference_to_points_alone(found, val
     assert value(found, "`plain-a`", "walk18").n == 4
     assert value(found, "`plain-a`", "walk18_points").printed == "1.50"
     assert value(found, "`plain-a`", "walk18_less_known18").value == pytest.approx(-0.35)
-    assert value(found, "`plain-a`", "walk18_coverage").printed == "80"
     low, high = (value(found, "`plain-a`", f"walk18_less_known18_{end}") for end in ("from", "to"))
     assert low.value <= -0.35 <= high.value < 0
 
@@ -46,3 +45,12 @@ def test_ways_growth_and_capture_take_all_sessions(source, value):
     assert value(growth, "`plain-b`, 1 x 40", "p95").n == 2
     (row,) = {n.row for n in calibration.capture(source)}
     assert row == "baseline_deg 15: control points (scored points left out)"
+
+
+def test_the_scatter_of_clicks_has_its_errors_and_coverage(source, value):
+    found = calibration.strengths(source)
+    shown = [value(found, f"`plain-a`, scatter x{s}", "walk18_coverage").printed for s in (1, 3)]
+    assert shown == ["85", "25"]
+    table = source.table(calibration.TABLE)
+    assert set(calibration.usual(table)["click_strength"]) == {1}
+    assert len(calibration.usual(table.drop(columns="click_strength"))) == len(table)

@@ -80,3 +80,15 @@ def test_texts_are_read_as_they_stand(tmp_path):
     (tmp_path / "t.csv").write_text("printed,n\n86.0,12\n-,\n")
     rows = register.Source(tmp_path).texts("t.csv")
     assert rows.to_numpy().tolist() == [["86.0", "12"], ["-", ""]]
+
+
+def test_a_summary_is_listed_row_by_row(tmp_path):
+    table = pd.DataFrame({"who": ["a", "b"], "error_mm": [1.25, 2.0], "n": [3, 4]})
+    table.to_csv(tmp_path / "t.csv", index=False)
+    cut = register.Cut(register.Source(tmp_path), "t.csv", "by who", "s")
+    rows = {row["who"]: row for _, row in table.iterrows()}
+    found = register.listed(cut, "who", rows, {"error": ("error_mm", 1, "mm")})
+    assert [(n.name, n.printed, n.n) for n in found] == [
+        ("who/error/a", "1.2", 3),
+        ("who/error/b", "2.0", 4),
+    ]

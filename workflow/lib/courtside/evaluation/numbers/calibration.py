@@ -114,10 +114,6 @@ def _one(build: Builder, row: str, part: str, of: pd.DataFrame, cut: Cut) -> Non
     build.add(row, f"{part}_p95", found["p95"], cut, f"{where}: 95 % of trials", **count)
     points = of["points"].median()
     build.add(row, f"{part}_points", points, cut, f"{part}, volume_p95_cm: median", **count)
-    if of["coverage90"].notna().any():
-        percent, where = 100 * of["coverage90"].mean(), f"{part}, coverage90: mean"
-        more: Settings = {**count, "unit": "%", "decimals": 0}
-        build.add(row, f"{part}_coverage", percent, cut, where, **more)
 
 
 def differences(rows: pd.DataFrame, part: str = "walk18") -> pd.DataFrame:
@@ -204,6 +200,33 @@ def growth(source: Source) -> list[Number]:
             count |= {"unit": "%", "decimals": 0}
             covered = 100 * of["coverage90"].mean()
             build.add(name, "coverage", covered, cut, "coverage90: mean", **count)
+    return build.numbers
+
+
+def usual(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of the calibration table whose clicks scatter as usual."""
+    return table[table["click_strength"] == 1] if "click_strength" in table else table
+
+
+def strengths(source: Source) -> list[Number]:
+    """Return errors and coverage by the scatter of the clicks, where it was varied."""
+    build, table = Builder("calibration-strengths"), source.table(TABLE)
+    table = table[table["condition"].isna() & table["in_sample"]]
+    table = table[table["n_bridging"].isna() | (table["n_bridging"] == N_REFERENCE)]
+    table = table.assign(strength=table.get("click_strength", 1.0))
+    key = table["method"] + table["mapper"].fillna("") + table["n_clicks"].astype(str)
+    for part in ("walk18", "walk8", "walk3", "known18"):
+        of = table[key == "".join(map(str, WAYS[part]))]
+        for _, row in of.sort_values(["session", "strength"], kind="stable").iterrows():
+            cut = Cut(source, TABLE, f"{row['session']}, {part}, N = 40, in-sample", row["session"])
+            name = f"`{row['session']}`, scatter x{row['strength']:g}"
+            count: Settings = {"n": row["n"], "n_failed": row["n_failed"]}
+            for end in ("median", "p95"):
+                column = f"volume_rms_cm_{end}"
+                build.add(name, f"{part}_{end}", row[column], cut, column, unit="cm", **count)
+            more: Settings = {**count, "decimals": 0, "unit": "%"}
+            covered = 100 * row["coverage90"]
+            build.add(name, f"{part}_coverage", covered, cut, "coverage90", **more)
     return build.numbers
 
 

@@ -1,6 +1,6 @@
 """Numbers of one camera and devices: errors of inertial suits and depth, as they are, corrected."""
 
-from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source, listed
 
 ALIGNMENTS = {"body_frame": "body", "root_relative": "root"}  # of the evaluation: part
 
@@ -27,12 +27,9 @@ def sources(source: Source) -> list[Number]:
 
 def body_frames(source: Source) -> list[Number]:
     """Return how far the body frame of each source's T-pose is from the true one."""
-    build = Builder("body-frames")
+    found, shown = [], {"angle": ("angle_deg", 1, "degrees"), "unit": ("unit_percent", 1, "%")}
     for file in source.names("*/evaluation/takes/*/body_frames/*.csv"):
-        parts = file.split("/")
-        for _, row in source.table(file).iterrows():
-            cut = Cut(source, file, f"source {row['source']}", parts[0])
-            name = f"`{parts[0]}/{parts[3]}`: `{row['source']}`"
-            build.add(name, "angle", row["angle_deg"], cut, "angle_deg", decimals=1, unit="degrees")
-            build.add(name, "unit", row["unit_percent"], cut, "unit_percent", decimals=1, unit="%")
-    return build.numbers
+        parts, table = file.split("/"), source.table(file)
+        rows = {f"`{parts[0]}/{parts[3]}`: `{row['source']}`": row for _, row in table.iterrows()}
+        found += listed(Cut(source, file, "by source", parts[0]), "body-frames", rows, shown)
+    return found

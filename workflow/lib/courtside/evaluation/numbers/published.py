@@ -54,7 +54,7 @@ def _nearest(source: Source, session: str, n_images: float) -> float:
 
 
 def _again(build: Builder, name: str, source: Source, session: str, n_images: float | None) -> None:
-    table = source.table(calibration.TABLE)
+    table = calibration.usual(source.table(calibration.TABLE))
     table = table[(table["session"] == session) & table["in_sample"]]
     ways = {"again": "paper3incremental", "here": "sfm18global"}
     if n_images is None:

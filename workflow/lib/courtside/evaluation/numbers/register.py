@@ -4,7 +4,7 @@ import csv
 import hashlib
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
@@ -184,6 +184,23 @@ class Builder:
                 sha256=cut.source.sha256(cut.file),
             )
         )
+
+
+def listed(
+    cut: Cut, table: str, rows: Mapping[str, pd.Series], parts: Mapping[str, tuple[str, int, str]]
+) -> list[Number]:
+    """Return the numbers of a summary table: `rows` by their labels, all of one source.
+
+    `parts` maps each part to its column, decimals and unit; n and n_failed are those of the row,
+    where it has them.
+    """
+    build = Builder(table)
+    for label, row in rows.items():
+        counts = {key: row[key] for key in ("n", "n_failed") if key in row}
+        for part, (column, decimals, unit) in parts.items():
+            more: Settings = {"decimals": decimals, "unit": unit, **counts}
+            build.add(label, part, row[column], cut, f"{label}; {column}", **more)
+    return build.numbers
 
 
 def printed(value: float, decimals: int) -> str:

@@ -23,6 +23,7 @@ MEASURED = (  # of the results of a default run
     calibration.calibrations,
     calibration.ways,
     calibration.growth,
+    calibration.strengths,
     calibration.capture,
     players.sessions,
     players.takes,

@@ -72,16 +72,21 @@ VIEWS = {
             "trials, failed": "{median.n}, {median.n_failed}",
         },
     ),
-    "calibration-coverage": View(
-        "calibration",
+    "calibration-strengths": View(
+        "calibration-strengths",
         {
-            "hall": "{row}",
-            "walk + 18 clicks, %": "{walk18_coverage}",
-            "walk + 8 clicks, %": "{walk8_coverage}",
-            "walk + 3 clicks, %": "{walk3_coverage}",
-            "trials": "{walk18_coverage.n}",
+            "session, clicks": "{row}",
+            **{
+                words: f"{{{part}_median}} / {{{part}_p95}}; {{{part}_coverage}} %"
+                for part, words in {
+                    "walk18": "walk + 18 clicks",
+                    "walk8": "walk + 8 clicks",
+                    "walk3": "walk + 3 clicks",
+                }.items()
+            },
+            "18 points, no walk": "{known18_median} / {known18_p95}",
+            "trials": "{walk18_median.n}",
         },
-        HALL,
     ),
     "capture": View(
         "capture",
