@@ -1,12 +1,15 @@
 """The tables of README.md and docs/measured.md are what the register of numbers gives."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from courtside.evaluation.numbers import markers, register, study
 from courtside.evaluation.numbers.views import VIEWS
+from fixtures.study import results_made
 
 ROOT = Path(__file__).parents[1]
 MEASURED = r"\d (%|mm|cm|m/s|px|us|s)\b|\d / \d"  # values as tables of results show them
@@ -45,3 +48,27 @@ def test_numbers_by_hand_are_those_of_their_tables():
     for number in NUMBERS:
         if number.source.startswith("docs/"):
             assert number.sha256 == documents.sha256(number.source), number.source
+
+
+def program(path, *words):
+    command = [sys.executable, str(ROOT / path), *map(str, words)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_verify_study_lists_the_numbers_that_other_results_change(tmp_path):
+    results_made.write(tmp_path / "results")
+    done = program("workflow/verify_study.py", "--directory", tmp_path, "--numbers")
+    assert (done.returncode, done.stderr) == (1, "")
+    printed = next(n.printed for n in NUMBERS if n.name == WALK)
+    assert f"{WALK}: printed {printed}, would be 0.65" in done.stdout.splitlines()
+
+
+def test_results_that_lack_a_table_change_nothing_and_are_told_in_one_line(tmp_path):
+    before = (ROOT / study.REGISTER).read_bytes()
+    done = program("docs/make_tables.py", tmp_path)
+    assert done.returncode == 1 and (ROOT / study.REGISTER).read_bytes() == before
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("Error: ") and "figures/calibration.csv" in line
+
+
+WALK = "calibration/walk18/`plain-a` (plain hall, layout a)"
