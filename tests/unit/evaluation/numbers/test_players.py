@@ -40,3 +40,8 @@ def test_measures_are_of_the_furthest_person_and_the_clocks_of_the_take(source, 
     assert value(found, "`players-b/footwork`", "neck_held").printed == "70"
     assert value(found, "`players-b/footwork`", "clock").printed == "-2.5"
     assert value(found, "`players-b/footwork`", "clocks_within").printed == "2"
+
+
+def test_a_rule_without_words_is_shown_by_its_name():
+    assert players.words("all-robust") == "all cameras"
+    assert players.words("five-robust") == "`five-robust`"

@@ -1,6 +1,8 @@
 """Published numbers stand beside a re-enactment, never instead of it."""
 
-from courtside.evaluation.numbers import published
+from pathlib import Path
+
+from courtside.evaluation.numbers import published, register
 from courtside.evaluation.numbers.register import PUBLISHED, STUDY
 
 
@@ -30,3 +32,12 @@ def test_table_1_is_of_all_joints_together(source, value):
     assert (
         value(found, "`players-b/footwork`, 4 cameras: distance to the truth", "mean").value == 50.8
     )
+
+
+def test_the_authors_table_1_is_the_mean_over_their_joints(value):
+    documents = register.Source(Path(__file__).parents[4])
+    found = published.table_1(documents)
+    assert [(n.printed, n.n, n.origin) for n in found] == [
+        ("2.72", 14, PUBLISHED),
+        ("0.81", 14, PUBLISHED),
+    ]

@@ -15,6 +15,9 @@ def repository(tmp_path):
     """Return a repository with the tables by hand, and documents with one table each."""
     folder = tmp_path / "docs" / "numbers"
     folder.mkdir(parents=True)
+    (tmp_path / "config" / "published").mkdir(parents=True)
+    theirs = Path("config/published/badminton_tab01.csv")
+    (tmp_path / theirs).write_text((ROOT / theirs).read_text())
     for path in (ROOT / "docs" / "numbers").glob("*.csv"):
         (folder / path.name).write_text(path.read_text())
     for name, table in (("README.md", "racket"), ("docs/measured.md", "angles")):

@@ -35,7 +35,7 @@ def views(source: Source) -> list[Number]:
         table, parts = source.table(file), file.split("/")
         for _, row in table[table["joint"] == "limbs"].iterrows():
             cut = Cut(source, file, f"fusion {row['fusion']}, joint limbs", parts[0])
-            name = f"`{parts[0]}/{parts[2]}`: {players.FUSIONS[row['fusion']]}"
+            name = f"`{parts[0]}/{parts[2]}`: {players.words(row['fusion'])}"
             more: Settings = {"decimals": 0, "unit": "mm", "n": row["n"]}
             build.add(name, "median", row["median_mm"], cut, "median_mm", **more)
             build.add(name, "p95", row["p95_mm"], cut, "p95_mm", **more)

@@ -19,6 +19,13 @@ FUSIONS = {  # of a set of cameras and a rule
     "two-dlt": "2 cameras, plain DLT",
     "two-unsteady": "2 cameras, shake left as it is",
 }
+
+
+def words(fusion: str) -> str:
+    """Return what a set of cameras and a rule is called; its own name where it has no other."""
+    return FUSIONS.get(fusion, f"`{fusion}`")
+
+
 PER_STAGE = {  # part: column, decimals, unit
     "median": ("median_mm", 0, "mm"),
     "p95": ("p95_mm", 0, "mm"),
@@ -30,10 +37,12 @@ PER_STAGE = {  # part: column, decimals, unit
 def takes(source: Source) -> list[Number]:
     """Return the errors of joints of every take and rule: raw, filtered and corrected."""
     build, table = Builder("players"), source.table(TABLE)
-    table = table.assign(order=table["fusion"].map({f: i for i, f in enumerate(FUSIONS)}))
+    table = table.assign(
+        order=table["fusion"].map({f: i for i, f in enumerate(FUSIONS)}).fillna(len(FUSIONS))
+    )
     key = ["session", "take", "calibration", "model", "order", "fusion"]
     for (session, take, calibration, model, _, fusion), of in table.groupby(key, sort=True):
-        row = f"`{session}/{take}`: {FUSIONS[fusion]}"
+        row = f"`{session}/{take}`: {words(fusion)}"
         row += "" if model == "blazepose-full" else f" ({model})"
         for _, one in of.iterrows():
             where = f"{session}/{take}, {calibration}, {model}, {fusion}, stage {one['stage']}"
@@ -79,14 +88,16 @@ def angles(source: Source) -> list[Number]:
     build, table = Builder("angles"), source.table(ANGLES)
     table = table[table["fusion"] == OURS]
     for (angle, session, model), of in table.groupby(["angle", "session", "model"], sort=False):
-        words = str(angle).replace("_", " ")
-        row = f"{words}, `{session}`" + ("" if model == "blazepose-full" else f" ({model})")
+        row = f"{str(angle).replace('_', ' ')}, `{session}`" + (
+            "" if model == "blazepose-full" else f" ({model})"
+        )
         for stage in STAGES:
             one = of[(of["stage"] == stage) & (of["n"] > 0)]
             if len(one):
                 where = f"{session}, {model}, {OURS}, {angle}, stage {stage}"
                 _of_angle(build, row, stage, one, Cut(source, ANGLES, where, session))
-    build.numbers.sort(key=lambda number: ORDER.index(number.row.split(",")[0]))
+    order = {name: at for at, name in enumerate(ORDER)}
+    build.numbers.sort(key=lambda number: order.get(number.row.split(",")[0], len(order)))
     return build.numbers
 
 
@@ -128,7 +139,7 @@ def measures(source: Source) -> list[Number]:
     for file in source.names("*/evaluation/takes/*/kinematics/*/*-robust/blazepose-full.csv"):
         parts, rows = file.split("/"), source.table(file)
         session, take, fusion = parts[0], parts[3], parts[6]
-        row = f"`{session}/{take}`: {FUSIONS[fusion]}"
+        row = f"`{session}/{take}`: {words(fusion)}"
         for point, of in rows.groupby("point", sort=False):
             for part, (column, decimals, unit) in PATHS.items():
                 cut = Cut(source, file, f"{point}, furthest person", session)

@@ -5,6 +5,7 @@ import pandas as pd
 from courtside.evaluation.numbers import calibration
 from courtside.evaluation.numbers.register import PUBLISHED, Builder, Cut, Number, Settings, Source
 
+TABLE_1 = "config/published/badminton_tab01.csv"
 RACKET = "figures/badminton_fig12.csv"
 RACKETS = ("sfm18", "known8", "dlt8", "paper3", "perfect")  # way and number of clicks
 THEIRS = {"8-point": "their8", "SfM": "their_walk"}  # of the published values: part
@@ -106,4 +107,15 @@ def round_trip(source: Source) -> list[Number]:
             cut = Cut(source, file, where, parts[0])
             for part in ("mean", "sd"):
                 build.add(name, part, row[part], cut, part, unit=row["unit"], n=row["n"])
+    return build.numbers
+
+
+def table_1(documents: Source) -> list[Number]:
+    """Return the authors' table 1, the mean over their joints, from the repository's copy."""
+    table = documents.table(TABLE_1)
+    build, cut = Builder("table-1"), Cut(documents, TABLE_1, "all joints", "")
+    more: Settings = {"unit": "mm", "n": len(table), "origin": PUBLISHED}
+    for part, column in (("published", "mean_mm"), ("published_sd", "sd_mm")):
+        name = "the authors' table 1, called reprojection error"
+        build.add(name, part, table[column].mean(), cut, f"{column}: mean", **more)
     return build.numbers

@@ -49,6 +49,7 @@ def numbers(results: str | os.PathLike, repository: str | os.PathLike) -> list[N
     if not source.folder.is_dir():
         raise InputError(f"{results}: expected a folder of results, found none; run snakemake")
     found = [number for table in MEASURED for number in table(source)]
+    found += published.table_1(documents)
     found += footage.corrections(source, documents)
     return found + [number for table in STATED for number in stated.numbers(documents, table)]
 

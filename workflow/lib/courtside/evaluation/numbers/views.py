@@ -199,7 +199,11 @@ VIEWS = {
     ),
     "table-1": View(
         "table-1",
-        {"take, cameras: what": "{row}", "mean (sd)": "{mean} ({sd}) {mean.unit}"},
+        {
+            "take, cameras: what": "{row}",
+            "authors": "{published} ({published_sd}) {published.unit}",
+            "here, mean (sd)": "{mean} ({sd}) {mean.unit}",
+        },
     ),
     "devices": View(
         "devices",
