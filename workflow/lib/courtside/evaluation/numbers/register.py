@@ -3,7 +3,6 @@
 import csv
 import hashlib
 import math
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
@@ -12,7 +11,7 @@ from typing import Any, TypeAlias
 
 import pandas as pd
 
-from courtside.study.errors import DAMAGED, InputError
+from courtside.study.errors import DAMAGED, InputError, StrPath
 from courtside.study.execution import files
 
 STUDY, BENCHMARK, BY_HAND, PUBLISHED = "study", "benchmark", "by hand", "published"
@@ -52,7 +51,7 @@ NAMED = ("table", "part", "row")  # make the name, in this order; a row may hold
 COLUMNS = ["name", *(field.name for field in fields(Number) if field.name not in NAMED)]
 
 
-def write(path: str | os.PathLike, numbers: Sequence[Number]) -> None:
+def write(path: StrPath, numbers: Sequence[Number]) -> None:
     """Write a register; an `InputError` where two numbers have one name."""
     names = [number.name for number in numbers]
     if twice := sorted({name for name in names if names.count(name) > 1}):
@@ -71,7 +70,7 @@ def _text(value: object) -> str:
     return f"{value:.{KEPT}g}" if isinstance(value, float) else str(value)
 
 
-def read(path: str | os.PathLike) -> list[Number]:
+def read(path: StrPath) -> list[Number]:
     """Read a register; an `InputError` where it is damaged."""
     try:
         with Path(path).open(newline="", encoding="utf-8") as stream:
@@ -96,7 +95,7 @@ class Source:
     A file that is missing is an `InputError` that names it.
     """
 
-    def __init__(self, folder: str | os.PathLike) -> None:
+    def __init__(self, folder: StrPath) -> None:
         self.folder = Path(folder)
         self.table = cache(self._table)
         self.sha256 = cache(self._sha256)

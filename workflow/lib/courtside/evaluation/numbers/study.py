@@ -1,6 +1,5 @@
 """All numbers of the documents: one function for each table of the register."""
 
-import os
 from pathlib import Path
 
 from courtside.evaluation.numbers import (
@@ -15,7 +14,7 @@ from courtside.evaluation.numbers import (
 )
 from courtside.evaluation.numbers.register import Number, Source
 from courtside.evaluation.numbers.views import VIEWS
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 REGISTER = "docs/numbers.csv"
 DOCUMENTS = ("README.md", "docs/measured.md")
@@ -40,7 +39,7 @@ MEASURED = (  # of the results of a default run
 STATED = (*("real-checks", "device-checks", "speed", "stages", "faults", "trust"),)
 
 
-def numbers(results: str | os.PathLike, repository: str | os.PathLike) -> list[Number]:
+def numbers(results: StrPath, repository: StrPath) -> list[Number]:
     """Return all numbers, of the results of a full default run and of the repository's tables.
 
     An `InputError` names the first file that the results lack.
@@ -54,7 +53,7 @@ def numbers(results: str | os.PathLike, repository: str | os.PathLike) -> list[N
     return found + [number for table in STATED for number in stated.numbers(documents, table)]
 
 
-def write(numbers_: list[Number], repository: str | os.PathLike) -> list[str]:
+def write(numbers_: list[Number], repository: StrPath) -> list[str]:
     """Write the register and the tables of the documents; return the files that changed."""
     changed = []
     path = Path(repository) / REGISTER
@@ -69,13 +68,13 @@ def write(numbers_: list[Number], repository: str | os.PathLike) -> list[str]:
     return changed
 
 
-def filled(numbers_: list[Number], repository: str | os.PathLike) -> dict[str, str]:
+def filled(numbers_: list[Number], repository: StrPath) -> dict[str, str]:
     """Return the documents with the tables that a register gives, by their names."""
     texts = {name: (Path(repository) / name).read_text(encoding="utf-8") for name in DOCUMENTS}
     return {name: markers.fill(text, VIEWS, numbers_) for name, text in texts.items()}
 
 
-def report(results: str | os.PathLike, repository: str | os.PathLike) -> list[str]:
+def report(results: StrPath, repository: StrPath) -> list[str]:
     """Return a line for every number of the register that these results do not give any more."""
     kept = register.read(Path(repository) / REGISTER)
     return register.stale(kept, numbers(results, repository))

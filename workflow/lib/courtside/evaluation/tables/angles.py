@@ -1,18 +1,18 @@
 """The table of joint angles: errors of simulated takes, both sides and all persons together."""
 
-import os
 from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
 from courtside.evaluation.tables import players
+from courtside.study.errors import StrPath
 
 ROW = [*players.KEY, "stage", "angle"]
 MEASURES = ["bias_deg", "rmse_deg", "p95_deg", "sigma_deg", "within_90_percent"]
 
 
-def read(paths: Sequence[str | os.PathLike]) -> pd.DataFrame:
+def read(paths: Sequence[StrPath]) -> pd.DataFrame:
     """Read tables of `evaluate_angles` into one."""
     return pd.concat([pd.read_csv(path) for path in paths], ignore_index=True)
 
