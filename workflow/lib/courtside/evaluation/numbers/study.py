@@ -36,7 +36,7 @@ MEASURED = (  # of the results of a default run
     devices.sources,
     devices.body_frames,
 )
-STATED = (*("real-checks", "device-checks", "speed", "stages", "faults", "trust"),)
+STATED = (*("real-checks", "device-checks", "stated-errors", "speed", "stages", "faults", "trust"),)
 
 
 def numbers(results: StrPath, repository: StrPath) -> list[Number]:

@@ -222,6 +222,16 @@ VIEWS = {
         name: View(name, {"what": "{row}", "target": "{target}", "found": "{found}", **FOUND})
         for name in ("real-checks", "device-checks")
     },
+    "stated-errors": View(
+        "stated-errors",
+        {
+            "90 % ellipsoids hold, %": "{row}",
+            "target": "{target}",
+            **_stages("{STAGE}"),
+            "by": "{raw.origin}",
+            "with": "{raw.command}",
+        },
+    ),
     "speed": View(
         "speed",
         {
