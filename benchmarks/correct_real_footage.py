@@ -1,6 +1,6 @@
 """Compare the real take `walk-4cams` with the other program's result: raw, filtered, corrected.
 
-    python benchmarks/real_footage.py RECORDINGS [--results results]
+    python benchmarks/correct_real_footage.py RECORDINGS [--results results]
 
 RECORDINGS is a folder with `trc/Balancing_for_IK.trc` of the same videos, as Pose2Sim's
 demonstration made it from OpenPose's keypoints: another markerless result with other joint
@@ -23,7 +23,7 @@ from courtside.records.keypoints import keypoints, skeleton
 TAKE = "walk-4cams/takes/balancing/{stage}/file/all-robust/blazepose-full.npz"
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 LABEL = "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC (no truth)"
-COMMAND = "`python benchmarks/real_footage.py`"
+COMMAND = "`python benchmarks/correct_real_footage.py`"
 COLUMNS = ["table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin"]
 
 
