@@ -11,6 +11,10 @@ otherwise.
 Two machines that cannot reach each other's files compare checksums: `--write-checksums TABLE.csv`
 on one of them, `--against TABLE.csv` on the other. It counts the files of each stage that are
 bit-equal and names the first stage that is not.
+
+It also counts the numbers of README.md and docs/measured.md that these results would change;
+`--numbers` lists them, as they are printed and as they would be, and its exit status is 1 if there
+is one.
 """
 
 import argparse
@@ -21,6 +25,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
+from courtside.evaluation.numbers import study as numbers
 from courtside.study.errors import InputError
 from courtside.study.provenance import comparison, stage_checksums, verification
 
@@ -31,7 +36,8 @@ def main(against):
     """Return (lines to print, number of files that are otherwise)."""
     check_results()
     if against is None:
-        return verification.report(RESULTS / "run", RESULTS, REPOSITORY)
+        lines, n_faults = verification.report(RESULTS / "run", RESULTS, REPOSITORY)
+        return [*lines, numbers_in_short()], n_faults
     if against.is_file():
         return stage_checksums.table(
             stage_checksums.measure(RESULTS), stage_checksums.read(against)
@@ -54,6 +60,27 @@ def check_results():
         )
 
 
+def numbers_in_short():
+    """Return how many numbers of the documents are stale; other studies than the default have none.
+
+    They are no fault of the results: the documents are of another run.
+    """
+    try:
+        n_stale = len(numbers.report(RESULTS, REPOSITORY))
+    except (InputError, OSError) as error:
+        return f"{numbers.REGISTER}: not checked, for it is of a full default run: {error}"
+    return f"{numbers.REGISTER}: {n_stale} numbers would be otherwise" + (
+        "; --numbers lists them" if n_stale else ""
+    )
+
+
+def stale_numbers():
+    """Return (a line for each stale number, their number)."""
+    check_results()
+    lines = numbers.report(RESULTS, REPOSITORY)
+    return lines or [f"{numbers.REGISTER}: all numbers are those of these results"], len(lines)
+
+
 def write_checksums(table):
     """Write the table to compare another machine's results with; return (lines to print, 0)."""
     check_results()
@@ -69,12 +96,18 @@ if __name__ == "__main__":
         "--against", type=Path, help="another results folder, or a table of its checksums"
     )
     parser.add_argument("--write-checksums", type=Path, help="write such a table (CSV), and end")
+    parser.add_argument(
+        "--numbers", action="store_true", help="list the stale numbers of the documents, and end"
+    )
     given = parser.parse_args()
     other = given.against.resolve() if given.against else None
     table = given.write_checksums.resolve() if given.write_checksums else None
     try:
         os.chdir(given.directory)
-        lines, n_faults = write_checksums(table) if table else main(other)
+        if given.numbers:
+            lines, n_faults = stale_numbers()
+        else:
+            lines, n_faults = write_checksums(table) if table else main(other)
     except (InputError, OSError) as error:
         sys.exit(f"Error: {error}")
     print("\n".join(lines))

@@ -48,7 +48,9 @@ PLACES = {
     "*/evaluation/takes/*/sources/*.true_distortion.csv": [DISTORTION, *SOURCE],
     **{
         f"*/evaluation/takes/*/{table}/*.csv": [f"{TAKES} | {table}", LABELS]
-        for table in ("errors", "gains", "clocks", "kinematics", "detection", "round_trip")
+        for table in (
+            *("errors", "gains", "clocks", "kinematics", "angles", "detection", "round_trip"),
+        )
     },
     "*/evaluation/racket.csv": [f"{TAKES} | evaluation/racket.csv", OF_CALIBRATION],
     "*/evaluation/joint_offsets.*.csv": [f"{TAKES} | joint_offsets"],
@@ -62,6 +64,8 @@ PLACES = {
     "*/takes/*/pose3d*/*.csv": [TIDY],
     "figures/calibration.csv": [f"{TOGETHER} | calibration.csv", OF_CALIBRATION],
     "figures/players.csv": [f"{TOGETHER} | players.csv", f"{TAKES} | errors", LABELS],
+    "figures/angles.csv": [f"{TOGETHER} | {end}.csv" for end in ("angles", "players")]
+    + [f"{TAKES} | errors", LABELS],
     "figures/clock_errors.csv": [f"{TOGETHER} | clock_errors.csv", f"{TAKES} | clocks", LABELS],
     "figures/reliability.csv": [
         f"{TOGETHER} | reliability.csv",

@@ -72,12 +72,14 @@ PLAYERS_FUSED = {
     "measure_kinematics": 2 + 4,  # the exported way in both takes, the others where they are drawn
     "evaluate_kinematics": 2 + 4,
     "evaluate_take": 2,
+    "evaluate_angles": 2,
     "evaluate_fusions": 2 * 2,  # raw and corrected
     "evaluate_round_trip": 1,
     "evaluate_detection": 1,  # fig 5 is of one take
     "build_viewer": 2,
     "compare_sessions": 1,
     "tabulate_players": 1,
+    "tabulate_angles": 1,
     "draw_three_cameras": 1,
     "draw_shake": 1,  # of the take that is steadied, over its skeleton
     **{f"draw_badminton_{name}": 1 for name in ("fig05", "fig09", "fig10", "fig11", "tab01")},
@@ -272,7 +274,8 @@ def test_a_take_that_is_removed_reruns_the_tables_that_it_was_in(kept):
     content = yaml.safe_load(session.read_text())
     del content["takes"]["rally"]
     with changed(session, yaml.safe_dump(content, sort_keys=False).encode()):
-        assert planned(root=kept) == {"tabulate_players": 1, "compare_sessions": 1}
+        tables = {"tabulate_players": 1, "tabulate_angles": 1}
+        assert planned(root=kept) == {**tables, "compare_sessions": 1}
 
 
 def test_a_fresh_checkout_over_kept_results_has_nothing_to_do(kept):

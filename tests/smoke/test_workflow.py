@@ -22,12 +22,14 @@ DOWNSTREAM_OF_FILTER = {
     "correct_joints": FILTERED,
     "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
     "evaluate_take": 2,
+    "evaluate_angles": 2,
     "evaluate_kinematics": 6,
     "compare_sessions": 1,
     "draw_kinematics": 1,
     "draw_badminton_fig09": 1,
     "draw_three_cameras": 1,
     "tabulate_players": 1,
+    "tabulate_angles": 1,
     "build_viewer": 3,
 }
 DOWNSTREAM_OF_3D = {

@@ -2,8 +2,8 @@
 
 Inputs: 3D keypoints, kinematics, errors. Outputs: results/{session}/takes/{take}/views/,
 results/figures/.
-Steps: compare_views (real takes), tabulate_players, draw_clock_errors, draw_reliability,
-compare_networks, draw_agreement, compare_sessions.
+Steps: compare_views (real takes), tabulate_players, tabulate_angles, draw_clock_errors,
+draw_reliability, compare_networks, draw_agreement, compare_sessions.
 """
 
 
@@ -38,6 +38,19 @@ rule tabulate_players:
         code=code("tabulate_players.py"),
     script:
         "../scripts/tabulate_players.py"
+
+
+rule tabulate_angles:
+    input:
+        errors_csv=lambda w: targets.takes.evaluations(STUDY, "angles"),
+    output:
+        table_csv=paths.ANGLES_TABLE,
+    log:
+        "results/figures/logs/tabulate_angles/all.log",
+    params:
+        code=code("tabulate_angles.py"),
+    script:
+        "../scripts/tabulate_angles.py"
 
 
 rule draw_clock_errors:

@@ -4,10 +4,10 @@ Only this file and evaluation_calibration.smk read truth.
 
 Inputs: 2D and 3D keypoints, clocks, truth of takes.
 Outputs: results/{session}/evaluation/takes/, results/{session}/takes/{take}/table1/.
-Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_sources, evaluate_body_frames,
-evaluate_detection, evaluate_round_trip (table 1), evaluate_fusions (paired differences with
-intervals); of development sessions, asked for by name: evaluate_joint_offsets,
-evaluate_joint_errors, evaluate_skin_depths.
+Steps: evaluate_take, evaluate_reliability, evaluate_clocks, evaluate_kinematics, evaluate_angles,
+evaluate_sources, evaluate_body_frames, evaluate_detection, evaluate_round_trip (table 1),
+evaluate_fusions (paired differences with intervals); of development sessions, asked for by name:
+evaluate_joint_offsets, evaluate_joint_errors, evaluate_skin_depths.
 """
 
 
@@ -72,6 +72,21 @@ rule evaluate_kinematics:
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/evaluate_kinematics.py"
+
+
+rule evaluate_angles:
+    input:
+        pose3d_npz=of_job(evaluation.skeletons),
+        truth_npz=paths.TRUE_TAKE,
+    output:
+        errors_csv=paths.ANGLE_ERRORS,
+    log:
+        "results/{session}/logs/evaluate_angles/{take}.{calibration}.{model}.log",
+    params:
+        code=code("evaluate_angles.py"),
+        labels=of_job(evaluation.skeleton_labels),
+    script:
+        "../scripts/evaluate_angles.py"
 
 
 rule evaluate_sources:

@@ -83,3 +83,74 @@ def test_frames_beyond_the_truth_or_missing_give_no_distance():
     ends = frames.copy()
     ends.loc[:9, "neck_x_m"] = np.nan
     assert errors(real, ends, summary)["true_distance_m"] < 2 * 2 * np.pi * RADIUS_M
+
+
+def posed(elbow_deg, seconds=4.0, rate_hz=30):
+    """Return the truth of a person who bends both elbows by an angle over time, else stands."""
+    time_s = np.arange(round(seconds * rate_hz) + 1) / rate_hz
+    bend = np.radians(np.broadcast_to(elbow_deg, len(time_s)))
+    standing = {"shoulder": (0.2, 0, 1.4), "elbow": (0.2, 0, 1.1), "hip": (0.1, 0, 0.9)}
+    standing |= {"knee": (0.1, 0.1, 0.5), "ankle": (0.1, 0, 0.1)}
+    xyz = np.zeros((1, len(time_s), len(LIMBS) * 2, 3))
+    for side, sign in enumerate((-1, 1)):
+        for at, name in enumerate(LIMBS):
+            place = standing.get(name, standing["elbow"]) * np.array([sign, 1, 1])
+            xyz[0, :, side * len(LIMBS) + at] = place
+        forearm = 0.25 * np.stack([0 * bend, np.sin(bend), -np.cos(bend)], axis=1)
+        xyz[0, :, side * len(LIMBS) + LIMBS.index("wrist")] += forearm
+    return SimpleNamespace(
+        joints=np.array(JOINTS[:12]), person_id=np.array(["p1"]), time_s=time_s, xyz=xyz
+    )
+
+
+def skeletons(real, sigma_m=0.01):
+    """Return a perfect measurement of a truth, with a stated standard deviation per axis."""
+    shape = real.xyz.shape[:-1]
+    nothing = np.zeros((*shape, 3, 3))
+    return SimpleNamespace(
+        joints=real.joints,
+        person_id=real.person_id,
+        time_s=real.time_s,
+        xyz=real.xyz.copy(),
+        covariance_2d=nothing + sigma_m**2 * np.eye(3),
+        covariance_camera=nothing,
+    )
+
+
+def test_perfect_joint_angles_have_no_error_and_lie_in_their_intervals():
+    real = posed(60 + 30 * np.sin(np.linspace(0, 6, 121)))
+    rows = kinematics.angles(skeletons(real), real).set_index("angle")
+    assert rows.loc["elbow_flexion", "n"] == 2 * 121 and rows.loc["left_elbow_flexion", "n"] == 121
+    assert rows["rmse_deg"].max() < 1e-4 and rows["within_90_percent"].min() == 100
+
+
+def test_a_bent_elbow_measured_too_straight_has_this_bias_and_misses_its_interval():
+    real = posed(60.0)
+    measured = skeletons(real, sigma_m=0.002)
+    measured.xyz[0, :, :6] = posed(50.0).xyz[0, :, :6]
+    rows = kinematics.angles(measured, real).set_index("angle")
+    assert rows.loc["left_elbow_flexion", "bias_deg"] == pytest.approx(-10, abs=1e-6)
+    assert rows.loc["elbow_flexion", "bias_deg"] == pytest.approx(-5, abs=1e-6)
+    assert rows.loc["elbow_flexion", "rmse_deg"] == pytest.approx(10 / np.sqrt(2), abs=1e-6)
+    assert rows.loc["elbow_flexion", "within_90_percent"] == 50
+    assert rows.loc["knee_flexion", "within_90_percent"] == 100
+
+
+def test_coverage_of_angles_follows_the_noise_that_was_stated():
+    real = posed(60.0, seconds=60)
+    measured = skeletons(real, sigma_m=0.01)
+    measured.xyz += np.random.default_rng(1).normal(0, 0.01, measured.xyz.shape)
+    rows = kinematics.angles(measured, real).set_index("angle")
+    assert rows.loc["elbow_flexion", "within_90_percent"] == pytest.approx(90, abs=1.5)
+    assert rows.loc["elbow_flexion", "sigma_deg"] == pytest.approx(
+        rows.loc["elbow_flexion", "rmse_deg"], rel=0.05
+    )
+
+
+def test_angles_without_truth_are_left_out_and_missing_ones_are_counted():
+    real = posed(60.0)
+    measured = skeletons(real)
+    measured.xyz[0, :30, JOINTS.index("left_wrist")] = np.nan
+    measured.time_s = measured.time_s + 1.0
+    row = kinematics.angles(measured, real).set_index("angle").loc["left_elbow_flexion"]
+    assert (row["n"], row["missing_percent"]) == (61, pytest.approx(100 * 30 / 91))

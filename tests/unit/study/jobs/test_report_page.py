@@ -68,6 +68,7 @@ def test_tables_are_those_that_the_study_makes(content, study, rules, studies):
     assert [(table["file"], table["title"]) for table in content["tables"]] == [
         ("results/figures/calibration.csv", "Calibration"),
         ("results/figures/players.csv", "Players"),
+        ("results/figures/angles.csv", "Joint angles"),
     ]
     alone = report_page.content(studies(sessions=["walk-4cams-tiny"]), rules, "captions")
     assert alone["tables"] == []

@@ -18,7 +18,11 @@ def test_figures_of_players(study):
         "results/figures/archive",
     ]
     figures = [f"{stem}.{suffix}" for stem in stems for suffix in ("pdf", "png", "csv")]
-    assert together.every_players_figure(study) == [*figures, "results/figures/players.csv"]
+    assert together.every_players_figure(study) == [
+        *figures,
+        "results/figures/players.csv",
+        "results/figures/angles.csv",
+    ]
 
 
 def test_a_study_without_the_named_takes_has_no_figure_of_players(studies):

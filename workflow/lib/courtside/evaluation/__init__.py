@@ -5,13 +5,14 @@ joints: `errors`, `table`, `true`, `left_out`: errors of 3D joints, against the 
 reliability: `counts`, `pooled`: how often ellipsoids hold, and how well outliers are flagged
 error_fit: `joints_of`: what the model of joint errors is fitted on
 detection: `evaluate`, `torso_px`: errors of a network's 2D joints in the pictures
-kinematics: `table`: errors of paths and speeds
+kinematics: `table`, `angles`: errors of paths and speeds, of joint angles
 sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts
 round_trip: `table`, `distance_after`: the paper's table 1
 camera_sets: `compare`, `gains`: fewer cameras, and other fusions
 skin_depths: `estimate`: depth of joints behind the skin
 calibration: `of_ties`, `of_known`, `score`: one trial of calibration
 racket: `calibrate`, `measure`, `score`, `rows`: one trial of measuring a racket
+numbers: Numbers of the documents, and where each comes from
 tables: Tables of the study from these
 
 `config/README.md` describes the columns of their tables.

@@ -1,20 +1,30 @@
-"""Errors of a simulated take's kinematics against the truth."""
+"""Errors of a simulated take's paths, speeds and joint angles against the truth."""
+
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from courtside.calibration import point_covariance
+from courtside.evaluation import joints
 from courtside.evaluation.joints import Truth
-from courtside.kinematics import measures
+from courtside.kinematics import joint_angles, measures
 from courtside.records.keypoints import derived_joints
+from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.derived_joints import DerivedJoints
+from courtside.records.keypoints.keypoints import Keypoints3D
 
 FINE = 10  # ASSUME: true points per frame, for the length of the true path; chords err little
 COLUMNS = [
     "person", "point", "n", "seconds", "distance_m", "true_distance_m", "distance_error_percent",
     "distance_sigma_percent", "position_median_mm", "position_p95_mm", "speed_rmse_m_s",
     "ground_speed_rmse_m_s", "speed_bias_m_s", "speed_within_90_percent",
+]  # fmt: skip
+ANGLE_COLUMNS = [
+    "person", "angle", "n", "missing_percent", "bias_deg", "rmse_deg", "p95_deg", "sigma_deg",
+    "within_90_percent",
 ]  # fmt: skip
 
 
@@ -88,4 +98,58 @@ def _errors(part: pd.DataFrame, point: str, path: CubicSpline) -> dict:
         "ground_speed_rmse_m_s": np.sqrt(np.nanmean(ground**2)),
         "speed_bias_m_s": np.nanmean(speed),
         "speed_within_90_percent": 100 * inside.mean() if stated.any() else np.nan,
+    }
+
+
+def angles(points: Keypoints3D, truth: Truth) -> pd.DataFrame:
+    """Compare the joint angles of skeletons with those of the true joints, by person and angle.
+
+    Angles and their standard deviations are as `courtside.kinematics.measures` states them for
+    these skeletons. An angle of a limb has one row for both sides together (`knee_flexion`) and one
+    for each. bias_deg is measured minus true, p95_deg of its size, sigma_deg the root mean square
+    of the stated standard deviations. A true angle that folds at 0 or 180 degrees (a straight limb)
+    makes the bias one-sided.
+    """
+    true_xyz = joints.true_places(points, truth)
+    names = [name for name in truth.joints.tolist() if name in limbs.JOINTS]
+    true_xyz = true_xyz[:, :, [truth.joints.tolist().index(name) for name in names]]
+    known = np.zeros((*true_xyz.shape[1:3], 3, 3))
+    rows = []
+    for at, person in enumerate(map(str, points.person_id)):
+        found = measures.angles(points, at)
+        true = joint_angles.measure(true_xyz[at], known, names)
+        for angle, sides in _by_angle(found).items():
+            error = np.concatenate([found[s].degrees - true[s].degrees for s in sides])
+            there = np.concatenate([np.isfinite(true[s].degrees) for s in sides])
+            sigma = np.concatenate([found[s].sigma_deg for s in sides])
+            rows.append({"person": person, "angle": angle, **_of_angle(error, sigma, there)})
+    return pd.DataFrame(rows).reindex(columns=ANGLE_COLUMNS)
+
+
+def _by_angle(found: Mapping[str, object]) -> dict[str, list[str]]:
+    """Return the measured angles that make up each angle: both sides of a limb, and one."""
+    both: dict[str, list[str]] = {}
+    for name in found:
+        stem = name.removeprefix("left_").removeprefix("right_")
+        both.setdefault(stem, []).append(name)
+    return both | {name: [name] for name in found}
+
+
+def _of_angle(error: NDArray, sigma: NDArray, there: NDArray) -> dict:
+    """Return errors and coverage (n,); frames without truth are left out, not missing."""
+    error, sigma = error[there], sigma[there]
+    known = np.isfinite(error)
+    row = {"n": int(known.sum()), "missing_percent": 100 * (1 - known.mean()) if len(known) else 0}
+    if not known.any():
+        return row
+    error, sigma = error[known], sigma[known]
+    stated = np.isfinite(sigma)
+    inside = np.abs(error[stated]) <= point_covariance.WITHIN_90 * sigma[stated]
+    return {
+        **row,
+        "bias_deg": error.mean(),
+        "rmse_deg": np.sqrt(np.mean(error**2)),
+        "p95_deg": np.percentile(np.abs(error), 95),
+        "sigma_deg": np.sqrt(np.mean(sigma[stated] ** 2)) if stated.any() else np.nan,
+        "within_90_percent": 100 * inside.mean() if stated.any() else np.nan,
     }

@@ -145,7 +145,7 @@ def measure(
         weights, words = definitions(table, skeleton, skeletons.joints, sex)
         take = _Take(skeletons, raw, at, how)
         found = {name: _point(take, weights[name], words[name]) for name in weights}
-        made.append(Person(str(person), skeletons.time_s, found, _angles(take)))
+        made.append(Person(str(person), skeletons.time_s, found, angles(skeletons, at)))
     return made
 
 
@@ -201,8 +201,9 @@ def _parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
     return parts
 
 
-def _angles(take: _Take) -> dict[str, Angle]:
-    joints = [joint for joint in take.skeletons.joints if joint in limbs.JOINTS]
-    at = [take.skeletons.joints.tolist().index(joint) for joint in joints]
-    xyz, covariance = (take.of(take.skeletons, key)[:, at] for key in ("xyz", "covariance_2d"))
+def angles(skeletons: Keypoints3D, person: int) -> dict[str, Angle]:
+    """Return the joint angles of one person, by the person's index, as `measure` states them."""
+    joints = [joint for joint in skeletons.joints if joint in limbs.JOINTS]
+    at = [skeletons.joints.tolist().index(joint) for joint in joints]
+    xyz, covariance = (getattr(skeletons, key)[person][:, at] for key in ("xyz", "covariance_2d"))
     return joint_angles.measure(xyz, covariance, joints)

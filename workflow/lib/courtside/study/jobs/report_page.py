@@ -32,6 +32,10 @@ TABLES = {
         "Errors of joints, paths and clocks against the truth of simulated takes, by cameras and "
         "rule.",
     ),
+    paths.ANGLES_TABLE: (
+        "Joint angles",
+        "Errors of joint angles against the truth of simulated takes, by angle, cameras and rule.",
+    ),
 }
 
 

@@ -100,18 +100,23 @@ def every_comparison_of_views(study: Study) -> list[str]:
     ]
 
 
+OF_A_TAKE = {  # kinds of errors: one table for each calibration and network
+    "errors": paths.ERRORS,
+    "angles": paths.ANGLE_ERRORS,
+    "reliability": paths.RELIABILITY,
+}
+
+
 def evaluations(study: Study, kind: str) -> list[str]:
     """Return the tables of one kind of error of all takes of virtual sessions.
 
-    Kinds: errors, reliability (of stated errors), kinematics, clocks (of cameras without a common
-    one), gains (between fusions).
+    Kinds: errors, angles, reliability (of stated errors), kinematics, clocks (of cameras without a
+    common one), gains (between fusions).
     """
     found = []
     for session, take in ((session, take) for session, take in study.takes() if session.virtual):
-        if kind == "errors":
-            found += files(paths.ERRORS, session, take)
-        elif kind == "reliability":
-            found += files(paths.RELIABILITY, session, take)
+        if kind in OF_A_TAKE:
+            found += files(OF_A_TAKE[kind], session, take)
         elif kind == "clocks" and not take.synchronised:
             found += files(paths.CLOCK_ERRORS, session, take)
         elif kind == "kinematics":

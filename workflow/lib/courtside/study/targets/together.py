@@ -27,7 +27,7 @@ class MeasuredTake:
 
 
 def every_players_figure(study: Study) -> list[str]:
-    """Return the figures that takes are drawn in together, and the table of players."""
+    """Return the figures that takes are drawn in together, and the tables of players."""
     stems = []
     for session, take in study.named_takes(study.parameters["evaluate_round_trip"]["takes"]):
         stems += takes.files(paths.CALIBRATED_FIGURE, session, take, figure="badminton_tab01")
@@ -45,7 +45,8 @@ def every_players_figure(study: Study) -> list[str]:
         "archive": archived_takes(study),
     }
     stems += [paths.STUDY_FIGURE.format(figure=name) for name, found in there.items() if found]
-    return paths.formats(stems) + [paths.PLAYERS_TABLE] * bool(takes.evaluations(study, "errors"))
+    tables = [paths.PLAYERS_TABLE, paths.ANGLES_TABLE]
+    return paths.formats(stems) + tables * bool(takes.evaluations(study, "errors"))
 
 
 def fig05_layouts(study: Study) -> dict[str, list]:

@@ -1,0 +1,59 @@
+"""Compare the real take `walk-4cams` with the other program's result: raw, filtered, corrected.
+
+    python benchmarks/correct_real_footage.py RECORDINGS [--results results]
+
+RECORDINGS is a folder with `trc/Balancing_for_IK.trc` of the same videos, as Pose2Sim's
+demonstration made it from OpenPose's keypoints: another markerless result with other joint
+definitions, not truth. Writes docs/numbers/real_footage.csv, a source of docs/make_tables.py.
+"""
+
+import argparse
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+
+from courtside.exports import trc
+from courtside.records.keypoints import keypoints, skeleton
+
+TAKE = "walk-4cams/takes/balancing/{stage}/file/all-robust/blazepose-full.npz"
+STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
+LABEL = "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC (no truth)"
+COMMAND = "`python benchmarks/correct_real_footage.py`"
+COLUMNS = ["table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin"]
+
+
+def distances(points, reference):
+    """Return the distances (T, 12) mm of limb joints to those of a TRC file, frame by frame."""
+    joints, _, _, xyz = trc.read(reference)
+    sides = [(joint[0].upper(), joint.split("_")[1].capitalize()) for joint in skeleton.JOINTS]
+    theirs = xyz[:, [joints.index(side + part) for side, part in sides]]
+    own = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
+    return 1e3 * np.linalg.norm(points.xyz[0][:, own] - theirs, axis=-1)
+
+
+def rows(results, reference):
+    """Yield the rows of the table, stage by stage."""
+    for stage, word in STAGES.items():
+        apart = distances(keypoints.read_3d(results / TAKE.format(stage=stage)), reference)
+        known = apart[np.isfinite(apart)]
+        found = {"median": np.median(known), "p90": np.percentile(known, 90)}
+        for part, value in {**found, "p95": np.percentile(known, 95)}.items():
+            counts = [known.size, apart.size - known.size]
+            about = ["footage", LABEL, f"{word}_{part}", f"{value:.1f}", "mm", "walk-4cams"]
+            yield [*about, *counts, "benchmark", COMMAND]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("recordings", type=Path)
+    parser.add_argument("--results", type=Path, default=ROOT / "results")
+    given = parser.parse_args()
+    with (ROOT / "docs/numbers/real_footage.csv").open("w", newline="", encoding="utf-8") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow([*COLUMNS, "command"])
+        table.writerows(rows(given.results, given.recordings / "trc" / "Balancing_for_IK.trc"))

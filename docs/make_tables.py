@@ -1,0 +1,34 @@
+"""Write the tables of README.md and docs/measured.md, and their register docs/numbers.csv.
+
+`snakemake`, then `python docs/make_tables.py [results]`. With `--documents` the tables are written
+from the register as it is, without results.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+
+from courtside.evaluation.numbers import register, study
+from courtside.study.errors import InputError
+
+
+def main(results, documents_only):
+    """Return the lines to print."""
+    kept = ROOT / study.REGISTER
+    found = register.read(kept) if documents_only else study.numbers(results, ROOT)
+    changed = study.write(found, ROOT)
+    return [f"{len(found)} numbers; changed: {', '.join(changed) or 'nothing'}"]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("results", type=Path, nargs="?", default=ROOT / "results")
+    parser.add_argument("--documents", action="store_true", help="from the register as it is")
+    given = parser.parse_args()
+    try:
+        print("\n".join(main(given.results, given.documents)))
+    except (InputError, OSError) as error:
+        sys.exit(f"Error: {error}")

@@ -1,0 +1,74 @@
+"""The tables of README.md and docs/measured.md are what the register of numbers gives."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from courtside.evaluation.numbers import markers, register, study
+from courtside.evaluation.numbers.views import VIEWS
+from fixtures.study import results_made
+
+ROOT = Path(__file__).parents[1]
+MEASURED = r"\d (%|mm|cm|m/s|px|us|s)\b|\d / \d"  # values as tables of results show them
+NUMBERS = register.read(ROOT / study.REGISTER)
+
+
+@pytest.mark.parametrize("name", study.DOCUMENTS)
+def test_tables_are_exactly_those_of_the_register(name):
+    assert (ROOT / name).read_text(encoding="utf-8") == study.filled(NUMBERS, ROOT)[name]
+
+
+def test_every_table_of_the_register_is_shown_and_every_view_used():
+    texts = [(ROOT / name).read_text(encoding="utf-8") for name in study.DOCUMENTS]
+    shown = {name for text in texts for name in markers.names(text)}
+    assert shown == set(VIEWS)
+    assert {VIEWS[name].table for name in shown} == {number.table for number in NUMBERS}
+
+
+def test_the_documents_have_no_table_of_numbers_outside_the_markers():
+    for name in study.DOCUMENTS:
+        text = markers.BLOCK.sub("", (ROOT / name).read_text(encoding="utf-8"))
+        rows = re.findall(r"^\| .* \|$", text, flags=re.M)
+        assert [row for row in rows if re.search(MEASURED, row)] == []
+
+
+def test_every_number_says_where_it_comes_from():
+    assert len({number.name for number in NUMBERS}) == len(NUMBERS) > 1000
+    for number in NUMBERS:
+        assert number.origin in register.ORIGINS and number.source and number.sha256
+        assert number.command or number.origin in (register.STUDY, register.PUBLISHED)
+        assert number.sessions or number.origin != register.STUDY
+
+
+def test_numbers_by_hand_are_those_of_their_tables():
+    documents = register.Source(ROOT)
+    for number in NUMBERS:
+        if number.source.startswith(("docs/", "config/")):
+            assert number.sha256 == documents.sha256(number.source), number.source
+
+
+def program(path, *words):
+    command = [sys.executable, str(ROOT / path), *map(str, words)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_verify_study_lists_the_numbers_that_other_results_change(tmp_path):
+    results_made.write(tmp_path / "results")
+    done = program("workflow/verify_study.py", "--directory", tmp_path, "--numbers")
+    assert (done.returncode, done.stderr) == (1, "")
+    printed = next(n.printed for n in NUMBERS if n.name == WALK)
+    assert f"{WALK}: printed {printed}, would be 0.65" in done.stdout.splitlines()
+
+
+def test_results_that_lack_a_table_change_nothing_and_are_told_in_one_line(tmp_path):
+    before = (ROOT / study.REGISTER).read_bytes()
+    done = program("docs/make_tables.py", tmp_path)
+    assert done.returncode == 1 and (ROOT / study.REGISTER).read_bytes() == before
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("Error: ") and "figures/calibration.csv" in line
+
+
+WALK = "calibration/walk18/`plain-a` (plain hall, layout a)"

@@ -1,0 +1,56 @@
+"""Numbers of calibrations, from trials worked out by hand."""
+
+import pytest
+
+from courtside.evaluation.numbers import calibration
+
+
+@pytest.fixture(scope="module")
+def found(source):
+    return calibration.calibrations(source)
+
+
+def test_every_hall_has_its_median_and_its_difference_to_points_alone(found, value):
+    assert value(found, "`plain-a`", "walk18").printed == "0.65"
+    assert value(found, "`plain-a`", "walk18").n == 4
+    assert value(found, "`plain-a`", "walk18_points").printed == "1.50"
+    assert value(found, "`plain-a`", "walk18_less_known18").value == pytest.approx(-0.35)
+    low, high = (value(found, "`plain-a`", f"walk18_less_known18_{end}") for end in ("from", "to"))
+    assert low.value <= -0.35 <= high.value < 0
+
+
+def test_choices_of_images_that_are_the_same_count_once(found, value):
+    assert value(found, "`plain-b`", "walk18").n == 2
+    assert value(found, "`plain-b`", "walk18_less_known18").value == pytest.approx(0.1)
+
+
+def test_failed_trials_are_counted(found, value):
+    paper = value(found, "`plain-a`", "paper")
+    assert (paper.printed, paper.n, paper.n_failed) == ("20.00", 1, 1)
+
+
+def test_over_halls_the_worst_stands_beside_the_median(found, value):
+    assert value(found, "all 2 halls", "walk18").value == pytest.approx((0.65 + 1.1) / 2)
+    assert value(found, "all 2 halls", "walk18_worst").value == pytest.approx(1.1)
+    assert value(found, "all 2 halls", "walk18_less_known18").value == pytest.approx(-0.125)
+    assert value(found, "all 2 halls", "walk18").sessions == "plain-a plain-b"
+
+
+def test_ways_growth_and_capture_take_all_sessions(source, value):
+    ways = calibration.ways(source)
+    assert {n.sessions for n in ways if n.row.startswith("walk of 40")} == {"plain-a", "plain-b"}
+    assert value(ways, "18 known points, no walk; `plain-b`", "median").printed == "1.00"
+    growth = calibration.growth(source)
+    assert [n.printed for n in growth if n.part == "median"] == ["0.65", "1.10"]
+    assert value(growth, "`plain-b`, 1 x 40", "p95").n == 2
+    (row,) = {n.row for n in calibration.capture(source)}
+    assert row == "baseline_deg 15: control points (scored points left out)"
+
+
+def test_the_scatter_of_clicks_has_its_errors_and_coverage(source, value):
+    found = calibration.strengths(source)
+    shown = [value(found, f"`plain-a`, scatter x{s}", "walk18_coverage").printed for s in (1, 3)]
+    assert shown == ["85", "25"]
+    table = source.table(calibration.TABLE)
+    assert set(calibration.usual(table)["click_strength"]) == {1}
+    assert len(calibration.usual(table.drop(columns="click_strength"))) == len(table)

@@ -1,0 +1,47 @@
+"""Numbers of virtual players, from summaries worked out by hand."""
+
+import pytest
+
+from courtside.evaluation.numbers import players
+
+
+def test_every_take_is_shown_raw_filtered_and_corrected(source, value):
+    found = players.takes(source)
+    assert {n.row for n in found} == {
+        "`players-b/footwork`: all cameras",
+        "`players-b/shot`: all cameras",
+    }
+    row = "`players-b/footwork`"
+    shown = [value(found, row, f"{stage}_median").printed for stage in players.STAGES]
+    assert shown == ["46", "45", "24"]
+
+
+def test_a_session_has_its_median_take_and_its_worst(source, value):
+    found = players.sessions(source)
+    assert value(found, "`players-b`, 2 takes", "raw_median").value == 51
+    assert value(found, "`players-b`, 2 takes", "raw_median_worst").value == 56
+    held = value(found, "`players-b`, 2 takes", "corrected_coverage")
+    assert (held.value, held.n) == (pytest.approx(82.5), 400)
+    assert value(found, "`players-b`, 2 takes", "corrected_least").value == 80
+
+
+def test_angles_of_takes_are_weighted_with_their_frames(source, value):
+    found = players.angles(source)
+    bias = value(found, "knee flexion, `players-b`", "raw_bias")
+    assert (bias.value, bias.n) == (pytest.approx(-5.5), 400)
+    rmse = value(found, "knee flexion", "corrected_rmse").value
+    assert rmse == pytest.approx(((300 * 64 + 100 * 324) / 400) ** 0.5)
+    assert value(found, "knee flexion", "raw_coverage").value == pytest.approx(62.5)
+
+
+def test_measures_are_of_the_furthest_person_and_the_clocks_of_the_take(source, value):
+    found = players.measures(source)
+    assert value(found, "`players-b/footwork`", "neck_far").printed == "-0.4"
+    assert value(found, "`players-b/footwork`", "neck_held").printed == "70"
+    assert value(found, "`players-b/footwork`", "clock").printed == "-2.5"
+    assert value(found, "`players-b/footwork`", "clocks_within").printed == "2"
+
+
+def test_a_rule_without_words_is_shown_by_its_name():
+    assert players.words("all-robust") == "all cameras"
+    assert players.words("five-robust") == "`five-robust`"

@@ -1,0 +1,14 @@
+"""Numbers of the README and of docs/measured.md: each from its source, kept in one register.
+
+register: `Number`, `Source`, `listed`, `read`, `write`, `stale`: the register, and what it rests on
+markers: `View`, `render`, `fill`: tables of documents, filled from the register
+views: `VIEWS`: the columns of each table
+study: `numbers`, `write`, `filled`, `report`: all of them
+intervals: `bootstrap`: intervals over halls
+calibration: `calibrations`, `ways`, `growth`, `strengths`, `capture`
+players: `sessions`, `takes`, `angles`, `measures`
+footage: `corrections`, `joints`, `views`: raw and corrected joints, real beside virtual
+published: `walk`, `racket`, `round_trip`, `table_1`
+devices: `sources`, `body_frames`
+stated: `numbers`: measured by hand or by benchmarks, or published by others
+"""

@@ -1,0 +1,159 @@
+"""Numbers of virtual players: joints, joint angles, paths, speeds, clocks; raw and corrected."""
+
+import numpy as np
+import pandas as pd
+
+from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings, Source
+
+TABLE, ANGLES = "figures/players.csv", "figures/angles.csv"
+STAGES = ("raw", "filtered", "corrected")
+OURS = "all-robust"  # the default rule, all cameras of a take
+FUSIONS = {  # of a set of cameras and a rule
+    "all-robust": "all cameras",
+    "all-dlt": "all cameras, plain DLT",
+    "all-unsteady": "all cameras, shake left as it is",
+    "three-robust": "3 cameras",
+    "halfbody": "3 cameras, the paper's half bodies (re-enacted)",
+    "three-dlt": "3 cameras, plain DLT",
+    "two-robust": "2 cameras",
+    "two-dlt": "2 cameras, plain DLT",
+    "two-unsteady": "2 cameras, shake left as it is",
+}
+
+
+def words(fusion: str) -> str:
+    """Return what a set of cameras and a rule is called; its own name where it has no other."""
+    return FUSIONS.get(fusion, f"`{fusion}`")
+
+
+PER_STAGE = {  # part: column, decimals, unit
+    "median": ("median_mm", 0, "mm"),
+    "p95": ("p95_mm", 0, "mm"),
+    "coverage": ("coverage_90_percent", 0, "%"),
+    "missing": ("missing_percent", 1, "%"),
+}
+
+
+def takes(source: Source) -> list[Number]:
+    """Return the errors of joints of every take and rule: raw, filtered and corrected."""
+    build, table = Builder("players"), source.table(TABLE)
+    table = table.assign(
+        order=table["fusion"].map({f: i for i, f in enumerate(FUSIONS)}).fillna(len(FUSIONS))
+    )
+    key = ["session", "take", "calibration", "model", "order", "fusion"]
+    for (session, take, calibration, model, _, fusion), of in table.groupby(key, sort=True):
+        row = f"`{session}/{take}`: {words(fusion)}"
+        row += "" if model == "blazepose-full" else f" ({model})"
+        for _, one in of.iterrows():
+            where = f"{session}/{take}, {calibration}, {model}, {fusion}, stage {one['stage']}"
+            cut = Cut(source, TABLE, where, session)
+            for part, (column, decimals, unit) in PER_STAGE.items():
+                name = f"{one['stage']}_{part}"
+                more: Settings = {"decimals": decimals, "unit": unit}
+                build.add(row, name, one[column], cut, column, n=one["n"], **more)
+    return build.numbers
+
+
+def sessions(source: Source) -> list[Number]:
+    """Return the errors of joints by session: the median take and the worst, default rule."""
+    build, table = Builder("players-sessions"), source.table(TABLE)
+    table = table[table["fusion"] == OURS]
+    for (session, calibration, model), of in table.groupby(["session", "calibration", "model"]):
+        n_takes = of["take"].nunique()
+        takes_ = f"{n_takes} takes" if n_takes > 1 else f"take `{of['take'].iloc[0]}`"
+        row = f"`{session}`, {takes_}, calibration `{calibration}`, network `{model}`"
+        for stage in STAGES:
+            one = of[of["stage"] == stage]
+            if len(one):
+                cut = Cut(source, TABLE, f"{session}, {model}, {OURS}, stage {stage}", session)
+                _of_session(build, row, stage, one, cut)
+    return build.numbers
+
+
+def _of_session(build: Builder, row: str, stage: str, of: pd.DataFrame, cut: Cut) -> None:
+    count: Settings = {"n": of["n"].sum(), "decimals": 0}
+    for part in ("median", "p95"):
+        values, column = of[f"{part}_mm"], f"{part}_mm"
+        build.add(row, f"{stage}_{part}", values.median(), cut, f"{column}: median take", **count)
+        worst = values.max()
+        build.add(row, f"{stage}_{part}_worst", worst, cut, f"{column}: worst take", **count)
+    held = np.average(of["coverage_90_percent"], weights=of["n"])
+    build.add(row, f"{stage}_coverage", held, cut, "coverage_90_percent: mean by n", **count)
+    least = of["coverage_90_percent"].min()
+    build.add(row, f"{stage}_least", least, cut, "coverage_90_percent: least take", **count)
+
+
+def angles(source: Source) -> list[Number]:
+    """Return the errors of joint angles: every session, default rule, takes weighted with n."""
+    build, table = Builder("angles"), source.table(ANGLES)
+    table = table[table["fusion"] == OURS]
+    for (angle, session, model), of in table.groupby(["angle", "session", "model"], sort=False):
+        row = f"{str(angle).replace('_', ' ')}, `{session}`" + (
+            "" if model == "blazepose-full" else f" ({model})"
+        )
+        for stage in STAGES:
+            one = of[(of["stage"] == stage) & (of["n"] > 0)]
+            if len(one):
+                where = f"{session}, {model}, {OURS}, {angle}, stage {stage}"
+                _of_angle(build, row, stage, one, Cut(source, ANGLES, where, session))
+    order = {name: at for at, name in enumerate(ORDER)}
+    build.numbers.sort(key=lambda number: order.get(number.row.split(",")[0], len(order)))
+    return build.numbers
+
+
+ORDER = [
+    *("knee flexion", "hip flexion", "elbow flexion", "shoulder elevation"),
+    *("trunk lean", "trunk lean forward"),
+]
+
+
+def _of_angle(build: Builder, row: str, stage: str, of: pd.DataFrame, cut: Cut) -> None:
+    count: Settings = {"n": of["n"].sum()}
+    weights = of["n"]
+    for part in ("bias", "rmse"):
+        values = of[f"{part}_deg"]
+        mean = np.average(values, weights=weights)
+        mean = mean if part == "bias" else np.sqrt(np.average(values**2, weights=weights))
+        more: Settings = {**count, "decimals": 1, "unit": "degrees"}
+        build.add(row, f"{stage}_{part}", mean, cut, f"{part}_deg, by n", **more)
+    held = np.average(of["within_90_percent"], weights=weights)
+    count = {**count, "decimals": 0, "unit": "%"}
+    build.add(row, f"{stage}_coverage", held, cut, "within_90_percent, by n", **count)
+
+
+CLOCKS = {  # part: column, decimals, unit
+    "clock": ("clock_error_ms", 1, "ms"),
+    "clocks_within": ("n_clocks_within", 0, ""),
+    "clocks": ("n_clocks", 0, ""),
+}
+PATHS = {
+    "speed": ("speed_rmse_m_s", 2, "m/s"),
+    "held": ("speed_within_90_percent", 0, "%"),
+    "far": ("distance_error_percent", 1, "%"),
+}
+
+
+def measures(source: Source) -> list[Number]:
+    """Return the errors of speeds, distances and clocks by take and cameras, the worst person."""
+    build, table = Builder("players-measures"), source.table(TABLE)
+    for file in source.names("*/evaluation/takes/*/kinematics/*/*-robust/blazepose-full.csv"):
+        parts, rows = file.split("/"), source.table(file)
+        session, take, fusion = parts[0], parts[3], parts[6]
+        row = f"`{session}/{take}`: {words(fusion)}"
+        for point, of in rows.groupby("point", sort=False):
+            for part, (column, decimals, unit) in PATHS.items():
+                cut = Cut(source, file, f"{point}, furthest person", session)
+                value = of[column].min() if part == "held" else _furthest(of[column])
+                more: Settings = {"decimals": decimals, "unit": unit, "n": of["n"].sum()}
+                build.add(row, f"{point}_{part}", value, cut, column, **more)
+        same = (table["session"] == session) & (table["take"] == take) & (table["fusion"] == fusion)
+        for _, one in table[same & table["clock_error_ms"].notna()].iterrows():
+            cut = Cut(source, TABLE, f"{session}/{take}, {fusion}, raw", session)
+            for part, (column, decimals, unit) in CLOCKS.items():
+                build.add(row, part, one[column], cut, column, decimals=decimals, unit=unit)
+    return build.numbers
+
+
+def _furthest(values: pd.Series) -> float:
+    known = values.dropna()
+    return float(known.loc[known.abs().idxmax()]) if len(known) else float("nan")

@@ -1,0 +1,310 @@
+"""The tables of the documents: which columns each shows of a table of the register."""
+
+from courtside.evaluation.numbers.markers import View
+
+STAGES = ("raw", "filtered", "corrected")
+HALL, HALLS = "^`", "^all "
+FOUND = {"by": "{found.origin}", "with": "{found.command}"}
+
+
+def _walk(name: str) -> str:
+    return f"{{{name}}} / {{{name}_p95}} / {{{name}_points}}"
+
+
+def _interval(name: str) -> str:
+    return f"{{{name}}} ({{{name}_from}} to {{{name}_to}})"
+
+
+def _stages(pattern: str) -> dict[str, str]:
+    return {stage: pattern.replace("STAGE", stage) for stage in STAGES}
+
+
+VIEWS = {
+    "calibration": View(
+        "calibration",
+        {
+            "hall": "{row}",
+            "walk + 18 clicks": _walk("walk18"),
+            "walk + 3 clicks": _walk("walk3"),
+            "18 points, no walk": _walk("known18"),
+            "18 points, known lens": _walk("board18"),
+            "the published walk, re-enacted": _walk("paper"),
+            "its trials, failed": "{paper.n}, {paper.n_failed}",
+            "walk less 18 points, 95 % interval": _interval("walk18_less_known18"),
+        },
+        HALL,
+    ),
+    "calibration-halls": View(
+        "calibration",
+        {
+            "over": "{row}",
+            **{
+                words: f"{_interval(name)}, worst {{{name}_worst}}"
+                for name, words in {
+                    "walk18": "walk + 18 clicks",
+                    "walk3": "walk + 3 clicks",
+                    "known18": "18 points, no walk",
+                    "board18": "18 points, known lens",
+                    "paper": "the published walk, re-enacted",
+                }.items()
+            },
+            "walk + 18 less 18 points": _interval("walk18_less_known18"),
+            "walk + 3 less 18 points": _interval("walk3_less_known18"),
+        },
+        HALLS,
+    ),
+    "calibration-ways": View(
+        "calibration-ways",
+        {
+            "way; session": "{row}",
+            "trial RMS, median / 95 %": "{median} / {p95}",
+            "95 % of points, median trial": "{points}",
+            "X_o, Y_o on the floor, median": "{xy}",
+            "trials, failed": "{median.n}, {median.n_failed}",
+        },
+    ),
+    "calibration-growth": View(
+        "calibration-growth",
+        {
+            "session, choices of images": "{row}",
+            "trial RMS, median / 95 %": "{median} / {p95}",
+            "stated 90 % hold, %": "{coverage}",
+            "trials, failed": "{median.n}, {median.n_failed}",
+        },
+    ),
+    "calibration-strengths": View(
+        "calibration-strengths",
+        {
+            "session, clicks": "{row}",
+            **{
+                words: f"{{{part}_median}} / {{{part}_p95}}; {{{part}_coverage}} %"
+                for part, words in {
+                    "walk18": "walk + 18 clicks",
+                    "walk8": "walk + 8 clicks",
+                    "walk3": "walk + 3 clicks",
+                }.items()
+            },
+            "18 points, no walk": "{known18_median} / {known18_p95}",
+            "trials": "{walk18_median.n}",
+        },
+    ),
+    "capture": View(
+        "capture",
+        {
+            "setting: way": "{row}",
+            "trial RMS, median / 95 %, cm": "{median} / {p95}",
+            "trials, failed": "{median.n}, {median.n_failed}",
+        },
+    ),
+    "players-sessions": View(
+        "players-sessions",
+        {
+            "virtual session": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p95} ({STAGE_median_worst} / {STAGE_p95_worst})"),
+            "90 % hold, raw / filtered / corrected (least take), %": " / ".join(
+                f"{{{stage}_coverage}} ({{{stage}_least}})" for stage in STAGES
+            ),
+            "joints": "{raw_median.n}",
+        },
+    ),
+    "players": View(
+        "players",
+        {
+            "take: cameras, rule": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p95}"),
+            "90 % hold, raw / filtered / corrected, %": " / ".join(
+                f"{{{stage}_coverage}}" for stage in STAGES
+            ),
+            "missing, raw / corrected, %": "{raw_missing} / {corrected_missing}",
+            "joints": "{raw_median.n}",
+        },
+    ),
+    "players-measures": View(
+        "players-measures",
+        {
+            "take: cameras": "{row}",
+            "speed RMSE of neck, centre, mass, m/s": "{neck_speed}, {centre_speed}, {mass_speed}",
+            "stated 90 % of speeds hold, %": "{neck_held}, {centre_held}, {mass_held}",
+            "error of their distances, %": "{neck_far}, {centre_far}, {mass_far}",
+            "largest clock error, ms (within their 90 %, of)": (
+                "{clock} ({clocks_within}, {clocks})"
+            ),
+        },
+    ),
+    "angles": View(
+        "angles",
+        {
+            "angle, session": "{row}",
+            **{
+                f"{stage}: bias, RMSE, 90 % hold": (
+                    f"{{{stage}_bias}}, {{{stage}_rmse}}, {{{stage}_coverage}} %"
+                )
+                for stage in STAGES
+            },
+            "angles": "{raw_bias.n}",
+        },
+    ),
+    "footage": View(
+        "footage",
+        {
+            "footage, against which reference": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p90} / {STAGE_p95}"),
+            "joints": "{raw_median.n}",
+            "measured": "{raw_median.origin}",
+            "with": "{raw_median.command}",
+        },
+    ),
+    "joints": View(
+        "joints",
+        {
+            "joint, take": "{row}",
+            **_stages("{STAGE_median} / {STAGE_p95}"),
+            "90 % hold, raw / filtered / corrected, %": " / ".join(
+                f"{{{stage}_coverage}}" for stage in STAGES
+            ),
+            "n": "{raw_median.n}",
+        },
+    ),
+    "views": View(
+        "views",
+        {
+            "take: cameras, rule": "{row}",
+            "from all cameras, median / 95 %, mm": "{median} / {p95}",
+            "left and right exchanged, % of frames": "{exchanged}",
+            "joints": "{median.n}",
+        },
+    ),
+    "racket": View(
+        "racket",
+        {
+            "session, ends": "{row}",
+            "authors: 8 points; walk": "{their8}; {their_walk}",
+            "re-enacted: 8 points (DLT); walk": "{dlt8}; {paper3}",
+            "8 known points": "{known8}",
+            "walk + 18 clicks": "{sfm18}",
+            "perfect cameras": "{perfect}",
+            "walk + 18 clicks over perfect": "{sfm18_ratio}",
+            "runs, failed": "{sfm18.n}, {sfm18.n_failed}",
+        },
+    ),
+    "published-walk": View(
+        "published-walk",
+        {
+            "session: calibrated from": "{row}",
+            "authors: at two of its own points": "{published}",
+            "re-enacted: there; over the volume": "{again_xy}; {again_volume}",
+            "its trials, failed": "{again_xy.n}, {again_xy.n_failed}",
+            "ours, 18 clicks: there; over the volume": "{here_xy}; {here_volume}",
+        },
+    ),
+    "table-1": View(
+        "table-1",
+        {
+            "take, cameras: what": "{row}",
+            "authors": "{published} ({published_sd}) {published.unit}",
+            "here, mean (sd)": "{mean} ({sd}) {mean.unit}",
+        },
+    ),
+    "devices": View(
+        "devices",
+        {
+            "take: source": "{row}",
+            "in the body frame of its T-pose, median / 95 %": "{body_median} / {body_p95}",
+            "hips laid together, median / 95 %": "{root_median} / {root_p95}",
+            "joints": "{body_median.n}",
+        },
+    ),
+    "body-frames": View(
+        "body-frames",
+        {"take: source": "{row}", "angle, degrees": "{angle}", "unit, %": "{unit}"},
+    ),
+    **{
+        name: View(name, {"what": "{row}", "target": "{target}", "found": "{found}", **FOUND})
+        for name in ("real-checks", "device-checks")
+    },
+    "stated-errors": View(
+        "stated-errors",
+        {
+            "90 % ellipsoids hold, %": "{row}",
+            "target": "{target}",
+            **_stages("{STAGE}"),
+            "by": "{raw.origin}",
+            "with": "{raw.command}",
+        },
+    ),
+    "file-mended": View(
+        "file-mended",
+        {
+            "`walk-4cams`, cameras": "{row}",
+            "file as it is": "{found}",
+            "mended": "{mended}",
+            "by": "{found.origin}",
+            "with": "{found.command}",
+        },
+    ),
+    "file-faults": View(
+        "file-faults",
+        {
+            "fault of one camera of four (`players-b/shot`, 6 seeds each)": "{row}",
+            "static points: warned, camera and fault named": "{static}",
+            "joints": "{joints}",
+            "both": "{both}",
+            "by": "{static.origin}",
+            "with": "{static.command}",
+        },
+    ),
+    "click-model": View(
+        "click-model",
+        {
+            "halls: clicks": "{row}",
+            "x1": "{x1}",
+            "x2": "{x2}",
+            "x3": "{x3}",
+            "by": "{x1.origin}",
+            "with": "{x1.command}",
+        },
+    ),
+    "worlds": View(
+        "worlds",
+        {
+            "effect, strength 1": "{row}",
+            "18 clicks, cm": "{walk18}",
+            "held, 18": "{held18}",
+            "3 clicks, cm": "{walk3}",
+            "held, 3": "{held3}",
+            "warnings": "{warnings}",
+            "by": "{walk18.origin}",
+            "with": "{walk18.command}",
+        },
+    ),
+    "speed": View(
+        "speed",
+        {
+            "comparison, largest work": "{row}",
+            "here": "{found}",
+            "other": "{other}",
+            "other / here": "{ratio}",
+            **FOUND,
+        },
+    ),
+    "stages": View(
+        "stages",
+        {
+            "stage": "{row}",
+            "before": "{before}",
+            "after": "{found}",
+            "ratio": "{ratio}",
+            "profile before": "{profile_before}",
+            "profile after": "{profile_after}",
+            **FOUND,
+        },
+    ),
+    "faults": View(
+        "faults",
+        {"fault": "{row}", "times": "{times}", "survived": "{found}", **FOUND},
+    ),
+    "trust": View(
+        "trust",
+        {"what was done": "{row}", "times": "{times}", "what happened": "{found}", **FOUND},
+    ),
+}
