@@ -15,10 +15,12 @@ import pytest
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
 import long_take
 import mapping_seeds
+import real_footage
 import rows
 import run_log
 import structure_from_motion
 from comparisons import pose
+from courtside.study.configuration import yaml_files
 
 ROOT = Path(__file__).parents[1]
 LOG = """Provided cores: 2
@@ -109,7 +111,7 @@ def test_scripts_are_called_by_benchmarks_that_the_next_tests_run():
         for path in (ROOT / "benchmarks").rglob("*.py")
         if '"workflow" / "scripts"' in path.read_text()
     }
-    assert calling == {"long_take", "mapping_seeds"}
+    assert calling == {"long_take", "mapping_seeds", "real_footage"}
 
 
 def test_long_take_gives_each_script_what_it_takes(tmp_path):
@@ -137,3 +139,13 @@ def test_mapping_seeds_gives_each_script_what_it_takes(tmp_path, monkeypatch):
     for mapper in ("global", "incremental"):
         assert mapping_seeds.errors(tmp_path, "plain-dev", mapper, 0, 40, 10) == {}
     assert called == 2 * ["map_images", "adjust_network"]
+
+
+def test_real_footage_gives_its_script_what_it_takes(monkeypatch):
+    main = mock.create_autospec(real_footage.filter_motion.main)
+    monkeypatch.setattr(real_footage.filter_motion, "main", main)
+    monkeypatch.setattr(real_footage.keypoints, "write_3d", mock.Mock())
+    monkeypatch.setattr(real_footage.keypoints, "read_3d", mock.Mock())
+    config = yaml_files.read(ROOT / "config" / "config.yaml")
+    real_footage.filtered(mock.Mock(), config["filter_motion"])
+    main.assert_called_once()

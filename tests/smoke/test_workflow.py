@@ -23,6 +23,7 @@ DOWNSTREAM_OF_FILTER = {
     "measure_kinematics": 7,  # all cameras in three takes, and the four others of the drawn take
     "evaluate_take": 2,
     "evaluate_angles": 2,
+    "evaluate_reliability": 2,
     "evaluate_kinematics": 6,
     "compare_sessions": 1,
     "draw_kinematics": 1,
@@ -30,6 +31,7 @@ DOWNSTREAM_OF_FILTER = {
     "draw_three_cameras": 1,
     "tabulate_players": 1,
     "tabulate_angles": 1,
+    "draw_reliability": 1,
     "build_viewer": 3,
 }
 DOWNSTREAM_OF_3D = {
@@ -92,7 +94,7 @@ def test_another_number_of_images_maps_only_that_number(kept):
 
 
 def test_a_click_spares_structure_from_motion(kept):
-    with edited(kept / "config/config.yaml", "click_sigma_px: 0.7", "click_sigma_px: 0.8"):
+    with edited(kept / "config/config.yaml", "click_sigma_px: 2.5", "click_sigma_px: 2.4"):
         jobs = planned(root=kept)
     assert jobs["adjust_network"] == 2
     assert not {"extract_features", "match_images", "map_images"} & set(jobs)
