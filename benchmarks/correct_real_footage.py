@@ -22,7 +22,10 @@ from courtside.records.keypoints import keypoints, skeleton
 
 TAKE = "walk-4cams/takes/balancing/{stage}/file/all-robust/blazepose-full.npz"
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
-LABEL = "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC, which rests on the unmended file (no truth)"
+LABEL = (
+    "real, `walk-4cams/balancing`, against OpenPose's joints in Pose2Sim's TRC, which rests on the "
+    "unmended file (no truth)"
+)
 COMMAND = "`python benchmarks/correct_real_footage.py`"
 COLUMNS = ["table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin"]
 

@@ -73,4 +73,5 @@ def _title(rows: pd.DataFrame, stage: str) -> str:
     precision, recall = (whole[f"{name}_percent"] for name in ("precision", "recall"))
     if np.isnan([precision, recall]).any():
         return words
-    return f"{words}\nof flags {precision:.0f} % right, {recall:.0f} % of large errors flagged"
+    flags = f"{precision:.0f} % of flags are right"
+    return f"{words}\n{flags},\n{recall:.0f} % of large errors flagged"
