@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import gammaincinv
 
 from courtside.calibration.bundle import problem
 from courtside.calibration.bundle.problem import Network
@@ -71,3 +72,8 @@ def pseudo_inverse(information: NDArray, n_free: int = 7) -> NDArray:
 def mahalanobis(error: NDArray, covariance: NDArray) -> NDArray:
     """Return error.T @ inverse(covariance) @ error, (N,), of errors (N, 3) and covariances."""
     return np.einsum("ni,ni->n", error, np.linalg.solve(covariance, error[..., None])[..., 0])
+
+
+def ellipsoid(share: float) -> float:
+    """Return what `mahalanobis` stays within for a share, 0..1, of normal errors."""
+    return 2 * gammaincinv(3 / 2, share)

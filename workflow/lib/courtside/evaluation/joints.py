@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.special import gammaincinv
 
+from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
 from courtside.reconstruction import resampling
@@ -140,15 +140,14 @@ def _summary(error: NDArray, covariance: NDArray) -> dict:
     if stated.any():
         trace = np.trace(covariance[stated], axis1=1, axis2=2)
         row["sigma_mm"] = 1000 * np.sqrt(trace.mean())
-        solved = np.linalg.solve(covariance[stated], error[stated][..., None])[..., 0]
-        distance = np.einsum("ni,ni->n", error[stated], solved)
+        distance = mahalanobis(error[stated], covariance[stated])
         for level in LEVELS:
-            inside = distance <= 2 * gammaincinv(3 / 2, level)
+            inside = distance <= ellipsoid(level)
             row[f"coverage_{100 * level:.0f}_percent"] = 100 * inside.mean()
         large = np.linalg.norm(error[stated], axis=1) > LARGE_M
         row["n_large"] = int(large.sum())
         if large.any():
-            inside = distance[large] <= 2 * gammaincinv(3 / 2, 0.9)
+            inside = distance[large] <= ellipsoid(0.9)
             row["coverage_90_large_percent"] = 100 * inside.mean()
     return row
 

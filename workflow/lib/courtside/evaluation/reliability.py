@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.special import gammaincinv
 
+from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
 from courtside.records.keypoints import skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
@@ -49,13 +49,11 @@ def counts(points: Keypoints3D, names: Sequence[str], true_xyz: NDArray) -> pd.D
 
 def _rows(error: NDArray, covariance: NDArray, outlier: NDArray) -> pd.DataFrame:
     """Return one row for each joint, with ones and zeros in `COUNTS`."""
-    solved = np.linalg.solve(covariance, error[..., None])[..., 0]
-    distance = np.einsum("ni,ni->n", error, solved)
+    distance = mahalanobis(error, covariance)
     size_m = np.linalg.norm(error, axis=1)
     large, flagged = size_m > joints.LARGE_M, outlier > FLAGGED
     held = {
-        name: distance <= 2 * gammaincinv(3 / 2, level / 100)
-        for name, level in zip(HELD, LEVELS, strict=True)
+        name: distance <= ellipsoid(level / 100) for name, level in zip(HELD, LEVELS, strict=True)
     }
     numbers = {"n": np.ones(len(error)), **held, "n_large": large, "n_flagged": flagged}
     numbers["n_flagged_large"] = large & flagged

@@ -5,12 +5,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special
 from scipy.spatial.transform import Rotation
 
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court
-from courtside.calibration.point_covariance import mahalanobis
+from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
@@ -24,7 +23,7 @@ HEIGHTS_M = (0.0, 1.0, 2.0, 3.0)
 COLUMNS, ROWS = 5, 7  # of the grid, along the short and the long side
 # Of chi-squared with three degrees of freedom; `scipy.stats` has it too, but takes half a second to
 # import.
-LIMITS = {level: 2 * special.gammaincinv(3 / 2, level) for level in (0.5, 0.9, 0.95)}
+LIMITS = {level: ellipsoid(level) for level in (0.5, 0.9, 0.95)}
 
 
 def check_cameras(
