@@ -1,5 +1,6 @@
 """Mapping: from matches of some images to a COLMAP model."""
 
+import contextlib
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -137,17 +138,20 @@ def _explaining(matches_db, images, mapper, seed, options, attempts) -> _Found:
         support = two_views.explained(verified, model.views(best.model))
         return _Found(best, support, *counts)
 
-    found = mapped(matches_db, mapper, options)
-    for other, least_share in AGAIN.get(mapper, {}).items():
-        if not (found.is_doubtful(least_share) and _is_whole(found.best, images)):
-            break
-        known = {name: on for name, on in KNOWN[other].items() if name not in options}
-        with two_views.with_known_lenses(matches_db, images, seed=seed) as copy:
+    found, copy = mapped(matches_db, mapper, options), None
+    with contextlib.ExitStack() as open_copy:
+        for other, least_share in AGAIN.get(mapper, {}).items():
+            if not (found.is_doubtful(least_share) and _is_whole(found.best, images)):
+                break
+            copy = copy or open_copy.enter_context(
+                two_views.with_known_lenses(matches_db, images, seed=seed)
+            )
+            known = {name: on for name, on in KNOWN[other].items() if name not in options}
             # Options of one mapper are unknown to another.
             again = mapped(copy, other, (options if other == mapper else {}) | known)
-        again = again._replace(best=again.best._replace(held=known | dict(again.best.held)))
-        tried = found.n_attempts + again.n_attempts
-        found = (again if _is_better(again, found) else found)._replace(n_attempts=tried)
+            again = again._replace(best=again.best._replace(held=known | dict(again.best.held)))
+            tried = found.n_attempts + again.n_attempts
+            found = (again if _is_better(again, found) else found)._replace(n_attempts=tried)
     return found
 
 

@@ -55,10 +55,16 @@ def click_points(
     clicks = {}
     for camera in cameras:
         error = bias + rng.standard_normal((len(points_xyz), 2)) * sigma_px_at_3840
-        xy = projection.project(camera, points_xyz) + error * camera.size[0] / FULL_WIDTH_PX
-        seen = projection.in_picture(camera, xy)
-        clicks[camera.name] = np.where(seen[:, np.newaxis], xy, np.nan)
+        error_px = error * camera.size[0] / FULL_WIDTH_PX
+        clicks[camera.name] = _clicked(camera, points_xyz, error_px)
     return clicks
+
+
+def _clicked(camera: Camera, points_xyz: NDArray, error_px: NDArray) -> NDArray:
+    """Return clicks (P, 2) px; NaN where the point or its click is outside the picture."""
+    xy = projection.project(camera, points_xyz) + error_px
+    seen = projection.in_picture(camera, xy)
+    return np.where(seen[:, np.newaxis], xy, np.nan)
 
 
 def click_court(
@@ -96,9 +102,7 @@ def click_court(
         drawn = rng.standard_normal((len(court_xyz), 2, 1))
         scatter = (np.linalg.cholesky(covariance) @ drawn)[..., 0]
         error = strength * (factor * scatter + bias * click_model.bias_px(camera))
-        xy = projection.project(camera, court_xyz) + error
-        seen = projection.in_picture(camera, xy)
-        clicks[camera.name] = np.where(seen[:, np.newaxis], xy, np.nan)
+        clicks[camera.name] = _clicked(camera, court_xyz, error)
     return clicks
 
 
