@@ -14,10 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
+import real_footage
+
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
-from courtside.exports import trc
 from courtside.records.keypoints import keypoints, skeleton
 
 TAKE = "walk-4cams/takes/balancing/{stage}/file/all-robust/blazepose-full.npz"
@@ -30,19 +31,16 @@ COMMAND = "`python benchmarks/correct_real_footage.py`"
 COLUMNS = ["table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin"]
 
 
-def distances(points, reference):
-    """Return the distances (T, 12) mm of limb joints to those of a TRC file, frame by frame."""
-    joints, _, _, xyz = trc.read(reference)
-    sides = [(joint[0].upper(), joint.split("_")[1].capitalize()) for joint in skeleton.JOINTS]
-    theirs = xyz[:, [joints.index(side + part) for side, part in sides]]
+def distances(points, theirs):
+    """Return the distances (T, 12) mm of limb joints to others (T, 12, 3) m, frame by frame."""
     own = [points.joints.tolist().index(joint) for joint in skeleton.JOINTS]
     return 1e3 * np.linalg.norm(points.xyz[0][:, own] - theirs, axis=-1)
 
 
-def rows(results, reference):
+def rows(results, theirs):
     """Yield the rows of the table, stage by stage."""
     for stage, word in STAGES.items():
-        apart = distances(keypoints.read_3d(results / TAKE.format(stage=stage)), reference)
+        apart = distances(keypoints.read_3d(results / TAKE.format(stage=stage)), theirs)
         known = apart[np.isfinite(apart)]
         found = {"median": np.median(known), "p90": np.percentile(known, 90)}
         for part, value in {**found, "p95": np.percentile(known, 95)}.items():
@@ -59,4 +57,4 @@ if __name__ == "__main__":
     with (ROOT / "docs/numbers/real_footage.csv").open("w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow([*COLUMNS, "command"])
-        table.writerows(rows(given.results, given.recordings / "trc" / "Balancing_for_IK.trc"))
+        table.writerows(rows(given.results, real_footage.reference(given.recordings)))

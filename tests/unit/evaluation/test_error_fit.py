@@ -1,6 +1,6 @@
 """What the model of joint errors is fitted on: the offset is taken away, all limbs are there."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,18 +11,10 @@ from courtside.records.cameras.footage import Footage
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints.skeleton import JOINTS
 from fixtures.cameras import scene
-from fixtures.people import walker
+from fixtures.people import true_motion, walker
 
 OPTIONS = {"min_score": 0.05, "min_views": 2, "max_error_px": 10, "fade_px": 13, "fix_sides": False}
 OFFSETS = Path(__file__).parents[3] / "config" / "joint_offsets" / "blazepose-full.csv"
-
-
-@dataclass(frozen=True)
-class Truth:
-    joints: np.ndarray
-    person_id: np.ndarray
-    time_s: np.ndarray
-    xyz: np.ndarray
 
 
 def test_errors_are_those_beside_the_known_offset():
@@ -34,7 +26,7 @@ def test_errors_are_those_beside_the_known_offset():
         view.xy[...] += rng.normal(0, 1, view.xy.shape)
     table = joint_correction.read(OFFSETS)
     true = record.xyz - np.nan_to_num(joint_correction.offsets(record, table, {"p1": "m"}))
-    truth = Truth(record.joints, record.person_id, record.time_s, true)
+    truth = true_motion.Truth(record.joints, record.person_id, record.time_s, true)
     seen = [Footage(c, view, Clock()) for c, view in zip(cameras, views, strict=True)]
     given = walker.SKELETON, {"p1": "m"}, table, truth, OPTIONS
     columns, error, covariance, weight = error_fit.joints_of(seen, *given)

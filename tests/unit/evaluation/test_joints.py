@@ -1,6 +1,6 @@
 """Errors of joints against known truths: shifts, scatter, interpolation, gaps, left-out views."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import derived_joints
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
-from fixtures.people import keypoints_made, walker
+from fixtures.people import keypoints_made, true_motion, walker
 
 
 def record(n_frames=40, n_persons=1, **changes):
@@ -122,14 +122,6 @@ def test_exchanged_persons_are_counted():
 DERIVED = derived_joints.read(Path(__file__).parents[3] / "config" / "derived_joints.yaml")
 
 
-@dataclass(frozen=True)
-class Truth:
-    joints: np.ndarray
-    person_id: np.ndarray
-    time_s: np.ndarray
-    xyz: np.ndarray
-
-
 def moving(time_s, joints):
     """Return (T, J, 3): joints that move at constant speed, so that interpolation is exact."""
     base = np.arange(len(joints))[:, None] * [0.01, 0.02, 0.03]
@@ -146,7 +138,9 @@ def truth(points, first_s=-0.1, last_s=1.0):
     """Return a truth at 100 Hz of both persons, joints and persons in another order."""
     time_s = np.arange(first_s, last_s, 0.01)
     real = moving(time_s, points.joints)[:, ::-1]
-    return Truth(points.joints[::-1], points.person_id[::-1], time_s, np.stack([real + 7.0, real]))
+    return true_motion.Truth(
+        points.joints[::-1], points.person_id[::-1], time_s, np.stack([real + 7.0, real])
+    )
 
 
 def test_a_constant_shift_is_found_at_any_time():
@@ -163,7 +157,7 @@ def test_a_constant_shift_is_found_at_any_time():
 def test_errors_are_empty_outside_the_truth_and_for_joints_it_lacks():
     points = take(0.0)
     real = truth(points, 0.2, 0.5)
-    real = Truth(real.joints[:-2], real.person_id, real.time_s, real.xyz[:, :, :-2])
+    real = true_motion.Truth(real.joints[:-2], real.person_id, real.time_s, real.xyz[:, :, :-2])
     error = pose_errors.true(points, real)
     inside = (points.time_s >= 0.2) & (points.time_s <= real.time_s[-1])
     assert np.isfinite(error[0, inside, 2:]).all()
@@ -174,7 +168,7 @@ def test_errors_are_empty_outside_the_truth_and_for_joints_it_lacks():
 def test_a_truth_of_other_persons_is_refused():
     points = take(0.0)
     real = truth(points)
-    real = Truth(real.joints, np.array(["x", "y"]), real.time_s, real.xyz)
+    real = true_motion.Truth(real.joints, np.array(["x", "y"]), real.time_s, real.xyz)
     with pytest.raises(InputError, match=r"found \['x', 'y'\]"):
         pose_errors.true(points, real)
 
