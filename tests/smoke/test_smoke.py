@@ -6,6 +6,7 @@ import re
 import ezc3d
 import numpy as np
 import pandas as pd
+from scipy.stats import chi2, norm
 
 from courtside.calibration.records import covariance as camera_covariance
 from courtside.exports import tidy, trc
@@ -110,18 +111,24 @@ def test_the_linear_calibration_of_layout_a_looks_well_and_is_not(tiny_study):
     assert "in line with the camera" in quality["degenerate"]["side"]
 
 
-def test_calibrated_cameras_are_the_true_ones(tiny_study):
-    found = cameras.read_toml(tiny_study / "plain-tiny/calibration/sfm-n12/cameras.toml")
+def test_calibrated_cameras_are_the_true_ones_within_their_stated_covariance(tiny_study):
+    session = tiny_study / "plain-tiny/calibration/sfm-n12"
+    found = cameras.read_toml(session / "cameras.toml")
     real = session_truth.read(tiny_study / "virtual/plain-tiny/truth.npz")
-    for ours, true in zip(found, real.cameras, strict=True):
-        assert ours.name == true.name
-        assert np.linalg.norm(ours.centre_in_world - true.centre_in_world) < 0.3
-        assert abs(ours.K[0, 0] / true.K[0, 0] - 1) < 0.01
-    covariance = camera_covariance.read(
-        tiny_study / "plain-tiny/calibration/sfm-n12/covariance.npz"
-    )
+    covariance = camera_covariance.read(session / "covariance.npz")
     assert covariance.cameras == [camera.name for camera in real.cameras]
     assert np.linalg.eigvalsh(covariance.covariance).min() > 0
+    for ours, true in zip(found, real.cameras, strict=True):
+        assert ours.name == true.name
+        stated = covariance.of([ours.name]).covariance
+        # Of right covariances, 1 in 10,000 fails: errors depend on the draw of clicks and, in
+        # structure from motion, on the processor. Small pictures, hence the wide second bounds.
+        shift = ours.cam_from_world[:, :3] @ (ours.centre_in_world - true.centre_in_world)
+        assert shift @ np.linalg.solve(stated[3:6, 3:6], shift) < chi2.ppf(0.9999, 3)
+        assert np.sqrt(np.trace(stated[3:6, 3:6])) < 0.5
+        focal_px, sigma_px = true.K[1, 1], np.sqrt(stated[6, 6])
+        assert abs(ours.K[1, 1] - focal_px) < norm.ppf(0.99995) * sigma_px
+        assert sigma_px < 0.025 * focal_px
 
 
 def test_the_calibration_study_draws_its_figures(tiny_study):
