@@ -9,6 +9,7 @@ from courtside.calibration.court import court, known_points, resection
 from courtside.geometry import camera as camera_models
 from courtside.study.errors import InputError
 from fixtures.cameras.scene import look_at, opencv_projection
+from virtualgym.session import clicks as clicking
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
 SIZE = (1280, 720)
@@ -133,3 +134,29 @@ def test_clicks_of_another_court_are_said_with_how_far_they_are_off():
     message = str(caught.value)
     assert message.startswith("camera back: expected 8 clicks or more that fit one camera, found")
     assert "check the names of the clicked points, and the court" in message and "\n" not in message
+
+
+def test_mirrored_points_are_named_or_put_the_camera_below_the_floor():
+    """Where no camera fits the mirrored points, the message says so; else the height tells."""
+    mirror = COURT.xyz * [-1, 1, 1] + [6.1, 0, 0]
+    other = [np.linalg.norm(COURT.xyz - place, axis=1).argmin() for place in mirror]
+    size = (480, 270)
+    pose = look_at((-17.95, 6.7, 1.9), (3.05, 6.7, 1.0))
+    camera = camera_models.Camera(
+        "side", size, [[421, 0, 240], [0, 421, 135], [0, 0, 1]], [0] * 5, pose
+    )
+    drawn = {"n_draws": 60, "seed": 1, "preset": "plain", "session": "mirrored"}
+    way, said = known_points.method("known18", COURT), 0
+    for marked in clicking.clicks_of_persons([camera], COURT, COURT.xyz, **drawn):
+        clicks = {"side": marked["side"][other]}
+        try:
+            found = known_points.calibrate(
+                way, COURT, clicks, {"side": size}, {}, click_sigma_px=2.5
+            )
+        except InputError as error:
+            assert "camera side: " in str(error)
+            assert "the points are mirrored; exchange the names of the left" in str(error)
+            said += 1
+        else:
+            assert found["side"].camera.centre_in_world[2] < 0
+    assert said > 0

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from numpy.typing import NDArray
 
@@ -68,7 +69,7 @@ def calibrate(
             found[name] = resection.dlt(xyz, xy, size=size, name=name)
             continue
         known = {"K": lenses[name].K, "dist": lenses[name].dist} if way.board else {}
-        found[name] = resection.nonlinear(
+        found[name] = _fitted(
             xyz,
             xy,
             size,
@@ -78,6 +79,24 @@ def calibrate(
             **known,
         )
     return found
+
+
+def _fitted(xyz: NDArray, *clicks: Any, name: str, **options: Any) -> resection.Fitted:
+    """Fit a camera by least squares; where that fails, say whether its points are mirrored."""
+    try:
+        return resection.nonlinear(xyz, *clicks, name=name, **options)
+    except InputError as fault:
+        try:
+            mirrored = resection.nonlinear(xyz * [-1, 1, 1], *clicks, name=name, **options)
+        except InputError:
+            raise fault from None
+        if mirrored.camera.centre_in_world[2] < 0:
+            raise
+        raise InputError(
+            f"camera {name}: expected clicks that fit the court, found that they fit its mirror "
+            "image: the points are mirrored; exchange the names of the left and right points in "
+            "all cameras, or undo the flip of the videos"
+        ) from None
 
 
 def cameras(found: Mapping[str, Found]) -> list[Camera]:
