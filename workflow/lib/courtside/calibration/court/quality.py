@@ -1,6 +1,7 @@
 """Checks of calibrated cameras without the truth, and their errors where the truth is known."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from courtside.calibration.court import click_checks, joint_adjustment
-from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
 from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera
@@ -84,9 +85,24 @@ def adjust_and_check(
         clicks,
         click_sigma_px=sigma_px,
         point_covariance=solved.point_covariance,
-        inwards=click_checks.inward_shift(ties, clicks, court, factors=solved.factors, **weights),
+        inwards=_inwards(court, ties, clicks, solved.factors, **weights),
     )
     return solved, quality | {"variance_factors": _said(solved)}
+
+
+def _inwards(court, ties, clicks, factors, **weights) -> tuple[float, float]:
+    """Return `click_checks.inward_shift`, with the scatter of the likelier of edges and centres.
+
+    Clicks on line centres do not fit the edges: the scatter found with edges hides them.
+    """
+    found = click_checks.inward_shift(ties, clicks, court, factors=factors, **weights)
+    if not click_checks.CENTRES[0] < found[0] < click_checks.CENTRES[1]:
+        return found
+    centres = replace(court, xyz=court.xyz + to_line_centres(court))
+    solved = joint_adjustment.solve_with_factors(
+        ties, clicks, centres, max_iterations=30, **weights
+    )
+    return click_checks.inward_shift(ties, clicks, court, factors=solved.factors, **weights)
 
 
 def _said(solved: joint_adjustment.Solution) -> dict[str, Any]:
