@@ -37,8 +37,9 @@ MEASURED = (  # of the results of a default run
     devices.body_frames,
 )
 STATED = (
-    *("real-checks", "device-checks", "stated-errors", "file-mended", "file-faults"),
-    *("click-model", "worlds", "speed", "stages", "faults", "trust"),
+    *("real-checks", "device-checks", "stated-errors", "file-evidence", "file-mended"),
+    *("file-faults", "mapping-checks", "click-model", "click-alarms", "worlds"),
+    *("speed", "costs", "stages", "faults", "trust"),
 )
 
 

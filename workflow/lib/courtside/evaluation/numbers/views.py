@@ -222,6 +222,10 @@ VIEWS = {
         name: View(name, {"what": "{row}", "target": "{target}", "found": "{found}", **FOUND})
         for name in ("real-checks", "device-checks")
     },
+    **{
+        name: View(name, {"what": "{row}", "found": "{found}", **FOUND})
+        for name in ("file-evidence", "mapping-checks", "costs")
+    },
     "stated-errors": View(
         "stated-errors",
         {
@@ -253,17 +257,18 @@ VIEWS = {
             "with": "{static.command}",
         },
     ),
-    "click-model": View(
-        "click-model",
-        {
-            "halls: clicks": "{row}",
-            "x1": "{x1}",
-            "x2": "{x2}",
-            "x3": "{x3}",
-            "by": "{x1.origin}",
-            "with": "{x1.command}",
-        },
-    ),
+    **{
+        name: View(
+            name,
+            {
+                first: "{row}",
+                **{strength: f"{{{strength}}}" for strength in ("x1", "x2", "x3")},
+                "by": "{x1.origin}",
+                "with": "{x1.command}",
+            },
+        )
+        for name, first in {"click-model": "halls: clicks", "click-alarms": "clicks"}.items()
+    },
     "worlds": View(
         "worlds",
         {
