@@ -10,11 +10,16 @@ from numpy.typing import NDArray
 from courtside.calibration.bundle import solver
 from courtside.calibration.court import joint_adjustment, sfm_alignment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
-from courtside.calibration.point_covariance import MEDIAN_2D
+from courtside.calibration.point_covariance import MEDIAN_2D, mahalanobis
 from courtside.geometry.camera import Camera, project
 from courtside.study.errors import InputError
 
 WRONG = 6.0  # ASSUME: a click this many sigmas off is wrong
+# Of a normal vector in two dimensions, sigma 1 per axis: length that half and 80 % stay within. The
+# second counts scatter that differs from point to point.
+NORMAL_2D = np.array([MEDIAN_2D, 1.794])
+RAISED = 2.0  # ASSUME: times the error across an edge: of points above the floor
+LONGEST = 4.0  # ASSUME: times the error across an edge: along edges that cross flat
 CERTAIN = 4.0  # ASSUME: the inward shift must be this many standard deviations from none
 CENTRES = (0.5, 1.6)  # ASSUME: of half a line width: shifts that mean line centres
 # In half line widths: edges, half way, line centres; three points determine a parabola.
@@ -31,6 +36,9 @@ class LeaveOneOut:
     residual_m: NDArray
     projected_px: NDArray  # (C, P, 2): where the court's point should be in the picture
     clicked_px: NDArray  # (C, P, 2): NaN where not clicked
+    # (C, P, 2, 2): covariance of a click of unit error across each of its two edges; NaN where the
+    # point is not before the camera
+    crossing: NDArray
 
     @property
     def error_cm(self) -> NDArray:
@@ -41,6 +49,15 @@ class LeaveOneOut:
     def error_px(self) -> NDArray:
         """Distance in each picture, (C, P) px."""
         return np.linalg.norm(self.clicked_px - self.projected_px, axis=-1)
+
+    @property
+    def edge_error_px(self) -> NDArray:
+        """The same in px across the edges: along edges that cross flat, a click is less exact."""
+        off = self.clicked_px - self.projected_px
+        seen = np.isfinite(off).all(axis=-1) & np.isfinite(self.crossing).all(axis=(-2, -1))
+        error = np.full(seen.shape, np.nan)
+        error[seen] = np.sqrt(mahalanobis(off[seen], self.crossing[seen]))
+        return error
 
 
 @dataclass(frozen=True)
@@ -74,6 +91,7 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
     xyz = sfm_alignment.reconstruct(cameras, clicks)
     residual = np.full_like(xyz, np.nan)
     projected = np.full((len(cameras), len(xyz), 2), np.nan)
+    crossing = np.full((len(cameras), len(xyz), 2, 2), np.nan)
     clicked = np.stack([np.asarray(clicks[camera.name], float) for camera in cameras])
     world_from_sfm, _ = sfm_alignment.align(court, xyz)
     for at in range(len(xyz)):
@@ -84,24 +102,41 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
         residual[at] = fitted.points(xyz[at]) - court.xyz[at]
         for row, camera in enumerate(cameras):
             projected[row, at] = project(fitted.camera(camera), court.xyz[at])
+            crossing[row, at] = _crossing(fitted.camera(camera), court.xyz[at])
     names = tuple(camera.name for camera in cameras)
-    return LeaveOneOut(court.points, names, residual, projected, clicked)
+    return LeaveOneOut(court.points, names, residual, projected, clicked, crossing)
+
+
+def _crossing(camera: Camera, xyz: NDArray) -> NDArray:
+    """Return the covariance (2, 2) of a click of unit error across the edges of its point.
+
+    The edges of a point on the floor lie along the court's axes. Those of a post's tip are upright
+    and level, and cross at a right angle; few such points carry all heights.
+    """
+    if xyz[2] > 0:
+        return RAISED**2 * np.eye(2)
+    along = project(camera, xyz + 1e-3 * np.eye(3)[:2]) - project(camera, xyz)
+    across = along[:, ::-1] * [1, -1] / np.linalg.norm(along, axis=1, keepdims=True)
+    extent, axes = np.linalg.eigh(across.T @ across)
+    return (axes / np.maximum(extent, LONGEST**-2.0)) @ axes.T
 
 
 def find_wrong_clicks(table: LeaveOneOut, *, sigma_px: float = 1.0) -> list[WrongClick]:
     """Return the clicks that the others contradict, the worst first.
 
     The `table` needs six points or more: with fewer, one wrong click spoils what the others say.
-    `sigma_px` is that of a good click per axis; where a camera's clicks scatter more, that counts.
+    `sigma_px` is that of a good click across an edge; where a camera's clicks scatter more, that
+    counts.
     """
-    error = table.error_px
+    error, by_edge = table.error_px, table.edge_error_px
     wrong = []
     for row, camera in enumerate(table.cameras):
-        seen = np.isfinite(error[row])
+        seen = np.isfinite(by_edge[row])
         if seen.sum() < 4:
             continue
-        sigma = max(sigma_px, np.median(error[row, seen]) / MEDIAN_2D)
-        for at in np.flatnonzero(seen & (np.nan_to_num(error[row]) > WRONG * sigma)):
+        middle, most = np.quantile(by_edge[row, seen], [0.5, 0.8]) / NORMAL_2D
+        sigma = max(sigma_px, middle, most)
+        for at in np.flatnonzero(seen & (np.nan_to_num(by_edge[row]) > WRONG * sigma)):
             away = np.linalg.norm(table.projected_px[row] - table.clicked_px[row, at], axis=-1)
             near = int(np.argmin(np.where(np.isfinite(away), away, np.inf)))
             other = table.points[near] if near != at and away[near] < WRONG * sigma else None
