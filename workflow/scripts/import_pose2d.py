@@ -11,15 +11,15 @@ from courtside.video import reader
 
 
 def main(paths, pose2d_npz, *, camera, model, trim_s):
-    stop_s = trim_s[1] if trim_s else None
-    info = reader.probe(paths.video, stop_s=stop_s)
+    # The whole video, whatever is used of it: the files count its frames.
+    info = reader.probe(paths.video)
     found = openpose.read(
         paths.folder,
         skeleton.read(paths.skeleton),
         camera=camera,
         model=model,
         size=info.size,
-        time_s=reader.frame_times(paths.video, stop_s=stop_s),
+        time_s=reader.frame_times(paths.video),
         trim_s=trim_s,
     )
     log.logger.info("%s: %d tracklets, %d frames", camera, len(found.xy), len(found.time_s))

@@ -1,8 +1,10 @@
 """OpenPose's 2D keypoints (JSON) against another program's result, every fault, people's tracks."""
 
 import json
+import runpy
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +13,10 @@ from courtside.calibration import file_formats
 from courtside.devices import openpose
 from courtside.exports import markers, trc
 from courtside.geometry.camera import project
+from courtside.records.keypoints import keypoints as keypoint_files
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
+from courtside.video import writer
 from fixtures.recordings.real_data import REAL, needs_real
 
 SKELETONS = Path(__file__).parents[3] / "config" / "skeletons"
@@ -68,8 +72,68 @@ def test_frames_take_the_videos_times_and_trim(tmp_path):
     found = read(tmp_path / "j", time_s=time_s, trim_s=(0.03, 0.1))
     assert found.time_s.tolist() == [0.03, 0.07]
     assert found.xy[0, :, 0, 0].tolist() == [101, 102]
-    with pytest.raises(InputError, match="a video that has 3, found numbers 0 to 4"):
+    with pytest.raises(InputError, match=r"at most 3 frames.* found 5 files numbered 0 to 4;"):
         read(tmp_path / "j", time_s=time_s[:3])
+    with pytest.raises(InputError, match=r"from 3 s to before 4 s \(trim_s.* from 0 to 0.20 s;"):
+        read(tmp_path / "j", time_s=time_s, trim_s=(3.0, 4.0))
+
+
+def write_numbers(folder, numbers):
+    """Write a file for each number; the first point lies at that many px beyond 100."""
+    for number in numbers:
+        write(folder, f"take_{number:012d}_keypoints.json", keypoints(100.0 + number))
+
+
+def test_numbers_within_the_video_are_those_of_its_frames(tmp_path, caplog):
+    write_numbers(tmp_path / "later", range(5, 40))
+    found = read(tmp_path / "later", n_frames=40)
+    assert np.isnan(found.xy[0, :5]).all()
+    assert found.xy[0, 5:, 0, 0] == pytest.approx(np.arange(105, 140))
+    assert "35 files for 40 frames; taken as frames 5 to 39" in caplog.text
+    write_numbers(tmp_path / "second", range(0, 40, 2))
+    found = read(tmp_path / "second", n_frames=40)
+    assert found.xy[0, ::2, 0, 0] == pytest.approx(np.arange(100, 140, 2))
+    assert np.isnan(found.xy[0, 1::2]).all()
+    assert "20 files for 40 frames; taken as frames 0 to 38" in caplog.text
+
+
+def test_numbers_that_reach_over_the_whole_video_may_begin_anywhere(tmp_path):
+    write_numbers(tmp_path / "j", range(5, 45))
+    found = read(tmp_path / "j", n_frames=40)
+    assert found.xy[0, :, 0, 0] == pytest.approx(np.arange(105, 145))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        (range(20), "20 numbered 0 to 19, as of every second frame; number the files"),
+        (range(1, 15), "14 numbered 1 to 14, as of every third frame; number the files"),
+        (range(50, 70), "0 to 39 or a file for each, found 20 files numbered 50 to 69;"),
+        (range(41), "at most 40 frames.* found 41 files numbered 0 to 40;"),
+    ],
+)
+def test_numbers_that_do_not_say_the_frame_are_refused(tmp_path, numbers, said):
+    write_numbers(tmp_path / "j", numbers)
+    with pytest.raises(InputError, match=said):
+        read(tmp_path / "j", n_frames=40)
+
+
+def test_the_script_counts_the_frames_of_the_whole_video(tmp_path):
+    """With trim_s the files still count from the video's first frame."""
+    writer.write_video(tmp_path / "v.mp4", [np.zeros((48, 64, 3), np.uint8)] * 12, 10.0, crf=30)
+    write_numbers(tmp_path / "j", range(12))
+    script = runpy.run_path(str(SKELETONS.parents[1] / "workflow/scripts/import_pose2d.py"))
+    paths = SimpleNamespace(
+        folder=tmp_path / "j", video=tmp_path / "v.mp4", skeleton=SKELETONS / "coco17.yaml"
+    )
+    out, trim_s = tmp_path / "p.npz", (0.3, 0.6)
+    script["main"](paths, out, camera="left", model="theirs", trim_s=trim_s)
+    found = keypoint_files.read_2d(out)
+    assert found.time_s == pytest.approx([0.3, 0.4, 0.5])
+    assert found.size.tolist() == [64, 48]
+    assert (found.reason == missing_reason.OUT_OF_IMAGE).any()  # the points are beyond 64 px
+    with pytest.raises(InputError, match="correct trim_s"):
+        script["main"](paths, out, camera="left", model="theirs", trim_s=(2.0, 3.0))
 
 
 def test_scores_above_one_are_one(tmp_path):

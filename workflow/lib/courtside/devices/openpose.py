@@ -13,6 +13,7 @@ from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import RAISED_BY_READERS, InputError, StrPath, reading, require_type
+from courtside.study.execution import log
 
 # BODY_25 and BODY_25B have 25 points each, in another order: the 9th is the mid-hip, or an elbow.
 MISTAKEN = ("body25", "body25b")
@@ -34,30 +35,74 @@ def read(
 ) -> Keypoints2D:
     """Read the keypoints of one camera: a tracklet for each person that could be followed.
 
-    The `folder` holds files `*.json`; the last number in a name counts the frames, the lowest is
-    the first frame. Their points are in the order of the `skeleton`; `size` is the width and height
-    of the video, px. `time_s` (T,) are the times of the video's frames; in those without a file
-    nobody is seen. With `trim_s`, only frames from its start to before its stop.
+    The `folder` holds files `*.json`; the last number in a name is that of the frame, from 0, or
+    from any number where the files reach over the whole video. Their points are in the order of the
+    `skeleton`; `size` is the width and height of the video, px. `time_s` (T,) are the times of all
+    frames of the video; in those without a file nobody is seen. With `trim_s`, only frames from its
+    start to before its stop.
 
-    An `InputError` if there are no such files, one is damaged or has another number of points,
-    there are more frames than in the video, or the points are those of another skeleton.
+    An `InputError` if there are no such files, one is damaged or has another number of points, the
+    numbers do not say which frames the files are of, no frame lies within `trim_s`, or the points
+    are those of another skeleton.
     """
     files = _numbered(Path(folder))
-    first, last, n_frames = min(files), max(files), len(time_s)
-    if last - first >= n_frames:
+    first = _first_number(folder, files, len(time_s))
+    times = np.asarray(time_s, dtype=float)
+    kept = np.flatnonzero((times >= trim_s[0]) & (times < trim_s[1]) if trim_s else times >= 0)
+    if trim_s and not len(kept):
         raise InputError(
-            f"{folder}: expected frames of a video that has {n_frames}, found numbers {first} to "
-            f"{last}; name the video that the files were made from"
+            f"{folder}: expected frames from {trim_s[0]:g} s to before {trim_s[1]:g} s (trim_s of "
+            f"the take), found a video from 0 to {times[-1]:.2f} s; correct trim_s"
         )
     empty = np.empty((0, len(skeleton.joints), 3))
-    people = [empty] * n_frames
+    people = [empty] * len(times)
     for number, path in files.items():
         people[number - first] = _people(path, len(skeleton.joints), skeleton.name)
     _check_order(folder, skeleton.name, people)
-    times = np.asarray(time_s, dtype=float)
-    kept = np.flatnonzero((times >= trim_s[0]) & (times < trim_s[1]) if trim_s else times >= 0)
     tracks = link([people[at] for at in kept])
     return _keypoints(tracks, skeleton, camera, model, size, times[kept])
+
+
+# ASSUME: of fewer files, numbers that are a whole share of the video's may be so by chance.
+LEAST_FILES = 10
+RENUMBER = "number the files by the frames of the video, from 0, or name the video of these files"
+
+
+def _first_number(folder: StrPath, files: Mapping[int, Path], n_frames: int) -> int:
+    """Return the number of the video's first frame; `InputError` where the numbers do not say it.
+
+    Numbers within the video are those of its frames, as OpenPose writes them even where it begins
+    later; others must reach over the whole video.
+    """
+    first, last = min(files), max(files)
+    span = last - first + 1
+    if span > n_frames:
+        raise InputError(
+            f"{folder}: expected at most {n_frames} frames, as many as the video has, found "
+            f"{len(files)} files numbered {first} to {last}; name the video that the files were "
+            "made from"
+        )
+    if span == n_frames:
+        return first
+    every = round(n_frames / span)
+    whole_share = every > 1 and abs(span * every - n_frames) < every
+    if first <= 1 and len(files) == span >= LEAST_FILES and whole_share:
+        raise InputError(
+            f"{folder}: expected a file for each of {n_frames} frames of the video, found {span} "
+            f"numbered {first} to {last}, as of every {_ordinal(every)} frame; {RENUMBER}"
+        )
+    if last >= n_frames:
+        raise InputError(
+            f"{folder}: expected numbers of frames from 0 to {n_frames - 1} or a file for each, "
+            f"found {len(files)} files numbered {first} to {last}; {RENUMBER}"
+        )
+    said = "%s: %d files for %d frames; taken as frames %d to %d, counted from 0"
+    log.logger.warning(said, folder, len(files), n_frames, first, last)
+    return 0
+
+
+def _ordinal(number: int) -> str:
+    return {2: "second", 3: "third"}.get(number, f"{number}th")
 
 
 def _numbered(folder: Path) -> dict[int, Path]:
