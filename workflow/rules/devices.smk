@@ -18,6 +18,8 @@ rule import_device:
     params:
         code=code("import_device.py"),
         kind=lambda w: device_of(w).kind,
+        unit=lambda w: device_of(w).unit,
+        angles=lambda w: device_of(w).angles,
     script:
         "../scripts/import_device.py"
 

@@ -9,12 +9,12 @@ from courtside.records.keypoints import skeleton
 from courtside.study.execution.script import run
 
 
-def main(recording, skeleton_yaml, motion_npz, *, device, kind):
+def main(recording, skeleton_yaml, motion_npz, *, device, kind, unit=None, angles=None):
     joints = skeleton.read(skeleton_yaml)
     if kind == "inertial":
-        motion = mocopi.read(recording, joints, source=device)
+        motion = mocopi.read(recording, joints, source=device, unit=unit, angles=angles)
     else:
-        motion = nuitrack.read(recording, joints.joints, device)
+        motion = nuitrack.read(recording, joints.joints, device, unit=unit)
     device_motion.write(motion_npz, motion)
 
 

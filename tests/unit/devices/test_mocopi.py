@@ -1,10 +1,12 @@
 """mocopi's files: the study's names, metres, the row nobody performed, the app's frame rates."""
 
 import runpy
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from courtside.devices import bvh, mocopi
 from courtside.exports import bvh as writer
@@ -21,16 +23,18 @@ PARENT = {child: parent for parent, child in MOCOPI.bones}
 REAL_FILES = [("mocopi-mobile-arm-raise-turn", 853, 50.0), ("jump", 802, 60.0)]
 
 
-def recorded(path, *, n_frames=5, rest=True, period_s=1 / 60, names=None):
+def recorded(path, *, n_frames=5, rest=True, period_s=1 / 60, names=None, unit_m=1.0, turn=0.5):
     """Write a file as the app does: every row turns every joint, except a rest pose in front."""
     rng = np.random.default_rng(2)
     parents = [
         MOCOPI.index(PARENT[joint]) if joint in PARENT else NO_PARENT for joint in MOCOPI.joints
     ]
     shape = Hierarchy(
-        tuple(names or MOCOPI.device_names()), np.array(parents), rng.normal(0, 0.2, (27, 3))
+        tuple(names or MOCOPI.device_names()),
+        np.array(parents),
+        rng.normal(0, 0.08, (27, 3)),  # 1.6 m from head to ankles
     )
-    angle = rng.uniform(-0.5, 0.5, (n_frames, 27))
+    angle = rng.uniform(-turn, turn, (n_frames, 27))
     angle[: int(rest)] = 0
     c, s, one, zero = np.cos(angle), np.sin(angle), np.ones_like(angle), np.zeros_like(angle)
     rotation = np.stack([c, -s, zero, s, c, zero, zero, zero, one], axis=-1).reshape(
@@ -42,7 +46,9 @@ def recorded(path, *, n_frames=5, rest=True, period_s=1 / 60, names=None):
         np.repeat(shape.offsets[None], n_frames, axis=0),
         rotation,
     )
-    writer.write(path, posed)
+    other = replace(posed, translation=posed.translation / unit_m)
+    other = replace(other, hierarchy=replace(shape, offsets=shape.offsets / unit_m))
+    writer.write(path, other)
     return posed
 
 
@@ -154,6 +160,44 @@ def test_other_joints_are_named_in_one_line(tmp_path):
     with pytest.raises(InputError, match="missing: l_low_leg; twice: torso_5;") as caught:
         mocopi.read(tmp_path / "a.bvh", MOCOPI)
     assert "\n" not in str(caught.value)
+
+
+# The writer writes centimetres: a file in another unit has other numbers.
+@pytest.mark.parametrize(
+    ("unit", "metres", "tall"),
+    [("m", 1.0, "0.01"), ("mm", 0.001, "15"), ("in", 0.0254, "0.6"), ("ft", 0.3048, "0.05")],
+)
+def test_a_file_in_another_unit_is_named_and_read_with_its_key(tmp_path, unit, metres, tall):
+    path = tmp_path / "a.bvh"
+    posed = recorded(path, unit_m=metres / 0.01)
+    with pytest.raises(InputError, match=f"ankles to head .* found {tall}.*read in cm") as caught:
+        mocopi.read(path, MOCOPI)
+    assert f"`unit: {unit}`" in str(caught.value)
+    assert "\n" not in str(caught.value)
+    found = mocopi.read(path, MOCOPI, unit=unit)
+    np.testing.assert_allclose(found.xyz, forward(posed)[0], atol=1e-5)
+
+
+def test_angles_in_radians_are_named_and_read_with_their_key(tmp_path):
+    path = tmp_path / "a.bvh"
+    posed = recorded(path, turn=np.radians(0.5))  # its degrees are half radians at most
+    with pytest.raises(InputError, match=r"turn by 11 deg.*`angles: radians`") as caught:
+        mocopi.read(path, MOCOPI)
+    assert "\n" not in str(caught.value)
+    still = mocopi.read(path, MOCOPI, angles="degrees")
+    np.testing.assert_allclose(still.xyz, forward(posed)[0], atol=1e-6)
+    angle = np.degrees(Rotation.from_matrix(posed.parent_from_joint.reshape(-1, 3, 3)).magnitude())
+    turned = mocopi.read(path, MOCOPI, angles="radians").posed.parent_from_joint
+    found = Rotation.from_matrix(turned.reshape(-1, 3, 3)).magnitude()
+    np.testing.assert_allclose(found, angle, atol=1e-6)
+
+
+@pytest.mark.parametrize("period_s", [20.0, 0.5, 1e-4])
+def test_a_frame_time_in_another_unit_is_named(tmp_path, period_s):
+    recorded(tmp_path / "a.bvh", period_s=period_s)
+    told = f"5 to 500 frames a second, found a frame every {period_s:g} s; correct .*`Frame Time`"
+    with pytest.raises(InputError, match=told):
+        mocopi.read(tmp_path / "a.bvh", MOCOPI)
 
 
 def test_the_script_hands_the_motion_on(tmp_path):

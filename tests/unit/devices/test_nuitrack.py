@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from courtside.devices import nuitrack
+from courtside.geometry.camera_fields import METRES
 from courtside.records.keypoints import missing_reason, skeleton
 from courtside.study.errors import InputError
 
@@ -99,6 +100,44 @@ def test_json_by_name_in_a_list_or_in_lines(tmp_path):
     capitals.write_text(json.dumps([listed(frame) for frame in frames()]))
     for path in (whole, lines, capitals):
         check(nuitrack.read(path, JOINTS, "n"))
+
+
+def shifted(times_us):
+    """Return rows of a table whose timestamps are other ones."""
+    header, *rows = csv_rows()
+    rows = [row for row in rows[::2] for _ in range(25)]
+    return [header] + [[time_us, *row[1:]] for time_us, row in zip(times_us, rows, strict=True)]
+
+
+def test_a_stray_timestamp_is_left_out_and_a_reset_is_named(tmp_path, caplog):
+    steps = 33333 * np.arange(25 * N)
+    ahead = steps + 3_600_000_000 * (np.arange(25 * N) == 40)
+    found = nuitrack.read(write_csv(tmp_path / "a.csv", shifted(ahead)), JOINTS, "n")
+    assert np.allclose(found.time_s, np.delete(steps, 40) * 1e-6)
+    assert "left out: 1 of 100 frames out of order, the first at 3601.3" in caplog.text
+    reset = np.where(np.arange(25 * N) < 40, steps + 10**9, steps)
+    path = write_csv(tmp_path / "b.csv", shifted(reset))
+    with pytest.raises(InputError, match=r"found 60 of 100 frames out of order.* clock was set"):
+        nuitrack.read(path, JOINTS, "n")
+
+
+def test_timestamps_in_milliseconds_are_named(tmp_path):
+    path = write_csv(tmp_path / "a.csv", shifted(33 * np.arange(25 * N)))
+    with pytest.raises(InputError, match=r"a frame every 3\.3e-05 s; .* in micro"):
+        nuitrack.read(path, JOINTS, "n")
+
+
+@pytest.mark.parametrize("unit", ["cm", "mm", "in", "ft"])
+def test_a_table_in_another_unit_is_named_and_read_with_its_key(tmp_path, unit):
+    header, *rows = csv_rows()
+    at = [k for k, name in enumerate(header) if name.endswith((".x", ".y", ".z"))]
+    for row in rows[::2]:
+        for k in at:
+            row[k] /= METRES[unit]
+    path = write_csv(tmp_path / "a.csv", [header, *rows[::2]])
+    with pytest.raises(InputError, match=f"neck to waist.*read in m; it is .*`unit: {unit}`"):
+        nuitrack.read(path, JOINTS, "n")
+    check(nuitrack.read(path, JOINTS, "n", unit=unit))
 
 
 def test_unsure_and_absent_joints_are_missing_with_their_reason(tmp_path):

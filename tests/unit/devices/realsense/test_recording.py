@@ -1,4 +1,5 @@
 import logging
+import re
 import time
 
 import cv2
@@ -102,7 +103,7 @@ def test_lost_frames_are_gaps_in_the_numbers(tmp_path, caplog):
     assert len(list(found.depth_frames())) == 6
     with caplog.at_level(logging.INFO):
         assert len(list(found.colour_frames())) == 5
-    assert "cam: Color_0: 5 frames, 1 missing, 0 out of order" in caplog.text
+    assert "cam: Color_0: 5 frames, 1 missing" in caplog.text
 
 
 def test_frames_out_of_order_are_left_out(tmp_path):
@@ -110,6 +111,50 @@ def test_frames_out_of_order_are_left_out(tmp_path):
     again = [*made[:3], made[1], *made[3:]]
     found = realsense.read(write_bag(tmp_path / "a.bag", again))
     assert len(found.colour_index().time_s) == 6
+
+
+def stamped(path, times_s, picture=plain):
+    """Write a db3 whose frames come one after the other, with these times on the camera's clock."""
+    rows = []
+    at = {"Depth_0": -1, "Color_0": -1}
+    for topic, kind, time_ns, values in messages_of_db3(frames(len(times_s)), picture):
+        for stream in at:
+            if f"{stream}/image/metadata" in topic and "timestamp=" in values["data"]:
+                at[stream] += 1
+                own = f"timestamp={1000 * times_s[at[stream]]:.6f}"
+                values = {"data": re.sub(r"timestamp=[0-9.]+", own, values["data"])}
+        rows.append((topic, kind, time_ns, values))
+    return write_db3(path, rows)
+
+
+def test_a_stray_stamp_costs_one_frame(tmp_path, caplog):
+    times_s = 12 + np.arange(40) / 30
+    times_s[17] += 3600
+    kept = np.delete(np.arange(40), 17)
+    made = [(t, bgr, d) for t, (_, bgr, d) in zip(times_s, frames(40), strict=True)]
+    for path in (stamped(tmp_path / "a.db3", times_s), write_bag(tmp_path / "a.bag", made)):
+        caplog.clear()
+        found = realsense.read(path, "cam")
+        assert found.colour_index().time_s == pytest.approx(times_s[kept], abs=1e-6)
+        assert "cam: Color_0: left out: 1 of 40 frames out of order, the first at 36" in caplog.text
+        for (_, image), k in zip(found.colour_frames(), kept, strict=True):
+            assert np.array_equal(image, made[k][1])
+
+
+def test_a_clock_that_was_set_or_restarted_is_named(tmp_path):
+    steps = np.arange(40) / 30
+    reset = np.where(steps > 1, steps, steps + 500)
+    found = realsense.read(stamped(tmp_path / "reset.db3", reset), "cam")
+    with pytest.raises(InputError, match=r"Color_0: .* of 40 frames out of order.*was set"):
+        found.colour_index()
+    for name, stop_s in (("awhile", 0.7), ("on", 9)):
+        ahead = steps + 3600.0 * (steps > 0.51) * (steps < stop_s)
+        found = realsense.read(stamped(tmp_path / f"{name}.db3", ahead), "cam")
+        with pytest.raises(InputError, match=r"Color_0: .* found it at 3600\.5.* none is missing"):
+            found.colour_index()
+    made = [(500 + t if t < 1 else t, bgr, d) for t, bgr, d in frames(40, start_s=0.0)]
+    with pytest.raises(InputError, match=r"frames out of order.*was set"):
+        realsense.read(write_bag(tmp_path / "a.bag", made), "cam").colour_index()
 
 
 def changed_db3(path, change):

@@ -187,6 +187,12 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             RECORDED
+            | {"subjects": {"p1": None}}
+            | {"takes": {"t": {"devices": {"d": {"file": "a.mp4", "unit": "m"}}}}},
+            ["takes.t.devices.d.unit: expected it of a file .bvh, .json, .csv only, found a.mp4"],
+        ),
+        (
+            RECORDED
             | {"subjects": {"p1": None}, "takes": {"t": {"devices": {"a": {"file": "a.mp4"}}}}},
             ["takes.t.devices: expected names that no camera has, found 'a'"],
         ),

@@ -6,6 +6,7 @@ openpose: `read`: keypoints of one camera; `link`: persons followed through fram
 open_depth: `read`: colour and depth of any form as a `DepthRecording`; `baseline`
 depth_folder: `read`: colour and depth from a folder of plain files
 depth_recording: `DepthRecording`
+plausible: units of a file, by the size of a body and the rate; stray and reset times
 
 Folder: `realsense` (recordings of RealSense cameras).
 """

@@ -16,15 +16,17 @@ from courtside.records.devices.hierarchy import NO_PARENT, Hierarchy, PosedHiera
 from courtside.study.errors import InputError, StrPath
 
 CENTIMETRES_M = 0.01
+DEGREE = np.pi / 180
 TURNED = {"X": (1, 2), "Y": (2, 0), "Z": (0, 1)}  # columns that a rotation about an axis mixes
 
 
-def read(path: StrPath, *, unit_m: float = CENTIMETRES_M) -> PosedHierarchy:
+def read(path: StrPath, *, unit_m: float = CENTIMETRES_M, radians: bool = False) -> PosedHierarchy:
     """Read a BVH file: joints by its names, which need not be unique, in its order and axes.
 
     `unit_m` is the length of the file's unit, metres: BVH does not say it; mocopi's is the
-    centimetre. Time is from zero. Position channels replace the offset, axis by axis. An
-    `InputError` if the file is not BVH; see `read_text`.
+    centimetre. Angles are degrees, as the format has it, unless `radians`. Time is from zero.
+    Position channels replace the offset, axis by axis. An `InputError` if the file is not BVH; see
+    `read_text`.
 
     Meredith & Maddock 2001. Rotations are about the joint's own rotated axes in the order of its
     CHANNELS: Zrotation Xrotation Yrotation is R = Rz Rx Ry, Tait-Bryan, not the proper Euler angles
@@ -46,7 +48,7 @@ def read(path: StrPath, *, unit_m: float = CENTIMETRES_M) -> PosedHierarchy:
         hierarchy=hierarchy,
         time_s=np.arange(len(text.rows)) * text.frame_time_s,
         translation=_translations(text, columns) * unit_m,
-        parent_from_joint=_rotations(text.rows, channels, columns),
+        parent_from_joint=_rotations(text.rows, channels, columns, 1.0 if radians else DEGREE),
     )
 
 
@@ -79,9 +81,15 @@ def _translations(text: "BvhText", columns: Mapping[tuple[int, str], int]) -> ND
 
 
 def _rotations(
-    rows: NDArray, channels: Sequence[Sequence[str]], columns: Mapping[tuple[int, str], int]
+    rows: NDArray,
+    channels: Sequence[Sequence[str]],
+    columns: Mapping[tuple[int, str], int],
+    unit: float,
 ) -> NDArray:
-    """Return each joint's rotation in its parent, (T, J, 3, 3); one order at a time."""
+    """Return each joint's rotation in its parent, (T, J, 3, 3); one order at a time.
+
+    `unit` is that of the angles, rad.
+    """
     found = np.tile(np.eye(3), (len(rows), len(channels), 1, 1))
     orders = [tuple(c for c in own if c.endswith("rotation")) for own in channels]
     for order in set(orders) - {()}:
@@ -89,7 +97,7 @@ def _rotations(
         turned = np.zeros((3, 3, len(joints), len(rows)))
         turned[range(3), range(3)] = 1.0
         for channel in order:
-            angle = np.radians(rows[:, [columns[joint, channel] for joint in joints]].T)
+            angle = unit * rows[:, [columns[joint, channel] for joint in joints]].T
             first, second = TURNED[channel[0]]
             cosine, sine = np.cos(angle), np.sin(angle)
             before = turned[:, first].copy()

@@ -26,6 +26,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from courtside.devices import plausible
+from courtside.geometry.camera_fields import METRES
 from courtside.records.devices.device_motion import DeviceMotion
 from courtside.records.keypoints import missing_reason
 from courtside.study.errors import InputError, StrPath, reading, require_scalar, require_type
@@ -37,38 +39,42 @@ LEGS = ("hip", "knee", "ankle", "foot")
 NUMBERS: tuple[str, ...] = ("none", "head", "neck", "torso", "waist")  # of the interface, from 0
 NUMBERS += tuple(f"{side}_{joint}" for side in ("left", "right") for joint in SIDED)
 NUMBERS += tuple(f"{side}_{joint}" for side in ("left", "right") for joint in LEGS)
-UNITS_M = {".csv": 1.0, ".json": 0.001}
+UNITS = {".csv": "m", ".json": "mm"}
 # ASSUME: no median neck-to-waist distance lies outside; it tells millimetres from metres.
 TRUNK_M = (0.2, 1.0)
 MIN_CONFIDENCE = 0.5  # ASSUME: Nuitrack tells nothing in between; less sure joints are missing
 EXPORT = "export the skeletons from Nuitrack again"
 
 
-def read(path: StrPath, joints: Sequence[str], source: str) -> DeviceMotion:
+def read(
+    path: StrPath, joints: Sequence[str], source: str, *, unit: str | None = None
+) -> DeviceMotion:
     """Read the skeleton of the user seen in most frames, from a `.csv` or `.json` as above.
 
     `joints` are those of `config/skeletons/nuitrack19.yaml`; `collar` is the mean of the two that
     are one. The motion, named `source`, is in the axes of a camera (x right, y down, z forward),
-    metres; seconds on the sensor's clock. An `InputError` if the file is not such a recording,
-    holds no user or is not in the unit.
+    metres; seconds on the sensor's clock. `unit` is that of its lengths, where it is not that of
+    the format. An `InputError` if the file is not such a recording, holds no user, or size of the
+    body, rate or order of the times are not a person's recording.
     """
     path = Path(path)
     kind = path.suffix.lower()
-    if kind not in UNITS_M:
+    if kind not in UNITS:
         raise InputError(
             f"{path}: expected a recording of Nuitrack (.csv or .json), found *{kind}; {EXPORT}"
         )
     users, time_us, xyz, confidence = (_csv if kind == ".csv" else _json)(path, list(joints))
     chosen = _user(path, users)
     time_us, xyz, confidence = time_us[chosen], xyz[chosen], confidence[chosen]
-    # The recorder repeats rows.
-    newer = np.concatenate([[True], np.diff(np.maximum.accumulate(time_us)) > 0])
+    newer = plausible.in_order(path, time_us * 1e-6)  # and the recorder repeats rows
     time_us, confidence = time_us[newer], confidence[newer]
-    xyz = xyz[newer] * UNITS_M[kind] * (1.0, -1.0, 1.0)
+    plausible.check_rate(path, time_us * 1e-6, "its timestamps must be in microseconds")
+    unit = unit or UNITS[kind]
+    xyz = xyz[newer] * METRES[unit] * (1.0, -1.0, 1.0)
     unseen = ~np.isfinite(xyz).all(axis=-1) | (xyz == 0).all(axis=-1)
     unsure = confidence < MIN_CONFIDENCE
     xyz[unseen | unsure] = np.nan
-    _check_size(path, xyz, list(joints))
+    _check_size(path, xyz, list(joints), unit)
     reason = np.where(
         unseen, missing_reason.UNSEEN, np.where(unsure, missing_reason.LOW_SCORE, missing_reason.OK)
     )
@@ -94,18 +100,14 @@ def _user(path: Path, users: NDArray) -> NDArray:
     return users == user
 
 
-def _check_size(path: Path, xyz: NDArray, joints: list[str]) -> None:
+def _check_size(path: Path, xyz: NDArray, joints: list[str], unit: str) -> None:
     if not {"neck", "waist"} <= set(joints):
         return
     trunk = np.linalg.norm(xyz[:, joints.index("neck")] - xyz[:, joints.index("waist")], axis=-1)
     if not np.isfinite(trunk).any():
         raise InputError(f"{path}: expected neck and waist in some frame, found neither; {EXPORT}")
     median_m = float(np.nanmedian(trunk))
-    if not TRUNK_M[0] <= median_m <= TRUNK_M[1]:
-        raise InputError(
-            f"{path}: expected {TRUNK_M[0]} to {TRUNK_M[1]} m from neck to waist, found "
-            f"{median_m:.3g} m; export metres as .csv, or millimetres as .json"
-        )
+    plausible.check_length(path, "a trunk from neck to waist", median_m, unit, TRUNK_M)
 
 
 def _names(joint: str) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     Cameras = TypeVar("Cameras", bound=Sequence[Camera])
 
 LARGEST = 1e12  # beyond any length, pixel or lens coefficient
-METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 UNSCALED = "unscaled"  # unit of cameras of a session without a court
 EXPORT_AGAIN = "export the calibration again or mend the file"
 
@@ -76,7 +76,7 @@ def pose(where: str, rotation: object, translation: object, metres: float) -> ND
 
 
 def unit_in_metres(where: StrPath, unit: object) -> float:
-    """Return the length in metres of a unit that a file names: m, cm or mm."""
+    """Return the length in metres of a unit that a file or session names: one of `METRES`."""
     if unit == UNSCALED:
         raise InputError(
             f"{where}: expected cameras in metres, found unscaled ones of a session without a "

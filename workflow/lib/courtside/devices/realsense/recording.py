@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.devices import plausible
 from courtside.devices.depth_recording import DEFAULT_UNIT_M, STANDING_STILL, DepthRecording
 from courtside.devices.realsense import lens, rosbag, text
 from courtside.devices.realsense.rosbag import Bag
@@ -29,16 +30,17 @@ from courtside.study.execution import log
 PICTURES = re.compile(
     r"(/device_\d+/sensor_\d+/(Depth|Color)_\d+)/image/data(/compressed|/compressedDepth)?"
 )
+LONGEST_STEP_S = 10.0  # ASSUME: of frames with numbers in a row; no camera films slower
 RECORD = "record depth and colour together in the camera's program"
 
 
 def read(path: StrPath, name: str = "realsense") -> DepthRecording:
     """Read a `.bag` or `.db3` file; `name` is the device's in the study.
 
-    Times are the camera's own (its hardware clock where both streams have it). Frames that are not
-    later than the one before are left out, and counted in the log, as are frames missing by their
-    numbers. An `InputError` if the file is no such recording, damaged, or lacks a stream, its lens
-    or its pose. Damage further in is found when the frames are read.
+    Times are the camera's own (its hardware clock where both streams have it). Frames with a stray
+    time are left out with a warning; frames missing by their numbers are counted in the log. An
+    `InputError` if the file is no such recording, damaged, or lacks a stream, its lens or its pose.
+    Damage further in, and a clock that was set or restarted, are found when the frames are read.
     """
     path = Path(path)
     with rosbag.opened(path) as bag:
@@ -161,20 +163,25 @@ def _follow(
     decode: Callable[[Any], NDArray] | None,
 ) -> Iterator[tuple[float, int, Any]]:
     """Yield (time_s, number, picture) of a stream; picture is None without `decode`."""
-    what, last_s, late, n, numbers = f"{name}: {stream.rpartition('/')[2]}", -np.inf, 0, 0, [0, 0]
+    what, n, numbers, last_s = f"{name}: {stream.rpartition('/')[2]}", 0, [0, 0], 0.0
     with rosbag.opened(path) as bag:
         stamps = text.stamps(bag, stream) if own_clock else {}
         topics = [t for t in bag.counts if (m := PICTURES.fullmatch(t)) and m[1] == stream]
-        for index, (_, time_ns, message) in enumerate(bag.messages(topics)):
-            number, time_s = stamps.get(time_ns) or text.stamp(message, time_ns, index, own_clock)
-            if not time_s > last_s:
-                late += 1
-                continue
-            last_s, n = time_s, n + 1
+        stamped = (
+            (*(stamps.get(time_ns) or text.stamp(message, time_ns, index, own_clock)), message)
+            for index, (_, time_ns, message) in enumerate(bag.messages(topics))
+        )
+        for number, time_s, message in plausible.following(f"{path}: {what}", stamped):
+            if n and number == numbers[1] + 1 and time_s - last_s > LONGEST_STEP_S:
+                raise InputError(
+                    f"{path}: {what}: expected the next frame at {last_s:.3f} s, found it at "
+                    f"{time_s:.3f} s though none is missing; the camera's clock was set: {RECORD}"
+                )
+            n, last_s = n + 1, time_s
             numbers = [number if n == 1 else numbers[0], number]
             yield time_s, number, _decoded(f"{path}: {what} {number}", message, camera, decode)
     missing = max(numbers[1] - numbers[0] + 1 - n, 0)
-    log.logger.info("%s: %d frames, %d missing, %d out of order", what, n, missing, late)
+    log.logger.info("%s: %d frames, %d missing", what, n, missing)
 
 
 def _decoded(

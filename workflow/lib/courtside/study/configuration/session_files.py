@@ -160,6 +160,8 @@ def _devices(content: Content, subjects: tuple[str, ...]) -> dict[str, Device]:
             kind=KINDS.get(Path(device["file"]).suffix.lower(), "rgb"),
             file=device["file"],
             subject=device.get("subject", subjects[0]),
+            unit=device.get("unit"),
+            angles=device.get("angles"),
         )
         for name, device in content.get("devices", {}).items()
     }

@@ -43,6 +43,8 @@ class Device:
     kind: str
     file: str  # its recording
     subject: str  # whom it follows
+    unit: str | None = None  # of the lengths in its file, where that is not its format's
+    angles: str | None = None  # of a BVH: `degrees` or `radians`, where that is stated
 
     def sources(self, name: str) -> tuple[str, ...]:
         """Return the names of the skeletons that this device, called `name`, gives."""

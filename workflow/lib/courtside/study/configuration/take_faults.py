@@ -3,8 +3,10 @@
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
+from courtside.study.configuration.session_files import KINDS
 from courtside.study.configuration.yaml_files import Content
 
+MEANT_FOR = {"unit": ("inertial", "nuitrack"), "angles": ("inertial",)}  # keys of devices
 RECORDINGS = ("videos", "devices")  # keys of a take that was recorded
 
 
@@ -100,6 +102,14 @@ def _device_faults(
     for name, device in devices.items():
         named = [device["subject"]] if "subject" in device else []
         yield from unknown(f"{where}.devices.{name}.subject", named, subjects)
+        kind = KINDS.get(Path(device["file"]).suffix.lower(), "rgb") if "file" in device else ""
+        for key in (key for key in MEANT_FOR if key in device):
+            if kind not in MEANT_FOR[key]:
+                endings = [end for end, of in KINDS.items() if of in MEANT_FOR[key]]
+                yield (
+                    f"{where}.devices.{name}.{key}: expected it of a file {', '.join(endings)} "
+                    f"only, found {device['file']}; remove it"
+                )
         if name in {*cameras, "cameras"}:
             yield f"{where}.devices: expected names that no camera has, found {name!r}; rename it"
 
