@@ -56,6 +56,7 @@ onsuccess:
         end_of_run(),
         *run.waiting_for_clicks(STUDY),
         *run.left_out(STUDY),
+        *asked(run.lost_pictures, STUDY),
         sep="\n",
         file=sys.stderr,
     )

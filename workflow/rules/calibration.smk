@@ -22,6 +22,7 @@ rule import_cameras:
         names=lambda w: session_of(w).calibration_camera_names(),
         crops_px=of_job(calibration.crops_px),
         override=lambda w: session_of(w).calibration_override,
+        unit=lambda w: session_of(w).calibration_unit,
     script:
         "../scripts/import_cameras.py"
 
@@ -42,6 +43,7 @@ rule check_cameras:
         names=lambda w: session_of(w).calibration_camera_names(),
         crops_px=of_job(calibration.crops_px),
         override=lambda w: session_of(w).calibration_override,
+        unit=lambda w: session_of(w).calibration_unit,
         takes=of_job(calibration.checked),
     script:
         "../scripts/check_cameras.py"

@@ -6,7 +6,7 @@ import numpy as np
 
 from courtside.calibration.court import court
 from courtside.reconstruction import resampling
-from courtside.reconstruction.association import associate
+from courtside.reconstruction.association import associate, scale
 from courtside.records.cameras import footage
 from courtside.records.keypoints import people, skeleton
 from courtside.study.execution import log
@@ -21,12 +21,15 @@ def main(paths, people_npz, *, persons):
     chosen = [joints.index(name) for name in names]
     limbs = [replace(v, xy=v.xy[:, :, chosen], score=v.score[:, :, chosen]) for v in views]
     time_s = resampling.common_times(views, clocks)
+    xy = [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)]
+    trunk = [at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))]
+    scale.check([one.camera for one in seen], xy, names)
     found = associate.associate(
         [one.camera for one in seen],
-        [resampling.resample(v, time_s, c)[0] for v, c in zip(limbs, clocks, strict=True)],
+        xy,
         time_s,
         len(persons),
-        trunk=[at for at, name in enumerate(names) if name.endswith(("hip", "shoulder"))],
+        trunk=trunk,
         mirror=[chosen.index(joints.mirror()[joint]) for joint in chosen],
         court=court.read(paths.court) if paths.get("court") else None,
     )

@@ -13,8 +13,8 @@ from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
 
 
-def main(paths, check_json, check_csv, *, names, crops_px, override, takes):
-    found = file_formats.rename(file_formats.read(paths.calibration_path), names)
+def main(paths, check_json, check_csv, *, names, crops_px, override, takes, unit=None):
+    found = file_formats.rename(file_formats.read(paths.calibration_path, unit), names)
     found = file_formats.with_principal_points(found, override.get("principal_point_px", {}))
     # Everything in px of the calibrated picture, which is what the file's numbers are of.
     corner_px = np.array([crops_px.get(name, (0, 0))[:2] for name in names])

@@ -6,8 +6,9 @@ from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
 
 
-def main(calibration_path, cameras_toml, quality_json, *, names, crops_px, override):
-    theirs = file_formats.rename(file_formats.read(calibration_path), names)
+def main(calibration_path, cameras_toml, quality_json, *, names, crops_px, override, unit=None):
+    theirs = file_formats.rename(file_formats.read(calibration_path, unit), names)
+    file_formats.check_apart(calibration_path, theirs)
     points_px = override.get("principal_point_px", {})
     found = file_formats.with_principal_points(theirs, points_px)
     source = f"imported from {calibration_path}"

@@ -100,6 +100,19 @@ def test_the_number_of_images_is_that_of_the_calibration(study, rules):
     assert [s["n_images"] for s in found["sessions"]] == [40]
 
 
+def test_photos_alone_are_told_with_their_model(study, rules):
+    session = study.sessions["plain-tiny"]
+    sweep = {**session.parameters["sweep"], "n_images": [7], "mappers": ["incremental"]}
+    photos = replace(
+        session, cameras={}, court_points=None, parameters={**session.parameters, "sweep": sweep}
+    )
+    assert photos.calibrations() == []
+    found = report_page.content(replace(study, sessions={"door": photos}), rules, "captions")
+    (told,) = found["sessions"]
+    assert told["files"]["model"].endswith("/sfm/incremental-n7-o0/summary.json")
+    assert (told["mapper"], told["n_images"]) == ("incremental", 7)
+
+
 def test_takes_are_told_with_their_measures_errors_and_links(content):
     real, _, players, single = content["sessions"]
     way = "file/all-robust/blazepose-full"

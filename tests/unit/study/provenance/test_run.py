@@ -127,6 +127,20 @@ def test_sessions_that_wait_for_clicks_are_told(study):
     assert "save them as data/p.csv" in line
 
 
+def test_pictures_that_a_model_of_photos_lost_are_told(study, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session = study.sessions["plain-tiny"]
+    study = replace(study, sessions={"plain-tiny": replace(session, cameras={})})
+    assert run.lost_pictures(study) == []
+    summary = tmp_path / "results/plain-tiny/sfm/global-n12-o0/summary.json"
+    summary.parent.mkdir(parents=True)
+    summary.write_text(json.dumps({"n_images": 12, "n_registered": 12}))
+    assert run.lost_pictures(study) == []
+    summary.write_text(json.dumps({"n_images": 12, "n_registered": 6}))
+    (line,) = run.lost_pictures(study)
+    assert line.startswith("plain-tiny: 6 of 12 pictures are not in the model global-n12-o0:")
+
+
 def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(
     study, tmp_path, monkeypatch
 ):

@@ -17,9 +17,40 @@ from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError, StrPath, reading
 
 LARGEST_BYTES = 1 << 24  # ASSUME: far above any calibration: a larger file is another one
+APART_M = (0.1, 150.0)  # ASSUME: of the two cameras of a hall that are farthest apart
+UNIT_STATED = re.compile(r"(?m)^\s*<?[\"']?unit[\"']?\s*[=:>]|<calibration\b")  # Qualisys: mm
+STATE_UNIT = (
+    "if its lengths are not metres, write `unit: mm` (or cm, in, ft) under calibration in the "
+    "session file"
+)
 FARTHEST_M = 300.0  # ASSUME: no hall is larger: a camera farther away is in mm or cm
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 FORMS = "Qualisys .qca.txt, TOML of Pose2Sim, aniposelib or Caliscope, or YAML or XML of OpenCV"
+# What to do with files of other programs that are recognised and not read.
+BY_POSE2SIM = (
+    "convert it with Pose2Sim (calibration_type = 'convert', convert_from = '{}') and give the "
+    "TOML file that it writes"
+)
+BY_EASYMOCAP = (
+    BY_POSE2SIM.format("easymocap") + ", or give a TOML file with size, matrix, distortions, "
+    "rotation and translation of each camera: the picture's size is not in these files"
+)
+PAIR = (
+    "give each camera with its own camera_matrix, distortion_coefficients, R, T, image_width and "
+    "image_height, both placed in the frame of the hall, in one file"
+)
+# Keys, in small letters, by which the matrices of both cameras of a pair are stored.
+STEREO = (
+    {"m1", "m2"},
+    {"k1", "k2"},
+    {"cameramatrix1", "cameramatrix2"},
+    {"camera_matrix_1", "camera_matrix_2"},
+    {"camera_matrix1", "camera_matrix2"},
+    {"camera_matrix_left", "camera_matrix_right"},
+    {"left_camera_matrix", "right_camera_matrix"},
+    {"k_left", "k_right"},
+    {"kl", "kr"},
+)
 QUALISYS_PER_PX = 64  # see `_from_qualisys`
 QUALISYS_TURNS = ("0", "90", "180", "270")
 # A Qualisys camera looks along -z with y up, ours along +z with y down.
@@ -33,31 +64,60 @@ OPENCV_KEYS = {  # the first is what `camera.build` calls it
 }
 
 
-def read(path: StrPath) -> list[Camera]:
+def read(path: StrPath, unit: str | None = None) -> list[Camera]:
     """Read the cameras of a calibration file, choosing the reader by what the file holds.
 
     It is a Qualisys `.qca.txt`; a TOML file of Pose2Sim, aniposelib or Caliscope; a YAML or XML
     file of OpenCV's FileStorage with one or several cameras; or a folder of such, one camera each.
     Cameras are in the file's order under the file's names, in metres, with the file's world frame.
-    Raises `InputError` if the form is not known, or a camera is incomplete, impossible or named
-    twice.
+    `unit` is that of its lengths where the file does not state one; m where nobody does. Raises
+    `InputError` if the form is not known, the unit is stated twice, or a camera is incomplete,
+    impossible or named twice.
     """
     path = Path(path)
     if path.is_dir():
         files = sorted(file for file in path.iterdir() if file.suffix.lower() in OPENCV_SUFFIXES)
-        found = [camera for file in files for camera in _read_opencv(file, _text(file))]
+        texts = [_text(file) for file in files]
+        pairs = zip(files, texts, strict=True)
+        found = [camera for file, text in pairs for camera in _read_opencv(file, text)]
     else:
-        text = _text(path)
-        found = _reader(text)(path, text)
+        texts = [_text(path)]
+        found = _reader(texts[0])(path, texts[0])
+    if unit is not None:
+        found = _in_unit(path, texts, found, unit)
     for camera in camera_fields.check_distinct(path, found):
         far_m = np.linalg.norm(camera.centre_in_world)
         if far_m > FARTHEST_M:
             raise InputError(
                 f"{path}: camera {camera.name}: expected it within {FARTHEST_M:g} m of the world's "
-                f"origin, found {far_m:.0f} m; if the file is in mm or cm, add the key unit (TOML: "
-                "in [metadata])"
+                f"origin, found {far_m:.0f} m; {STATE_UNIT}"
             )
     return found
+
+
+def check_apart(path: StrPath, cameras: Sequence[Camera]) -> None:
+    """Raise `InputError` if the cameras of a session are no plausible distance apart."""
+    centres = np.array([camera.centre_in_world for camera in cameras])
+    apart_m = float(np.linalg.norm(centres[:, None] - centres, axis=-1).max())
+    if len(cameras) > 1 and not APART_M[0] <= apart_m <= APART_M[1]:
+        raise InputError(
+            f"{path}: expected cameras {APART_M[0]:g} to {APART_M[1]:g} m apart, found "
+            f"{apart_m:.3g} m between the farthest; {STATE_UNIT}"
+        )
+
+
+def _in_unit(
+    path: Path, texts: Sequence[str], cameras: Sequence[Camera], unit: str
+) -> list[Camera]:
+    """Return cameras whose file states no unit, in metres."""
+    if any(UNIT_STATED.search(text) for text in texts):
+        raise InputError(
+            f"{path}: expected `unit` under calibration in the session file for a file that states "
+            "none, found one in the file; remove it from the session file, or correct it in the file"
+        )
+    metres = camera_fields.unit_in_metres(f"{path}: unit", unit)
+    scale = np.array([1, 1, 1, metres])
+    return [replace(camera, cam_from_world=camera.cam_from_world * scale) for camera in cameras]
 
 
 def rename(found: Iterable[Camera], names: Mapping[str, str]) -> list[Camera]:
@@ -168,6 +228,8 @@ def _read_qualisys(path: Path, text: str) -> list[Camera]:
         )
     with reading(path, "XML", camera_fields.EXPORT_AGAIN):  # its ParseError is a SyntaxError
         root = ElementTree.fromstring(text)
+    if root.tag.lower() == "cameras" or path.suffix.lower() == ".xcp":
+        raise _other(path, "cameras of Vicon (.xcp)", BY_POSE2SIM.format("vicon"))
     return [
         _from_qualisys(path, element)
         for element in root.findall("cameras/camera")
@@ -230,11 +292,28 @@ def _read_opencv(path: Path, text: str) -> list[Camera]:
     ):
         storage = cv2.FileStorage(text, cv2.FILE_STORAGE_READ | cv2.FILE_STORAGE_MEMORY)
         root = storage.root()
+    _check_known(path, list(root.keys()) if root.isMap() else [])
     if _child(root, OPENCV_KEYS["matrix"]) is not None:
         return [_from_opencv(path, root, path.stem, root)]
     maps = [(key, root.getNode(key)) for key in (root.keys() if root.isMap() else ())]
     maps = [(key, node) for key, node in maps if node.isMap() and _child(node, ("data",)) is None]
+    if not maps:
+        found = ", ".join(root.keys()[:6]) if root.isMap() else "nothing"
+        raise _other(path, f"no camera_matrix among: {found or 'nothing'}", "check it")
     return [_from_opencv(path, node, key, root) for key, node in maps]
+
+
+def _check_known(path: Path, keys: Sequence[str]) -> None:
+    """Raise `InputError` for forms that are stored like OpenCV's and are not one camera each."""
+    stems = {key.rpartition("_")[0] for key in keys}
+    if {"K", "dist"} <= stems or {"R", "T"} <= stems or {"Rot", "T"} <= stems:
+        raise _other(path, "cameras of EasyMocap (names, K_..., Rot_...)", BY_EASYMOCAP)
+    if any(pair <= {key.lower() for key in keys} for pair in STEREO):
+        raise _other(path, f"a stereo pair ({', '.join(keys[:4])} ...)", PAIR)
+
+
+def _other(path: Path, found: str, mend: str) -> InputError:
+    return InputError(f"{path}: expected {FORMS}, found {found}; {mend}")
 
 
 def _from_opencv(path: Path, node: Any, name: str, root: Any) -> Camera:

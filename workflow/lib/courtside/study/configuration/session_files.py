@@ -69,6 +69,7 @@ def session(
         withheld=withheld,
         calibration_file=given.get("file"),
         calibration_override={key: given[key] for key in OVERRIDDEN if key in given},
+        calibration_unit=given.get("unit"),
         static_points=of_configuration(content.get("static_points"), Path(file).parent.parent),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,

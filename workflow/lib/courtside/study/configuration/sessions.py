@@ -97,6 +97,7 @@ class Session:
     unclicked: str | None = None  # where court points that nobody has clicked yet are to be saved
     # Of `calibration`, where numbers of the file are replaced: `principal_point_px` and `reason`
     calibration_override: dict[str, Any] = field(default_factory=dict)
+    calibration_unit: str | None = None  # of the lengths in that file, where it states none
     static_points: str | None = None  # points at rest, clicked in several cameras
     # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
     # by take

@@ -124,11 +124,13 @@ def _session(study: Study, session: Session) -> dict[str, Any]:
     """Return what the report says of a session."""
     ways = [Calibration.parse(name) for name in session.calibrations()]
     way = next(iter(session.take_calibrations()), ways[0].name if ways else None)
-    mapped = bool(session.walks) and any(one.kind in ("sfm", "sim3") for one in ways)
-    # The reported structure from motion: global, with as many images as the calibration.
+    photos = bool(session.walks) and not session.cameras
+    mapped = photos or (bool(session.walks) and any(one.kind in ("sfm", "sim3") for one in ways))
+    # The reported structure from motion: global, with as many images as the calibration; of photos
+    # alone the first.
     mapped_by = Calibration.parse(way).variant if way else None
-    first = session.parameters["sweep"]["n_images"][0]
-    variant = Variant("global", mapped_by.n_images if mapped_by else first)
+    first = session.variants()[0]
+    variant = first if photos else Variant("global", (mapped_by or first).n_images)
     known = {"session": session.name, **vars(variant)}
     quality = {
         one.name: paths.CALIBRATION_QUALITY.format(**known, calibration=one.name) for one in ways

@@ -98,6 +98,24 @@ def waiting_for_clicks(study: Study) -> list[str]:
     ]
 
 
+def lost_pictures(study: Study) -> list[str]:
+    """Return one line for each session of photos whose model lacks some that were made by now."""
+    found = []
+    for session in study.sessions.values():
+        variants = session.variants() if session.walks and not session.cameras else []
+        for variant in variants:
+            path = Path(paths.SFM_SUMMARY.format(session=session.name, **vars(variant)))
+            summary = files.read_json(path) if path.is_file() else {}
+            lost = summary.get("n_images", 0) - summary.get("n_registered", 0)
+            if lost:
+                found.append(
+                    f"{session.name}: {lost} of {summary['n_images']} pictures are not in the "
+                    f"model {variant.name}: they overlap too little with the others, see "
+                    f"{paths.MATCH_TABLE.format(session=session.name)}; add pictures in between"
+                )
+    return found
+
+
 def left_out(study: Study) -> list[str]:
     """Return one line for each thing that is not made for want of consent, by session."""
     return [
