@@ -81,6 +81,7 @@ rule all:
         targets.takes.every_kinematics(STUDY),
         targets.takes.every_comparison_of_views(STUDY),
         targets.together.every_players_figure(STUDY),
+        targets.devices.every_device_export(STUDY),
         targets.devices.every_device_figure(STUDY),
         targets.devices.every_body_frame(STUDY),
         targets.pages.every_clicking_page(STUDY),

@@ -36,6 +36,7 @@ PLACES = {
     "*/shake/*.csv": [SHAKE],
     "*/views/*.csv": [f"{TAKES} | views", LABELS],
     "*/devices/*.frames.csv": [f"{DEVICES} | devices/<device>.frames.csv"],
+    "*/devices/*.csv": [TIDY],
     "*/sync/*.wrists.csv": [f"{DEVICES} | .wrists.csv", *SOURCE],
     "*/sync/*.checks.csv": [f"{DEVICES} | .checks.csv", *SOURCE],
     "*/sync/*.csv": [EVENTS, *SOURCE],

@@ -126,7 +126,7 @@ def test_a_video_with_other_content_reruns_its_camera_and_what_joins_cameras(kep
 def test_a_suit_recorded_anew_spares_the_depth_camera(kept):
     with changed(kept / SUIT, (kept / SUIT).read_bytes() + b"\n"):
         jobs = planned(root=kept)
-    assert jobs == together({"import_device": 1}, DEVICES_ALIGNED)
+    assert jobs == together({"import_device": 1, "export_device": 1}, DEVICES_ALIGNED)
 
 
 def test_points_clicked_anew_spare_pictures_features_and_models(kept):
@@ -229,7 +229,7 @@ def test_a_package_of_the_lock_reruns_what_imports_it(kept):
     with edited(lock, f"\npytest=={pytest.__version__} ", "\npytest==99 "):  # no rule runs tests
         assert planned(root=kept) == {}
     with edited(lock, f"\nezc3d=={metadata.version('ezc3d')} ", "\nezc3d==99 "):
-        assert planned(root=kept) == {"export_take": 3}  # the only script that writes C3D
+        assert planned(root=kept) == {"export_take": 3, "export_device": 1}  # they write C3D
         told = by_file(verify(kept))
     recorded = list((kept / RESULTS / "run" / "provenance").rglob("*.json"))
     assert sum("environment.lock changed" in line for line in told) == len(recorded) > 100

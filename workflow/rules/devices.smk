@@ -1,7 +1,7 @@
 """Devices beside the fixed cameras, or alone: mocopi, depth cameras, single videos, Nuitrack.
 
 Inputs: recordings of devices. Outputs: results/{session}/takes/{take}/ devices, sync.
-Steps: import_device, extract_colour, convert_landmarks, lift_depth, select_person (of the fixed
+Steps: import_device, export_device (of inertial suits), extract_colour, convert_landmarks, lift_depth, select_person (of the fixed
 cameras), detect_events (whatever happens to the clocks), synchronise_devices.
 """
 
@@ -22,6 +22,24 @@ rule import_device:
         angles=lambda w: device_of(w).angles,
     script:
         "../scripts/import_device.py"
+
+
+rule export_device:
+    input:
+        device_npz=of_job(devices.exported),
+        skeleton_yaml=of_job(devices.skeleton_file),
+    output:
+        trc_path=paths.part(paths.DEVICE_EXPORT, suffix="trc"),
+        c3d_path=paths.part(paths.DEVICE_EXPORT, suffix="c3d"),
+        csv_path=paths.part(paths.DEVICE_EXPORT, suffix="csv"),
+        bvh_path=paths.part(paths.DEVICE_EXPORT, suffix="bvh"),
+    log:
+        "results/{session}/logs/export_device/{take}.{device}.log",
+    params:
+        code=code("export_device.py"),
+        person=lambda w: device_of(w).subject,
+    script:
+        "../scripts/export_device.py"
 
 
 rule extract_colour:

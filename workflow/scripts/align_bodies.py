@@ -1,5 +1,7 @@
 """Put a take's source into the common body frame: motion, clocks, events -> body motion, frame."""
 
+import numpy as np
+
 from courtside.body_frame import common
 from courtside.body_frame import frame as bodyframe
 from courtside.events import detect
@@ -29,11 +31,15 @@ def main(
     happened = detect.of_devices(events.read(events_json), devices, stated)
     happened = {reference: happened[reference], **happened}
     spell = common.common(happened, clocks)[motion.source]
-    log.logger.info("%s: T-pose %.2f to %.2f s", motion.source, spell.start_s, spell.stop_s)
     anchors = bodyframe.anchors(derived_joints.read(derived_yaml), skeleton, motion.joints)
     frame = bodyframe.at_tpose(motion, anchors, spell)
     claps_s = common.claps_of(motion.source, happened, clocks)
     body = common.aligned(motion, frame, clocks[motion.source], claps_s)
+    if np.isfinite(body.tpose_s).all():
+        log.logger.info("%s: T-pose %.2f to %.2f s", motion.source, spell.start_s, spell.stop_s)
+    else:
+        said = "%s: no T-pose: unit and axes are those of its model's rest pose; film a T-pose"
+        log.logger.warning(said, motion.source)
     log.logger.info("%s: unit %.4f m, %s", motion.source, body.unit_m, frame.residuals)
     body_motion.write(body_npz, body)
     write_json(frame_json, frame.as_dict())

@@ -8,6 +8,7 @@ from math import hypot
 
 from courtside.events import detect
 from courtside.exports import bvh
+from courtside.exports import device as device_export
 from courtside.inertial import correction
 from courtside.records.devices import clocks as sync
 from courtside.records.devices import device_motion, events
@@ -54,15 +55,8 @@ def main(
     motion = replace(motion, source=f"{device}-corrected", time_s=time_s, xyz=xyz, posed=corrected)
     device_motion.write(motion_npz, motion)
     events.write(events_json, detect.detect([motion]))
-    bvh.write(corrected_bvh, _renamed(corrected, names))
+    bvh.write(corrected_bvh, device_export.named(corrected, names))
     report.write(report_json)
-
-
-def _renamed(posed, names):
-    called = dict(zip(names.joints, names.device_names(), strict=True))
-    joints = tuple(called[joint] for joint in posed.hierarchy.joints)
-    ends = {called[joint]: tip for joint, tip in posed.hierarchy.ends.items()}
-    return replace(posed, hierarchy=replace(posed.hierarchy, joints=joints, ends=ends))
 
 
 if __name__ == "__main__":

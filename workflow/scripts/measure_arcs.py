@@ -1,23 +1,29 @@
 """Measure the wrists' arcs from T-pose to clap: body motions -> paths, distortion, smoothness."""
 
+import numpy as np
 import pandas as pd
 
 from courtside.kinematics import smoothness, wrist_arcs
 from courtside.records import tables
 from courtside.records.keypoints import body_motion
+from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
 def main(body_npz, paths_csv, distortion_csv, *, sparc_rate_hz):
-    paths, rows = [], []
+    points, rows = [], []
     for body in map(body_motion.read, body_npz):
-        found = wrist_arcs.arcs(body)
-        paths.append(wrist_arcs.paths(found).assign(source=body.source))
-        row = wrist_arcs.distortion(found).assign(source=body.source, unit_m=body.unit_m)
-        rows.append(row.assign(sparc=smoothness.of_arcs(body, found, sparc_rate_hz)))
-    for path, parts in ((paths_csv, paths), (distortion_csv, rows)):
-        table = pd.concat(parts, ignore_index=True)
-        tables.write(path, table.set_index("source").reset_index())
+        if why := wrist_arcs.missing(body):
+            log.logger.warning("no arcs of %s", why)
+        found = [] if why else wrist_arcs.arcs(body)
+        sparc = smoothness.of_arcs(body, found, sparc_rate_hz) if found else [np.nan, np.nan]
+        row = wrist_arcs.distortion(found).assign(unit_m=body.unit_m, sparc=sparc)
+        points += wrist_arcs.paths(found).assign(source=body.source).to_dict("records")
+        rows += row.assign(source=body.source).to_dict("records")
+    columns = ["source", *wrist_arcs.PATHS]
+    tables.write(paths_csv, pd.DataFrame(points, columns=columns))
+    columns = ["source", *wrist_arcs.DISTORTION, "unit_m", "sparc"]
+    tables.write(distortion_csv, pd.DataFrame(rows, columns=columns))
 
 
 if __name__ == "__main__":

@@ -37,7 +37,9 @@ def main(
     tables.write(wrists_csv, detect.wrists(motions, clocks))
     own = {motion.source: own[motion.source] for motion in motions}
     tables.write(events_csv, detect.events(own, clocks))
-    tables.write(checks_csv, device_sync.checks(found))
+    checks = device_sync.checks(found)
+    checks["n_tposes"] = [len(happened[source].tposes) for source in checks["source"]]
+    tables.write(checks_csv, checks)
 
 
 def report(clocks):

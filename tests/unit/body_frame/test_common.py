@@ -144,6 +144,7 @@ def test_a_real_recording_without_t_pose_takes_the_rest_pose_it_brings_along(nam
     body = common.aligned(motion, bodyframe.at_tpose(motion, carried_by, chosen), clocks["mocopi"])
     assert len(body.time_s) == motion.performed.sum()
     assert np.isfinite(body.following).all()
+    assert np.isnan(body.tpose_s).all()  # nobody performed it
     wide = body.following[
         :, [list(body.joints).index(f"{s}_shoulder") for s in ("left", "right")], 0
     ]

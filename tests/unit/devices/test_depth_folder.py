@@ -111,7 +111,7 @@ def table(name, content):
         (unlink("depth/0002.png"), "as many depth pictures"),
         (lambda folder: shutil.rmtree(folder / "depth"), "expected 16-bit PNG"),
         (text("cameras.toml", '"depth"', '"ir"'), "named colour and depth"),
-        (text("cameras.toml", "0.0005", "5"), r"\(depth_unit_m\) of"),
+        (text("cameras.toml", "0.0005", "5"), r"depth unit of .* depth_unit_m in"),
         (text("cameras.toml", "0.0005", '"mm"'), "depth_unit_m as"),
         (text("cameras.toml", "48", "64"), "expected 64x32 px"),
         (lambda folder: (folder / "colour.csv").write_text("number,time_s\n"), "found one"),

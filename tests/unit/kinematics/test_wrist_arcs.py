@@ -1,13 +1,19 @@
 """Wrists on circles about the shoulders are on their own arcs, not on that about the navel."""
 
+import runpy
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from courtside.kinematics import wrist_arcs
+from courtside.records.keypoints import body_motion
 from courtside.study.errors import InputError
 from fixtures.people.bodies_made import body
 
+SCRIPTS = Path(__file__).parents[3] / "workflow" / "scripts"
 JOINTS = ["left_shoulder", "right_shoulder", "left_wrist", "right_wrist"]
 ASIDE, ARM, BACK = 0.25, 0.75, -0.05
 
@@ -84,3 +90,37 @@ def test_no_clap_after_the_t_pose():
     made.clap_s[:] = 0.5
     with pytest.raises(InputError, match=r"made: expected a clap .* claps at 0\.50"):
         wrist_arcs.arcs(made)
+    assert wrist_arcs.missing(swing()) == ""
+
+
+def test_without_a_t_pose_the_tables_say_that_there_is_no_point():
+    made = swing()
+    made.tpose_s[:] = np.nan
+    with pytest.raises(InputError, match="made: expected a T-pose, found only the rest pose"):
+        wrist_arcs.arcs(made)
+    rows = wrist_arcs.distortion([])
+    assert rows[["side", "n"]].to_numpy().tolist() == [["left", 0], ["right", 0]]
+    assert rows.drop(columns=["side", "n"]).isna().all(axis=None)
+    assert rows.columns.tolist() == wrist_arcs.distortion(wrist_arcs.arcs(swing())).columns.tolist()
+    points = wrist_arcs.paths([])
+    assert len(points) == 0
+    assert points.columns.tolist() == wrist_arcs.paths(wrist_arcs.arcs(swing())).columns.tolist()
+
+
+def test_the_script_goes_on_where_a_source_has_no_t_pose(tmp_path, caplog):
+    """Of a suit alone as of a suit beside a camera that shows one."""
+    none, both = (replace(swing(), source=name) for name in ("suit", "cam"))
+    none = replace(none, tpose_s=np.full(2, np.nan))
+    files = {one.source: tmp_path / f"{one.source}.npz" for one in (none, both)}
+    body_motion.write(files["suit"], none)
+    body_motion.write(files["cam"], both)
+    script = runpy.run_path(str(SCRIPTS / "measure_arcs.py"))
+    for names in (["suit"], ["suit", "cam"]):
+        tables = tmp_path / "paths.csv", tmp_path / "distortion.csv"
+        script["main"]([files[name] for name in names], *tables, sparc_rate_hz=30)
+        paths, distortion = map(pd.read_csv, tables)
+        assert set(paths["source"]) == set(names) - {"suit"}
+        assert distortion["source"].tolist() == [name for name in names for _ in range(2)]
+        counts = distortion.groupby("source")["n"].sum()
+        assert counts["suit"] == 0 and (counts.drop("suit") > 0).all()
+        assert "no arcs of suit: expected a T-pose" in caplog.text

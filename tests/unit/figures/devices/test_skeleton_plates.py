@@ -51,6 +51,27 @@ def test_only_the_tpose_counts():
     np.testing.assert_allclose(wrist, [-1, 0.5, 0], atol=1e-9)
 
 
+def test_without_a_tpose_a_frame_of_the_take_is_drawn_and_named(rows):
+    body = swung_arms.body()
+    late = np.where(body.time_s > 1.5, 1.2, 1.0)[:, None, None]
+    body = replace(body, following=body.following * late, tpose_s=np.full(2, np.nan))
+    found = skeleton_plates.plates([body], SKELETONS, OF)
+    apart = np.linalg.norm(body.following[:, 2] - body.following[:, 3], axis=1)
+    at = int(apart.argmax())
+    wrist = found[0].xyz[found[0].skeleton.index("left_wrist")]
+    np.testing.assert_allclose(wrist, body.following[at, 2])
+    said = f"no T-pose; frame at {body.time_s[at]:.2f} s"
+    table = skeleton_plates.table(found, rows)
+    assert set(table["pose"]) == {said, "schematic"}
+    drawing = skeleton_plates.draw(found, rows)
+    assert drawing.subfigs[0].axes[0].get_title().endswith(said)
+    nobody = replace(body, following=np.full_like(body.following, np.nan))
+    found = skeleton_plates.plates([nobody], SKELETONS, OF)
+    assert np.isnan(found[0].xyz).all()
+    title = skeleton_plates.draw(found, rows).subfigs[0].axes[0].get_title()
+    assert title.endswith("no frame with both arms")
+
+
 def test_front_and_side_are_drawn_with_numbers_of_common_joints_only(found, rows):
     drawing = skeleton_plates.draw(found, rows)
     drawing.draw_without_rendering()

@@ -1,6 +1,7 @@
 """Figures 3.1 and 3.2: paths, circle and own arcs are where the swing of straight arms says."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from courtside.figures.devices import thesis_fig3
@@ -82,6 +83,23 @@ def test_any_number_of_sources_is_drawn(count):
     shown = [axis for axis in drawing.axes if axis.axison]
     assert len(shown) == count
     assert all(axis.get_xlabel() for axis in shown[-min(3, count) :])
+
+
+def test_a_source_without_arcs_says_so_in_its_panel():
+    none = DISTORTION.assign(source="suit", n=0, mean_distance=np.nan, mean_off_circle=np.nan)
+    none = none.drop_duplicates(["source", "side"])
+    none[["shoulder_x", "shoulder_z", "radius"]] = np.nan
+    for paths, distortion in (
+        (PATHS.iloc[:0], none),
+        (PATHS, pd.concat([DISTORTION, none], ignore_index=True)),
+    ):
+        drawing = thesis_fig3.draw_all(paths, distortion)
+        drawing.draw_without_rendering()
+        titles = [axis.get_title() for axis in drawing.axes if axis.axison]
+        assert titles[-1] == f"suit\n{thesis_fig3.NO_ARCS}"
+        assert len(titles) == distortion["source"].nunique()
+    drawing = thesis_fig3.draw(PATHS.iloc[:0], none, "suit")
+    assert drawing.axes[0].get_title() == f"suit: {thesis_fig3.NO_ARCS}"
 
 
 def test_a_path_outside_the_usual_is_not_cut_off_and_missing_frames_do_no_harm():

@@ -177,6 +177,13 @@ def test_an_uncertain_clock_of_a_device_gives_a_warning(row, expected):
     assert level(warned.device({"source": "mocopi"} | row)) == expected
 
 
+def test_a_device_without_a_tpose_gives_a_warning():
+    said = warned.no_tpose({"source": "mocopi", "n_tposes": 0})
+    assert said.level == warned.LOOK
+    assert said.text.startswith("mocopi: it shows no T-pose")
+    assert warned.no_tpose({"source": "mocopi", "n_tposes": 1}) is None
+
+
 def test_warnings_are_sorted_by_level():
     facts = {
         "persons": {},

@@ -39,6 +39,16 @@ def test_sources_are_what_devices_give_and_the_corrected_ones(job):
     assert devices.skeletons(job(**CLAPS))["mocopi"] == "mocopi27"
 
 
+def test_a_suit_is_exported_only_where_its_person_agreed(job, study):
+    wildcards = CLAPS | {"device": "mocopi"}
+    assert devices.exported(job(**wildcards)) == f"{FOLDER}/devices/mocopi.npz"
+    session = study.sessions["single-view-tiny"]
+    subjects = {name: replace(s, consent=("analysis",)) for name, s in session.subjects.items()}
+    silent = replace(study, sessions={session.name: replace(session, subjects=subjects)})
+    with pytest.raises(InputError, match="expected export in the consent of"):
+        devices.exported(job(silent, **wildcards))
+
+
 def test_fixed_cameras_are_the_first_source(job, study):
     session = study.sessions["players-tiny"]
     suit = {"suit": Device("inertial", "m.bvh", "p1")}

@@ -1,5 +1,7 @@
 """What the study makes of takes with devices: written out for the tiny study."""
 
+from dataclasses import replace
+
 from courtside.study.targets import devices
 
 TAKE = "results/single-view-tiny/takes/claps"
@@ -25,6 +27,16 @@ def test_figures_of_devices_and_of_the_thesis(study):
     stems += [f"results/figures/{n}" for n in ("thesis_fig3_1", "thesis_fig3_2", "smoothness")]
     expected = [f"{stem}.{suffix}" for stem in stems for suffix in ("pdf", "png", "csv")]
     assert devices.every_device_figure(study) == expected
+
+
+def test_suits_are_exported_where_their_person_agreed(study):
+    folder = f"{TAKE}/devices/mocopi"
+    expected = [f"{folder}.{suffix}" for suffix in ("trc", "c3d", "csv", "bvh")]
+    assert devices.every_device_export(study) == expected
+    session = study.sessions["single-view-tiny"]
+    subjects = {name: replace(s, consent=("analysis",)) for name, s in session.subjects.items()}
+    silent = replace(study, sessions={session.name: replace(session, subjects=subjects)})
+    assert devices.every_device_export(silent) == []
 
 
 def test_body_frames_of_virtual_takes_are_evaluated(study):

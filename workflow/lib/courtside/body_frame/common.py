@@ -76,9 +76,12 @@ def aligned(
 ) -> BodyMotion:
     """Return a source in its body frame, on the reference clock, without unperformed frames.
 
-    `clock` is the source's against the reference; `clap_s` (C,) are on the reference clock.
+    `clock` is the source's against the reference; `clap_s` (C,) are on the reference clock. The
+    T-pose's times are NaN if nobody performed it: it is the rest pose of the device's own model.
     """
     kept = motion.performed
+    span_s = [frame.tpose.start_s, frame.tpose.stop_s]
+    tpose_s = span_s if kept[frame.tpose.frames].any() else [np.nan, np.nan]
     return BodyMotion(
         source=motion.source,
         kind=motion.kind,
@@ -88,7 +91,7 @@ def aligned(
         following=following(motion, frame)[kept],
         reason=motion.reason[kept],
         unit_m=cast(float, frame.residuals["unit_m"]),
-        tpose_s=clock.to_reference([frame.tpose.start_s, frame.tpose.stop_s]),
+        tpose_s=clock.to_reference(tpose_s),
         clap_s=np.asarray(clap_s, dtype=float),
     )
 

@@ -113,7 +113,7 @@ def _in_unit(
     if any(UNIT_STATED.search(text) for text in texts):
         raise InputError(
             f"{path}: expected `unit` under calibration in the session file for a file that states "
-            "none, found one in the file; remove it from the session file, or correct it in the file"
+            "none, found one in the file; remove one of the two"
         )
     metres = camera_fields.unit_in_metres(f"{path}: unit", unit)
     scale = np.array([1, 1, 1, metres])
@@ -205,11 +205,15 @@ def _read_toml(path: Path, text: str) -> list[Camera]:
         for key, table in tables.items()
         if isinstance(table, dict) and ("cam_id" in table or "cameras" in content)
     }
-    return _read_caliscope(path, caliscope) if caliscope else camera_files.read_toml(path)
+    if not caliscope:
+        return camera_files.read_toml(path)
+    metadata = content.get("metadata")
+    unit = metadata.get("unit", "m") if isinstance(metadata, dict) else "m"
+    return _read_caliscope(path, caliscope, camera_fields.unit_in_metres(path, unit))
 
 
-def _read_caliscope(path: Path, tables: Mapping[str, dict]) -> list[Camera]:
-    """Read Caliscope's `[cameras.0]`, and the older `[cam_0]`; it writes metres.
+def _read_caliscope(path: Path, tables: Mapping[str, dict], metres: float) -> list[Camera]:
+    """Read Caliscope's `[cameras.0]`, and the older `[cam_0]`; it writes metres, and no unit.
 
     Its `rotation_count` turns pictures on its screen only: the calibration is of the recorded ones.
     """
@@ -217,7 +221,7 @@ def _read_caliscope(path: Path, tables: Mapping[str, dict]) -> list[Camera]:
     for key, table in tables.items():
         if not table.get("ignore", False):
             name = table.get("name", f"cam_{table.get('cam_id', key)}")
-            found.append(camera_files.build(f"{path}: camera {name}", str(name), table, 1.0))
+            found.append(camera_files.build(f"{path}: camera {name}", str(name), table, metres))
     return found
 
 

@@ -82,7 +82,7 @@ def read(path: StrPath, name: str = "rgbd") -> DepthRecording:
             remarks=remarks,
         )
     except ValueError as error:
-        raise InputError(f"{toml}: {error}; correct it") from error
+        raise InputError(f"{toml}: {error}; correct it, or depth_unit_m in [metadata]") from error
 
 
 def _metadata(toml: Path) -> tuple[float, float, tuple[str, ...]]:

@@ -48,8 +48,7 @@ class DepthRecording:
             raise ValueError("expected colour_from_depth with a right-handed rotation, found none")
         if not 1e-6 <= self.depth_unit_m <= 0.1:  # ASSUME: a micrometre to 10 cm covers any sensor
             raise ValueError(
-                "expected a depth unit (depth_unit_m) of 0.000001 to 0.1 m, found "
-                f"{self.depth_unit_m}"
+                f"expected a depth unit of 0.000001 to 0.1 m a step, found {self.depth_unit_m}"
             )
         moved.setflags(write=False)
         object.__setattr__(self, "colour_from_depth", moved)

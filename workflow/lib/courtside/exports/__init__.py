@@ -1,6 +1,7 @@
 """Files for other programs: TRC, C3D, BVH, CSV, Pose2Sim and OpenSim, videos.
 
 trc, c3d, bvh, tidy: `write`: one person or body in that form (`tidy`: CSV); `trc.read`.
+device: `points`, `named`: what these need of an inertial suit.
 measures: `frames`, `summary`: tables of kinematics.
 pose2sim, opensim, markers: `write_project`, `read_takes`, `write_markers`: for Pose2Sim and
     OpenSim, with their joint names.

@@ -16,6 +16,11 @@ from courtside.study.errors import InputError
 
 PLANE = [0, 2]  # x to the left hand, z forwards
 SIDES = ("left", "right")
+PATHS = ("side", "time_s", "x", "z", "off_arc", "off_circle")
+DISTORTION = (
+    "side", "n", "shoulder_x", "shoulder_z", "radius", "meeting_z", "mean_signed", "mean_distance",
+    "p95_distance", "mean_off_circle", "end_radius",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,19 +50,31 @@ class Arc:
         return np.array([0.0, self.shoulder[1] + np.sqrt(aside) if aside >= 0 else np.nan])
 
 
+def missing(body: BodyMotion) -> str:
+    """Return why a source has no arcs: without T-pose, or a clap after it; empty if it has."""
+    start_s, stop_s = body.tpose_s
+    if not np.isfinite(stop_s):
+        return (
+            f"{body.source}: expected a T-pose, found only the rest pose of its own model; film one"
+        )
+    if not (body.clap_s > stop_s).any():
+        claps = ", ".join(f"{time_s:.2f}" for time_s in body.clap_s) or "no time"
+        return (
+            f"{body.source}: expected a clap after the T-pose of {start_s:.2f} to {stop_s:.2f} s, "
+            f"found claps at {claps}; choose another T-pose"
+        )
+    return ""
+
+
 def arcs(body: BodyMotion) -> list[Arc]:
     """Return the arcs of the left and right wrist from the T-pose's end to the first clap after it.
 
-    An `InputError` if no clap follows the T-pose.
+    An `InputError` with the words of `missing` if there are none.
     """
+    if why := missing(body):
+        raise InputError(why)
     start_s, stop_s = body.tpose_s
     later = body.clap_s[body.clap_s > stop_s]
-    if not len(later):
-        raise InputError(
-            f"{body.source}: expected a clap after the T-pose of {start_s:.2f} to {stop_s:.2f} s, "
-            f"found claps at {', '.join(f'{t:.2f}' for t in body.clap_s) or 'no time'}; choose "
-            "another T-pose"
-        )
     still = (body.time_s >= start_s) & (body.time_s <= stop_s)
     moving = (body.time_s >= stop_s) & (body.time_s <= later[0])
     found = []
@@ -84,7 +101,7 @@ def paths(found: Sequence[Arc]) -> pd.DataFrame:
         )
         for arc in found
     ]
-    return pd.concat(tables, ignore_index=True)
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=PATHS)
 
 
 def distortion(found: Sequence[Arc]) -> pd.DataFrame:
@@ -93,9 +110,9 @@ def distortion(found: Sequence[Arc]) -> pd.DataFrame:
     Columns: side; n; shoulder_x, shoulder_z, radius: of the own arc; meeting_z: where it crosses
     the middle; mean_signed, mean_distance, p95_distance: of the path's points to the own arc;
     mean_off_circle: to the circle of radius 1; end_radius: distance of the last known point to the
-    origin.
+    origin. Without arcs (`missing`) one row per wrist in which n is 0 and the rest empty.
     """
-    rows = []
+    rows: list[dict] = [] if found else [{"side": side, "n": 0} for side in SIDES]
     for arc in found:
         off, circle = (values[np.isfinite(values)] for values in (arc.off_arc, arc.off_circle))
         row = {
@@ -115,4 +132,4 @@ def distortion(found: Sequence[Arc]) -> pd.DataFrame:
                 "end_radius": 1.0 + circle[-1],
             }
         rows.append(row)
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=DISTORTION)

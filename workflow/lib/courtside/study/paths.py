@@ -90,6 +90,7 @@ VIEWER = TAKE + "/pages/viewer.{model}.html"
 
 # Devices of their own. `source`: a skeleton that a device gives.
 DEVICE = TAKE + "/devices/{device}.npz"
+DEVICE_EXPORT = TAKE + "/devices/{device}.{suffix}"
 COLOUR_VIDEO = TAKE + "/devices/{device}.mp4"
 COLOUR_FRAMES = TAKE + "/devices/{device}.frames.csv"
 COLOUR_CAMERA = TAKE + "/devices/{device}.toml"

@@ -20,7 +20,19 @@ ARM_UNITS = 0.25  # numbers of joints higher than that stand above them, of othe
 LEFT, RIGHT, TOP = -1.3, 2.2, 1.12  # shown at least to the right
 LOWEST, ROOM = -1.45, 0.25  # of the feet, at least; below them, for words
 AXES = (((0, 1), 0.0, "from the front"), ((2, 1), ASIDE, "from the right"))
-COLUMNS = ["source", "skeleton", "number", "joint", "device_name", "x", "y", "z", "stands_for"]
+TPOSE, SCHEMATIC = "T-pose", "schematic"
+COLUMNS = [
+    "source",
+    "skeleton",
+    "number",
+    "joint",
+    "device_name",
+    "x",
+    "y",
+    "z",
+    "stands_for",
+    "pose",
+]
 WORDS = {  # of derived joints, in the table
     "head_centre": "centre of the head",
     "head_mass": "mass of the head",
@@ -34,13 +46,15 @@ WORDS = {  # of derived joints, in the table
 class Plate:
     """One skeleton as it is drawn: joints (J, 3) in body axes and units, NaN where missing.
 
-    `source` is empty without a recording, `kind` is as for `source_styles`.
+    `source` is empty without a recording, `kind` is as for `source_styles`, and `pose` says which
+    pose is drawn.
     """
 
     source: str
     skeleton: Skeleton
     xyz: NDArray
     kind: str
+    pose: str = SCHEMATIC
 
 
 def plates(
@@ -51,28 +65,41 @@ def plates(
 ) -> list[Plate]:
     """Return the plates: one for each recording, and one for each skeleton without any.
 
-    Plates of recordings are medians over the T-pose, others schematic. `skeleton_of` is by source,
+    Plates of recordings are medians over the T-pose, of those without a T-pose the frame with the
+    arms furthest apart; others are schematic. `skeleton_of` is by source,
     `kinds` as for `source_styles.kind_of`.
     """
     known = {skeleton.name: skeleton for skeleton in skeletons}
     found = []
     for body in bodies:
         skeleton = known[skeleton_of[body.source]]
-        start_s, stop_s = body.tpose_s
-        still = body.fixed[(body.time_s >= start_s) & (body.time_s <= stop_s)]
+        still, pose = _drawn(body)
         seen = np.isfinite(still).all(axis=2).any(axis=0)
         xyz = np.full((len(skeleton.joints), 3), np.nan)
         for at, joint in enumerate(body.joints):
             if seen[at] and str(joint) in skeleton.joints:
                 xyz[skeleton.index(str(joint))] = np.nanmedian(still[:, at], axis=0)
         kind = source_styles.kind_of(body.source, kinds)
-        found.append(Plate(body.source, skeleton, xyz, kind))
+        found.append(Plate(body.source, skeleton, xyz, kind, pose))
     shown = {plate.skeleton.name for plate in found}
     for name, skeleton in known.items():
         if name not in shown:
             xyz = schematic_pose.tpose(skeleton.joints)
             found.append(Plate("", skeleton, xyz, "other"))
     return found
+
+
+def _drawn(body: BodyMotion) -> tuple[NDArray, str]:
+    """Return the frames (T, J, 3) that a plate shows, and their pose in words."""
+    start_s, stop_s = body.tpose_s
+    if np.isfinite(stop_s):
+        return body.fixed[(body.time_s >= start_s) & (body.time_s <= stop_s)], TPOSE
+    left, right = (list(body.joints).index(f"{side}_wrist") for side in ("left", "right"))
+    apart = np.linalg.norm(body.following[:, left] - body.following[:, right], axis=1)
+    if not np.isfinite(apart).any():
+        return body.following[:0], "no T-pose, and no frame with both arms"
+    at = int(np.nanargmax(apart))
+    return body.following[at : at + 1], f"no T-pose; frame at {body.time_s[at]:.2f} s"
 
 
 def table(found: list[Plate], rows: pd.DataFrame) -> pd.DataFrame:
@@ -88,7 +115,7 @@ def table(found: list[Plate], rows: pd.DataFrame) -> pd.DataFrame:
         for number, joint in enumerate(plate.skeleton.joints):
             stands_for = "; ".join(parts.get((plate.skeleton.name, number), []))
             about = plate.source or "schematic", plate.skeleton.name, number, joint, called[number]
-            lines.append((*about, *plate.xyz[number], stands_for))
+            lines.append((*about, *plate.xyz[number], stands_for, plate.pose))
     return pd.DataFrame(lines, columns=COLUMNS)
 
 
@@ -102,8 +129,9 @@ def draw(found: list[Plate], rows: pd.DataFrame) -> Figure:
     numbered = rows[rows["definition"] == ""].groupby("skeleton")["numbers"].sum()
     for axis in axes:
         axis.set_axis_off()
-    low = min(LOWEST, *(np.nanmin(plate.xyz[:, 1]) for plate in found)) - ROOM
-    right = max(RIGHT, *(ASIDE + np.nanmax(plate.xyz[:, 2]) + ROOM / 2 for plate in found))
+    known = [plate.xyz[np.isfinite(plate.xyz).all(axis=1)] for plate in found]
+    low = min(LOWEST, *(xyz[:, 1].min(initial=0.0) for xyz in known)) - ROOM
+    right = max(RIGHT, *(ASIDE + xyz[:, 2].max(initial=0.0) + ROOM / 2 for xyz in known))
     for axis, plate in zip(axes, found, strict=False):
         axis.set(xlim=(LEFT, right), ylim=(low, TOP))
         _draw_plate(axis, plate, numbered.get(plate.skeleton.name, ()))
@@ -132,7 +160,8 @@ def _draw_plate(axis: Axes, plate: Plate, numbered: Sequence[int]) -> None:
         axis.annotate(f"{number}", (x, y), **look)
     axis.set_aspect("equal")
     size = f"{plate.skeleton.name}, {len(plate.skeleton.joints)} joints"
-    axis.set_title(f"{plate.source or 'no recording, schematic'}: {size}", pad=2)
+    said = "" if plate.pose in (TPOSE, SCHEMATIC) else f"; {plate.pose}"
+    axis.set_title(f"{plate.source or 'no recording, schematic'}: {size}{said}", pad=2)
 
 
 def _draw_map(axis: Axes, rows: pd.DataFrame) -> None:

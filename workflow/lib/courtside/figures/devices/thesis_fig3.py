@@ -16,6 +16,7 @@ from courtside.figures.style import source_styles, style
 
 CIRCLE, ARC, TRUE = "#bbbbbb", "#444444", "black"
 MM = 1000
+NO_ARCS = "no T-pose with a clap after it"
 N_COLUMNS = 3
 BEYOND = np.radians(12)  # arcs are drawn on by that
 LEAST = ((-1.2, 1.2), (-0.3, 1.15))  # of x and z that are shown
@@ -69,7 +70,7 @@ def draw_all(
     truth: pd.DataFrame | None = None,
 ) -> Figure:
     """Draw all sources side by side, on equal axes; parameters as for `draw`."""
-    looks = source_styles.looks(paths["source"], kinds)
+    looks = source_styles.looks(distortion["source"], kinds)
     n_rows = -(-len(looks) // N_COLUMNS)
     drawing = style.figure(24 + 49 * n_rows)
     share = {"sharex": True, "sharey": True, "squeeze": False}
@@ -141,13 +142,15 @@ def _names(axis: Axes, own: pd.DataFrame) -> None:
 
 
 def _limits(tables: Iterable[pd.DataFrame | None]) -> dict[str, tuple[float, float]]:
-    known = [rows[["x", "z"]].to_numpy() for rows in tables if rows is not None]
+    known = [rows[["x", "z"]].to_numpy(dtype=float) for rows in tables if rows is not None]
     every = np.concatenate([*known, np.transpose(LEAST)])
     low, high = np.nanmin(every, axis=0) - ROOM, np.nanmax(every, axis=0) + ROOM
     return {"xlim": (low[0], high[0]), "ylim": (low[1], high[1])}
 
 
 def _title(own: pd.DataFrame, off: pd.DataFrame) -> str:
+    if own.empty:
+        return NO_ARCS
     time_s = own["time_s"]
     mm = MM * off["mean_distance"] * off["unit_m"]
     pairs = zip(off["side"], off["mean_distance"], mm, strict=True)
@@ -159,6 +162,8 @@ def _title(own: pd.DataFrame, off: pd.DataFrame) -> str:
 
 
 def _short(off: pd.DataFrame) -> str:
+    if not off["n"].any():
+        return NO_ARCS
     arcs, circle = off["mean_distance"].mean(), off["mean_off_circle"].mean()
     return f"off own arcs {arcs:.3f}, off circle {circle:.3f}"
 

@@ -58,6 +58,7 @@ def of_take(facts: dict, *, max_shift_px: float, max_zoom_percent: float) -> lis
     found += [shaken(line) for line in facts["shake"]]
     found += [clock(camera, each) for camera, each in facts["clocks"].items()]
     found += [device(row) for row in facts["devices"]]
+    found += [no_tpose(row) for row in facts["devices"]]
     found += [contradicts(camera, each) for camera, each in facts["cameras"].items()]
     found += joints(facts["joints"])
     found += [frames(person, *each) for person, each in facts["left_out"].items()]
@@ -131,6 +132,14 @@ def device(row: dict) -> Warned | None:
     level = _level_of("clock_ms", ms)
     text = f"{source}: its clock is known only to {ms:.0f} ms (90 %)."
     return Warned(min(level, LOOK), text) if level else None
+
+
+def no_tpose(row: dict) -> Warned | None:
+    """Return a warning if a device shows no T-pose; `row` is of the table of checks."""
+    if row.get("n_tposes", 1):
+        return None
+    text = "it shows no T-pose, so that it has no body frame of its own and no arcs of the wrists"
+    return Warned(LOOK, f"{row['source']}: {text}; film a T-pose and a clap.")
 
 
 def calibration(name: str, quality: dict) -> list[Warned]:

@@ -81,12 +81,6 @@ def of_points(name: str, points: Keypoints3D, skeleton: Skeleton, *, shown: bool
     )
 
 
-# Rotations to upright axes (z up) from a device's own: y up, or camera axes (y down, z forward).
-Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
-CAM = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
-UPRIGHT = {"inertial": Y_UP, "nuitrack": Y_UP, "rgb": CAM, "rgbd": CAM}
-
-
 def of_device(
     name: str, motion: DeviceMotion, skeleton: Skeleton, person: str, *, shown: bool = True
 ) -> Layer:
@@ -101,7 +95,7 @@ def of_device(
         _bones(motion.joints, skeleton),
         (person,),
         motion.time_s[kept],
-        motion.xyz[None, kept] @ UPRIGHT.get(motion.kind, np.eye(3)).T,
+        device_motion.upright(motion)[None, kept],
         reason=motion.reason[None, kept],
         shown=shown,
     )

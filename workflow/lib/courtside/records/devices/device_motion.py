@@ -46,6 +46,17 @@ class DeviceMotion:
         return self.xyz[:, list(self.joints).index(name)]
 
 
+# Rotations to upright axes (z up) from a device's own: y up, or camera axes (y down, z forward).
+Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+CAM = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+UPRIGHT = {"inertial": Y_UP, "nuitrack": Y_UP, "rgb": CAM, "rgbd": CAM}
+
+
+def upright(motion: DeviceMotion) -> NDArray:
+    """Return the joints (T, J, 3) of a motion in axes with z up, metres."""
+    return motion.xyz @ UPRIGHT.get(motion.kind, np.eye(3)).T
+
+
 def of_truth(truth: Any, person: str) -> DeviceMotion:
     """Return a person of a virtual take as a source without gaps.
 

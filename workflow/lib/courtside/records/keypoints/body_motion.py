@@ -25,7 +25,8 @@ class BodyMotion:
     following: Annotated[NDArray, "float T J 3"]  # the same in a frame that moves with the trunk
     reason: Annotated[NDArray, "int T J"]  # uint8: codes of `missing_reason`
     unit_m: float  # metres in a unit, by this source
-    # Begin and end of the frame's T-pose, on the reference clock
+    # Begin and end of the frame's T-pose, on the reference clock; NaN if the frame is that of the
+    # rest pose of a device's own model, which nobody performed: then only `following` has a meaning
     tpose_s: Annotated[NDArray, "float 2"]
     clap_s: Annotated[NDArray, "float C"]  # claps that this source shows, on the reference clock
 

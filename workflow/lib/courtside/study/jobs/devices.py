@@ -65,6 +65,12 @@ def skeleton_file(job: Job) -> Path:
     return job.study.folder / paths.SKELETON_YAML.format(skeleton=OF_KIND[job.device.kind])
 
 
+def exported(job: Job) -> str:
+    """Return the motion of a device that a file for other programs is made from, where agreed."""
+    Job(job.study, {**job.wildcards, "person": job.device.subject}).demand("export")
+    return job.fill(paths.DEVICE)
+
+
 def colour_frames(job: Job) -> str | list:
     """Return the times of a depth camera's colour pictures; nothing for a plain video."""
     return job.fill(paths.COLOUR_FRAMES) if job.device.kind == "rgbd" else []

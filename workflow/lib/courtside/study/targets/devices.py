@@ -1,11 +1,13 @@
-"""What the study makes of takes with devices of their own: figures, and errors of virtual ones."""
+"""What the study makes of takes with devices: figures, exports, errors of virtual ones."""
 
 from dataclasses import dataclass
 
 from courtside.study import paths
+from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
 
 FIGURES = ("wrist_distance.devices", "wrist_distance.events", "wrist_arcs", "skeleton_plates")
+EXPORTED = ("trc", "c3d", "csv", "bvh")
 THESIS_FIGURES = ("thesis_fig3_1", "thesis_fig3_2")
 
 
@@ -50,6 +52,18 @@ def thesis_take(study: Study) -> DeviceTake | None:
 def every_body_frame(study: Study) -> list[str]:
     """Return the errors of the body frames of virtual takes with devices."""
     return [path for one in device_takes(study) for path in one.true_file(paths.BODY_FRAME_ERRORS)]
+
+
+def every_device_export(study: Study) -> list[str]:
+    """Return the files of inertial suits for other programs, of persons who agreed to them."""
+    return [
+        path
+        for one in device_takes(study)
+        for name, device in one.take.devices.items()
+        if device.kind == "inertial"
+        and device.subject not in consent.refusing(one.session, one.take, "export")
+        for path in paths.each(paths.DEVICE_EXPORT, **one.labels, device=name, suffix=EXPORTED)
+    ]
 
 
 def every_device_figure(study: Study) -> list[str]:
