@@ -35,6 +35,7 @@ LEVELS = {  # a room imports rooms of lower levels only
     "sfm": 5,
     "exports": 5,
     "drafting": 5,
+    "validation": 5,
     "pages": 5,
     "evaluation": 6,
     "body_frame": 6,

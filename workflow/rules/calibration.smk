@@ -21,6 +21,7 @@ rule import_cameras:
         code=code("import_cameras.py"),
         names=lambda w: session_of(w).calibration_camera_names(),
         crops_px=of_job(calibration.crops_px),
+        scales=of_job(calibration.scales),
         override=lambda w: session_of(w).calibration_override,
         unit=lambda w: session_of(w).calibration_unit,
     script:
@@ -41,7 +42,6 @@ rule check_cameras:
     params:
         code=code("check_cameras.py"),
         names=lambda w: session_of(w).calibration_camera_names(),
-        crops_px=of_job(calibration.crops_px),
         override=lambda w: session_of(w).calibration_override,
         unit=lambda w: session_of(w).calibration_unit,
         takes=of_job(calibration.checked),

@@ -55,6 +55,13 @@ try:
     PLANS = {
         name: plans.read(CONFIG / paths.PLAN_YAML.format(plan=name)) for name in config["plans"]
     }
+    if workflow.is_main_process:  # jobs need not look again, nor load what looks
+        from courtside.validation import check as recorded
+        from courtside.validation.remembered import Remembered
+
+        looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
+        for remark in recorded.check(STUDY, looks):
+            print(f"Remark: {remark}", file=sys.stderr)
     future_dates.check([CONFIG, paths.EXTERNAL, *(f"data/{name}" for name in STUDY.sessions)])
 except InputError as error:
     sys.exit("\n".join(f"Error: {line}" for line in str(error).splitlines()))

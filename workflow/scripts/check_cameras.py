@@ -4,6 +4,7 @@ import numpy as np
 
 from courtside.calibration import file_formats
 from courtside.calibration.file_check import residuals, verdict
+from courtside.geometry import camera
 from courtside.reconstruction import resampling
 from courtside.records import tables
 from courtside.records.cameras import clicks, footage
@@ -13,17 +14,16 @@ from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
 
 
-def main(paths, check_json, check_csv, *, names, crops_px, override, takes, unit=None):
+def main(paths, check_json, check_csv, *, names, override, takes, unit=None):
     found = file_formats.rename(file_formats.read(paths.calibration_path, unit), names)
     found = file_formats.with_principal_points(found, override.get("principal_point_px", {}))
     # Everything in px of the calibrated picture, which is what the file's numbers are of.
-    corner_px = np.array([crops_px.get(name, (0, 0))[:2] for name in names])
-    static = None
+    shown, static = camera.read_toml(paths.cameras_toml), None
     if paths.static_csv:
         _, static = clicks.read_static(paths.static_csv, list(names))
-        static = static + corner_px[:, None]
-    views = people(paths.cameras_toml, list(names), takes)
-    joints = residuals.of_people(views) + corner_px[:, None] if views else None
+        static = np.stack(in_calibrated(found, shown, static))
+    views = in_calibrated(found, shown, people(paths.cameras_toml, list(names), takes))
+    joints = residuals.of_people(views) if views else None
     seen = verdict.Seen(static, joints)
     said = verdict.judge(found, seen, residuals.height_px(views))
     for line in said.warnings:
@@ -37,6 +37,12 @@ def main(paths, check_json, check_csv, *, names, crops_px, override, takes, unit
         "without_faults_px": said.mended_px,
     }
     write_json(check_json, content)
+
+
+def in_calibrated(calibrated, shown, xy):
+    """Return px (..., 2) of each camera's video as px of the calibrated picture."""
+    each = zip(calibrated, shown, xy, strict=True) if len(xy) else ()
+    return [camera.in_other_picture(here, whole, px) for whole, here, px in each]
 
 
 def people(cameras_toml, names, takes):

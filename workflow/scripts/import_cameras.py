@@ -6,7 +6,9 @@ from courtside.study.execution.files import write_json
 from courtside.study.execution.script import run
 
 
-def main(calibration_path, cameras_toml, quality_json, *, names, crops_px, override, unit=None):
+def main(
+    calibration_path, cameras_toml, quality_json, *, names, crops_px, scales, override, unit=None
+):
     theirs = file_formats.rename(file_formats.read(calibration_path, unit), names)
     file_formats.check_apart(calibration_path, theirs)
     points_px = override.get("principal_point_px", {})
@@ -15,6 +17,7 @@ def main(calibration_path, cameras_toml, quality_json, *, names, crops_px, overr
     if points_px:
         source += f", principal points of {', '.join(points_px)} replaced: {override['reason']}"
     cropped = [camera.crop(c, crops_px[c.name]) if c.name in crops_px else c for c in found]
+    cropped = [camera.scaled(c, scales[c.name]) if c.name in scales else c for c in cropped]
     camera.write_toml(cameras_toml, cropped, source=source)
     quality = {
         "source": str(calibration_path),

@@ -199,7 +199,7 @@ def test_a_video_of_another_size_is_explained():
     camera = make(size=(1088, 1920))
     with pytest.raises(InputError) as caught:
         cameras.check_size(camera, (1080, 1920), "cam01.mp4")
-    for word in ("cam01.mp4", "left", "1088x1920", "1080x1920", "`crop_px: [x, y, width, height]`"):
+    for word in ("cam01.mp4", "left", "1088x1920", "1080x1920", "`crop_px: [x, y, 1080, 1920]`"):
         assert word in str(caught.value)
     cameras.check_size(cameras.crop(camera, [0, 0, 1080, 1920]), (1080, 1920), "cam01.mp4")
 

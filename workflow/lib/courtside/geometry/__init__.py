@@ -1,6 +1,7 @@
 """Geometry of cameras: projection, rotations, similarity, epipolar lines, triangulation.
 
-camera: `Camera`, `project`, `undistort`, `crop`, `check_size`, `read_toml`, `write_toml`
+camera: `Camera`, `project`, `undistort`, `crop`, `scaled`, `check_size`, `read_toml`, `write_toml`
+picture_size: `relation`, `scaled_size`, `advice`: a video's size against the calibrated one
 camera_fields: checked numbers of calibration files (`numbers`, `pose`, `five_coefficients`)
 rotations: `rotation_from_rodrigues`, `rodrigues_from_rotation`, `interpolate`, `swing`, `twist`
 similarity: `Sim3`, `umeyama`, `robust_umeyama`, `kabsch`

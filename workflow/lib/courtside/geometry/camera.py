@@ -11,7 +11,7 @@ import tomli_w
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from courtside.geometry import camera_fields, rotations
+from courtside.geometry import camera_fields, picture_size, rotations
 from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
 
@@ -168,14 +168,33 @@ def crop(camera: Camera, crop_px: Sequence[int]) -> Camera:
     return replace(camera, size=(width, height), K=camera.K - shift)
 
 
+def scaled(camera: Camera, scale: float) -> Camera:
+    """Return the camera of a video that is a scaled copy: `scale` video px per px of the camera's.
+
+    Each axis is scaled by the ratio of its whole numbers of pixels, as programs scale pictures; the
+    first pixel's centre stays at (0, 0), so that its corner stays at (-0.5, -0.5).
+    """
+    size = picture_size.scaled_size(camera.size, scale)
+    by = np.array(size) / camera.size
+    matrix = camera.K.copy()
+    matrix[[0, 1], [0, 1]] *= by
+    matrix[:2, 2] = (matrix[:2, 2] + 0.5) * by - 0.5
+    return replace(camera, size=size, K=matrix)
+
+
+def in_other_picture(camera: Camera, other: Camera, xy: ArrayLike) -> NDArray:
+    """Return px (..., 2) of a camera's picture as px of another cut-out or copy of that picture."""
+    by = _focal(other) / _focal(camera)
+    return (np.asarray(xy, dtype=float) - camera.K[:2, 2]) * by + other.K[:2, 2]
+
+
 def check_size(camera: Camera, video_size: tuple[int, int], video_path: StrPath) -> None:
     """Raise `InputError` unless a video has the (width, height) its camera was calibrated at."""
     if tuple(video_size) != camera.size:
         raise InputError(
             f"{video_path}: expected {camera_fields.times(camera.size)} px, the size that camera "
-            f"{camera.name} was calibrated at, found {camera_fields.times(video_size)}; declare "
-            "`crop_px: [x, y, width, height]` for this camera in the session file if the video is "
-            "a cut-out of the calibrated picture, else calibrate at the video's size"
+            f"{camera.name} was calibrated at, found {camera_fields.times(video_size)}; "
+            f"{picture_size.advice(camera.size, video_size)}"
         )
 
 

@@ -22,6 +22,7 @@ KINDS = {  # of devices, by the ending of their recording; a folder is one of a 
 # Of a take, as its record has them.
 AS_STATED = ("synchronised", "steady", "virtual", "clocks", "pose2d", "pose3d")
 
+FOR_ALL_TAKES = ("synchronised",)  # of a session, where its takes do not say it themselves
 OVERRIDDEN = ("principal_point_px", "reason")  # of a calibration file, as its session states them
 
 
@@ -50,8 +51,9 @@ def session(
     subjects, walks = _subjects(content), content.get("walks", {}).items()
     given = content.get("calibration", {})
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
+    shared = {key: content[key] for key in FOR_ALL_TAKES if key in content}
     takes = {
-        key: _take(key, value or {}, recordings.get("takes", {}).get(key), subjects)
+        key: _take(key, shared | (value or {}), recordings.get("takes", {}).get(key), subjects)
         for key, value in content.get("takes", {}).items()
     }
     withheld = consent.withheld(takes, subjects)

@@ -29,6 +29,7 @@ class FixedCamera:
     static: str | None = None  # a recording without people
     # (x, y, width, height): the part of the calibrated picture that the videos show
     crop_px: tuple[int, ...] | None = None
+    scale: float = 1.0  # px of the videos per px of that part
     name_in_calibration: str | None = None  # its name in the calibration file where that differs
     # `images`, `inner_corners`, `square_m`: pictures of a chessboard that this camera took
     chessboard: dict[str, Any] | None = None

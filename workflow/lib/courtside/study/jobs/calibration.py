@@ -37,6 +37,11 @@ def crops_px(job: Job) -> dict[str, tuple]:
     return {name: camera.crop_px for name, camera in job.session.cameras.items() if camera.crop_px}
 
 
+def scales(job: Job) -> dict[str, float]:
+    """Return how much larger or smaller videos are than calibrated, by camera; without 1."""
+    return {name: camera.scale for name, camera in job.session.cameras.items() if camera.scale != 1}
+
+
 def checked(job: Job) -> list[dict[str, Any]]:
     """Return of each filmed take the files that check a calibration file: what cameras see.
 

@@ -1,0 +1,36 @@
+"""What the sizes of a session's cameras say, without any file of pictures."""
+
+import pytest
+
+from courtside.validation import calibrated
+
+SIZES = {name: {f"{name}.mp4": (320, 180)} for name in ("left", "right", "back")}
+
+
+def faults(hall, **changes):
+    return list(calibrated.faults(hall.session(), {**SIZES, **changes}))
+
+
+def test_sizes_that_fit_say_nothing(hall):
+    assert faults(hall) == []
+    assert faults(hall, left={}) == []
+
+
+@pytest.mark.parametrize(
+    ("size", "key"),
+    [
+        ((640, 360), "`scale: 2`"),
+        ((310, 180), "`crop_px: [x, y, 310, 180]`"),
+        ((120, 90), "`crop_px: [0, 0, 240, 180], scale: 0.5`"),
+        ((180, 320), "turned by a quarter"),
+    ],
+)
+def test_a_wrong_size_names_the_key_that_mends_it(hall, size, key):
+    (line,) = faults(hall, left={"left.mp4": size})
+    assert line.startswith("left.mp4: expected 320x180 px, the size that camera left was")
+    assert key in line
+
+
+def test_another_calibration_is_not_read_where_the_session_does_not_use_it(hall):
+    hall.content["calibration"]["file"] = str(hall.root / "none.toml")
+    assert faults(hall, left={"left.mp4": (640, 360)}) == []

@@ -1,0 +1,172 @@
+"""Mistakes with recordings that users make: each gives one line that names file, camera or take."""
+
+import shutil
+
+import cv2
+import pytest
+
+from courtside.study.configuration import schemas
+from fixtures.recordings import rooms_filmed
+
+
+def test_recordings_as_they_should_be_say_nothing(hall):
+    assert schemas.faults(hall.content, "session", "hall.yaml") == []
+    assert hall.said() == ([], [])
+    for camera, room in (("left", 1), ("right", 2), ("back", 3)):
+        static = hall.root / f"{camera}.png"
+        cv2.imwrite(str(static), rooms_filmed.background(room))
+        hall.content["cameras"][camera] = {"static": str(static)}
+    assert hall.said() == ([], [])
+
+
+def test_a_truncated_video_is_told(hall):
+    path = hall.film("left", n=200)
+    with path.open("r+b") as stream:
+        stream.truncate(path.stat().st_size // 2)
+    assert f"{path}: expected a video, found a file without a readable header" in hall.fault()
+
+
+def test_a_scaled_video_is_told_and_may_be_declared(hall):
+    path = hall.film("left", size=(160, 90))
+    hall.film("left", "lob", size=(160, 90))
+    said = hall.fault()
+    assert said.startswith(f"{path}: expected 320x180 px, the size that camera left")
+    assert "found 160x90; if it is a scaled copy, declare `scale: 0.5`" in said
+    hall.content["cameras"]["left"] = {"scale": 0.5}
+    assert schemas.faults(hall.content, "session", "hall.yaml") == []
+    assert hall.said() == ([], [])
+    hall.content["cameras"]["left"] = {"scale": 0.25}
+    assert "expected 80x45 px as the session file declares, found 160x90" in hall.fault()
+
+
+def test_a_cut_out_is_told_and_may_be_declared(hall):
+    hall.calibrate(rooms_filmed.SIZE, back=(330, 180))
+    said = hall.fault()
+    assert "`crop_px: [x, y, 320, 180]`" in said
+    assert "scale" not in said
+    hall.content["cameras"]["back"] = {"crop_px": [5, 0, 320, 180]}
+    assert hall.said() == ([], [])
+    hall.content["cameras"]["back"] = {"crop_px": [15, 0, 320, 180]}
+    assert "camera back: expected crop_px [x, y, width, height] inside the" in hall.fault()
+
+
+def test_a_turned_video_is_told(hall):
+    hall.calibrate(rooms_filmed.SIZE, back=(180, 320))
+    assert "found 320x180; it is turned by a quarter" in hall.fault()
+
+
+def test_recordings_of_a_camera_have_one_size(hall):
+    hall.film("left", size=(160, 90))
+    said = hall.fault()
+    assert "hall.yaml: cameras.left: expected pictures of one size in all recordings" in said
+    assert "160x90 px" in said and "320x180 px" in said
+
+
+def test_cameras_that_the_calibration_lacks_are_named_with_those_that_it_has(hall):
+    hall.content["cameras"]["left"] = {"name_in_calibration": "Links"}
+    hall.content["cameras"]["back"] = {"name_in_calibration": "Hinten"}
+    said = hall.fault()
+    assert "cameras: expected left, back in " in said
+    assert "found left, right, back; give each its `name_in_calibration`" in said
+
+
+def test_a_calibration_that_cannot_be_read_is_told(hall):
+    (hall.root / "cameras.toml").write_text("[cam_0]\nname = 1\n")
+    assert "cameras.toml: camera 1: expected size" in hall.fault()
+
+
+def test_one_file_for_two_cameras_is_told(hall):
+    videos = hall.content["takes"]["serve"]["videos"]
+    videos["right"] = videos["left"]
+    said = hall.fault()
+    assert "takes.serve: cameras left and right: expected two views, found one and the same" in said
+
+
+def test_a_copy_of_a_file_is_told(hall):
+    shutil.copy(hall.video("left"), hall.video("back"))
+    assert "cameras left and back: expected two views" in hall.fault()
+
+
+@pytest.mark.parametrize(("size", "crf"), [((320, 180), 36), ((640, 360), 23), ((160, 90), 30)])
+def test_a_copy_in_another_quality_and_size_is_told(hall, size, crf):
+    for take in ("serve", "lob"):
+        rooms_filmed.copied(hall.video("left", take), hall.video("back", take), size=size, crf=crf)
+    hall.calibrate(rooms_filmed.SIZE, back=size)
+    faults, _ = hall.said()
+    assert len(faults) == 2
+    assert all("cameras left and back: expected two views" in line for line in faults)
+
+
+def test_exchanged_cameras_are_told_by_their_static_recordings(hall):
+    for camera, room in (("left", 1), ("right", 2), ("back", 3)):
+        static = rooms_filmed.film(hall.root / f"{camera}_empty.mp4", room, n=1)
+        hall.content["cameras"][camera] = {"static": str(static)}
+    hall.exchange("left", "back", takes=("serve", "lob"))
+    faults, _ = hall.said()
+    assert len(faults) == 2
+    for take, line in zip(("serve", "lob"), faults, strict=True):
+        assert f"takes.{take}: cameras left and back: expected each camera's own video" in line
+        assert "in its static recording; they seem to be exchanged" in line
+
+
+def test_exchanged_cameras_are_told_by_another_take(hall):
+    hall.exchange("left", "right", takes=("lob",))
+    assert "takes.lob: cameras left and right: expected each" in hall.fault()
+    assert "shows in take serve" in hall.fault()
+
+
+def test_exchanged_cameras_are_told_by_their_sizes(hall):
+    for take in ("serve", "lob"):
+        hall.film("back", take, size=(180, 320))
+    hall.calibrate(rooms_filmed.SIZE, back=(180, 320))
+    assert hall.said() == ([], [])
+    hall.exchange("left", "back", takes=("serve", "lob"))
+    faults, _ = hall.said()
+    assert len(faults) == 2
+    assert all("seem to be exchanged: exchange their videos" in line for line in faults)
+
+
+def test_a_file_of_another_camera_in_another_take_is_told(hall):
+    hall.content["takes"]["lob"]["videos"]["back"] = str(hall.video("left"))
+    faults, _ = hall.said()
+    named = "takes.lob.videos.back: expected a video of this camera"
+    assert any(named in line and "left's of take serve" in line for line in faults)
+
+
+def test_one_file_may_be_two_takes_of_its_camera(hall):
+    hall.content["takes"]["lob"]["videos"] = dict(hall.content["takes"]["serve"]["videos"])
+    hall.content["takes"]["lob"]["trim_s"] = [1.0, 2.0]
+    assert hall.said() == ([], [])
+
+
+def test_a_trim_behind_the_end_is_told(hall):
+    hall.content["takes"]["lob"]["trim_s"] = [2.5, 4.0]
+    faults, _ = hall.said()
+    assert len(faults) == 3
+    assert all("takes.lob: trim_s: expected a start within" in line for line in faults)
+
+
+def test_walks_and_devices_are_looked_at(hall):
+    walk = hall.root / "walk.mp4"
+    walk.write_bytes(b"no video")
+    hall.content["walks"] = {"walk1": {"video": str(walk)}}
+    webcam = hall.root / "webcam.mp4"
+    webcam.write_bytes(b"no video either")
+    hall.content["takes"]["lob"]["devices"] = {"webcam": {"file": str(webcam)}}
+    faults, _ = hall.said()
+    assert [line.split(":")[0] for line in faults] == [str(walk), str(webcam)]
+
+
+def test_what_is_not_there_yet_is_left_to_its_job(hall):
+    hall.content["calibration"]["file"] = "results/external/elsewhere/cameras.toml"
+    hall.content["takes"]["lob"]["videos"] = dict.fromkeys(("left", "right"), "results/none.mp4")
+    assert hall.said() == ([], [])
+
+
+def test_every_fault_is_told_at_once(hall):
+    hall.film("left", size=(160, 90))
+    hall.film("left", "lob", size=(160, 90))
+    hall.content["cameras"]["back"] = {"name_in_calibration": "Hinten"}
+    hall.exchange("right", "back", takes=("lob",))
+    faults, _ = hall.said()
+    assert len(faults) == 3

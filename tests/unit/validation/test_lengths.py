@@ -1,0 +1,59 @@
+"""Frames and rates of the cameras of a take: what is wrong, what is odd, what is usual."""
+
+import numpy as np
+import pytest
+
+from courtside.validation import lengths
+from courtside.video.glance import Glance
+
+SMALL = np.zeros((54, 96), np.uint8)
+
+
+def said(synchronised, **cameras):
+    """Return (faults, remarks) of cameras given as (frames, Hz)."""
+    looks = {c: Glance((64, 48), SMALL, n, rate) for c, (n, rate) in cameras.items()}
+    found = lengths.faults, lengths.remarks
+    return tuple(list(say(looks, synchronised=synchronised)) for say in found)
+
+
+@pytest.mark.parametrize("synchronised", [True, False])
+@pytest.mark.parametrize(
+    "cameras",
+    [
+        {"left": (600, 60.0), "right": (600, 60.0)},
+        {"left": (600, 60.0), "right": (601, 60.0)},
+        {"left": (100, 60.0), "right": (100, 59.94)},
+        {"left": (600, 60.0), "right": (300, 30.0)},
+        {"left": (600, 60.0), "right": (None, None)},
+        {"left": (1, None), "right": (1, None)},
+        {},
+    ],
+)
+def test_what_is_usual_says_nothing(synchronised, cameras):
+    assert said(synchronised, **cameras) == ([], [])
+
+
+def test_a_wrong_rate_of_synchronised_cameras_is_a_fault():
+    (fault,), _ = said(True, left=(600, 60.0), right=(600, 30.0), back=(600, 60.0))
+    assert "found 60 Hz (left, back), 30 Hz (right)" in fault
+    # 59.94 for 60: after a minute 3.6 frames apart.
+    assert len(said(True, left=(3600, 60.0), right=(3600, 59.94))[0]) == 1
+
+
+def test_unequal_lengths_of_synchronised_cameras_are_remarked():
+    faults, (remark,) = said(True, left=(600, 60.0), right=(590, 60.0))
+    assert faults == []
+    assert "600 frames (left), 590 frames (right)" in remark
+    assert said(False, left=(600, 60.0), right=(590, 60.0)) == ([], [])
+
+
+def test_slow_motion_among_other_cameras_is_remarked():
+    faults, (remark,) = said(False, left=(600, 60.0), right=(600, 30.0))
+    assert faults == []
+    assert "60 Hz (left), 30 Hz (right): does a file state a wrong rate" in remark
+
+
+def test_irregular_frames_are_not_compared():
+    looks = {"left": Glance((64, 48), SMALL, 600, 60.0)}
+    looks["right"] = Glance((64, 48), SMALL, 600, 30.0, even=False)
+    assert list(lengths.faults(looks, synchronised=True)) == []

@@ -1,0 +1,142 @@
+"""Check the recordings of all sessions of a study before any job starts.
+
+Recordings that are made or fetched by jobs, below results/, are checked once they are there.
+"""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from courtside.study.configuration.session_files import is_there
+from courtside.study.configuration.sessions import Session, Study, Take
+from courtside.study.errors import InputError
+from courtside.validation import calibrated, lengths, views
+from courtside.validation.remembered import Remembered
+from courtside.video.glance import Glance
+
+Looks = dict[str, dict[str, Glance]]  # by camera and file
+
+
+def check(study: Study, remembered: Remembered) -> list[str]:
+    """Check every recorded session; return what is worth a look, one line each.
+
+    An `InputError` has every fault, one line each, with the session's file.
+    """
+    faults: list[str] = []
+    remarks: list[str] = []
+    for session in study.sessions.values():
+        if not session.virtual:
+            found = _Session(session, remembered)
+            faults += found.faults()
+            remarks += found.remarks()
+    remembered.save()
+    if faults:
+        raise InputError(*dict.fromkeys(faults))
+    return remarks
+
+
+class _Session:
+    """A session and a look at each of its recordings that is there."""
+
+    def __init__(self, session: Session, remembered: Remembered) -> None:
+        self._session, self._remembered = session, remembered
+        self._unreadable: list[str] = []
+        self._static = {
+            name: look
+            for name, camera in session.cameras.items()
+            for look in self._look(camera.static, None)
+        }
+        self._takes = {
+            name: {
+                camera: look
+                for camera, path in take.videos.items()
+                for look in self._look(path, take.trim_s)
+            }
+            for name, take in session.takes.items()
+        }
+        others = [*session.walks.values(), *_filmed_by_devices(session)]
+        for path in others:
+            self._look(path, None)
+
+    def _look(self, path: str | None, trim_s: tuple[float, ...] | None) -> list[Glance]:
+        """Return a look at a file that is there and readable, else nothing."""
+        if path is None or not is_there(Path(path)) or Path(path).is_dir():
+            return []
+        try:
+            return [self._remembered.look(path, stop_s=trim_s[1] if trim_s else None)]
+        except InputError as error:
+            self._unreadable += error.lines
+            return []
+
+    def faults(self) -> Iterator[str]:
+        """Yield every fault."""
+        file = self._session.file
+        yield from self._unreadable
+        for line in calibrated.faults(self._session, self._sizes()):
+            yield line if line.startswith(tuple(self._paths())) else f"{file}: {line}"
+        for name, take in self._session.takes.items():
+            for line in self._take_faults(name, take):
+                yield f"{file}: takes.{name}: {line}"
+        yield from (f"{file}: {line}" for line in self._shared_files())
+
+    def remarks(self) -> Iterator[str]:
+        """Yield what is worth a look."""
+        for name, take in self._session.takes.items():
+            said = lengths.remarks(self._takes[name], synchronised=take.synchronised)
+            yield from (f"{self._session.file}: takes.{name}: {line}" for line in said)
+
+    def _take_faults(self, name: str, take: Take) -> Iterator[str]:
+        looks = self._takes[name]
+        yield from lengths.faults(looks, synchronised=take.synchronised)
+        for camera, look in looks.items():
+            if take.trim_s and look.duration_s and take.trim_s[0] >= look.duration_s:
+                yield (
+                    f"trim_s: expected a start within {take.videos[camera]}, which lasts "
+                    f"{look.duration_s:.3f} s, found {take.trim_s[0]:g} s; correct it"
+                )
+        smalls = {camera: look.small for camera, look in looks.items()}
+        known, what = self._known_views(name)
+        yield from views.faults(take.videos, smalls, known, what)
+
+    def _known_views(self, name: str) -> tuple[dict, str]:
+        """Return small pictures of the cameras elsewhere: static recordings, or another take."""
+        if self._static:
+            return {c: look.small for c, look in self._static.items()}, "its static recording"
+        for other, looks in self._takes.items():
+            smalls = {camera: look.small for camera, look in looks.items()}
+            if other == name:
+                break
+            if smalls and not views.doubles(smalls):
+                return smalls, f"take {other}"
+        return {}, ""
+
+    def _shared_files(self) -> Iterator[str]:
+        """Yield the files that are given for two cameras in different takes."""
+        owner: dict[str, tuple[str, str]] = {}
+        for name, take in self._session.takes.items():
+            for camera, path in take.videos.items():
+                first = owner.setdefault(path, (name, camera))
+                if first[1] != camera and first[0] != name:
+                    yield (
+                        f"takes.{name}.videos.{camera}: expected a video of this camera, found "
+                        f"{path}, which is {first[1]}'s of take {first[0]}; correct one path"
+                    )
+
+    def _sizes(self) -> dict[str, dict[str, tuple[int, int]]]:
+        found: dict[str, dict[str, tuple[int, int]]] = {}
+        for camera, look in self._static.items():
+            path = self._session.cameras[camera].static or ""
+            found.setdefault(camera, {})[path] = look.size
+        for name, looks in self._takes.items():
+            for camera, look in looks.items():
+                path = self._session.takes[name].videos[camera]
+                found.setdefault(camera, {})[path] = look.size
+        return found
+
+    def _paths(self) -> Iterable[str]:
+        given = self._session.calibration_file
+        return [*(path for files in self._sizes().values() for path in files), given or "\0"]
+
+
+def _filmed_by_devices(session: Session) -> list[str]:
+    devices = [device for take in session.takes.values() for device in take.devices.values()]
+    return [device.file for device in devices if device.kind == "rgb"]

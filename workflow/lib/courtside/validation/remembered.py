@@ -1,0 +1,76 @@
+"""Looks at recordings, kept in a file from run to run: an unchanged file is looked at once."""
+
+import base64
+import contextlib
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from courtside.study.errors import DAMAGED, InputError, StrPath
+from courtside.study.execution import files
+from courtside.video.glance import SMALL_PX, Glance, glance
+
+FORMAT = 1  # of the file: another one is not used
+
+
+class Remembered:
+    """Quick looks at recordings by path, size and date.
+
+    A missing or damaged JSON file `path` costs time only. Faults are not kept.
+    """
+
+    def __init__(self, path: StrPath) -> None:
+        self._path = Path(path)
+        self._kept = _read(self._path)
+        self._used: dict[str, Any] = {}
+
+    def look(self, path: StrPath, *, stop_s: float | None = None) -> Glance:
+        """Look at a video or a photo, or remember it; raises as `glance`."""
+        key = _key(Path(path), stop_s)
+        if key not in self._used:
+            found = _restored(self._kept[key]) if key in self._kept else None
+            self._used[key] = _stored(found or glance(path, stop_s=stop_s))
+        found = _restored(self._used[key])
+        return found if found else glance(path, stop_s=stop_s)
+
+    def save(self) -> None:
+        """Write what this run used, if it is new and the file may be written."""
+        if set(self._used) - set(self._kept):
+            with contextlib.suppress(OSError, InputError):
+                files.write_json(self._path, {"format": FORMAT, "looks": self._kept | self._used})
+
+
+def _key(path: Path, stop_s: float | None) -> str:
+    try:
+        state = path.stat()
+    except OSError:
+        return str(path)
+    return f"{path.absolute()} {state.st_size} {state.st_mtime_ns} {stop_s}"
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        looks = content["looks"] if content["format"] == FORMAT else {}
+    except DAMAGED:
+        return {}
+    return looks if isinstance(looks, dict) else {}
+
+
+def _stored(found: Glance) -> dict[str, Any]:
+    small = base64.b64encode(found.small.tobytes()).decode()
+    return {**asdict(found), "size": list(found.size), "small": small}
+
+
+def _restored(entry: dict[str, Any]) -> Glance | None:
+    """Return what was kept; None where it is damaged."""
+    try:
+        small = np.frombuffer(base64.b64decode(entry["small"]), np.uint8)
+        width, height = entry["size"]
+        kept = {**entry, "size": (width, height), "small": small.reshape(SMALL_PX[::-1])}
+        return Glance(**kept)
+    except DAMAGED:
+        return None

@@ -1,0 +1,117 @@
+"""A quick look at a recording: size, frames, rate, and its first picture, made small.
+
+Of an MP4 or MOV file the index is read, of other files the packets for a few seconds, and one
+picture is decoded. Whoever decodes the whole file later checks every frame (`decoder`).
+"""
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from av.error import FFmpegError
+from numpy.typing import NDArray
+
+from courtside.study.errors import InputError, StrPath
+from courtside.video import images, walk_frames
+from courtside.video.decoder import display_matrix
+from courtside.video.packets import MEND, list_packets, opened
+
+SMALL_PX = (96, 54)  # width and height of the small picture, whatever the shape of the large
+LONGEST_S = 3.0  # ASSUME: of reading packets: with opening and one picture below 5 s
+
+
+@dataclass(frozen=True)
+class Glance:
+    """What a quick look at a video or a photo tells."""
+
+    size: tuple[int, int]  # width and height of the upright picture, px
+    small: NDArray  # (54, 96) uint8: the first picture, grey
+    # Of a video; None where the file was too long to be read in time, and of a photo
+    n_frames: int | None = None
+    rate_hz: float | None = None
+    even: bool = True  # whether frames come at regular times, as far as known
+
+    @property
+    def duration_s(self) -> float | None:
+        """Seconds from the start of the first frame to the end of the last, of an even rate."""
+        return self.n_frames / self.rate_hz if self.n_frames and self.rate_hz else None
+
+
+def glance(path: StrPath, *, stop_s: float | None = None) -> Glance:
+    """Look at a video or a photo.
+
+    A video cut short after `stop_s`, where a take is trimmed to end, is accepted. Raise InputError
+    if the file is missing, neither, without a picture that decodes, or cut short.
+    """
+    path = Path(path)
+    if path.suffix.lower() in walk_frames.PHOTOS:
+        picture = images.read(path, cv2.IMREAD_GRAYSCALE)
+        return Glance((picture.shape[1], picture.shape[0]), _small(picture))
+    with opened(path) as (container, stream):
+        times = _indexed(container, stream, path.stat().st_size)
+        matrix, picture = _first_picture(path, container, stream)
+    if times is None:
+        times = _read(path, stop_s)
+    x_sign, y_sign = matrix.sum(axis=0)
+    upright = picture if matrix[0, 0] else picture.T
+    upright = np.ascontiguousarray(upright[::y_sign, ::x_sign])
+    size = (upright.shape[1], upright.shape[0])
+    return Glance(size, _small(upright), *_rate(times))
+
+
+def _first_picture(path: Path, container, stream) -> tuple[NDArray, NDArray]:
+    try:
+        frame = next(container.decode(stream), None)
+    except FFmpegError as error:
+        raise InputError(
+            f"{path}: expected a picture that decodes, found none ({error.strerror}): {MEND}"
+        ) from error
+    if frame is None:
+        raise InputError(f"{path}: expected a picture that decodes, found none: {MEND}")
+    return display_matrix(path, frame), frame.to_ndarray(format="gray")
+
+
+def _indexed(container, stream, n_bytes: int) -> NDArray | None:
+    """Return the times (T,) s of frames by an MP4's index; None where it is not whole."""
+    if "mov" not in container.format.name:
+        return None
+    entries = [(entry.timestamp, entry.pos + entry.size) for entry in stream.index_entries]
+    if not entries or len(entries) != stream.frames or max(entries, key=_end)[1] > n_bytes:
+        return None
+    return np.sort([ticks for ticks, _ in entries]) * float(stream.time_base)
+
+
+def _end(entry: tuple[int, int]) -> int:
+    return entry[1]
+
+
+def _read(path: Path, stop_s: float | None) -> NDArray | None:
+    """Return the times (T,) s of frames by the packets; None if reading them takes too long."""
+    started_s, n_read = time.monotonic(), 0
+    with opened(path) as (container, stream):
+        try:
+            for _ in container.demux(stream):
+                n_read += 1
+                if time.monotonic() - started_s > LONGEST_S:
+                    return None
+        except FFmpegError:
+            pass  # told by what reads the file again
+    return list_packets(path, stop_s=stop_s).times_s
+
+
+def _rate(times_s: NDArray | None) -> tuple[int | None, float | None, bool]:
+    if times_s is None:
+        return None, None, True
+    steps_s = np.diff(times_s)
+    if not len(steps_s) or steps_s.mean() <= 0:
+        return len(times_s), None, True
+    mean_s = float(steps_s.mean())
+    # As of `reader.probe`; a millisecond is the coarsest clock that containers have.
+    even = bool(np.abs(steps_s - mean_s).max() <= 0.01 * mean_s + 1.01e-3)
+    return len(times_s), 1 / mean_s, even
+
+
+def _small(picture: NDArray) -> NDArray:
+    return cv2.resize(picture, SMALL_PX, interpolation=cv2.INTER_AREA)
