@@ -14,24 +14,25 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPOSITORY / "workflow" / "lib"))
 
-from courtside.drafting import draft, survey
-from courtside.drafting import guess as file_names
+from courtside.drafting import draft, guess, survey
+from courtside.drafting import names as file_names
 from courtside.study.errors import InputError
 
 
 def main(folder, name, court, sessions):
     """Draft one session and return the lines to print."""
     recordings = survey.survey(folder, root=Path.cwd())
-    guess = file_names.guess(recordings)
+    found = guess.guess(recordings)
     name = name or file_names.name(folder.resolve().name, "session1")
     written = survey.written(folder, Path.cwd())
     path = sessions / f"{name}.yaml"
     title = folder.resolve().name
-    draft.write(path, draft.text(guess, title=title, folder=written, court=court))
+    draft.write(path, draft.text(found, title=title, folder=written, court=court))
     study = shown(sessions.parent / f"{name}.yaml")
-    said = [f"Wrote {shown(path)}.", draft.write_study(study, name, guess.takes)]
-    points = draft.court_points(guess, written)
-    return [*said, *draft.to_check(guess, shown(path), points, study)]
+    filmed = [take for take, videos in found.takes.items() if videos]
+    said = [f"Wrote {shown(path)}.", draft.write_study(study, name, filmed)]
+    points = draft.court_points(found, written)
+    return [*said, *draft.to_check(found, shown(path), points, study)]
 
 
 def shown(path):

@@ -127,7 +127,9 @@ def test_devices_and_left_over_files_are_told():
 
 
 def test_a_folder_without_recordings_says_what_is_there():
-    with pytest.raises(InputError, match=r"data/north: expected videos .* found none; put") as told:
+    with pytest.raises(
+        InputError, match=r"data/north: expected videos, .* found none; put"
+    ) as told:
         draft()
     assert "\n" not in str(told.value)
     bad = recording("data/north/x.mp4", "unusable", note="expected a video, found text")
@@ -211,3 +213,82 @@ def test_a_study_of_the_session_alone_is_written_once(tmp_path):
     path.write_text("mine")
     assert "name north among its `sessions`" in session_draft.write_study(path, "north", ["a"])
     assert path.read_text() == "mine"
+
+
+def test_a_half_size_video_is_drafted_as_a_scaled_copy():
+    calibration = recording(
+        "data/north/c.toml", "calibration", cameras={"left": (128, 96), "right": (48, 64)}
+    )
+    _, text, content = draft(*TAKE, calibration)
+    assert content["cameras"] == {"left": {"scale": 0.5}, "right": {}}
+    assert "a scaled copy of the calibrated 128x96 px" in text
+    assert "turned against the calibrated 48x64 px" in text
+
+
+def test_cameras_are_found_in_the_calibration_by_their_serial_number():
+    videos = [
+        recording(f"data/north/Serve_Miqus_{k}_{23086 + k}.avi", n_frames=150) for k in (1, 2)
+    ]
+    cameras = {"23087": (64, 48), "23088": (64, 48)}
+    _, _, content = draft(
+        *videos, recording("data/north/c.qca.txt", "calibration", cameras=cameras)
+    )
+    assert content["cameras"] == {
+        "miqus1": {"name_in_calibration": "23087"},
+        "miqus2": {"name_in_calibration": "23088"},
+    }
+    assert list(content["takes"]) == ["serve"]
+
+
+def test_as_many_frames_are_taken_for_one_clock():
+    alike = [recording(r.path, n_frames=150) for r in TAKE]
+    guess, text, content = draft(*alike)
+    assert content["synchronised"] is True
+    assert "remove it if they were started by hand" in text
+    lines = session_draft.to_check(guess, "north.yaml", "c.csv", "n.yaml")
+    assert any(line.startswith("Clocks: as many frames") for line in lines)
+    other = [alike[0], recording(TAKE[1].path, n_frames=151)]
+    assert "synchronised" not in draft(*other)[2]
+    assert "synchronised" not in draft(*TAKE)[2]
+
+
+def test_names_of_another_script_are_said():
+    videos = [recording(f"data/north/{c}カメラ_試技1.mp4") for c in ("左", "右")]
+    guess, _, content = draft(*videos)
+    assert list(content["cameras"]) == ["left", "right"]
+    said = "\n".join(session_draft.to_check(guess, "north.yaml", "c.csv", "n.yaml"))
+    assert "camera left (data/north/左カメラ_試技1.mp4)" in said
+    assert "take trial1 (data/north/左カメラ_試技1.mp4)" in said
+
+
+def test_few_pictures_of_a_walk_are_asked_for():
+    photos = Recording("data/door/images", ("images",), "photos", (640, 480), n_photos=11)
+    _, _, content = draft(photos, folder="data/door")
+    assert content["override"] == {"sweep": {"n_images": [11], "n_offsets": 1}}
+    short = recording("data/north/walk.mp4", duration_s=10.0)
+    _, _, content = draft(*TAKE, short)
+    assert content["override"] == {
+        "sweep": {"n_images": [16], "n_offsets": 1},
+        "calibrations": ["sfm-n16", "known18"],
+        "take_calibrations": ["sfm-n16"],
+    }
+
+
+def test_devices_alone_make_a_session():
+    one = recording("data/suit/jump.bvh", "bvh", size=None, rate_hz=None, duration_s=None)
+    other = recording("data/suit/arm raise.bvh", "bvh", size=None, rate_hz=None, duration_s=None)
+    guess, _, content = draft(one, other, folder="data/suit")
+    assert (content["cameras"], content["court"]) == ({}, "none")
+    assert content["takes"] == {
+        "jump": {"devices": {"mocopi": {"file": "data/suit/jump.bvh"}}},
+        "arm_raise": {"devices": {"mocopi": {"file": "data/suit/arm raise.bvh"}}},
+    }
+    lines = session_draft.to_check(guess, "suit.yaml", "c.csv", "n.yaml")
+    assert not any(line.startswith(("Odd", "No walk", "Court")) for line in lines)
+
+
+def test_cameras_without_names_are_marked():
+    videos = [recording(f"data/north/IMG_{n}.MOV") for n in ("0007", "1234")]
+    _, text, content = draft(*videos)
+    assert list(content["cameras"]) == ["cam1", "cam2"]
+    assert text.count("no name tells the cameras apart") == 2

@@ -167,53 +167,119 @@ def test_files_of_devices_without_a_name_go_to_the_only_take():
     assert [take for take, *_ in found.devices] == [""]
 
 
-@pytest.mark.parametrize(
-    ("parts", "expected"),
-    [
-        (["smash1_left"], ("smash1", "left")),
-        (["Cam 01-takeTwo"], ("cam01", "take", "two")),
-        (["left", "GX010034"], ("left", "gx010034")),
-        (["2026-05-01 smash (2)"], ("2026", "05", "01", "smash2")),
-        (["Schläger_Übung"], ("schlager", "ubung")),
-        (["コート"], ()),
-        (["take", "1"], ("take", "1")),  # a folder's name and a file's are not one word
-    ],
-)
-def test_names_are_split_into_words(parts, expected):
-    assert session_guess.words_of(parts) == expected
+def test_qualisys_names_take_camera_and_serial_number():
+    found = guess(
+        *(f"{take}_Miqus_{n}_{23086 + n}.avi" for take in ("Serve 1", "Lob") for n in (1, 2)),
+    )
+    assert found.cameras == ["miqus1", "miqus2"]
+    assert found.serials == {"miqus1": "23087", "miqus2": "23088"}
+    assert paths(found.takes["serve1"]) == {
+        "miqus1": "Serve 1_Miqus_1_23087.avi",
+        "miqus2": "Serve 1_Miqus_2_23088.avi",
+    }
+    assert list(found.takes) == ["lob", "serve1"] or list(found.takes) == ["serve1", "lob"]
+    assert list(guess("Serve_Miqus_1_23087.avi", "Serve_Miqus_2_23088.avi").takes) == ["serve"]
+
+
+def test_gopro_counts_for_itself_and_cuts_up_recordings():
+    found = guess(
+        "left/GX010034.MP4",
+        "left/GX020034.MP4",
+        "right/GX010107.MP4",
+        "left/GOPR0001.MP4",
+        "left/GP010001.MP4",
+        "right/GOPR0002.MP4",
+    )
+    assert found.cameras == ["left", "right"]
+    assert len(found.takes) == 2
+    told = {r.path: why for r, why in found.unused}
+    assert sorted(told) == ["gym/left/GP010001.MP4", "gym/left/GX020034.MP4"]
+    assert all(
+        why.startswith("chapter 2 of a recording") and "join" in why for why in told.values()
+    )
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
+    "names",
     [
-        ("North Gym", "north_gym"),
-        ("  --A.b--  ", "a_b"),
-        ("Größe", "grosse"),
-        ("コート", "session1"),
-        ("", "session1"),
+        ("cam1_GX010034.MP4", "cam2_GX010107.MP4"),
+        ("cam1/IMG_1234.MOV", "cam2/IMG_0007.MOV"),
+        ("cam1/VID_20240102_101112.mp4", "cam2/PXL_20240102_101115123.mp4"),
+        ("cam1/2024-01-02 10-11-12.mkv", "cam2/2024-01-02 10-11-14.mkv"),
     ],
 )
-def test_names_are_such_as_a_configuration_accepts(text, expected):
-    found = session_guess.name(text, "session1")
-    assert found == expected
-    assert configuration.NAME.fullmatch(found)
+def test_counters_and_moments_are_no_names(names):
+    found = guess(*names)
+    assert (found.cameras, list(found.takes)) == (["cam1", "cam2"], ["take1"])
+    assert not found.unused
 
 
-def test_distinct_appends_the_first_free_number():
-    assert session_guess.distinct("walk", {}) == "walk"
-    assert session_guess.distinct("walk", {"walk": 0, "walk_2": 0}) == "walk_3"
+def test_recordings_of_one_time_are_one_take():
+    found = guess(
+        "a/VID_20240102_101112.mp4",
+        "a/VID_20240102_102000.mp4",
+        "a/VID_20240102_103000.mp4",
+        "b/PXL_20240102_101115123.mp4",
+        "b/PXL_20240102_103005001.mp4",
+    )
+    assert [paths(take) for take in found.takes.values()] == [
+        {"a": "a/VID_20240102_101112.mp4", "b": "b/PXL_20240102_101115123.mp4"},
+        {"a": "a/VID_20240102_103000.mp4", "b": "b/PXL_20240102_103005001.mp4"},
+    ]
+    ((alone, why),) = found.unused
+    assert alone.path == "gym/a/VID_20240102_102000.mp4"
+    assert "only recording of its take, by camera a" in why
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "same"),
+    "names",
     [
-        ("cam1", "cam01", True),
-        ("cam10", "cam1", False),
-        ("cam001", "cam01", True),
-        ("cam0", "cam", False),
-        ("a0", "a00", True),
-        ("left", "left", True),
+        ("IMG_1234.MOV", "IMG_0007.MOV"),
+        ("VID_20240102_101112.mp4", "PXL_20240102_101115123.mp4", "20240102_101120.mp4"),
+        ("2024-01-02 10-11-12.mkv", "2024-01-02 10-11-14.mkv"),
+        ("GX010034.MP4", "GX010107.MP4"),
     ],
 )
-def test_zeros_before_a_number_do_not_count(one, other, same):
-    assert session_guess.alike(one, other) is same
+def test_cameras_that_no_name_tells_are_numbered(names):
+    found = guess(*names)
+    assert found.cameras == found.numbered == [f"cam{k + 1}" for k in range(len(names))]
+    assert list(found.takes) == ["take1"]
+
+
+def test_recordings_of_several_times_need_folders():
+    found = guess("VID_20240102_101112.mp4", "VID_20240102_101115.mp4", "VID_20240102_120000.mp4")
+    assert not found.takes
+    assert all("into a folder named after it" in why for _, why in found.unused)
+
+
+def test_japanese_names_become_names_of_the_study():
+    found = guess(
+        "左カメラ_スマッシュ.mp4",
+        "右カメラ_スマッシュ.mp4",
+        "左カメラ_無人.mp4",
+        "右カメラ_無人.mp4",
+    )
+    assert found.cameras == ["right", "left"] or found.cameras == ["left", "right"]
+    assert list(found.takes) == ["sumatusiyu"] or list(found.takes) == ["sumatusiyu", "take2"]
+    assert set(found.static) == {"left", "right"}
+    names = [*found.cameras, *found.takes]
+    assert all(configuration.NAME.fullmatch(one) for one in names)
+
+
+def test_words_without_a_spelling_are_numbered():
+    found = guess("東_試合.mp4", "西_試合.mp4", "東_練習.mp4", "西_練習.mp4")
+    assert found.cameras == ["cam1", "cam2"]
+    assert list(found.takes) == ["take1", "take2"]
+    assert not found.numbered
+
+
+def test_files_of_devices_alone_are_takes():
+    found = guess("jump.bvh", "arm raise.bvh")
+    assert found.takes == {"arm_raise": {}, "jump": {}} or found.takes == {
+        "jump": {},
+        "arm_raise": {},
+    }
+    assert sorted((take, device) for take, device, _ in found.devices) == [
+        ("arm_raise", "mocopi"),
+        ("jump", "mocopi"),
+    ]

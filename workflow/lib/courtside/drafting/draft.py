@@ -2,13 +2,14 @@
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import yaml
 
-from courtside.drafting import guess as file_names
+from courtside.drafting import names as file_names
 from courtside.drafting.guess import Guess, Recording, Take
+from courtside.geometry import picture_size
 from courtside.study.configuration import configuration, schemas, yaml_files
 from courtside.study.errors import InputError, StrPath
 
@@ -30,8 +31,8 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
     """
     if not guess.walks and not guess.takes and not guess.static:
         raise InputError(
-            f"{folder}: expected videos or photos of a session, found {_what_is_there(guess)}; put "
-            "the videos of the fixed cameras and of the walk there"
+            f"{folder}: expected videos, photos or files of devices, found "
+            f"{_what_is_there(guess)}; put the videos of the fixed cameras and of the walk there"
         )
     measured = guess.calibration is None and bool(guess.cameras)
     lines = [
@@ -45,7 +46,8 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
         lines += ["subjects:", f"  p1: {{consent: [analysis, pictures]}}  {MARK} {SUBJECTS}"]
     clicked = measured and court != "none"
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
-    lines += [*_takes(guess), *_override(guess, clicked), *_unused(guess)]
+    lines += [*_synchronised(guess), *_takes(guess)]
+    lines += [*_override(guess, clicked), *_unused(guess)]
     return "\n".join(lines) + "\n"
 
 
@@ -80,8 +82,10 @@ def _cameras(guess: Guess) -> list[str]:
     for camera in guess.cameras:
         keys, remarks = _pictures(guess, camera)
         for more in _calibrated(guess, camera, calibrated):
-            keys += more[:1]
+            keys += filter(None, more[:1])
             remarks += more[1:]
+        if camera in guess.numbered:
+            remarks.append("no name tells the cameras apart: numbered in the order of their files")
         remark = f"  {MARK} {'; '.join(remarks)}" if remarks else ""
         lines.append(f"  {_quoted(camera)}: {{{', '.join(keys)}}}{remark}")
     return lines
@@ -107,8 +111,7 @@ def _calibrated(
     """Yield the keys that a camera needs to match the calibration, each with a remark."""
     if not calibrated:
         return
-    theirs = next((n for n in calibrated if n == camera or file_names.name(n, "") == camera), None)
-    theirs = theirs or next((n for n in calibrated if file_names.alike(n.lower(), camera)), None)
+    theirs = _name_there(guess, camera, calibrated)
     if theirs is None:
         names = ", ".join(_quoted(name) for name in calibrated)
         yield f"name_in_calibration: {_quoted(camera)}", f"one of {names} is its name there"
@@ -117,9 +120,29 @@ def _calibrated(
         yield f"name_in_calibration: {_quoted(theirs)}", "the same name there"
     size = next((t[camera].size for t in guess.takes.values() if camera in t), None)
     if size and tuple(size) != tuple(calibrated[theirs]):
-        width, height = calibrated[theirs]
-        crop_px = f"crop_px: [0, 0, {size[0]}, {size[1]}]"
-        yield crop_px, f"which part of the calibrated {width}x{height} px the video shows"
+        yield from _resized(calibrated[theirs], size)
+
+
+def _name_there(guess: Guess, camera: str, calibrated: Mapping[str, tuple[int, int]]) -> str | None:
+    """Return the name of a camera in the calibration: its own, a similar one or its serial."""
+    ways: tuple[Callable[[str], bool], ...] = (
+        lambda there: there in (camera, guess.serials.get(camera)),
+        lambda there: file_names.name(there, "") == camera,
+        lambda there: file_names.alike(there.lower(), camera),
+    )
+    return next((there for like in ways for there in calibrated if like(there)), None)
+
+
+def _resized(calibrated: tuple[int, int], size: tuple[int, int]) -> Iterator[tuple[str, str]]:
+    """Yield the keys of a camera whose videos have not the calibrated size, each with a remark."""
+    there = f"{calibrated[0]}x{calibrated[1]} px"
+    found = picture_size.relation(calibrated, size)
+    if found.kind == "turned":
+        yield "", f"turned against the calibrated {there}: export it as it was calibrated"
+    if found.crop_px:
+        yield f"crop_px: {list(found.crop_px)}", f"which part of the calibrated {there} it shows"
+    if found.scale:
+        yield f"scale: {found.scale:g}", f"a scaled copy of the calibrated {there}"
 
 
 def _walks(guess: Guess) -> list[str]:
@@ -147,11 +170,25 @@ def court_points(guess: Guess, folder: str) -> str:
     return guess.court_points.path if guess.court_points else f"{folder}/court_points.csv"
 
 
+def _synchronised(guess: Guess) -> list[str]:
+    """Return the key by which all cameras share a clock, if every take looks like it."""
+    filmed = [take for take in guess.takes.values() if take]
+    if not filmed or not all(_as_many_frames(take) for take in filmed):
+        return []
+    remark = "as many frames in all cameras of a take; remove it if they were started by hand"
+    return [f"synchronised: true  {MARK} {remark}"]
+
+
+def _as_many_frames(take: Take) -> bool:
+    counts = {recording.n_frames for recording in take.values()}
+    return len(counts) == 1 and None not in counts and len(take) > 1
+
+
 def _takes(guess: Guess) -> list[str]:
     remark = "recordings that belong together; `synchronised: true` where the cameras share a clock"
     lines = [f"takes:  {MARK} {remark}"] * bool(guess.takes)
     for name, take in guess.takes.items():
-        lines += [f"  {_quoted(name)}:", "    videos:"]
+        lines += [f"  {_quoted(name)}:", *["    videos:"] * bool(take)]
         for camera in (camera for camera in guess.cameras if camera in take):
             recording = take[camera]
             path = f"{_quoted(camera)}: {_quoted(recording.path)}"
@@ -172,10 +209,32 @@ def _devices(guess: Guess, take: str) -> list[str]:
 
 
 def _override(guess: Guess, clicked: bool) -> list[str]:
-    """Return the key by which takes are measured if only court points tell the cameras' poses."""
-    if guess.walks or not clicked or not guess.takes:
+    """Return the keys by which takes are measured, and walks mapped, with what there is."""
+    if guess.walks:
+        return _fewer_images(guess, clicked)
+    if not clicked or not guess.takes:
         return []
     return [f"override: {{take_calibrations: [known18]}}  {MARK} no walk was found"]
+
+
+def _fewer_images(guess: Guess, clicked: bool) -> list[str]:
+    """Return the keys that ask for as many bridging images as walks give, where they are few."""
+    each = [_bridging_images(recording) for recording in guess.walks.values()]
+    n_images = max(2, sum(each))
+    if n_images >= USUAL_IMAGES:
+        return []
+    keys = [f"sweep: {{n_images: [{n_images}], n_offsets: 1}}"]
+    if guess.cameras and guess.calibration is None:
+        ways = [f"sfm-n{n_images}", *["known18"] * clicked]
+        keys += [f"calibrations: [{', '.join(ways)}]", f"take_calibrations: [sfm-n{n_images}]"]
+    return [f"override: {{{', '.join(keys)}}}  {MARK} the walks give no more bridging images"]
+
+
+def _bridging_images(recording: Recording) -> int:
+    """Return how many bridging images a walk gives; some frames of a video are blurred or alike."""
+    if recording.kind == "photos":
+        return recording.n_photos
+    return round(USABLE * (recording.duration_s or 0) / EVERY_S)
 
 
 def _unused(guess: Guess) -> list[str]:
@@ -213,6 +272,8 @@ def _quoted(value: str) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
+USUAL_IMAGES, EVERY_S = 40, 0.5  # `sweep.n_images` and `extract_frames.every_s` of config.yaml
+USABLE = 0.8  # ASSUME: share of a walk's frames that are sharp and differ
 SHORT_S = 15  # ASSUME: in shorter takes the clocks of cameras are seldom found
 
 
@@ -221,7 +282,7 @@ def write_study(path: Path, session: str, takes: Iterable[str]) -> str:
 
     A file that is there is left as it is. Returns one line on what was done.
     """
-    filmed = ", ".join(f"{session}/{take}" for take in takes)
+    filmed = ", ".join(f"{session}/{take}" for take in takes)  # those with videos
     lines = [
         f"# The study of {session} alone; what is not said here is as in config.yaml.",
         f"sessions: [{session}]",
@@ -245,17 +306,35 @@ def to_check(guess: Guess, path: StrPath, court_points: str, study: StrPath) -> 
     """
     lines = [f"Look at {path}: every line with `{MARK}`, and what stands under `not used`."]
     lines += [f"Odd: {line}" for line in _odd(guess)]
+    lines += _translated(guess)
+    if _synchronised(guess):
+        lines.append(
+            "Clocks: as many frames in all cameras, so `synchronised: true`; remove it if the "
+            "cameras were started by hand."
+        )
     if guess.calibration is None and guess.court_points is None and guess.cameras:
         lines.append(
             f"Court points: the first run makes a page to click them on, for {court_points}."
         )
-    if not guess.walks and guess.calibration is None:
+    if guess.cameras and not guess.walks and guess.calibration is None:
         lines.append("No walk was found: the cameras will rest on clicked court points alone.")
     lines.append(
         f"`snakemake -n -q rules --configfile {study}` checks it and counts what will be made."
     )
     lines.append(f"`snakemake --configfile {study}` makes it.")
     return lines
+
+
+def _translated(guess: Guess) -> list[str]:
+    """Return a line on names that stand for words of another script; empty where there are none."""
+    said = []
+    for camera in guess.cameras:
+        films = [take[camera] for take in guess.takes.values() if camera in take]
+        said += [f"camera {camera} ({r.path})" for r in films[:1] if not r.path.isascii()]
+    for name, take in guess.takes.items():
+        films = [r for r in take.values() if not r.path.isascii()]
+        said += [f"take {name} ({films[0].path})"] if films else []
+    return [f"Names, with one of their files each: {', '.join(said)}."] if said else []
 
 
 def _odd(guess: Guess) -> Iterator[str]:
@@ -276,13 +355,15 @@ def _odd(guess: Guess) -> Iterator[str]:
 
 
 def _odd_take(name: str, take: Take) -> Iterator[str]:
+    if not take:
+        return
     rates = {round(r.rate_hz or 0) for r in take.values()}
     if len(rates) > 1:
         yield f"take {name} has videos of {' and '.join(map(str, sorted(rates)))} Hz"
     lengths = [r.duration_s for r in take.values() if r.duration_s is not None]
     if max(lengths) > 2 * min(lengths):
         yield f"take {name} has videos whose lengths differ more than twofold"
-    if len(lengths) > 1 and min(lengths) < SHORT_S:
+    if len(lengths) > 1 and min(lengths) < SHORT_S and not _as_many_frames(take):
         yield (
             f"take {name} is {min(lengths):.1f} s long: in less than {SHORT_S} s the clocks of "
             "cameras are seldom found; say `synchronised: true` if they share one"

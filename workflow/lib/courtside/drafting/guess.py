@@ -1,10 +1,15 @@
 """Guess the cameras, walks and takes of a session from the names of its files."""
 
 import re
-import unicodedata
-from collections.abc import Collection, Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import timedelta
+from functools import cached_property
 from itertools import combinations
+
+from courtside.drafting import device_names, names
+from courtside.drafting.device_names import DeviceName
+from courtside.drafting.names import alike, distinct, words_of
 
 # Words that mark a recording of the empty court, of the carried camera, of a chessboard, and words
 # that say nothing, as people name files in English, German and French.
@@ -13,10 +18,12 @@ STATIC |= {"leer", "vide"}
 WALK = {"walk", "walking", "mobile", "moving", "handheld", "bridge", "bridging", "sweep", "gang"}
 BOARD = {"board", "boards", "chess", "chessboard", "checker", "checkerboard"}
 BOARD |= {"calib", "calibration", "intrinsic", "intrinsics", "int"}
+# ASSUME: what is started for one take is started within so long.
+SLACK = timedelta(seconds=30)
 FOLDERS = {"video", "videos", "data", "film", "films", "footage", "takes", "raw"}
-FOLDERS |= {"recording", "recordings"}
+FOLDERS |= {"recording", "recordings", "cam", "camera", "kamera"}
 CAMERA = re.compile(
-    r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr)[0-9]+"
+    r"(cam|camera|c|gopro|gp|view|kamera|phone|iphone|pixel|dslr|miqus|oqus|arqus)[0-9]+"
     r"|(left|right|centre|center|middle|back|front|side|rear|oblique|mirror|links|rechts|mitte)[0-9]*"
 )
 
@@ -34,18 +41,29 @@ class Recording:
     size: tuple[int, int] | None = None  # of its pictures, px
     rate_hz: float | None = None  # of a video
     duration_s: float | None = None  # of a video
+    n_frames: int | None = None  # of a video
     n_photos: int = 0  # of a folder of photos
     note: str = ""  # why it is unusable, or what is unusual about it
     # Of a calibration: sizes of the pictures of its cameras
     cameras: dict[str, tuple[int, int]] = field(default_factory=dict)
 
+    @cached_property
+    def device(self) -> DeviceName | None:
+        """What a camera or a recorder says in its name."""
+        return device_names.read(self.parts[-1]) if self.kind in ("video", "photo") else None
+
     @property
     def words(self) -> tuple[str, ...]:
-        """Words of its name and folders."""
-        return words_of(self.parts)
+        """Words of its name and folders, without counters and moments."""
+        if self.device is None:
+            return words_of(self.parts)
+        said = self.device
+        return words_of([*self.parts[:-1], said.before, said.camera, said.after])
 
 
 Take = dict[str, Recording]  # by camera
+# A recording, its camera, and its words that name neither camera nor counter
+Placed = tuple[Recording, str | None, tuple[str, ...]]
 Words = dict[str, tuple[str, ...]]  # by path, or by camera
 
 
@@ -63,6 +81,9 @@ class Guess:
     takes: dict[str, Take] = field(default_factory=dict)  # by take and camera
     # Take or "", kind of device, file
     devices: list[tuple[str, str, Recording]] = field(default_factory=list)
+    # Cameras that no name tells apart: numbered in the order of their files
+    numbered: list[str] = field(default_factory=list)
+    serials: dict[str, str] = field(default_factory=dict)  # by camera
     court_points: Recording | None = None
     calibration: Recording | None = None
     unused: list[tuple[Recording, str]] = field(default_factory=list)  # with the reason
@@ -71,22 +92,41 @@ class Guess:
 def guess(recordings: Sequence[Recording]) -> Guess:
     """Guess what each recording, in name order, is; every one is in the guess once."""
     found = Guess()
+    recordings = _without_later_chapters(found, recordings)
     videos = [r for r in recordings if r.kind == "video"]
     own = _own_words(recordings, videos)
     cameras = _camera_words(recordings, videos, own)
     rest = _sort_pictures(found, recordings, own, cameras)
+    rest = _numbered(found, rest) if not cameras else rest
     _group(found, rest)
     found.cameras = [
         name
-        for name in cameras
+        for name in [*cameras, *found.numbered]
         if name in found.static or any(name in take for take in found.takes.values())
     ]
+    _keep_serials(found)
     for camera in [name for name in found.boards if name not in found.cameras]:
         found.unused.append((found.boards.pop(camera), "a chessboard of no camera found"))
     if found.walks:
         _stand_in(found)
     _sort_others(found, recordings, own)
+    _rename(found)
     return found
+
+
+def _without_later_chapters(found: Guess, recordings: Sequence[Recording]) -> list[Recording]:
+    """Leave out the files in which a camera went on with a recording."""
+    kept = []
+    for recording in recordings:
+        if recording.device and recording.device.chapter > 1:
+            why = (
+                f"chapter {recording.device.chapter} of a recording that its camera cut up; join "
+                "the chapters into one file to use them"
+            )
+            found.unused.append((recording, why))
+        else:
+            kept.append(recording)
+    return kept
 
 
 def _own_words(recordings: Iterable[Recording], videos: Sequence[Recording]) -> Words:
@@ -110,7 +150,7 @@ def _camera_words(
 
 def _differing(videos: Iterable[Recording], own: Words) -> list[tuple[str, ...]]:
     """Return the last words by which otherwise equal names differ."""
-    named = [own[r.path] for r in videos if not _has(r, WALK | STATIC)]
+    named = [own[r.path] for r in videos if own[r.path] and not _has(r, WALK | STATIC)]
     places = set()
     for one, other in combinations(named, 2):
         differ = [at for at, pair in enumerate(zip(one, other, strict=False)) if len(set(pair)) > 1]
@@ -136,12 +176,13 @@ def _has(recording: Recording, vocabulary: Container[str]) -> bool:
 
 def _sort_pictures(
     found: Guess, recordings: Sequence[Recording], own: Words, cameras: Words
-) -> list[tuple[Recording, str | None, tuple[str, ...]]]:
+) -> list[Placed]:
     """Put static recordings, boards and walks into the guess; return the others.
 
     Of each other recording, which belongs to a take: itself, its camera, and the words left.
     """
-    rest, alone = [], sum(r.kind == "video" for r in recordings) == 1
+    rest: list[Placed] = []
+    alone = sum(r.kind == "video" for r in recordings) == 1
     for recording in (r for r in recordings if r.kind in ("video", "photo", "photos")):
         camera, words = _camera_of(own[recording.path], cameras)
         if recording.kind == "photos" and _has(recording, BOARD):
@@ -149,7 +190,8 @@ def _sort_pictures(
         elif recording.kind == "photo" or _has(recording, STATIC):
             _keep(found, found.static, recording, camera, "a picture of no camera found")
         elif recording.kind == "photos" or _is_walk(recording, camera, cameras) or alone:
-            wanted = name("_".join(words), "walk")
+            counted = words or words_of(recording.parts[-1:])
+            wanted = names.name("_".join(counted), "walk")
             wanted = wanted if wanted not in cameras else f"walk_{wanted}"
             found.walks[distinct(wanted, found.walks)] = recording
         else:
@@ -170,13 +212,38 @@ def _keep(found: Guess, place: Take, recording: Recording, camera: str | None, r
         place[camera] = recording
 
 
-def _group(found: Guess, rest: Iterable[tuple[Recording, str | None, tuple[str, ...]]]) -> None:
+def _numbered(found: Guess, rest: Sequence[Placed]) -> list[Placed]:
+    """Give numbers to cameras that only counters or moments name, if all is one take."""
+    videos = [recording for recording, _, words in rest if not words and recording.device]
+    begun = [recording.device.begun for recording in videos if recording.device]
+    together = len(videos) < 2 or not all(begun) or len(_moments(videos)) == 1
+    if len(videos) != len(rest) or len(videos) < 2 or not together:
+        return list(rest)
+    found.numbered = [f"cam{number}" for number in range(1, len(videos) + 1)]
+    named = zip(videos, found.numbered, strict=True)
+    return [(recording, camera, ()) for recording, camera in named]
+
+
+def _moments(recordings: Iterable[Recording]) -> list[list[Recording]]:
+    """Group recordings that were made at one time, as their names tell when they began."""
+    groups: list[list[Recording]] = []
+    stop = None
+    stamped = [(r.device.begun, r) for r in recordings if r.device and r.device.begun]
+    for begun, recording in sorted(stamped, key=lambda pair: pair[0]):
+        if stop is None or begun > stop:
+            groups.append([])
+            stop = begun + max(SLACK, timedelta(seconds=recording.duration_s or 0))
+        groups[-1].append(recording)
+    return groups
+
+
+def _group(found: Guess, rest: Iterable[Placed]) -> None:
     """Group recordings into takes: by the words other than the camera's, else by their order."""
     takes: dict[str, Take] = {}
     left: dict[str, list[Recording]] = {}
-    for recording, camera, words in rest:
+    for recording, camera, words in _with_counters(list(rest)):
         if camera is None:
-            found.unused.append((recording, "no other video has a name like it"))
+            found.unused.append((recording, _nameless(recording)))
             continue
         take = takes.setdefault("_".join(words), {})
         if camera in take:
@@ -190,26 +257,68 @@ def _group(found: Guess, rest: Iterable[tuple[Recording, str | None, tuple[str, 
             continue
         for camera, recording in take.items():
             left.setdefault(camera, []).append(recording)
-    _pair_by_order(found, left)
+    _pair(found, left)
+
+
+def _with_counters(rest: Sequence[Placed]) -> list[Placed]:
+    """Add counters and moments to the words of recordings of one camera that are else alike."""
+    seen: dict[tuple[str | None, tuple[str, ...]], int] = {}
+    for _, camera, words in rest:
+        seen[camera, words] = seen.get((camera, words), 0) + 1
+    repeated = {words for (_, words), count in seen.items() if count > 1}
+    return [
+        (r, c, (*words, r.device.mark) if words in repeated and r.device else words)
+        for r, c, words in rest
+    ]
+
+
+def _nameless(recording: Recording) -> str:
+    if recording.device is None:
+        return "no other video has a name like it"
+    return "its name tells no camera; put the videos of each camera into a folder named after it"
 
 
 def _shared_name(take: Take) -> str:
     """Return what the names of a take's files share, without folders."""
-    names = [words_of(recording.parts[-1:]) for recording in take.values()]
-    shared = set.intersection(*map(set, names)) - FOLDERS
-    return "_".join(word for word in names[0] if word in shared)
+    said = [
+        words_of([r.device.before, r.device.after] if r.device else r.parts[-1:])
+        for r in take.values()
+    ]
+    shared = set.intersection(*map(set, said)) - FOLDERS
+    return "_".join(word for word in said[0] if word in shared)
 
 
-def _pair_by_order(found: Guess, left: Mapping[str, Sequence[Recording]]) -> None:
-    """Make the k-th recordings of all cameras one take, if all have equally many."""
-    if len(left) > 1 and len({len(own) for own in left.values()}) == 1:
+def _pair(found: Guess, left: Mapping[str, Sequence[Recording]]) -> None:
+    """Make recordings of one time one take, if all names tell it; else those of one order."""
+    every = [recording for own in left.values() for recording in own]
+    if all(recording.device and recording.device.begun for recording in every):
+        camera_of = {recording.path: camera for camera, own in left.items() for recording in own}
+        for group in _moments(every):
+            take = {camera_of[recording.path]: recording for recording in group}
+            if len(take) == len(group) > 1:
+                found.takes[distinct(f"take{len(found.takes) + 1}", found.takes)] = take
+            else:
+                _leave(found, group, camera_of)
+    elif len(left) > 1 and len({len(own) for own in left.values()}) == 1:
         for at, together in enumerate(zip(*left.values(), strict=True), start=1):
             name = distinct(f"take{at}", found.takes)
             found.takes[name] = dict(zip(left, together, strict=True))
-        return
-    for camera, own in left.items():
-        for recording in own:
-            found.unused.append((recording, f"the only recording of its take, by camera {camera}"))
+    else:
+        camera_of = {recording.path: camera for camera, own in left.items() for recording in own}
+        _leave(found, every, camera_of)
+
+
+def _leave(found: Guess, recordings: Iterable[Recording], camera_of: Mapping[str, str]) -> None:
+    for recording in recordings:
+        why = f"the only recording of its take, by camera {camera_of[recording.path]}"
+        found.unused.append((recording, why))
+
+
+def _keep_serials(found: Guess) -> None:
+    for camera in found.cameras:
+        films = [take[camera] for take in found.takes.values() if camera in take]
+        if films and films[0].device and films[0].device.serial:
+            found.serials[camera] = films[0].device.serial
 
 
 def _stand_in(found: Guess) -> None:
@@ -222,73 +331,44 @@ def _stand_in(found: Guess) -> None:
 
 
 def _sort_others(found: Guess, recordings: Iterable[Recording], own: Words) -> None:
+    alone = not found.takes and not found.walks and not found.static
     for recording in recordings:
         if recording.kind in ("court_points", "calibration"):
             if getattr(found, recording.kind) is None:
                 setattr(found, recording.kind, recording)
             else:
-                found.unused.append((recording, f"there is another {recording.kind} file"))
+                kind = recording.kind.replace("_", " ")
+                found.unused.append((recording, f"there is another {kind} file"))
         elif recording.kind in ("bvh", "bag"):
             words = set(own[recording.path])
             near = [t for t in found.takes if set(words_of([t])) & words]
-            only = list(found.takes) if len(found.takes) == 1 else [""]
+            only = list(found.takes) if len(found.takes) == 1 and not alone else [""]
+            if alone:  # a session of devices: files of one name are one take
+                only = [names.name("_".join(words_of(recording.parts[-1:])), "take1")]
+                found.takes.setdefault(only[0], {})
+                near = []
             device = {"bvh": "mocopi", "bag": "realsense"}[recording.kind]
             found.devices.append(((near or only)[0], device, recording))
         elif recording.kind in ("racket", "unusable"):
             found.unused.append((recording, recording.note or "clicked racket ends"))
 
 
-WORD = re.compile(r"[A-Za-z]+[0-9]*|[0-9]+")
-LETTERS = {"ß": "ss", "æ": "ae", "œ": "oe", "ø": "o", "đ": "d", "ł": "l", "þ": "th"}
-
-
-def words_of(parts: Iterable[str]) -> tuple[str, ...]:
-    """Split the names of folders and of a file without its suffix into words.
-
-    Lower case, without accents; a number belongs to the word before it: `Cam 01-takeTwo` gives
-    `cam01`, `take`, `two`.
-    """
-    found: list[str] = []
-    for part in parts:
-        own: list[str] = []
-        for word in WORD.findall(_plain(part)):
-            if word.isdigit() and own and not own[-1][-1].isdigit():
-                own[-1] += word
-            else:
-                own.append(word)
-        found += own
-    return tuple(word.lower() for word in found)
-
-
-def name(text: str, otherwise: str) -> str:
-    """Make a name that a configuration accepts: `a-z0-9_`, begun with a letter or digit.
-
-    `otherwise` is the name of a text without a letter or digit of the Latin alphabet.
-    """
-    return "_".join(re.findall("[a-z0-9]+", _plain(text).lower())) or otherwise
-
-
-def distinct(wanted: str, taken: Collection[str]) -> str:
-    """Return a name, with the first number after it that makes it differ from those taken."""
-    found, number = wanted, 1
-    while found in taken:
-        number += 1
-        found = f"{wanted}_{number}"
-    return found
-
-
-def alike(one: str, other: str) -> bool:
-    """Return whether words differ only by zeros before their numbers, as `cam1` and `cam01`."""
-    return _unpadded(one) == _unpadded(other)
-
-
-def _unpadded(word: str) -> str:
-    return re.sub(r"(?<![0-9])0+(?=[0-9])", "", word)
-
-
-def _plain(text: str) -> str:
-    """Return a text without accents, camel case split into words."""
-    text = "".join(LETTERS.get(letter.lower(), letter) for letter in text)
-    text = unicodedata.normalize("NFKD", text)
-    text = "".join(letter for letter in text if not unicodedata.combining(letter))
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
+def _rename(found: Guess) -> None:
+    """Give cameras and takes names that a configuration accepts."""
+    cameras: dict[str, str] = {}
+    for at, camera in enumerate(found.cameras, start=1):
+        cameras[camera] = distinct(names.name(camera, f"cam{at}"), cameras.values())
+    found.cameras = list(cameras.values())
+    found.stand_ins = [cameras[camera] for camera in found.stand_ins]
+    found.numbered = [cameras[camera] for camera in found.numbered if camera in cameras]
+    found.static = {cameras[c]: r for c, r in found.static.items() if c in cameras}
+    found.boards = {cameras[c]: r for c, r in found.boards.items()}
+    found.serials = {cameras[c]: serial for c, serial in found.serials.items()}
+    takes: dict[str, str] = {}
+    for at, take in enumerate(found.takes, start=1):
+        takes[take] = distinct(names.name(take, f"take{at}"), takes.values())
+    found.takes = {
+        takes[key]: {cameras[camera]: r for camera, r in take.items()}
+        for key, take in found.takes.items()
+    }
+    found.devices = [(takes.get(take, ""), device, r) for take, device, r in found.devices]

@@ -18,6 +18,7 @@ VIDEOS = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".ts", ".mpg"
 VIDEOS |= {".webm", ".wmv", ".3gp"}
 BAGS = {".bag", ".db3"}
 CALIBRATIONS = {".toml", ".txt", ".xml"}  # a YAML file in a folder of recordings may be anything
+CLICKED = {"camera", "x_px", "y_px"}
 RACKET = {"take", "camera", "frame_idx", "end"}
 
 
@@ -75,7 +76,7 @@ def _video(path: Path) -> dict[str, Any]:
     info = video.probe(path)
     note = "frames come at irregular times" if info.variable_rate else ""
     rate_hz = info.rate_hz if math.isfinite(info.rate_hz) else None
-    length = {"rate_hz": rate_hz, "duration_s": info.duration_s}
+    length = {"rate_hz": rate_hz, "duration_s": info.duration_s, "n_frames": info.n_frames}
     return {"kind": "video", "size": info.size, **length, "note": note}
 
 
@@ -95,7 +96,13 @@ def _table(path: Path) -> dict[str, Any] | None:
         return None
     if set(clicks.COLUMNS) <= header:
         return {"kind": "court_points"}
-    return {"kind": "racket"} if header >= RACKET else None
+    if header >= RACKET:
+        return {"kind": "racket"}
+    if header >= CLICKED:
+        expected = ",".join(clicks.COLUMNS)
+        note = f"clicked points? expected the columns {expected}, found {','.join(sorted(header))}"
+        return {"kind": "unusable", "note": note}
+    return None
 
 
 def _calibration(path: Path) -> dict[str, Any] | None:

@@ -1,0 +1,72 @@
+"""Words of file names in several scripts, and names made of them."""
+
+import pytest
+
+from courtside.drafting import names
+from courtside.study.configuration import configuration
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        (["smash1_left"], ("smash1", "left")),
+        (["Cam 01-takeTwo"], ("cam01", "take", "two")),
+        (["left", "GX010034"], ("left", "gx010034")),
+        (["2026-05-01 smash (2)"], ("2026", "05", "01", "smash2")),
+        (["Schläger_Übung"], ("schlager", "ubung")),
+        (["コート"], ("コート",)),
+        (["左カメラ2_試技1"], ("left", "cam2", "trial1")),
+        (["カメラ１＿スマッシュ"], ("cam1", "スマッシュ")),  # full width
+        (["ｶﾒﾗ3"], ("cam3",)),  # half width
+        (["왼쪽 카메라_서브"], ("left", "cam", "서브")),
+        (["Левая Камера дубль 2"], ("left", "cam", "take2")),
+        (["右侧机位-发球"], ("right", "cam", "发球")),
+        (["take", "1"], ("take", "1")),  # a folder's name and a file's are not one word
+    ],
+)
+def test_names_are_split_into_words(parts, expected):
+    assert names.words_of(parts) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("North Gym", "north_gym"),
+        ("  --A.b--  ", "a_b"),
+        ("Größe", "grosse"),
+        ("コート", "koto"),
+        ("ガット", "gatuto"),
+        ("서브", "seobeu"),
+        ("подача", "podacha"),
+        ("σερβίς", "servis"),
+        ("左カメラ", "left_cam"),
+        ("体育館", "session1"),  # no spelling of their own
+        ("体育館 2", "session1"),
+        ("🏸", "session1"),
+        ("", "session1"),
+    ],
+)
+def test_names_are_such_as_a_configuration_accepts(text, expected):
+    found = names.name(text, "session1")
+    assert found == expected
+    assert configuration.NAME.fullmatch(found)
+
+
+def test_distinct_appends_the_first_free_number():
+    assert names.distinct("walk", {}) == "walk"
+    assert names.distinct("walk", {"walk": 0, "walk_2": 0}) == "walk_3"
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("cam1", "cam01", True),
+        ("cam10", "cam1", False),
+        ("cam001", "cam01", True),
+        ("cam0", "cam", False),
+        ("a0", "a00", True),
+        ("left", "left", True),
+    ],
+)
+def test_zeros_before_a_number_do_not_count(one, other, same):
+    assert names.alike(one, other) is same
