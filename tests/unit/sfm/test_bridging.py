@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from courtside.sfm import bridging
+from courtside.study import methods
 from courtside.study.errors import InputError
 
 G = 150
@@ -94,7 +95,7 @@ def test_too_few_usable_frames_are_said(rule):
     with pytest.raises(InputError) as caught:
         bridging.choose(np.arange(0, 30, 3), 30, 11, 0, np.ones(30), rule, walk="walk1")
     message = "walk1: expected at least 11 usable frames, found 10 of 30"
-    assert str(caught.value).startswith(message) and "film longer, or lower n" in str(caught.value)
+    assert str(caught.value).startswith(message) and "n_images: [" in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -106,3 +107,12 @@ def test_wrong_arguments_are_faults(change):
     with pytest.raises(ValueError, match=r"offset|ascend") as caught:
         bridging.choose(n_grid=30, sharpness=np.ones(30), **arguments)
     assert not isinstance(caught.value, InputError)
+
+
+@pytest.mark.parametrize(("n", "n_grid"), [(40, 150), (40, 80), (11, 11), (20, 40), (5, 80)])
+def test_choices_are_alike_where_the_study_takes_one_of_them(n, n_grid):
+    sharpness = np.random.default_rng(n).uniform(50, 150, n_grid)
+    chosen = [tuple(bridging.choose(np.arange(n_grid), n_grid, n, o, sharpness)) for o in (0, 1, 2)]
+    kept = methods.distinct_offsets(n, n_grid, 3)
+    assert len({chosen[offset] for offset in kept}) == len(kept)
+    assert set(chosen) == {chosen[offset] for offset in kept}

@@ -59,3 +59,11 @@ def test_a_structure_from_motion_is_parsed_and_named():
 )
 def test_a_fusion_is_parsed_from_its_name(name, cameras, rule, steadied):
     assert Fusion.parse(name) == Fusion(name, cameras, rule, steadied)
+
+
+@pytest.mark.parametrize(
+    ("n_images", "n_frames", "offsets"),
+    [(40, 150, [0, 1, 2]), (40, 80, [0, 1]), (11, 11, [0]), (40, 11, [0]), (2, 3, [0, 1])],
+)
+def test_only_offsets_whose_choices_differ_are_left(n_images, n_frames, offsets):
+    assert methods.distinct_offsets(n_images, n_frames, 3) == offsets

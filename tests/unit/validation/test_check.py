@@ -170,3 +170,18 @@ def test_every_fault_is_told_at_once(hall):
     hall.exchange("right", "back", takes=("lob",))
     faults, _ = hall.said()
     assert len(faults) == 3
+
+
+def test_too_few_photos_are_told_with_keys_that_exist(hall):
+    photos = hall.root / "photos"
+    photos.mkdir()
+    for number in range(11):
+        cv2.imwrite(str(photos / f"{number}.jpg"), rooms_filmed.background(number))
+    hall.content |= {"cameras": {}, "takes": {}, "walks": {"door": {"images": str(photos)}}}
+    del hall.content["calibration"]
+    said = hall.fault()
+    assert "walks: expected 40 pictures or more, found 11" in said
+    assert "`override: {sweep: {n_images: [11], n_offsets: 1}}`" in said
+    hall.content["override"] = {"sweep": {"n_images": [11], "n_offsets": 1}}
+    assert schemas.faults(hall.content, "session", "hall.yaml") == []
+    assert hall.said() == ([], [])

@@ -1,6 +1,8 @@
 """Sessions built from their files, and variations of virtual ones."""
 
-from courtside.study.configuration import session_files, sessions
+import pytest
+
+from courtside.study.configuration import schemas, session_files, sessions
 
 CONTENT = {
     "description": "d",
@@ -187,3 +189,25 @@ def test_points_at_rest_may_lie_beside_the_configuration(tmp_path):
     file = tmp_path / "config" / "sessions" / "s.yaml"
     found = session_files.session("s", file, content, {})
     assert found.static_points == str(tmp_path / "config" / "static_points" / "s.csv")
+
+
+@pytest.mark.parametrize(
+    ("whole", "own", "expected"),
+    [
+        ({}, {}, False),
+        (True, {}, True),
+        (True, False, False),
+        (False, True, True),
+        ({}, True, True),
+    ],
+)
+def test_a_session_says_for_all_takes_whether_cameras_share_a_clock(whole, own, expected):
+    take = {"videos": {"a": "a.mp4", "b": "b.mp4"}}
+    take |= {} if own == {} else {"synchronised": own}
+    content = {"description": "d", "court": "none", "subjects": {"p1": None}}
+    content |= {"cameras": {"a": {"scale": 0.5}, "b": None}, "takes": {"one": take}}
+    content |= {} if whole == {} else {"synchronised": whole}
+    assert schemas.faults(content, "session", "s.yaml") == []
+    found = session_files.session("s", "s.yaml", content, {})
+    assert found.takes["one"].synchronised is expected
+    assert (found.cameras["a"].scale, found.cameras["b"].scale) == (0.5, 1.0)

@@ -116,3 +116,20 @@ def test_takes_are_measured_with_those_calibrations_that_the_study_names():
     parameters = {"calibrations": WAYS, "take_calibrations": ["known8", "file", "known18"]}
     found = session(court_points="p.csv", parameters=parameters)
     assert found.take_calibrations() == ["known18", "known8"]
+
+
+def test_choices_of_images_that_are_the_same_are_made_once(tmp_path):
+    sweep = {"n_images": [11, 5], "n_offsets": 3, "offsets_up_to": 40, "mappers": ["global"]}
+    parameters = {"sweep": sweep, "map_images": {"rule": "even"}}
+    for number in range(11):
+        (tmp_path / f"{number}.jpg").touch()
+    photos = session(parameters=parameters, walks={"door": str(tmp_path)})
+    assert photos.n_walk_frames() == 11
+    found = [variant.name for variant in photos.variants()]
+    assert found == ["global-n11-o0", *(f"global-n5-o{o}" for o in (0, 1, 2))]
+    filmed = session(parameters=parameters, walks={"walk": "walk.mp4"})
+    assert filmed.n_walk_frames() is None
+    assert len(filmed.variants()) == 6
+    virtual = session(parameters=parameters, walks={"walk": "w.mp4"}, virtual={"walk_frames": 20})
+    found = [variant.name for variant in virtual.variants() if variant.n_images == 11]
+    assert found == ["global-n11-o0", "global-n11-o1"]

@@ -106,3 +106,11 @@ def test_a_calibration_file_is_checked_by_what_cameras_see(job):
     }
     files = calibration.checked_files(job(session="walk-4cams-tiny"))
     assert files == [*take["pose2d"], take["sync"], take["people"]]
+
+
+def test_scales_are_those_of_cameras_whose_videos_are_scaled(job):
+    one = job(session="walk-4cams-tiny")
+    assert calibration.scales(one) == {}
+    one.session.cameras["cam03"] = replace(one.session.cameras["cam03"], scale=0.5)
+    assert calibration.scales(one) == {"cam03": 0.5}
+    one.session.cameras["cam03"] = replace(one.session.cameras["cam03"], scale=1.0)

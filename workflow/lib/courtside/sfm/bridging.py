@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from courtside.sfm.pairs import STRIDES
+from courtside.study import methods
 from courtside.study.errors import InputError
+from courtside.study.methods import OFFSETS
 
-OFFSETS = 3  # offsets of the taken images, in thirds of their spacing
 # ASSUME: places are multiples of a power of two that is at most this share of the spacing: a
 # multiple is then always nearer than the next image.
 COARSE = 0.4
@@ -56,7 +57,8 @@ def choose(
     if len(kept_idx) < n:
         raise InputError(
             f"{walk}: expected at least {n} usable frames, found {len(kept_idx)} of {n_grid} "
-            "(the others are dark, blurred or duplicates): film longer, or lower n"
+            "(the others are dark, blurred or duplicates): film longer, or ask for fewer by "
+            f"`{methods.fewer_images(len(kept_idx))}` in the session file"
         )
     if rule == "interval":
         every = len(kept_idx) // n
@@ -73,7 +75,7 @@ def _choose_even(kept_idx, n_grid, n, offset_idx, sharpness) -> NDArray:
         q //= 2
     usable = np.zeros((n_grid - 1) // q + 1, dtype=bool)
     usable[kept_idx[kept_idx % q == 0] // q] = True
-    late = round(offset_idx * step / OFFSETS / q)
+    late = methods.start(n, n_grid, offset_idx, q)
     wanted = late + np.linspace(0, (n_grid - 1) / q, n)
     wanted = np.minimum(wanted.round().astype(int), len(usable) - 1)
     preferred = np.array([_prefer(place, usable, sharpness[::q]) for place in wanted])

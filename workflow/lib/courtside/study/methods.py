@@ -12,6 +12,7 @@ CALIBRATION = re.compile(
 )
 VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
 HALFBODY = "halfbody"  # the paper's rule for three cameras
+OFFSETS = 3  # choices of so many bridging images: they start thirds of their spacing late
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,30 @@ class Variant:
     def name(self) -> str:
         """Its name in paths: `{mapper}-n{n_images}-o{offset}`."""
         return f"{self.mapper}-n{self.n_images}-o{self.offset}"
+
+
+def fewer_images(n_images: int) -> str:
+    """Return the key of a session, as YAML, that asks for no more bridging images than so many."""
+    return f"override: {{sweep: {{n_images: [{max(2, n_images)}], n_offsets: 1}}}}"
+
+
+def start(n_images: int, n_frames: int, offset: int, every: int = 1) -> int:
+    """Return how late the evenly spaced images of a choice start, in steps of `every` frames."""
+    return round(offset * (n_frames - 1) / (n_images - 1) / OFFSETS / every)
+
+
+def distinct_offsets(n_images: int, n_frames: int, n_offsets: int) -> list[int]:
+    """Return the offsets whose choices of evenly spaced images differ, the first of equal ones.
+
+    Where images are spaced by fewer than three frames, thirds of the spacing round to the same
+    frames.
+    """
+    if n_images >= n_frames:
+        return [0]
+    starts: dict[int, int] = {}
+    for offset in range(n_offsets):
+        starts.setdefault(start(n_images, n_frames, offset), offset)
+    return list(starts.values())
 
 
 @dataclass(frozen=True)

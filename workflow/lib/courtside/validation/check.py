@@ -9,6 +9,7 @@ from pathlib import Path
 from courtside.study.configuration.session_files import is_there
 from courtside.study.configuration.sessions import Session, Study, Take
 from courtside.study.errors import InputError
+from courtside.study.methods import Calibration, fewer_images
 from courtside.validation import calibrated, lengths, views
 from courtside.validation.remembered import Remembered
 from courtside.video.glance import Glance
@@ -77,6 +78,7 @@ class _Session:
             for line in self._take_faults(name, take):
                 yield f"{file}: takes.{name}: {line}"
         yield from (f"{file}: {line}" for line in self._shared_files())
+        yield from (f"{file}: {line}" for line in self._few_pictures())
 
     def remarks(self) -> Iterator[str]:
         """Yield what is worth a look."""
@@ -120,6 +122,21 @@ class _Session:
                         f"takes.{name}.videos.{camera}: expected a video of this camera, found "
                         f"{path}, which is {first[1]}'s of take {first[0]}; correct one path"
                     )
+
+    def _few_pictures(self) -> Iterator[str]:
+        """Yield whether walks give fewer pictures than are asked for, where that is known."""
+        session, n_there = self._session, self._session.n_walk_frames()
+        if n_there is None or not session.walks:
+            return
+        ways = [Calibration.parse(way).variant for way in session.calibrations()]
+        wanted = session.variants() if not session.cameras else list(filter(None, ways))
+        most = max((variant.n_images for variant in wanted), default=0)
+        if most > n_there:
+            used = f" and `override: {{calibrations: [sfm-n{n_there}]}}`" * bool(session.cameras)
+            yield (
+                f"walks: expected {most} pictures or more, found {n_there}; take more, or ask for "
+                f"fewer by `{fewer_images(n_there)}`{used}"
+            )
 
     def _sizes(self) -> dict[str, dict[str, tuple[int, int]]]:
         found: dict[str, dict[str, tuple[int, int]]] = {}

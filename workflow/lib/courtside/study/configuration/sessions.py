@@ -8,7 +8,7 @@ from typing import Any
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.execution.artefacts import Artefact
-from courtside.study.methods import HALFBODY, Calibration, Fusion, Variant
+from courtside.study.methods import HALFBODY, Calibration, Fusion, Variant, distinct_offsets
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,10 @@ class FixedCamera:
     static: str | None = None  # a recording without people
     # (x, y, width, height): the part of the calibrated picture that the videos show
     crop_px: tuple[int, ...] | None = None
-    scale: float = 1.0  # px of the videos per px of that part
     name_in_calibration: str | None = None  # its name in the calibration file where that differs
     # `images`, `inner_corners`, `square_m`: pictures of a chessboard that this camera took
     chessboard: dict[str, Any] | None = None
+    scale: float = 1.0  # px of the videos per px of the calibrated picture, or of `crop_px`
 
 
 @dataclass(frozen=True)
@@ -140,14 +140,31 @@ class Session:
         return {"all": tuple(self.cameras), **self.views}.get(how.cameras, ())
 
     def variants(self) -> list[Variant]:
-        """Return all structures from motion of the sweep."""
+        """Return all structures from motion of the sweep, each choice of images once."""
         sweep = self.parameters["sweep"]
         return [
             Variant(mapper, count, offset)
             for mapper in sweep["mappers"]
             for count in sweep["n_images"]
-            for offset in range(sweep["n_offsets"] if count <= sweep["offsets_up_to"] else 1)
+            for offset in self._offsets(count)
         ]
+
+    def _offsets(self, n_images: int) -> Iterable[int]:
+        sweep, n_frames = self.parameters["sweep"], self.n_walk_frames()
+        if n_images > sweep["offsets_up_to"]:
+            return [0]
+        if n_frames is None or self.parameters["map_images"]["rule"] != "even":
+            return range(sweep["n_offsets"])
+        return distinct_offsets(n_images, n_frames, sweep["n_offsets"])
+
+    def n_walk_frames(self) -> int | None:
+        """Return how many pictures the walks give, None where only decoding a video tells."""
+        if self.virtual:
+            return self.virtual["walk_frames"]
+        if not self.walks or not all(Path(path).is_dir() for path in self.walks.values()):
+            return None
+        files = [file for path in self.walks.values() for file in Path(path).iterdir()]
+        return sum(file.is_file() and not file.name.startswith(".") for file in files)
 
     def filmed(self) -> list[str]:
         """Return the names of all cameras and walks."""
