@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 import yaml
@@ -42,6 +43,17 @@ class Hall:
         pose = np.eye(3, 4)
         cameras = [Camera(c, sizes.get(c, size), matrix, np.zeros(5), pose) for c in CAMERAS]
         geometry.write_toml(self.root / "cameras.toml", cameras, source="test")
+
+    def around(self):
+        """Calibrate cameras that look at one place from three sides, and return them."""
+        cameras = []
+        for at, name in enumerate(CAMERAS):
+            turn = cv2.Rodrigues(np.array([0, 0.5 * (at - 1) + 0.1, 0.0]))[0]
+            pose = np.hstack([turn, [[0.0], [0.2 * at], [8.0]] - turn @ [[0.0], [0.0], [8.0]]])
+            matrix = np.array([[300.0 + 20 * at, 0, 160], [0, 300 + 20 * at, 90], [0, 0, 1]])
+            cameras.append(Camera(name, rooms_filmed.SIZE, matrix, np.zeros(5), pose))
+        geometry.write_toml(self.root / "cameras.toml", cameras, source="test")
+        return cameras
 
     def video(self, camera, take="serve"):
         return Path(self.content["takes"][take]["videos"][camera])

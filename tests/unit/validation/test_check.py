@@ -1,12 +1,20 @@
 """Mistakes with recordings that users make: each gives one line that names file, camera or take."""
 
 import shutil
+from importlib import import_module
+from pathlib import Path
 
 import cv2
+import numpy as np
 import pytest
 
+from courtside.geometry import camera as geometry
+from courtside.records.cameras import clicks
 from courtside.study.configuration import schemas
 from fixtures.recordings import rooms_filmed
+from fixtures.recordings.real_data import REAL, needs_real
+
+ROOT = Path(__file__).parents[3]
 
 
 def test_recordings_as_they_should_be_say_nothing(hall):
@@ -185,3 +193,67 @@ def test_too_few_photos_are_told_with_keys_that_exist(hall):
     hall.content["override"] = {"sweep": {"n_images": [11], "n_offsets": 1}}
     assert schemas.faults(hall.content, "session", "hall.yaml") == []
     assert hall.said() == ([], [])
+
+
+@pytest.mark.parametrize("pair", [(), ("left", "back"), ("right", "back")])
+def test_exchanged_cameras_are_told_by_points_at_rest(hall, pair):
+    """Names in the calibration exchanged: each camera looks at the same points from elsewhere."""
+    xyz = np.random.default_rng(3).uniform((-2, -1, 6), (2, 1, 10), (8, 3))
+    cameras = hall.around()
+    seen = {camera.name: geometry.project(camera, xyz) for camera in cameras}
+    clicks.write(hall.root / "points.csv", seen, [f"q{k}" for k in range(len(xyz))])
+    hall.content["static_points"] = str(hall.root / "points.csv")
+    assert hall.said() == ([], [])
+    for one, other in zip(pair, pair[::-1], strict=True):
+        hall.content["cameras"][one] = {"name_in_calibration": other}
+    if pair:
+        assert f"cameras {pair[0]} and {pair[1]}: expected points at rest" in hall.fault()
+        assert "0.0 px with these cameras exchanged" in hall.fault()
+
+
+@needs_real
+@pytest.mark.parametrize("pair", [("cam01", "cam02"), ("cam02", "cam04")])
+def test_exchanged_real_cameras_are_told(hall, pair):
+    """The file's principal points are as they are: mirrored, which is no exchange."""
+    walk = REAL / "walk-4cams"
+    names = [f"cam0{k}" for k in (1, 2, 3, 4)]
+    videos = {name: str(walk / "videos" / f"{name}.mp4") for name in names}
+    hall.content |= {
+        "cameras": {name: {} for name in names},
+        "calibration": {"file": str(walk / "calibration" / "Calib.qca.txt")},
+        "static_points": str(ROOT / "config" / "static_points" / "walk-4cams.csv"),
+        "takes": {"balancing": {"videos": videos, "synchronised": True}},
+    }
+    faults, _ = hall.said()
+    assert [line.split("; ")[1][:38] for line in faults] == [
+        "if it is a cut-out, declare `crop_px: "
+    ] * 2
+    for name in names[:2]:
+        hall.content["cameras"][name] = {"crop_px": [0, 0, 1080, 1920]}
+    assert hall.said() == ([], [])
+    for one, other in zip(pair, pair[::-1], strict=True):
+        hall.content["cameras"][one] |= {"name_in_calibration": other}
+    faults, _ = hall.said()
+    assert any(f"cameras {pair[0]} and {pair[1]}: expected points" in line for line in faults)
+
+
+def test_what_the_check_accepts_the_import_makes(hall, monkeypatch):
+    """A video that was cut out, then scaled: the cameras imported for it have its size."""
+    hall.calibrate((660, 360))
+    hall.content["cameras"] = {
+        name: {"crop_px": [20, 0, 640, 360], "scale": 0.5} for name in hall.content["cameras"]
+    }
+    assert hall.said() == ([], [])
+    monkeypatch.syspath_prepend(ROOT / "workflow" / "scripts")
+    session, out = hall.session(), [hall.root / name for name in ("out.toml", "quality.json")]
+    import_module("import_cameras").main(
+        session.calibration_file,
+        *out,
+        names=session.calibration_camera_names(),
+        crops_px={name: camera.crop_px for name, camera in session.cameras.items()},
+        scales={name: camera.scale for name, camera in session.cameras.items()},
+        override={},
+    )
+    for camera in geometry.read_toml(out[0]):
+        assert camera.size == rooms_filmed.SIZE
+        assert np.allclose(camera.K[[0, 0, 1], [0, 2, 2]], [150, (160 - 20 + 0.5) / 2 - 0.5, 44.75])

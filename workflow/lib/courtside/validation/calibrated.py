@@ -1,14 +1,22 @@
 """Cameras and sizes of pictures against the calibration file, and against each other."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 from courtside.calibration import file_formats
+from courtside.calibration.file_check import verdict
 from courtside.geometry import camera as geometry
 from courtside.geometry import picture_size
 from courtside.geometry.camera import Camera
+from courtside.records.cameras import clicks
 from courtside.study.configuration.sessions import Session
 from courtside.study.errors import InputError
+
+# ASSUME: an exchange that leaves so small a part of the disagreement is its cause, whatever else
+# is wrong with the file.
+EXPLAINED = 5.0
 
 Sizes = Mapping[str, Mapping[str, tuple[int, int]]]  # by camera and file: width and height, px
 
@@ -36,9 +44,12 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
             f"{', '.join(known) or 'no camera'}; give each its `name_in_calibration`, or calibrate "
             "it"
         )
-    there = {ours: known[theirs] for ours, theirs in names.items() if theirs in known}
     try:
+        there = _named(
+            session, {o: known[theirs] for o, theirs in names.items() if theirs in known}
+        )
         shown = {name: _shown(session, name, camera) for name, camera in there.items()}
+        yield from _exchanged_by_points(session, shown) if not missing else ()
     except InputError as error:
         yield from error.lines
         return
@@ -46,11 +57,48 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
         yield from _wrong_sizes(there, shown, sizes)
 
 
+def _named(session: Session, known: Mapping[str, Camera]) -> dict[str, Camera]:
+    """Return the cameras of a file under the session's names, with what it replaces of them."""
+    points_px = session.calibration_override.get("principal_point_px", {})
+    ours = [replace(camera, name=name) for name, camera in known.items()]
+    return {c.name: c for c in file_formats.with_principal_points(ours, points_px)}
+
+
 def _shown(session: Session, name: str, camera: Camera) -> Camera:
     """Return the camera of a session as its videos should show it."""
     ours = session.cameras[name]
     cropped = geometry.crop(camera, ours.crop_px) if ours.crop_px else camera
     return geometry.scaled(cropped, ours.scale) if ours.scale != 1 else cropped
+
+
+def _exchanged_by_points(session: Session, shown: Mapping[str, Camera]) -> Iterator[str]:
+    """Yield the two cameras whose exchange makes clicked points at rest agree, if they do not.
+
+    Whatever else may be wrong with the file is judged later, with more to judge by
+    (`calibration.file_check`).
+    """
+    path, cameras = session.static_points, list(shown.values())
+    if path is None or not Path(path).is_file():
+        return
+    seen = verdict.Seen(clicks.read_static(path, list(shown))[1])
+    limit_px = verdict.LARGEST["static"] * max(max(camera.size) for camera in cameras)
+    off_px = seen.px(cameras).get("static", 0)
+    if off_px <= limit_px:
+        return
+    found: dict[tuple[str, str], float] = {}
+    for one, other in combinations(range(len(cameras)), 2):
+        swapped = list(cameras)
+        swapped[one], swapped[other] = cameras[other], cameras[one]
+        found[cameras[one].name, cameras[other].name] = seen.px(swapped)["static"]
+    pair = min(found, key=lambda names: found[names], default=None)
+    if pair and found[pair] <= max(limit_px, off_px / EXPLAINED):
+        one_name, other_name = pair
+        yield (
+            f"cameras {one_name} and {other_name}: expected points at rest ({path}) where the "
+            f"calibration puts them, found them {off_px:.0f} px off, and "
+            f"{found[pair]:.1f} px with these cameras exchanged; exchange their videos, or their "
+            "`name_in_calibration`"
+        )
 
 
 def _mixed(sizes: Sizes) -> Iterator[str]:
