@@ -1,6 +1,7 @@
 """A session's YAML file drafted from a folder of recordings.
 
 survey: `survey`: what every file of a folder is; `written`: its path as a session names it
-guess: `guess`: cameras, walks and takes, from the names of files; `name`, `distinct`, `alike`
+guess: `guess`: cameras, walks and takes, from the names of files
+names: `words_of`, `name`, `distinct`, `alike`: words of any script; `device_names`: of recorders
 draft: `text`, `write`, `write_study`: the session's file and its study; `to_check`: advice
 """

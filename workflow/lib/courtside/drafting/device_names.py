@@ -38,7 +38,9 @@ def _gopro(found: re.Match) -> dict:
 
 def _moment(found: re.Match) -> dict:
     try:
-        begun = datetime(*(int(found[key]) for key in ("y", "mo", "d", "h", "mi", "s")))
+        begun = datetime.strptime(
+            "".join(found[key] for key in ("y", "mo", "d", "h", "mi", "s")), "%Y%m%d%H%M%S"
+        )
     except ValueError:
         return {}
     return {"begun": begun}

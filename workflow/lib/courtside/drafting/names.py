@@ -104,7 +104,7 @@ def _plain(text: str) -> str:
 def _without_accents(text: str) -> Iterator[str]:
     """Yield Latin letters without accents, and other letters, which marks would change, whole."""
     for letter in text:
-        first, *marks = unicodedata.normalize("NFD", letter)
+        first, *marks = list(unicodedata.normalize("NFD", letter))
         latin = first.isascii() and all(map(unicodedata.combining, marks))
         if latin or not unicodedata.combining(letter):
             yield first if latin else letter
@@ -119,7 +119,7 @@ def _script(letter: str) -> str:
 
 
 def _spelled(letter: str) -> str:
-    """Return a letter in Latin ones; a syllable as its Unicode name ends: テ is KATAKANA ... TE."""
+    """Return a letter in Latin ones; a syllable as its Unicode name ends."""
     small = letter.lower()
     bare = unicodedata.normalize("NFD", small)[0]
     if small in SPELLED or bare in SPELLED:

@@ -1,6 +1,6 @@
 """Check the recordings of all sessions of a study before any job starts.
 
-Recordings that are made or fetched by jobs, below results/, are checked once they are there.
+Recordings that jobs make or fetch are checked once they are there.
 """
 
 from collections.abc import Iterable, Iterator
