@@ -292,3 +292,13 @@ def test_cameras_without_names_are_marked():
     _, text, content = draft(*videos)
     assert list(content["cameras"]) == ["cam1", "cam2"]
     assert text.count("no name tells the cameras apart") == 2
+
+
+def test_clicks_beside_a_calibration_are_not_passed_over():
+    calibration = recording(
+        "data/north/c.toml", "calibration", cameras={"left": (64, 48), "right": (64, 48)}
+    )
+    clicked = recording("data/north/clicks.csv", "court_points")
+    _, text, content = draft(*TAKE, calibration, clicked)
+    assert not {"court_points", "static_points"} & set(content)
+    assert '"data/north/clicks.csv": clicked points; as `static_points`' in text

@@ -45,6 +45,8 @@ def test_a_scaled_video_is_told_and_may_be_declared(hall):
     assert hall.said() == ([], [])
     hall.content["cameras"]["left"] = {"scale": 0.25}
     assert "expected 80x45 px as the session file declares, found 160x90" in hall.fault()
+    hall.content["cameras"] |= {"left": {"scale": 0.5}, "right": {"scale": 0.5}}
+    assert "found 320x180; the video shows all of it: remove `crop_px` and" in hall.fault()
 
 
 def test_a_cut_out_is_told_and_may_be_declared(hall):
@@ -74,7 +76,7 @@ def test_cameras_that_the_calibration_lacks_are_named_with_those_that_it_has(hal
     hall.content["cameras"]["left"] = {"name_in_calibration": "Links"}
     hall.content["cameras"]["back"] = {"name_in_calibration": "Hinten"}
     said = hall.fault()
-    assert "cameras: expected left, back in " in said
+    assert "cameras: expected 'Links' (camera left), 'Hinten' (camera back) in " in said
     assert "found left, right, back; give each its `name_in_calibration`" in said
 
 

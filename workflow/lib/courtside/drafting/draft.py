@@ -242,6 +242,9 @@ def _unused(guess: Guess) -> list[str]:
     lines += [
         f"#   {json.dumps(r.path)}: {d} of no take" for take, d, r in guess.devices if not take
     ]
+    if guess.calibration and guess.court_points:
+        why = "clicked points; as `static_points` they check the calibration file"
+        lines.append(f"#   {json.dumps(guess.court_points.path)}: {why}")
     return ["# not used:", *lines] if lines else []
 
 

@@ -61,6 +61,8 @@ def scaled_size(size: Sequence[int], scale: float) -> tuple[int, int]:
 def advice(calibrated: Sequence[int], video: Sequence[int]) -> str:
     """Return what a user is to do about a video that has not the calibrated size, in words."""
     found = relation(calibrated, video)
+    if found.kind == "same":
+        return "the video shows all of it: remove `crop_px` and `scale` of this camera"
     if found.kind == "turned":
         return (
             "it is turned by a quarter: export the video turned as it was when it was calibrated, "

@@ -37,7 +37,11 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
         yield from error.lines
         return
     names = session.calibration_camera_names()
-    missing = [ours for ours, theirs in names.items() if theirs not in known]
+    missing = [
+        ours if ours == theirs else f"{theirs!r} (camera {ours})"
+        for ours, theirs in names.items()
+        if theirs not in known
+    ]
     if missing:
         yield (
             f"cameras: expected {', '.join(missing)} in {path}, found "
@@ -129,7 +133,7 @@ def _wrong_sizes(
         advice = picture_size.advice(calibrated, size)
         if other:
             advice = f"cameras {name} and {other} seem to be exchanged: exchange their videos"
-        elif declared:
+        elif declared and size != calibrated:
             advice = f"of the calibrated {_times(calibrated)} px {advice}"
         yield f"{at}, found {_times(size)}; {advice}"
 
