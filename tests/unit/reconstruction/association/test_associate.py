@@ -1,5 +1,6 @@
 """Association over views and time: stick figures cross, occlude one another and leave."""
 
+import itertools
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from courtside.reconstruction.association import associate as association
+from courtside.reconstruction.association import lengths
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
 from fixtures.people import stick_figures
@@ -46,8 +48,11 @@ def crossing(rng, seconds):
     return time_s, np.stack(bodies)
 
 
-def associate(cameras, xy, time_s, count=2, court=None):
-    return association.associate(cameras, xy, time_s, count, trunk=stick_figures.TRUNK, court=court)
+def associate(cameras, xy, time_s, court=None):
+    bones = lengths.bones(stick_figures.NAMES)
+    return association.associate(
+        cameras, xy, time_s, trunk=stick_figures.TRUNK, court=court, bones=bones
+    )
 
 
 # The constants of the method were chosen on seeds below 100.
@@ -87,33 +92,86 @@ def walkers(*lines, seconds=6, seed=1):
     )
 
 
-def test_persons_are_ordered_by_their_half_of_the_court_and_others_dropped():
+def test_everybody_is_found_with_exact_paths_the_most_often_seen_first():
     time_s, people = walkers(
-        ([2, 10], [4, 11]), ([4, 2], [1, 4]), ([-4.5, 6.7], [-4.4, 6.8]), seconds=5
+        ([2, 10], [4, 11]), ([4, 2], [1, 4]), ([-3.5, 6.7], [-3.4, 6.8]), seconds=5
     )
     rng = np.random.default_rng(5)
     cameras = cameras_around(3, rng, target=(3.05, 6.7, 1.0))
     xy, truth = stick_figures.seen(cameras, people, rng)
+    for view, who in zip(xy, truth, strict=True):
+        gone = (who == 2) & (time_s > 3)
+        view[gone], who[gone] = np.nan, -1
     found = associate(cameras, xy, time_s, court=COURT)
-    for person, true in enumerate((1, 0)):
-        own = [
-            (who[index[person], np.arange(len(time_s))] == true)[index[person] >= 0].mean()
-            for index, who in zip(found.index, truth, strict=True)
-        ]
-        assert min(own) > 0.99
-        middle = people[true][:, stick_figures.TRUNK].mean(axis=1)
-        assert np.median(np.linalg.norm(found.path[person] - middle, axis=1)) < 0.05
-    assert (found.placed > 0.9).all()
+    assert (found.placed[:3] > [0.9, 0.9, 0.4]).all()
+    assert (np.diff(found.placed) <= 0).all()
+    assert stick_figures.right(found.index, truth, [0, 1, 2]) > 0.97
+    middle = people[:, ::3, stick_figures.TRUNK].mean(axis=2)
+    for person in range(3):
+        off = [np.nanmedian(np.linalg.norm(path - middle[person], axis=1)) for path in found.path]
+        assert min(off) < 0.05
+    assert found.line().startswith("3 people found, placed from two views or more in ")
 
 
-def test_without_a_net_the_first_seen_come_first_by_x():
-    time_s, people = walkers(([2, 1], [2, -1]), ([-1, -1], [-1, 1]), seconds=3)
-    rng = np.random.default_rng(6)
-    cameras = cameras_around(3, rng)
+def test_who_is_far_from_the_court_is_left_out():
+    time_s, people = walkers(([2, 10], [4, 11]), ([-9.5, 6.7], [-9.4, 6.8]), seconds=3)
+    rng = np.random.default_rng(5)
+    cameras = cameras_around(3, rng, target=(0, 6.7, 1.0))
     xy, _ = stick_figures.seen(cameras, people, rng)
-    found = associate(cameras, xy, time_s)
-    assert found.path[0, 0, 0] == pytest.approx(-1, abs=0.5)
-    assert found.path[1, 0, 0] == pytest.approx(2, abs=0.5)
+    assert (associate(cameras, xy, time_s, court=COURT).placed > 0.5).sum() == 1
+    assert (associate(cameras, xy, time_s).placed > 0.5).sum() == 2
+
+
+def hall(rng, seconds=8):
+    """Return three people, of whom two cross and one stands still, and two bystanders."""
+    while True:
+        time_s, two = crossing(rng, seconds)
+        sway = 0.03 * np.stack([np.sin(0.5 * time_s), np.cos(0.4 * time_s)], axis=1)
+        others = [
+            stick_figures.body(rng.uniform(-2, 2, 2) + sway, time_s, 1.02, 0.1),
+            stick_figures.body(np.add([5.0, rng.uniform(-2, 2)], sway), time_s, 0.97, 0.1),
+            stick_figures.body(stick_figures.path(rng, time_s, ([-5, -3], [-5, 3])), time_s, 0.95),
+        ]
+        people = np.concatenate([two, others])
+        place = people.mean(axis=2)[..., :2]
+        pairs = itertools.combinations(range(5), 2)
+        # Bodies do not go through one another.
+        if min(np.linalg.norm(place[a] - place[b], axis=1).min() for a, b in pairs) > 0.5:
+            return time_s, people
+
+
+@pytest.mark.parametrize(
+    ("noise_px", "dropout", "swaps"), [(0.5, 0.0, 0.0), (4.0, 0.03, 1.0)], ids=["exact", "noisy"]
+)
+def test_three_people_and_two_bystanders_keep_their_identities(noise_px, dropout, swaps):
+    shares = []
+    for seed in range(1000, 1006):
+        rng = np.random.default_rng(seed)
+        time_s, people = hall(rng)
+        cameras = cameras_around(4, rng)
+        faults = {"noise_px": noise_px, "dropout": dropout, "swaps": swaps}
+        xy, truth = stick_figures.seen(cameras, people, rng, **faults)
+        found = associate(cameras, xy, time_s)
+        assert (found.placed >= association.COUNTS).sum() == 5
+        shares.append(stick_figures.right([i[:5] for i in found.index], truth, range(5)))
+    assert np.mean(shares) >= 0.99
+    assert min(shares) >= 0.98
+
+
+def test_a_camera_that_shows_another_person_in_its_only_row_is_left_out():
+    time_s, people = walkers(([2, 1], [2, -1]), ([-1, -1], [-1, 1]), seconds=3)
+    rng = np.random.default_rng(8)
+    cameras = cameras_around(4, rng)
+    xy, truth = stick_figures.seen(cameras, people, rng)
+    rows = [1 if c == 3 else 0 for c in range(4)]  # the last camera follows the bystander
+    one = []
+    for view, who, wanted in zip(xy, truth, rows, strict=True):
+        row = np.where((who == wanted).any(axis=0), np.argmax(who == wanted, axis=0), 0)
+        keep = (who == wanted).any(axis=0)[:, None, None]
+        one.append(np.where(keep, view[row, np.arange(len(time_s))], np.nan)[None])
+    found = associate(cameras, one, time_s)
+    assert found.placed[0] > 0.95
+    assert [(index[0] >= 0).mean() > 0.9 for index in found.index] == [True, True, True, False]
 
 
 def test_a_person_who_leaves_comes_back_as_the_same():
@@ -126,18 +184,9 @@ def test_a_person_who_leaves_comes_back_as_the_same():
         view[gone], who[gone] = np.nan, -1
     found = associate(cameras, xy, time_s)
     assert stick_figures.right(found.index, truth, [0, 1]) >= 0.99
-
-
-def test_a_missing_person_is_reported_and_has_no_rows():
-    time_s, people = walkers(([2, 1], [2, -1]), seconds=3)
-    rng = np.random.default_rng(8)
-    cameras = cameras_around(3, rng)
-    xy, truth = stick_figures.seen(cameras, people, rng)
-    found = associate(cameras, xy, time_s)
-    assert found.placed[1] == 0
-    assert all((index[1] == -1).all() for index in found.index)
-    assert stick_figures.right([index[:1] for index in found.index], truth, [0]) > 0.99
-    assert "p2 not found" in found.line(["p1", "p2"])
+    # Both were away when they could have been exchanged: this is said, with a probability.
+    about = found.doubts[found.doubts[:, 0] < 2]
+    assert len(about) and (about[:, 4] < 1).all()
 
 
 def test_views_that_never_meet_are_refused_in_one_line():
@@ -149,10 +198,15 @@ def test_views_that_never_meet_are_refused_in_one_line():
         associate(cameras, [xy[0], xy[1] + [0, 400]], time_s)
 
 
-def test_one_tracklet_each_is_one_person_without_any_camera():
-    xy = [np.zeros((1, 10, 12, 2)), np.zeros((1, 10, 12, 2))]
-    found = associate([], xy, np.arange(10) / 30, count=1)
-    assert [index.tolist() for index in found.index] == [[[0] * 10]] * 2
+def test_single_rows_that_never_meet_are_one_person_who_is_never_placed():
+    time_s, people = walkers(([2, 1], [2, -1]), seconds=1)
+    rng = np.random.default_rng(9)
+    cameras = cameras_around(2, rng)
+    xy, _ = stick_figures.seen(cameras, people, rng, dropout=0)
+    found = associate(cameras, [xy[0], xy[1] + [0, 400]], time_s)
+    assert found.placed.tolist() == [0]
+    assert [index.tolist() for index in found.index] == [[[0] * len(time_s)]] * 2
+    assert np.isnan(found.path).all()
 
 
 def test_rows_go_over_to_frames_of_another_rate():

@@ -11,6 +11,7 @@ from courtside.records.devices import clocks as sync
 from courtside.records.keypoints import keypoints, people
 from courtside.study.errors import InputError
 from fixtures.cameras import scene
+from fixtures.people import found as people_found
 from fixtures.people import walker
 
 CAMERAS = scene.ring(3)
@@ -29,7 +30,7 @@ def written(folder, offset_s=0.25):
     by_camera = {camera.name: index for camera in CAMERAS}
     people.write(
         folder / "people.npz",
-        people.People(record.model, record.person_id, np.ones(2), by_camera),
+        people_found.people(by_camera, record.person_id, model=record.model),
     )
     clocks = {c.name: sync.Clock(offset_s=offset_s * (c.name == "c1")) for c in CAMERAS}
     sync.write(folder / "sync.json", "c0", clocks)

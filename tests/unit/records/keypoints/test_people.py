@@ -6,6 +6,7 @@ import pytest
 from courtside.records.keypoints import missing_reason, people
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError
+from fixtures.people import found as found_people
 
 
 def view(rows=3, frames=5, joints=2):
@@ -25,7 +26,8 @@ def view(rows=3, frames=5, joints=2):
 
 def table():
     index = {"left": np.array([[0, 0, 2, 2, -1], [1, -1, 0, 0, 0]]), "right": np.zeros((2, 3), int)}
-    return people.People("m", np.array(["p1", "p2"]), np.array([0.9, 0.5]), index)
+    doubts = np.array([[0.0, 0.2, 0.6, 1, 0.8]])
+    return found_people.people(index, placed=np.array([0.9, 0.5]), doubts=doubts)
 
 
 def test_cameras_with_different_numbers_of_frames_come_back(tmp_path):
@@ -35,6 +37,9 @@ def test_cameras_with_different_numbers_of_frames_come_back(tmp_path):
     assert found.person_id.tolist() == ["p1", "p2"]
     assert found.placed.tolist() == [0.9, 0.5]
     assert list(found.index) == ["left", "right"]
+    for key in people.PLAIN:
+        np.testing.assert_array_equal(getattr(found, key), getattr(table(), key))
+    assert found.shares()["left"].tolist() == [0.8, 0.8]
     for camera, index in table().index.items():
         np.testing.assert_array_equal(found.index[camera], index)
 

@@ -8,88 +8,96 @@ from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera
-from courtside.reconstruction.association import candidates, linking
-from courtside.reconstruction.association.rows import describe
+from courtside.reconstruction.association import candidates, identity, lengths, linking
+from courtside.reconstruction.association.rows import Rows, describe
 from courtside.study.errors import InputError
 
 # ASSUME: this block has no source but the development takes (CONTRIBUTING.md).
 # Spacing of the instants at which rows are triangulated: costs grow with their number.
 EVERY_S = 0.1
-# Persons tracked beyond those wanted, so that a bystander does not take a subject's place.
+# Persons followed beyond the rows that one camera shows at once: they come and go, and cameras see
+# different ones.
 EXTRA = 2
-FAR_FROM_COURT_M = 2.0  # a person further beyond the lines is a bystander
+MOST_PEOPLE = 10  # followed at once; each costs time in every history
+FAR_FROM_COURT_M = 6.0  # places further beyond the lines are not triangulated well
 ALONE = 4.0  # bonus (log-likelihood) of a row that alone followed the person in a frame
-STILL_MS, STILL_WEIGHT = 0.15, 0.3  # the weight of a person whose mean speed (m/s) is below this
-
-Place = tuple[NDArray, NDArray]  # instants (N,) s and places (N, 3) m of a person
+COUNTS = 0.1  # share of the take from which somebody counts as a person in it
 
 
 @dataclass(frozen=True)
 class Association:
-    """Which row of which camera shows which person."""
+    """Which row of which camera shows which person: everybody found, most often seen first."""
 
     # Of each camera (K, T): row of each person in each frame; -1 where it does not show the person
     index: list[NDArray]
-    # (K, T, 3): centre of the body, metres, accurate to 0.1 s; NaN for a person who was not found
+    time_s: NDArray  # (N,): instants of the reference clock, 0.1 s apart
+    # (K, N, 3): centre of the body, metres; NaN where fewer than two views agree on it
     path: NDArray
-    # (K,): share of the instants at which two or more views triangulated the person
-    placed: NDArray
-    # Number of other people who were followed for at least a tenth of the take and left out
-    dropped: int
+    placed: NDArray  # (K,): share of the instants at which two or more views agree on the person
+    doubts: NDArray  # (D, 5) as in `People`
 
-    def line(self, persons: Iterable[str]) -> str:
-        """Return a log line: how often each person was found."""
-        found = zip(persons, self.placed, strict=True)
-        parts = [
-            f"{name} in {s:.0%} of the take" if s > 0 else f"{name} not found" for name, s in found
-        ]
-        others = f"; {self.dropped} other people left out" if self.dropped else ""
-        return f"placed from two views or more: {', '.join(parts)}{others}"
+    def line(self) -> str:
+        """Return a log line: how many people were found, and how often."""
+        shares = ", ".join(f"{share:.0%}" for share in self.placed[self.placed >= COUNTS])
+        few = int((self.placed < COUNTS).sum())
+        more = f"; {few} more in less than {COUNTS:.0%}" if few else ""
+        n = int((self.placed >= COUNTS).sum())
+        return f"{n} people found, placed from two views or more in {shares or 0} of the take{more}"
 
 
 def associate(
     cameras: Sequence[Camera],
     xy: Sequence[NDArray],
     time_s: NDArray,
-    n_persons: int,
     *,
     trunk: Sequence[int],
     mirror: Sequence[int] | None = None,
     court: Court | None = None,
+    bones: Sequence[tuple[int, int]] = (),
 ) -> Association:
-    """Find out which tracklets are one person, over all views and the whole take.
+    """Find everybody whom two cameras see, and which tracklets show them, over the whole take.
 
     `xy` has the tracklet rows (P, T, J, 2) of each camera at common, uniform times `time_s` (T,),
     distorted px, NaN where missing; P may differ. `trunk` are the indices of shoulders and hips.
     With `mirror` (J,), the index of the same joint of the other side, views with confused sides
-    still agree. People other than the `n_persons` subjects are left out, and those far from the
-    `court`; if this has a net, changing halves is taken as rare.
-
-    The persons are in a fixed order: with a net by their median y (the half at y = 0 first), else
-    by the instant of their first place, and by x within one second. An `InputError` if no person
-    can be placed.
+    still agree. If the `court` has a net, changing halves is taken as rare; people far from it are
+    left out. `bones`, pairs of joints of constant distance, tell two people of different size apart
+    in `doubts`.
 
     At instants 0.1 s apart, rows of several views that meet in space become candidates
     (`candidates`). They are linked over time by a search that keeps several histories (`linking`);
     then each frame of a row gets the person whose path it follows. A row may change its person,
     because a tracker may swap two people where they overlap.
+
+    An `InputError` if nobody can be placed. Only where each camera has one row, it is returned as
+    one person who is never placed: a calibration can be checked with it.
     """
-    if n_persons == 1 and all(len(view) == 1 for view in xy):
-        return _alone(xy, len(time_s))
+    alone = all(len(view) == 1 for view in xy)
     xy = [v if len(v) else np.full((1, *v.shape[1:]), np.nan) for v in xy]
     rows = [describe(view, trunk) for view in xy]
     instants, found = _candidates(cameras, xy, rows, time_s, mirror)
     found = _near_court(found, court)
     net = court.net["y_m"] if court is not None and court.net else None
-    piece = np.stack(
-        [
-            np.where(found.row[:, c] >= 0, r.piece[found.row[:, c], instants[found.instant]], -1)
-            for c, r in enumerate(rows)
-        ],
-        axis=1,
+    piece = _pieces(rows, found, instants)
+    chosen = linking.link(found, piece, time_s[instants], _slots(rows), net)
+    ray = (chosen >= 0) & found.is_ray[chosen] if len(found.instant) else chosen >= 0
+    seen_alone, chosen = np.where(ray, chosen, -1), np.where(ray, -1, chosen)
+    order = np.argsort(-(chosen >= 0).sum(axis=1), kind="stable")
+    order = order[(chosen[order] >= 0).any(axis=1)]
+    if not len(order):
+        return _unplaced(cameras, xy, time_s, instants, alone)
+    people = identity.Followed(chosen[order], seen_alone[order], found, piece)
+    index = _index(cameras, rows, time_s, instants, people)
+    path = people.path()
+    return Association(
+        index=index,
+        time_s=time_s[instants],
+        path=path,
+        placed=np.isfinite(path[..., 0]).mean(axis=1),
+        doubts=identity.doubts(
+            people, time_s[instants], lengths.of_people(cameras, xy, instants, people, bones)
+        ),
     )
-    chosen = linking.link(found, piece, time_s[instants], n_persons + EXTRA, net)
-    return _name_frames(cameras, rows, time_s, instants, found, chosen, n_persons, net)
 
 
 def on_frames(index: NDArray, time_s: NDArray, frame_s: NDArray) -> NDArray:
@@ -108,14 +116,40 @@ def on_frames(index: NDArray, time_s: NDArray, frame_s: NDArray) -> NDArray:
     return np.where((own < 0) & free, other, own)
 
 
-def _alone(xy: Sequence[NDArray], n_frames: int) -> Association:
-    seen = [np.isfinite(view[..., 0]).any(axis=-1) for view in xy]
+def _slots(rows: Sequence[Rows]) -> int:
+    """Return how many people may be in a take: as many as a camera shows at once, and some more."""
+    at_once = max(int(r.present.sum(axis=0).max(initial=0)) for r in rows)
+    return min(max(at_once, 1) + EXTRA, MOST_PEOPLE)
+
+
+def _unplaced(cameras, xy, time_s, instants, alone: bool) -> Association:
+    """Return one person in the single rows of all cameras, whom nothing confirms."""
+    if not alone:
+        raise InputError(nowhere(camera.name for camera in cameras))
     return Association(
-        index=[np.zeros((1, n_frames), int) for _ in xy],
-        path=np.full((1, n_frames, 3), np.nan),
-        placed=np.array([(np.sum(seen, axis=0) >= 2).mean()]),
-        dropped=0,
+        index=[np.zeros((1, len(time_s)), int) for _ in xy],
+        time_s=time_s[instants],
+        path=np.full((1, len(instants), 3), np.nan),
+        placed=np.zeros(1),
+        doubts=np.zeros((0, 5)),
     )
+
+
+def nowhere(cameras: Iterable[str]) -> str:
+    """Return the line of a take in which nobody was placed."""
+    return (
+        f"{', '.join(cameras)}: expected people whom two views see at one place, found none; check "
+        "the calibration, the synchronisation and the 2D keypoints"
+    )
+
+
+def _pieces(rows: Sequence[Rows], found: candidates.Candidates, instants: NDArray) -> NDArray:
+    """Return the uncut piece (M, C) of each candidate's row in each camera; -1 without one."""
+    at = instants[found.instant]
+    each = [
+        np.where(found.row[:, c] >= 0, r.piece[found.row[:, c], at], -1) for c, r in enumerate(rows)
+    ]
+    return np.stack(each, axis=1)
 
 
 def _candidates(cameras, xy, rows, time_s, mirror) -> tuple[NDArray, candidates.Candidates]:
@@ -142,61 +176,16 @@ def _near_court(found: candidates.Candidates, court: Court | None) -> candidates
     return found.subset(near | found.is_ray)
 
 
-def _name_frames(cameras, rows, time_s, instants, found, chosen, n_persons, net_y_m) -> Association:
-    """Choose the subjects among the persons followed, and name every frame."""
-    ray = (chosen >= 0) & found.is_ray[chosen] if len(found.instant) else chosen >= 0
-    found_alone, chosen = np.where(ray, chosen, -1), np.where(ray, -1, chosen)
-    known = (chosen >= 0).any(axis=1)
-    found_alone, chosen = found_alone[known], chosen[known]
-    if not len(chosen):
-        raise InputError(
-            f"{', '.join(camera.name for camera in cameras)}: expected people whom two views "
-            "see at one place, found none; check the calibration, the synchronisation and the 2D "
-            "keypoints"
-        )
-    places = [(time_s[instants[c >= 0]], found.xyz[c[c >= 0]]) for c in chosen]
+def _index(cameras, rows, time_s, instants, people) -> list[NDArray]:
+    """Return the row (K, T) of each person in each frame of each camera."""
+    places = [(time_s[instants[c >= 0]], people.candidates.xyz[c[c >= 0]]) for c in people.chosen]
     along = [linking.along(time_s, *place) for place in places]
     path, sigma_m = (np.stack(part) for part in zip(*along, strict=True))
-    subjects = _subjects(places, n_persons)
-    subjects = sorted(subjects, key=lambda s: _order(places[s], places, net_y_m))
-    seen_alone = [(f[f >= 0], instants[f >= 0]) for f in found_alone]
-    index = _index(
-        cameras, rows, path, sigma_m, subjects, [(found.row[f], at) for f, at in seen_alone]
-    )
-    missing = n_persons - len(subjects)
-    placed = (chosen[subjects] >= 0).mean(axis=1)
-    others = [c for at, c in enumerate(chosen) if at not in subjects]
-    return Association(
-        index=[np.concatenate([i, np.full((missing, len(time_s)), -1)]) for i in index],
-        path=np.concatenate([path[subjects], np.full((missing, *path.shape[1:]), np.nan)]),
-        placed=np.concatenate([placed, np.zeros(missing)]),
-        dropped=sum((c >= 0).mean() >= 0.1 for c in others),
-    )
-
-
-def _subjects(places: Sequence[Place], n_persons: int) -> list[int]:
-    """Return the persons who were seen most; those who stand still count for less."""
-    score = []
-    for at_s, xyz in places:
-        # Steps over half a second, with less noise.
-        step_m = np.linalg.norm(np.diff(xyz[::5, :2], axis=0), axis=1)
-        speed = step_m.sum() / max(at_s[-1] - at_s[0], EVERY_S)
-        score.append(len(at_s) * (STILL_WEIGHT if speed < STILL_MS else 1.0))
-    return np.argsort(-np.array(score), kind="stable")[:n_persons].tolist()
-
-
-def _order(place: Place, places: Sequence[Place], net_y_m: float | None) -> tuple[float, float]:
-    at_s, xyz = place
-    if net_y_m is not None:
-        return (float(np.median(xyz[:, 1])), 0.0)
-    start_s = min(first[0] for first, _ in places)
-    return (float((at_s[0] - start_s) // 1.0), float(xyz[0, 0]))
-
-
-def _index(cameras, rows, path, sigma_m, subjects, seen_alone) -> list[NDArray]:
-    wanted = np.isin(np.arange(len(path)), subjects)
+    wanted = (people.chosen >= 0).mean(axis=1) >= COUNTS
+    wanted |= wanted.size == 1
     cost = [linking.costs(k, r, path, sigma_m, wanted) for k, r in zip(cameras, rows, strict=True)]
-    for person, (row, frame) in enumerate(seen_alone):
+    for person, found in enumerate(people.seen_alone):
+        row, frame = people.candidates.row[found[found >= 0]], instants[found >= 0]
         for c, view in enumerate(cost):
             here = row[:, c] >= 0
             view[row[here, c], frame[here], person] -= ALONE
@@ -204,4 +193,4 @@ def _index(cameras, rows, path, sigma_m, subjects, seen_alone) -> list[NDArray]:
     owner = linking.follow(np.concatenate(cost), cut, present)
     ends = np.cumsum([len(c) for c in cost])[:-1]
     parts = zip(np.split(owner, ends), cost, strict=True)
-    return [linking.one_row_each(own, c)[subjects] for own, c in parts]
+    return [linking.one_row_each(own, c) for own, c in parts]

@@ -10,29 +10,51 @@ from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D
 from courtside.study.errors import InputError, StrPath
 
-FORM = "courtside people 1"
+FORM = "courtside people 2"
 # Cameras differ in their numbers of frames: the tables are concatenated along the frames.
 SPEC = {
     "model": ("str", ()),
     "person_id": ("str", ("P",)),
     "placed": ("float", ("P",)),
+    "confidence": ("float", ("P",)),
+    "doubts": ("float", ("D", "5")),
+    "time_s": ("float", ("T",)),
+    "path": ("float", ("P", "T", "3")),
     "cameras": ("str", ("C",)),
     "n_frames": ("int", ("C",)),
     "index": ("int", ("P", "N")),
 }
 
+PLAIN = ("placed", "time_s", "path", "confidence", "doubts")  # fields stored as they are
+
 
 @dataclass(frozen=True)
 class People:
-    """The persons of one take in the tracklets of its cameras."""
+    """The persons of one take in the tracklets of its cameras.
+
+    Those found are called person-1, person-2, ..., the most often seen first; those named have the
+    session's names.
+    """
 
     model: str  # network that saw the tracklets
-    person_id: NDArray  # (P,) str: persons as the session names them
+    person_id: NDArray  # (P,) str
     # (P,) float: share of the take in which two or more views agreed on the person's position
     placed: NDArray
-    # (P, T) int: by camera: which tracklet row shows the person in each of its T frames, -1 for
+    # (P, F) int: by camera: which tracklet row shows the person in each of its F frames, -1 for
     # none
     index: dict[str, NDArray]
+    time_s: NDArray  # (T,) float: instants of the reference clock
+    path: NDArray  # (P, T, 3) float: centre of the body, metres; NaN where not placed
+    # (P,) float: probability that the person is one person throughout
+    confidence: NDArray
+    # (D, 5) float: where a person could have become another one: row of the person; start and stop,
+    # s of the reference clock; row of the other person, -1 for nobody known; probability that it is
+    # still the same person
+    doubts: NDArray
+
+    def shares(self) -> dict[str, NDArray]:
+        """Return by camera the share of its frames that show each person, (P,)."""
+        return {name: (rows >= 0).mean(axis=1) for name, rows in self.index.items()}
 
     def assigned(self, view: Keypoints2D) -> Keypoints2D:
         """Return keypoints by person instead of by tracklet; see the function of this name."""
@@ -49,7 +71,7 @@ def write(path: StrPath, people: People) -> None:
     arrays: dict[str, ArrayLike] = {
         "model": people.model,
         "person_id": people.person_id,
-        "placed": people.placed,
+        **{key: getattr(people, key) for key in PLAIN},
         "cameras": np.array(list(people.index), dtype=str),
         "n_frames": np.array([table.shape[1] for table in people.index.values()], dtype=int),
         "index": np.concatenate(list(people.index.values()), axis=1),
@@ -67,7 +89,8 @@ def read(path: StrPath) -> People:
         )
     tables = np.split(found["index"], np.cumsum(found["n_frames"])[:-1], axis=1)
     index = dict(zip(map(str, found["cameras"]), tables, strict=True))
-    return People(str(found["model"]), found["person_id"], found["placed"], index)
+    plain = {key: found[key] for key in PLAIN}
+    return People(str(found["model"]), found["person_id"], index=index, **plain)
 
 
 def assigned(view: Keypoints2D, index: NDArray) -> Keypoints2D:

@@ -1,0 +1,90 @@
+"""Where people could have been exchanged, and how sure it is that they were not."""
+
+import numpy as np
+import pytest
+
+from courtside.reconstruction.association import identity
+from courtside.reconstruction.association.candidates import Candidates
+
+TIMES = np.arange(60) * 0.1
+
+
+def followed(paths, pieces, missing=()):
+    """Return people on paths (K, N, 2) whose rows in one camera are of the pieces (K, N)."""
+    count, n = paths.shape[:2]
+    at = np.arange(count * n).reshape(count, n)
+    xyz = np.concatenate([paths, np.ones((count, n, 1))], axis=2).reshape(-1, 3)
+    made = Candidates(
+        instant=np.tile(np.arange(n), count),
+        xyz=xyz,
+        direction=np.zeros_like(xyz),
+        row=np.zeros((len(xyz), 1), int),
+        sigma_m=np.full(len(xyz), 0.03),
+        view_cost=np.zeros((len(xyz), 1)),
+    )
+    chosen = at.copy()
+    for person, instants in missing:
+        chosen[person, instants] = -1
+    alone = np.full((count, n), -1)
+    return identity.Followed(chosen, alone, made, np.asarray(pieces).reshape(-1, 1))
+
+
+def lines(gap_m):
+    """Return two people who pass each other."""
+    x = np.linspace(-3, 3, 60)
+    return np.stack([np.stack([x, 0 * x], axis=1), np.stack([-x, 0 * x + gap_m], axis=1)])
+
+
+CUT = np.where(np.arange(60) < 30, 0, 1)
+WHOLE = np.zeros(60, int)
+
+
+def sizes(first, second, bones=4):
+    """Return lengths (2, N, B) of two people, before and after the middle of the take."""
+    found = np.empty((2, 60, bones))
+    for person, size in enumerate((first, second)):
+        found[person] = np.where(np.arange(60) < 30, size[0], size[1])[:, None]
+    return found
+
+
+def test_who_meets_nobody_has_no_doubts():
+    people = followed(lines(3.0), [CUT, CUT + 5])
+    assert identity.doubts(people, TIMES, sizes((1, 1), (1, 1))).shape == (0, 5)
+    assert identity.confidence(np.zeros((0, 5)), 2).tolist() == [1, 1]
+
+
+def test_a_tracklet_that_goes_through_a_meeting_makes_it_sure():
+    people = followed(lines(0.3), [WHOLE, CUT + 5])
+    found = identity.doubts(people, TIMES, sizes((1, 1), (1, 1)))
+    assert found[:, 0].tolist() == [0, 1]
+    assert found[:, 3].tolist() == [1, 0]
+    assert found[0, 4] == identity.CARRIED > found[1, 4]
+    assert found[1, 4] == pytest.approx(identity.MOTION)  # equal sizes say nothing
+    start_s, stop_s = found[0, 1:3]
+    assert start_s < TIMES[29] < stop_s and stop_s - start_s < 1.0
+
+
+def test_sizes_say_whether_two_were_exchanged():
+    people = followed(lines(0.3), [CUT, CUT + 5])
+    kept = identity.doubts(people, TIMES, sizes((0.4, 0.4), (0.36, 0.36)))
+    exchanged = identity.doubts(people, TIMES, sizes((0.4, 0.36), (0.36, 0.4)))
+    assert kept[:, 4].min() > identity.MOTION > 0.7 > exchanged[:, 4].max()
+    unknown = identity.doubts(people, TIMES, np.full((2, 60, 4), np.nan))
+    assert unknown[:, 4].tolist() == pytest.approx([identity.MOTION] * 2)
+
+
+def test_a_gap_is_a_doubt_with_who_could_be_there():
+    missing = [(0, np.arange(20, 32))]
+    found = identity.doubts(
+        followed(lines(2.0), [CUT, CUT + 5], missing), TIMES, sizes((1, 1), (1, 1))
+    )
+    assert found[:, :4].tolist() == [[0, pytest.approx(1.9), pytest.approx(3.2), 1]]
+    far = identity.doubts(
+        followed(lines(40.0), [CUT, CUT + 5], missing), TIMES, sizes((1, 1), (1, 1))
+    )
+    assert far[0, 3] == -1
+
+
+def test_confidence_is_the_product_over_doubts():
+    rows = np.array([[0, 1, 2, 1, 0.9], [0, 3, 4, 1, 0.8], [1, 1, 2, 0, 0.5]])
+    assert identity.confidence(rows, 3) == pytest.approx([0.72, 0.5, 1.0])
