@@ -11,12 +11,12 @@ from courtside.calibration.records.support import Support
 from courtside.pages.viewer import layers
 from courtside.records.cameras import frame_table, frame_times, shake_table
 from courtside.records.devices import device_motion
-from courtside.records.keypoints import body_motion, keypoints, people
+from courtside.records.keypoints import body_motion, keypoints, people, sightings
 from courtside.records.truth import session_truth as truth
 from courtside.records.truth import take_truth
 from courtside.sfm import grid
 from fixtures.cameras import networks_made, scene
-from fixtures.people import walker
+from fixtures.people import found, walker
 from fixtures.people.bodies_made import body
 from fuzz.format import Format, require
 
@@ -48,8 +48,7 @@ def read_layer(path):
 def persons(folder):
     """Write who is which tracklet."""
     index = {"left": np.array([[0, 0, 2, 2, -1], [1, -1, 0, 0, 0]]), "right": np.zeros((2, 3), int)}
-    found = people.People("m", np.array(["p1", "p2"]), np.array([0.9, 0.5]), index)
-    people.write(folder / "people.npz", found)
+    people.write(folder / "people.npz", found.people(index))
 
 
 def bodies(folder):
@@ -137,6 +136,19 @@ def shake(folder):
     shake_table.write(folder / "shake.csv", pd.DataFrame(rows))
 
 
+def named(folder):
+    """Write names of people as their page saves them."""
+    head = ",".join([*sightings.COLUMNS, *sightings.BOUNDS])
+    rows = ["walk,p1,left,0.5,100,200,,", "walk,p2,right,1.5,30.5,20,1,2", "run,p1,left,1,1,1,,"]
+    (folder / "people.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+
+
+def read_named(path):
+    """Read names of one take, and the rows of the others as their page does."""
+    found = sightings.read(path, "walk", ["walk", "run"], ["p1", "p2"], ["left", "right"])
+    return found, sightings.of_other_takes(path, "walk")
+
+
 RECORDS = {
     "points-npz": (points, keypoints.read_3d),
     "views-npz": (views, keypoints.read_2d),
@@ -150,6 +162,7 @@ RECORDS = {
 }
 FORMATS = [Format(name, 350, make, read) for name, (make, read) in RECORDS.items()]
 FORMATS += [
+    Format("people-csv", 600, named, read_named),
     Format("frames-csv", 600, frames, read_frames),
     Format("frame-times-csv", 500, device_times, read_times),
     Format("shake-csv", 500, shake, shake_table.read),

@@ -211,3 +211,13 @@ def test_a_session_says_for_all_takes_whether_cameras_share_a_clock(whole, own, 
     found = session_files.session("s", "s.yaml", content, {})
     assert found.takes["one"].synchronised is expected
     assert (found.cameras["a"].scale, found.cameras["b"].scale) == (0.5, 1.0)
+
+
+def test_sightings_may_be_one_or_several_and_names_stand_in_a_file():
+    seen = {"camera": "a", "time_s": 1.0, "at_px": [1, 2]}
+    content = CONTENT | {"subjects": {"p1": {"seen": seen}, "p2": {"seen": [seen, seen]}}}
+    content |= {"people": "config/people.csv"}
+    found = session_files.session("s", "up/sessions/s.yaml", content, {"models": ["m"]})
+    assert found.subjects["p1"].seen == (seen,)
+    assert found.subjects["p2"].seen == (seen, seen)
+    assert found.people == "up/people.csv"

@@ -4,5 +4,9 @@ scale: `check`: whether people have the size of people
 rows: `Rows`, `describe`: one camera's tracklets: body centres, sizes, cuts
 candidates: `Candidates`, `find`, `rays`: places that rows of several views agree on; rays of others
 linking: `link`, `costs`, `follow`: candidates over time to persons, frames of rows to persons
-associate: `associate`: the whole method; `on_frames`: rows on a camera's own frames
+identity: `doubts`, `confidence`: where somebody could have been exchanged, and how likely
+lengths: `of_people`, `bones`: lengths of bones, by which people of different size differ
+associate: `associate`: everybody found; `on_frames`: rows on a camera's own frames
+marks: `locate`, `timelines`: sightings of subjects, found again among the persons
+naming: `name`: the subjects among the persons found; `lines`, `others`: what the log says
 """

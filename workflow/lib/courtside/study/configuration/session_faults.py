@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from courtside.study.configuration import consent, take_faults
+from courtside.study.configuration import consent, sighting_faults, take_faults
 from courtside.study.configuration.session_files import is_there, of_configuration
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
@@ -33,6 +33,7 @@ def find(
     yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content)
     yield from _override_faults(file, content)
     yield from consent.faults(file, content)
+    yield from sighting_faults.find(file, content)
     for key, views in content.get("views", {}).items():
         yield from take_faults.unknown(f"{file}: views.{key}", views, cameras)
     players = content.get("halfbody", {}).values()

@@ -57,6 +57,7 @@ def session(
         for key, value in content.get("takes", {}).items()
     }
     withheld = consent.withheld(takes, subjects)
+    config = Path(file).parent.parent
     cameras = {key: _camera(value or {}) for key, value in content["cameras"].items()}
     for key, path in recordings.get("static", {}).items():
         cameras[key] = replace(cameras[key], static=path)
@@ -72,7 +73,8 @@ def session(
         calibration_file=given.get("file"),
         calibration_override={key: given[key] for key in OVERRIDDEN if key in given},
         calibration_unit=given.get("unit"),
-        static_points=of_configuration(content.get("static_points"), Path(file).parent.parent),
+        static_points=of_configuration(content.get("static_points"), config),
+        people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
         unclicked=unclicked,
@@ -138,9 +140,17 @@ def _subjects(content: Content) -> dict[str, Subject]:
     stated = {key: value or {} for key, value in content.get("subjects", {}).items()}
     virtual = "virtual" in content
     return {
-        key: Subject(**{**value, "consent": consent.stated(value, virtual)})
+        key: Subject(
+            **{**value, "consent": consent.stated(value, virtual), "seen": sightings(value)}
+        )
         for key, value in stated.items()
     }
+
+
+def sightings(subject: Content) -> tuple[Content, ...]:
+    """Return the entries of a subject's `seen`, which may be one or a list."""
+    seen = subject.get("seen", [])
+    return tuple(seen if isinstance(seen, list) else [seen])
 
 
 def _take(

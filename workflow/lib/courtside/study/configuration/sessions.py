@@ -20,6 +20,8 @@ class Subject:
     sex: str | None = None
     hand: str | None = None
     consent: tuple[str, ...] = consent.UNSTATED
+    # Where the person was seen: `camera`, `time_s`, `at_px`, and `take` where there are several
+    seen: tuple[dict[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,7 @@ class Session:
     calibration_override: dict[str, Any] = field(default_factory=dict)
     calibration_unit: str | None = None  # of the lengths in that file, where it states none
     static_points: str | None = None  # points at rest, clicked in several cameras
+    people: str | None = None  # people.csv, in which persons are named
     # Takes that are not among `takes`, because persons in them have not agreed to be measured: who,
     # by take
     withheld: dict[str, tuple[str, ...]] = field(default_factory=dict)

@@ -1,0 +1,131 @@
+"""Sightings by pixel and time, and who is who over time by them."""
+
+import numpy as np
+import pytest
+
+from courtside.reconstruction.association import marks
+from courtside.reconstruction.association.marks import Mark
+from courtside.records.keypoints.sightings import Sighting
+from courtside.study.errors import InputError
+from fixtures.people import named_takes
+
+
+def located(take, camera="c0", time_s=1.0, xy=None, **bounds):
+    xy = named_takes.place_px(1) if xy is None else xy
+    sighting = Sighting("p1", camera, time_s, xy, "people.csv: line 2", **bounds)
+    return marks.locate(sighting, take.found, take.seen, ["p0", "p1"])
+
+
+def test_a_pixel_on_the_body_is_the_person_at_the_reference_time():
+    take = named_takes.take()
+    assert located(take) == Mark(1, 1, 1.0, None, None, "people.csv: line 2")
+    x, y = named_takes.place_px(1)
+    assert located(take, xy=(x + 10, y - 70)).person == 1  # above the shoulders
+    other = located(take, "c1", 1.5, named_takes.place_px(0, 1), from_s=1.0, to_s=2.0)
+    assert (other.person, other.time_s, other.from_s, other.to_s) == (0, 1.0, 0.5, 1.5)
+
+
+def test_a_person_who_was_missed_in_the_very_frame_is_found_beside_it():
+    take = named_takes.take()
+    take.seen[0].tracklets.xy[1, 9:12] = np.nan
+    take.found.index["c0"][1, 9:12] = -1
+    assert located(take).person == 1
+    take.seen[0].tracklets.xy[1, 5:16] = np.nan
+    with pytest.raises(InputError, match=r"found people at \(100, 138\); choose a pixel"):
+        located(take)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"camera": "c7"}, r"expected a camera of c0, c1, found 'c7'; correct it"),
+        ({"time_s": 9.0}, r"expected time_s from 0\.00 to 6\.00 s, .* found 9; correct it"),
+        ({"camera": "c1", "time_s": 0.2}, r"expected time_s from 0\.50 to 6\.50 s, .* found 0\.2"),
+        ({"xy": (900.0, 10.0)}, r"expected a pixel of c0's pictures of 800 x 400 px, found"),
+        ({"xy": (200.0, 20.0)}, r"expected a person at \(200, 20\) px of c0 at 1 s, found people"),
+    ],
+)
+def test_faults_are_one_line_with_where_it_was_stated(changed, words):
+    with pytest.raises(InputError, match=rf"^people\.csv: line 2: {words}") as fault:
+        located(named_takes.take(), **changed)
+    assert "\n" not in str(fault.value)
+
+
+def test_a_track_of_one_camera_alone_is_told():
+    take = named_takes.take()
+    take.found.index["c0"][1] = -1
+    with pytest.raises(InputError, match="whom another camera sees too, found one in this camera"):
+        located(take)
+
+
+def test_an_empty_picture_is_told():
+    take = named_takes.take()
+    take.seen[0].tracklets.xy[:] = np.nan
+    with pytest.raises(InputError, match="found nobody in this picture"):
+        located(take)
+
+
+def mark(subject, person, time_s, from_s=None, to_s=None):
+    return Mark(subject, person, time_s, from_s, to_s, f"line {time_s:g}")
+
+
+def crossing(gap_m=0.4):
+    """Return people whose tracks meet at 3 s."""
+    x = np.linspace(-3, 3, len(named_takes.TIMES))
+    paths = np.stack([np.stack([x, 0 * x], axis=1), np.stack([-x, 0 * x + gap_m], axis=1)])
+    return named_takes.take(paths=paths).found
+
+
+def changes(row):
+    """Return the values of a row and when they change."""
+    at = np.flatnonzero(np.diff(row))
+    return [int(row[0]), *(int(row[i + 1]) for i in at)], named_takes.TIMES[at].tolist()
+
+
+def test_one_mark_names_the_whole_track():
+    owner, used = marks.timelines(crossing(), [mark(0, 1, 2.0)], 2)
+    assert (owner[1] == 0).all() and (owner[0] == -1).all()
+    assert (used[0] == 1).all() and (used[1] == -1).all()
+
+
+def test_two_who_were_exchanged_are_put_right_where_they_met():
+    told = [mark(0, 0, 1.0), mark(1, 1, 1.0), mark(1, 0, 5.0), mark(0, 1, 5.0)]
+    owner, used = marks.timelines(crossing(), told, 2)
+    for rows in (owner, used):
+        for row, values in zip(rows, ([0, 1], [1, 0]), strict=True):
+            assert changes(row) == (values, [pytest.approx(3.0)])
+
+
+def test_pieces_of_one_person_are_joined():
+    found = named_takes.take(3, gone=[(0, slice(20, None)), (2, slice(0, 25))]).found
+    owner, used = marks.timelines(found, [mark(0, 0, 1.0), mark(0, 2, 5.0)], 1)
+    assert changes(used[0]) == ([0, 2], [pytest.approx(1.9)])
+    assert (owner[[0, 2]] == 0).all() and (owner[1] == -1).all()
+
+
+def test_stated_bounds_split_where_nothing_else_does():
+    told = [mark(0, 0, 1.0, to_s=2.0), mark(1, 0, 5.0, from_s=4.0)]
+    owner, used = marks.timelines(named_takes.take().found, told, 2)
+    assert changes(owner[0]) == ([0, -1, 1], [pytest.approx(2.0), pytest.approx(3.9)])
+    assert (used == 0).all()
+
+
+def test_a_gap_may_have_exchanged_somebody():
+    found = named_takes.take(gone=[(0, slice(20, 40))]).found
+    owner, _ = marks.timelines(found, [mark(0, 0, 1.0), mark(1, 0, 5.0)], 2)
+    assert changes(owner[0])[0] == [0, 1]
+    assert changes(owner[0])[1][0] == pytest.approx(2.9, abs=0.11)
+
+
+@pytest.mark.parametrize("times", [(1.0, 5.0), (3.0, 3.0)])
+def test_two_subjects_on_one_person_are_refused(times):
+    found = named_takes.take().found if times[0] != times[1] else crossing()
+    with pytest.raises(
+        InputError, match=r"expected another person than at line .*, found the same"
+    ):
+        marks.timelines(found, [mark(0, 0, times[0]), mark(1, 0, times[1])], 2)
+
+
+def test_one_subject_at_two_places_is_refused():
+    with pytest.raises(InputError, match=r"found the subject of line 2 at the same time 3\.0 m"):
+        marks.timelines(named_takes.take().found, [mark(0, 0, 2.0), mark(0, 1, 2.0)], 1)

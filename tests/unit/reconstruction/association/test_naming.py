@@ -1,0 +1,124 @@
+"""Subjects among the persons found: named, inferred where only one is left, never guessed."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from courtside.reconstruction.association import naming
+from courtside.records.keypoints.sightings import Sighting
+from courtside.study.errors import InputError
+from fixtures.people import named_takes
+
+WORDS = naming.Wording("hall/walk", "results/people.html", "config/sessions/hall.yaml")
+COURT = SimpleNamespace(size_m=np.array([6.1, 13.4]))
+
+
+def sighting(subject, person, time_s=1.0):
+    return Sighting(subject, "c0", time_s, named_takes.place_px(person), "line 2")
+
+
+def name(take, sightings=(), subjects=("p1",), court=None, words=WORDS):
+    return naming.name(take.found, take.seen, sightings, subjects, words, court)
+
+
+def test_one_subject_and_one_person_need_no_name():
+    take = named_takes.take(1)
+    named = name(take)
+    assert named.person_id.tolist() == ["p1"]
+    for camera, rows in take.found.index.items():
+        np.testing.assert_array_equal(named.index[camera], rows)
+    np.testing.assert_array_equal(named.path, take.found.path)
+    assert naming.others(take.found, named) == []
+
+
+def test_who_was_there_for_less_than_a_tenth_does_not_count():
+    take = named_takes.take(2, gone=[(1, slice(5, None))])
+    take.found.placed[:] = np.isfinite(take.found.path[..., 0]).mean(axis=1)
+    assert (name(take).index["c0"] == 0).all()
+
+
+def test_who_stays_beside_the_court_does_not_count():
+    paths = np.stack([np.tile(at, (61, 1)) for at in ([3.0, 5.0], [9.0, 5.0])])
+    take = named_takes.take(2, paths=paths)
+    assert (name(take, court=COURT).index["c0"] == 0).all()
+    with pytest.raises(InputError):
+        name(take)
+
+
+def test_one_subject_among_several_is_not_guessed():
+    with pytest.raises(InputError) as fault:
+        name(named_takes.take(2))
+    assert str(fault.value) == (
+        "hall/walk: expected to be told who is p1, found person-1 (100% of the take, about x 0.0 "
+        "y 0.0 m, seen by c0, c1), person-2 (100% of the take, about x 3.0 y 0.0 m, seen by c0, "
+        "c1); say which of them is p1 on the page results/people.html (people.csv), or by `seen` "
+        "in config/sessions/hall.yaml"
+    )
+    with pytest.raises(InputError, match="which of them is p1 by `seen` in"):
+        name(named_takes.take(2), words=naming.Wording("hall/walk", "", "hall.yaml"))
+
+
+def test_a_sighting_chooses_the_person_and_says_who_is_left():
+    take = named_takes.take(3)
+    named = name(take, [sighting("p1", 1)])
+    assert all((rows == 1).all() for rows in named.index.values())
+    assert (named.path[0, :, 0] == 3.0).all()
+    left = naming.others(take.found, named)
+    assert [line.split()[0] for line in left] == ["person-1", "person-3"]
+
+
+def test_the_last_subject_is_the_last_person():
+    named = name(named_takes.take(2), [sighting("b", 0)], ("a", "b"))
+    assert named.person_id.tolist() == ["a", "b"]
+    assert (named.index["c1"] == [[1], [0]]).all()
+    with pytest.raises(
+        InputError, match=r"expected to be told who is a, found person-2 .*person-3"
+    ):
+        name(named_takes.take(3), [sighting("b", 0)], ("a", "b"))
+
+
+@pytest.mark.parametrize("n_people", [1, 2])
+def test_several_subjects_need_names(n_people):
+    with pytest.raises(
+        InputError, match=r"expected to be told who is a and who is b, found person"
+    ):
+        name(named_takes.take(n_people), subjects=("a", "b"))
+
+
+def test_a_subject_whom_nobody_is_left_for_is_not_found():
+    named = name(named_takes.take(1), [sighting("b", 0)], ("a", "b"))
+    assert named.placed.tolist() == [0, 1]
+    assert (named.index["c0"][0] == -1).all() and np.isnan(named.path[0]).all()
+    assert naming.lines(named)[0] == "a: not found"
+
+
+def test_people_who_were_never_placed_stop_the_take():
+    take = named_takes.take(1, gone=[(0, slice(None))])
+    take.found.placed[:] = 0
+    with pytest.raises(InputError, match=r"^c0, c1: expected people whom two views see .* check"):
+        name(take)
+
+
+def test_gaps_and_doubts_are_said():
+    take = named_takes.take(2, gone=[(1, slice(20, 30))])
+    rows = np.array([[1.0, 3.5, 4.0, 0, 0.6], [0.0, 3.5, 4.0, 1, 0.9]])
+    take.found = replace(take.found, doubts=rows)
+    named = name(take, [sighting("p1", 1)])
+    assert named.doubts.tolist() == [[0, 3.5, 4.0, -1, 0.6]]
+    assert named.confidence.tolist() == [0.6]
+    (line,) = naming.lines(named)
+    assert "one person throughout with probability 0.60; not placed from 1.9 to 3.0 s" in line
+    assert "may be somebody else after 4.0 s (0.60 that not)" in line
+    # A second sighting, after it, settles the doubt.
+    sure = name(take, [sighting("p1", 1), sighting("p1", 1, 5.0)])
+    assert sure.confidence.tolist() == [1.0]
+
+
+def test_a_joined_subject_gets_the_rows_of_both_parts():
+    gone = [(0, slice(20, None)), (2, slice(0, 25))]
+    named = name(named_takes.take(3, gone=gone), [sighting("p1", 0), sighting("p1", 2, 5.0)])
+    rows = named.index["c0"][0]
+    assert (rows[:20] == 0).all() and (rows[21:] == 2).all()
+    assert np.isfinite(named.path[0, :20]).all() and np.isfinite(named.path[0, 25:]).all()

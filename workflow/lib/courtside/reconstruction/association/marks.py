@@ -1,0 +1,247 @@
+"""Sightings of subjects, found again among the persons; who is who over time by them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.reconstruction.association.identity import GAP_S, MEET_M
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints.keypoints import Keypoints2D
+from courtside.records.keypoints.people import People
+from courtside.records.keypoints.sightings import Sighting
+from courtside.study.errors import InputError
+
+Change = Callable[["Mark", "Mark"], float]  # when what one mark says gives way to the next
+
+# ASSUME: how exactly somebody points at a person in a paused video.
+AROUND = 0.15  # of the person's height in the picture: a pixel this far outside the body is on it
+AROUND_S = 0.3  # frames this near count, where the person was not detected in the frame itself
+ONE_MOMENT_S = 0.2  # marks of two subjects closer in time than this are a contradiction
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A sighting, with the person found there."""
+
+    subject: int
+    person: int
+    time_s: float  # of the reference clock, as the next two
+    from_s: float | None
+    to_s: float | None
+    where: str
+
+
+def locate(
+    sighting: Sighting, found: People, seen: Sequence[Footage], subjects: Sequence[str]
+) -> Mark:
+    """Return whom a sighting is of; an `InputError` of one line if nobody is there."""
+    by_name = {one.camera.name: one for one in seen}
+    if sighting.camera not in by_name:
+        raise InputError(
+            f"{sighting.where}: expected a camera of {', '.join(by_name)}, found "
+            f"{sighting.camera!r}; correct it"
+        )
+    one = by_name[sighting.camera]
+    _inside(sighting, one.tracklets)
+    person = _person(sighting, found.index[sighting.camera], one.tracklets)
+    start_s, time_s, stop_s = (
+        None if t is None else float(one.clock.to_reference(t))
+        for t in (sighting.from_s, sighting.time_s, sighting.to_s)
+    )
+    at = subjects.index(sighting.subject)
+    return Mark(at, person, float(time_s or 0.0), start_s, stop_s, sighting.where)
+
+
+def _inside(sighting: Sighting, view: Keypoints2D) -> None:
+    """Check time and pixel against the take."""
+    step_s = float(np.median(np.diff(view.time_s))) if len(view.time_s) > 1 else 1.0
+    first_s, last_s = float(view.time_s[0]), float(view.time_s[-1])
+    if not first_s - step_s <= sighting.time_s <= last_s + step_s:
+        raise InputError(
+            f"{sighting.where}: expected time_s from {first_s:.2f} to {last_s:.2f} s, the part of "
+            f"{sighting.camera}'s video that is used, found {sighting.time_s:g}; correct it"
+        )
+    size = view.size.tolist()
+    if not all(-0.5 <= at <= length - 0.5 for at, length in zip(sighting.xy, size, strict=True)):
+        raise InputError(
+            f"{sighting.where}: expected a pixel of {sighting.camera}'s pictures of {size[0]} x "
+            f"{size[1]} px, found {_px(sighting.xy)}; correct it"
+        )
+
+
+def _person(sighting: Sighting, index: NDArray, view: Keypoints2D) -> int:
+    """Return the person whose body is at the pixel, in the nearest frame that shows somebody."""
+    away_s = np.abs(view.time_s - sighting.time_s)
+    step_s = float(np.median(np.diff(view.time_s))) if len(view.time_s) > 1 else 1.0
+    limit_s = max(AROUND_S, 1.5 * step_s)
+    unconfirmed = False
+    for frame in np.argsort(away_s, kind="stable"):
+        if away_s[frame] > limit_s:
+            break
+        off = off_body(view.xy[:, frame], sighting.xy)
+        for row in np.argsort(off, kind="stable"):
+            if off[row] > AROUND:
+                break
+            persons = np.flatnonzero(index[:, frame] == row)
+            if len(persons):
+                return int(persons[0])
+            unconfirmed = True
+    raise InputError(_nobody(sighting, view, unconfirmed))
+
+
+def _nobody(sighting: Sighting, view: Keypoints2D, unconfirmed: bool) -> str:
+    at = f"{_px(sighting.xy)} px of {sighting.camera} at {sighting.time_s:g} s"
+    if unconfirmed:
+        return (
+            f"{sighting.where}: expected a person at {at} whom another camera sees too, found one "
+            "in this camera alone; choose another time or camera"
+        )
+    frame = int(np.abs(view.time_s - sighting.time_s).argmin())
+    shown = view.xy[:, frame][np.isfinite(view.xy[:, frame, :, 0]).any(axis=1)]
+    places = ", ".join(_px(np.nanmean(xy, axis=0)) for xy in shown)
+    return (
+        f"{sighting.where}: expected a person at {at}, found "
+        f"{f'people at {places}' if places else 'nobody in this picture'}; choose a pixel on the "
+        "person's body, or another time or camera"
+    )
+
+
+def _px(xy: Sequence[float] | NDArray) -> str:
+    return f"({xy[0]:.0f}, {xy[1]:.0f})"
+
+
+def off_body(xy: NDArray, at_px: tuple[float, float]) -> NDArray:
+    """Return how far a pixel is from bodies (P, J, 2) px, in shares of their size; inf without one.
+
+    It is the distance from the nearest joint; inside the box around the joints it is at most the
+    least that counts as on the body.
+    """
+    off = np.full(len(xy), np.inf)
+    for row, joints in enumerate(xy):
+        known = joints[np.isfinite(joints).all(axis=1)]
+        if len(known) < 3:
+            continue
+        low, high = known.min(axis=0), known.max(axis=0)
+        size = max(float((high - low).max()), 1.0)
+        share = float(np.linalg.norm(known - at_px, axis=1).min()) / size
+        inside = bool((np.array(at_px) >= low).all() and (np.array(at_px) <= high).all())
+        off[row] = min(share, AROUND) if inside else share
+    return off
+
+
+def timelines(found: People, marks: Sequence[Mark], n_subjects: int) -> tuple[NDArray, NDArray]:
+    """Return whose each person is, (K, N), and which person each subject is, (S, N); -1 for none.
+
+    Several marks of one subject on different persons join these: the subject goes over from one to
+    the next where the two are nearest. Marks of different subjects on one person split it: at
+    `from_s` and `to_s` where stated, else where somebody came near or nobody was placed; an
+    `InputError` where neither was.
+    """
+    count, n = found.path.shape[:2]
+    owner, used = np.full((count, n), -1), np.full((n_subjects, n), -1)
+    time_s = found.time_s
+    for person in sorted({mark.person for mark in marks}):
+        own = sorted((m for m in marks if m.person == person), key=lambda m: m.time_s)
+        owner[person] = _runs(time_s, own, [m.subject for m in own], _split_of(found, person))
+        for mark in own:
+            if mark.from_s is not None or mark.to_s is not None:
+                owner[person, _span(time_s, mark)] = mark.subject
+        _leave(owner[person], time_s, own)
+    for subject in range(n_subjects):
+        own = sorted((m for m in marks if m.subject == subject), key=lambda m: m.time_s)
+        if own:
+            used[subject] = _runs(time_s, own, [m.person for m in own], _join_of(found))
+        for mark in own:
+            if mark.from_s is not None or mark.to_s is not None:
+                used[subject, _span(time_s, mark)] = mark.person
+    return owner, used
+
+
+def _leave(owner: NDArray, time_s: NDArray, own: Sequence[Mark]) -> None:
+    """Take away what lies outside the bounds of a person whose every mark has bounds."""
+    if own and all(m.from_s is not None or m.to_s is not None for m in own):
+        owner[~np.logical_or.reduce([_span(time_s, mark) for mark in own])] = -1
+
+
+def _span(time_s: NDArray, mark: Mark) -> NDArray:
+    start_s = -np.inf if mark.from_s is None else mark.from_s
+    return (time_s >= start_s) & (time_s <= (np.inf if mark.to_s is None else mark.to_s))
+
+
+def _runs(time_s: NDArray, own: Sequence[Mark], values: Sequence[int], change: Change) -> NDArray:
+    """Return the value of the last mark at each time (N,); `change` says when one follows another.
+
+    Before the first mark its value holds, too.
+    """
+    found = np.full(len(time_s), values[0])
+    for before, after, value in zip(own[:-1], own[1:], values[1:], strict=True):
+        found[time_s > change(before, after)] = value
+    return found
+
+
+def _split_of(found: People, person: int) -> Change:
+    """Return when a person who has marks of two subjects may have been exchanged."""
+
+    def change(before: Mark, after: Mark) -> float:
+        if before.subject == after.subject:
+            return after.time_s
+        bounds = [b for b in (before.to_s, after.from_s) if b is not None]
+        return bounds[-1] if bounds else _exchange_s(found, person, before, after)
+
+    return change
+
+
+def _exchange_s(found: People, person: int, before: Mark, after: Mark) -> float:
+    """Return when a person may have become another between two marks."""
+    between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
+    at, path = found.time_s[between], found.path[:, between, :2]
+    known = at[np.isfinite(path[person, :, 0])]
+    bounds = np.concatenate([[before.time_s], known, [after.time_s]])
+    gap = int(np.argmax(np.diff(bounds)))
+    one_moment = after.time_s - before.time_s < ONE_MOMENT_S
+    if not one_moment and bounds[gap + 1] - bounds[gap] > GAP_S:
+        return float(bounds[gap] + bounds[gap + 1]) / 2
+    apart = np.linalg.norm(path - path[person], axis=-1)
+    apart[person] = np.inf
+    apart = np.nan_to_num(apart, nan=np.inf)
+    if one_moment or not apart.size or apart.min() > MEET_M:
+        raise InputError(
+            f"{after.where}: expected another person than at {before.where}, found the same one, "
+            "with nobody near in between; correct one of them, or state from_s and to_s in "
+            "people.csv"
+        )
+    return float(at[int(np.argmin(apart.min(axis=0)))])
+
+
+def _one_place(found: People, before: Mark, after: Mark) -> None:
+    """Check that two marks of one subject are not of two people at one moment."""
+    now = int(np.abs(found.time_s - after.time_s).argmin())
+    apart = float(np.linalg.norm(found.path[before.person, now] - found.path[after.person, now]))
+    if after.time_s - before.time_s < ONE_MOMENT_S and apart > MEET_M:
+        raise InputError(
+            f"{after.where}: expected one place for each subject, found the subject of "
+            f"{before.where} at the same time {apart:.1f} m away; correct one of them"
+        )
+
+
+def _join_of(found: People) -> Change:
+    """Return when a subject goes over from one person to another."""
+
+    def change(before: Mark, after: Mark) -> float:
+        if before.person == after.person:
+            return after.time_s
+        bounds = [b for b in (before.to_s, after.from_s) if b is not None]
+        _one_place(found, before, after)
+        if bounds:
+            return bounds[-1]
+        between = (found.time_s >= before.time_s) & (found.time_s <= after.time_s)
+        at, path = found.time_s[between], found.path[:, between]
+        apart = np.linalg.norm(path[before.person] - path[after.person], axis=-1)
+        if np.isfinite(apart).any():
+            return float(at[int(np.nanargmin(apart))])
+        last = at[np.isfinite(path[before.person, :, 0])]
+        return float(last[-1]) if len(last) else (before.time_s + after.time_s) / 2
+
+    return change

@@ -1,0 +1,185 @@
+"""Which of the persons found is which subject: by where the user saw them, never by a guess."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.court.court import Court
+from courtside.reconstruction.association import marks as marks_of
+from courtside.reconstruction.association.associate import COUNTS, nowhere
+from courtside.reconstruction.association.identity import GAP_S, confidence
+from courtside.reconstruction.association.marks import Mark
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints.people import People
+from courtside.records.keypoints.sightings import Sighting
+from courtside.study.errors import InputError
+
+# ASSUME: further beyond the court's lines for most of the take, somebody is no player on it.
+BESIDE_M = 2.0
+
+
+@dataclass(frozen=True)
+class Wording:
+    """Words for messages."""
+
+    take: str  # session/take
+    page: str  # where the page is on which people are named; empty without one
+    file: str  # of the session
+
+
+def name(
+    found: People,
+    seen: Sequence[Footage],
+    sightings: Sequence[Sighting],
+    subjects: Sequence[str],
+    words: Wording,
+    court: Court | None = None,
+) -> People:
+    """Return the subjects (S,) among the persons found, with the rows that show each one.
+
+    A person is a subject where a sighting says so (`marks`). The last subject without a sighting is
+    the last person without a name, if there is only one who was followed for a tenth of the take
+    and is not beside the `court`. An `InputError` of one line if subjects are not told from others,
+    or a sighting is wrong.
+    """
+    if not (found.placed > 0).any():
+        raise InputError(nowhere(found.index))
+    marks = [marks_of.locate(one, found, seen, list(subjects)) for one in sightings]
+    owner, used = marks_of.timelines(found, marks, len(subjects))
+    open_ = [s for s in range(len(subjects)) if not any(mark.subject == s for mark in marks)]
+    free = _candidates(found, {mark.person for mark in marks}, court)
+    if open_ and not marks and len(subjects) == 1 and not free:
+        free = [int(np.argmax(found.placed))]
+    if len(open_) > 1 or (open_ and len(free) > 1):
+        raise InputError(_not_told(found, [subjects[s] for s in open_], free, words))
+    for subject, person in zip(open_, free, strict=False):
+        owner[person], used[subject] = subject, person
+    return _named(found, seen, subjects, owner, used, marks)
+
+
+def others(found: People, named: People) -> list[str]:
+    """Return the persons found in a tenth of the take who are no subject."""
+    taken = np.zeros(len(found.person_id), bool)
+    for camera, rows in found.index.items():
+        own = named.index[camera]
+        same = (rows[:, None] == own[None]) & (own[None] >= 0)
+        taken |= same.any(axis=(1, 2))
+    at = np.flatnonzero(~taken & (found.placed >= COUNTS))
+    return [f"{found.person_id[k]} (placed in {found.placed[k]:.0%} of the take)" for k in at]
+
+
+def lines(named: People) -> list[str]:
+    """Return a log line for each subject: how often placed, how sure, its gaps and doubts."""
+    return [_line(named, at) for at in range(len(named.person_id))]
+
+
+def _line(named: People, at: int) -> str:
+    if not named.placed[at]:
+        return f"{named.person_id[at]}: not found"
+    gaps = [f"{a:.1f} to {b:.1f} s" for a, b in gaps_s(named.time_s, named.path[at])]
+    meant = [row for row in named.doubts if row[0] == at and row[4] < 0.9]
+    parts = [f"placed from two views or more in {named.placed[at]:.0%} of the take"]
+    parts += [f"one person throughout with probability {named.confidence[at]:.2f}"]
+    parts += [f"not placed from {', '.join(gaps)}"] if gaps else []
+    parts += [
+        f"may be somebody else after {stop:.1f} s ({kept:.2f} that not): look at the page"
+        for _, _, stop, _, kept in meant
+    ]
+    return f"{named.person_id[at]}: {'; '.join(parts)}"
+
+
+def gaps_s(time_s: NDArray, path: NDArray) -> list[tuple[float, float]]:
+    """Return the times, longer than 0.5 s, without a place in a path (T, 3)."""
+    known = np.isfinite(path[:, 0])
+    bounds = np.concatenate([[time_s[0]], time_s[known], [time_s[-1]]])
+    wide = np.flatnonzero(np.diff(bounds) > GAP_S)
+    return [(float(bounds[i]), float(bounds[i + 1])) for i in wide]
+
+
+def _candidates(found: People, taken: set[int], court: Court | None) -> list[int]:
+    """Return the persons without a name who count, by how often they were placed."""
+    count = [k for k in np.flatnonzero(found.placed >= COUNTS).tolist() if k not in taken]
+    return [k for k in count if not _beside(found.path[k], court)]
+
+
+def _beside(path: NDArray, court: Court | None) -> bool:
+    if court is None:
+        return False
+    middle = np.nanmedian(path[:, :2], axis=0)
+    return bool((middle < -BESIDE_M).any() or (middle > court.size_m + BESIDE_M).any())
+
+
+def _not_told(found: People, open_: list[str], free: list[int], words: Wording) -> str:
+    """Return the line of subjects who are not told from others."""
+    shares = found.shares()
+    people = []
+    for k in free:
+        x, y, _ = np.nanmedian(found.path[k], axis=0)
+        by = ", ".join(camera for camera, share in shares.items() if share[k] >= COUNTS)
+        people.append(
+            f"{found.person_id[k]} ({found.placed[k]:.0%} of the take, about x {x:.1f} y {y:.1f} m,"
+            f" seen by {by})"
+        )
+    who = "which of them is" if len(free) != 1 else "whether this is"
+    page = f"on the page {words.page} (people.csv), or " if words.page else ""
+    return (
+        f"{words.take}: expected to be told who is {' and who is '.join(open_)}, found "
+        f"{', '.join(people) or 'nobody'}; say {who} {' or '.join(open_)} {page}by `seen` in "
+        f"{words.file}"
+    )
+
+
+def _named(
+    found: People, seen: Sequence[Footage], subjects: Sequence[str], owner: NDArray, used: NDArray,
+    marks: Sequence[Mark],
+) -> People:  # fmt: skip
+    """Return the record of the subjects; (S, N) of the person used at each instant."""
+    index = {one.camera.name: _rows(found, one, owner, used) for one in seen}
+    own = np.where(used >= 0, owner[np.maximum(used, 0), np.arange(used.shape[1])], -1)
+    there = own == np.arange(len(subjects))[:, None]
+    path = np.where(there[..., None], found.path[used, np.arange(used.shape[1])], np.nan)
+    doubts = _doubts(found, owner, used, marks)
+    return replace(
+        found,
+        person_id=np.array(subjects),
+        placed=np.isfinite(path[..., 0]).mean(axis=1),
+        index=index,
+        path=path,
+        doubts=doubts,
+        confidence=confidence(doubts, len(subjects)),
+    )
+
+
+def _rows(found: People, one: Footage, owner: NDArray, used: NDArray) -> NDArray:
+    """Return the row (S, F) of each subject in each frame of a camera."""
+    index = found.index[one.camera.name]
+    frame_s = one.clock.to_reference(one.tracklets.time_s)
+    at = _nearest(found.time_s, frame_s)
+    frames = np.arange(len(frame_s))
+    person = used[:, at]
+    own = (person >= 0) & (owner[np.maximum(person, 0), at] == np.arange(len(used))[:, None])
+    return np.where(own, index[np.maximum(person, 0), frames], -1)
+
+
+def _nearest(time_s: NDArray, wanted_s: NDArray) -> NDArray:
+    right = np.clip(np.searchsorted(time_s, wanted_s), 0, len(time_s) - 1)
+    left = np.maximum(right - 1, 0)
+    return np.where(wanted_s - time_s[left] < time_s[right] - wanted_s, left, right)
+
+
+def _doubts(found: People, owner: NDArray, used: NDArray, marks: Sequence[Mark]) -> NDArray:
+    """Return the doubts about subjects; two sightings agree on what lies between them."""
+    kept = []
+    for row in found.doubts:
+        person, start_s, stop_s = int(row[0]), row[1], row[2]
+        at = np.abs(found.time_s - stop_s).argmin()
+        subject = int(owner[person, at])
+        if subject < 0 or used[subject, at] != person:
+            continue
+        told = [m.time_s for m in marks if m.person == person]
+        if any(t <= start_s for t in told) and any(t >= stop_s for t in told):
+            continue
+        kept.append([subject, start_s, stop_s, -1.0, row[4]])
+    return np.array(kept, float).reshape(-1, 5)

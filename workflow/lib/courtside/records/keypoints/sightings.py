@@ -1,0 +1,120 @@
+"""Where a user says that a person is: `seen` of a session's file, and rows of people.csv."""
+
+import csv
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from courtside.study.errors import InputError, StrPath, reading
+
+COLUMNS = ("take", "subject", "camera", "time_s", "x_px", "y_px")
+BOUNDS = ("from_s", "to_s")  # may be left out, as columns or as cells
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """A person at a pixel of one camera; times are seconds of this camera's video."""
+
+    subject: str
+    camera: str
+    time_s: float
+    xy: tuple[float, float]  # px of the video, first pixel centre at (0, 0)
+    where: str  # what stated it, for messages
+    # The part of the take that this holds for; None: as far as nothing else is stated
+    from_s: float | None = None
+    to_s: float | None = None
+
+
+def stated(where: str, subject: str, content: Mapping[str, Any]) -> Sighting:
+    """Return what an entry of `seen` says, which the session's schema has checked."""
+    x, y = content["at_px"]
+    return Sighting(subject, content["camera"], float(content["time_s"]), (x, y), where)
+
+
+def read(
+    path: StrPath, take: str, takes: Collection[str], subjects: Sequence[str],
+    cameras: Sequence[str],
+) -> list[Sighting]:  # fmt: skip
+    """Read the rows of one take.
+
+    The CSV has the columns take, subject, camera, time_s, x_px, y_px, and may have from_s, to_s.
+    An `InputError` if it is no such table, or a row names an unknown take, subject or camera, or
+    holds no number.
+    """
+    found = []
+    for line, row in _rows(path):
+        where = f"{path}: line {line}"
+        _known(where, "take", row["take"], takes)
+        if row["take"] != take:
+            continue
+        subject = _known(where, "subject", row["subject"], subjects)
+        camera = _known(where, "camera", row["camera"], cameras)
+        time_s, x, y = (_number(where, key, row[key]) for key in COLUMNS[3:])
+        start_s, stop_s = (
+            _number(where, key, row[key]) if row.get(key) else None for key in BOUNDS
+        )
+        if start_s is not None and stop_s is not None and start_s >= stop_s:
+            raise InputError(
+                f"{where}: expected from_s before to_s, found {start_s} and {stop_s}; correct them"
+            )
+        if not (start_s or -math.inf) <= time_s <= (math.inf if stop_s is None else stop_s):
+            raise InputError(
+                f"{where}: expected time_s from from_s to to_s, found {time_s}; correct it"
+            )
+        found.append(Sighting(subject, camera, time_s, (x, y), where, start_s, stop_s))
+    return found
+
+
+def of_other_takes(path: StrPath, take: str) -> list[list[str]]:
+    """Return the rows of other takes as they are, cells in the order of all columns."""
+    order = (*COLUMNS, *BOUNDS)
+    return [[row.get(key, "") for key in order] for _, row in _rows(path) if row["take"] != take]
+
+
+def _rows(path: StrPath) -> Iterable[tuple[int, dict[str, str]]]:
+    """Return (line number, row) of every row, cells stripped."""
+    kinds = (OSError, UnicodeDecodeError, csv.Error)
+    with (
+        reading(path, "a readable CSV file", "save it again as CSV (UTF-8)", kinds=kinds),
+        Path(path).open(newline="", encoding="utf-8-sig") as stream,
+    ):
+        table = csv.reader(stream, strict=True)
+        lines = [(table.line_num, [cell.strip() for cell in row]) for row in table]
+    lines = [(number, row) for number, row in lines if any(row)]
+    header = lines[0][1] if lines else []
+    known = {*COLUMNS, *BOUNDS}
+    if len(set(header)) < len(header) or not set(COLUMNS) <= set(header) <= known:
+        raise InputError(
+            f"{path}: expected the columns {','.join(COLUMNS)} and perhaps {','.join(BOUNDS)} with "
+            f"commas between, found {','.join(header)[:80] or 'an empty file'}; correct the first "
+            "line"
+        )
+    for line, row in lines[1:]:
+        if len(row) != len(header):
+            raise InputError(
+                f"{path}: line {line}: expected {len(header)} cells, found {len(row)}; correct it"
+            )
+    return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
+
+
+def _known(where: str, what: str, name: str, names: Collection[str]) -> str:
+    if name not in names:
+        raise InputError(
+            f"{where}: expected a {what} of {', '.join(names)}, found {name[:40]!r}; correct it or "
+            "delete the line"
+        )
+    return name
+
+
+def _number(where: str, key: str, text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(
+            f"{where}: expected {key} as a finite number, found {text[:40]!r}; correct it"
+        )
+    return number
