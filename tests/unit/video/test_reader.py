@@ -95,6 +95,17 @@ def test_read_frame_refuses_a_time_outside(constant, time_s):
         reader.read_frame(constant, time_s)
 
 
+def test_read_frames_takes_the_nearest_to_each_time(variable, constant):
+    found = list(reader.read_frames(variable, [0.0149, 0.49, 0.76, 1.92]))
+    assert [number_in(image) for _, image in found] == [1, 49, 50, 59]
+    assert [t for t, _ in found] == reader.frame_times(variable)[[1, 49, 50, 59]].tolist()
+    assert list(reader.read_frames(variable, [])) == []
+    with pytest.raises(InputError, match=r"expected times from 0 to 2\.000 s, found 0\.1 to 9"):
+        list(reader.read_frames(constant, [0.1, 9.0]))
+    with pytest.raises(ValueError, match="expected times of different frames"):
+        list(reader.read_frames(constant, [0.1, 0.101]))
+
+
 def test_extract_frames_takes_the_nearest_to_a_grid_once(variable):
     found = list(reader.extract_frames(variable, 0.125))
     times_s = reader.frame_times(variable)

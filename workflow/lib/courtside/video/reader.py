@@ -11,7 +11,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.study.errors import InputError, StrPath, reading
 from courtside.study.execution.files import atomic
@@ -123,6 +123,27 @@ def read_frame(path: StrPath, time_s: float) -> tuple[float, NDArray]:
     index = int(_nearest(listing.times_s, time_s))
     _, image = next(pictures(listing, [index]))
     return float(listing.times_s[index]), image
+
+
+def read_frames(path: StrPath, time_s: ArrayLike) -> Iterator[tuple[float, NDArray]]:
+    """Decode the frames nearest to increasing times: each frame's own time and its picture.
+
+    All else is as for `read_frame`; no two times may have one nearest frame (`ValueError`).
+    """
+    wanted_s = np.atleast_1d(np.asarray(time_s, dtype=float))
+    if not len(wanted_s):
+        return
+    listing = list_packets(path, stop_s=float(wanted_s[-1]))
+    if not (wanted_s[0] >= 0 and wanted_s[-1] <= listing.duration_s):
+        raise InputError(
+            f"{path}: expected times from 0 to {listing.duration_s:.3f} s, found "
+            f"{wanted_s[0]:g} to {wanted_s[-1]:g}: correct them"
+        )
+    indices = _nearest(listing.times_s, wanted_s)
+    if (np.diff(indices) <= 0).any():
+        raise ValueError(f"{path}: expected times of different frames, found {wanted_s.tolist()}")
+    for index, image in pictures(listing, indices.tolist()):
+        yield float(listing.times_s[index]), image
 
 
 def write_png(path: StrPath, image: NDArray) -> None:

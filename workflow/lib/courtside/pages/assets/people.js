@@ -1,0 +1,226 @@
+// @ts-check
+"use strict";
+// The page on which persons are named: names by part of the take, split, joined and saved.
+(() => {
+  const given = courtside.data("people");
+  /** @type {(id: string) => any} every page holds its elements, of whatever kind */
+  const byId = (id) => document.getElementById(id);
+  const KEEP = `courtside people ${given.stamp}`;
+  const COLOURS = ["#0b62b0", "#d1495b", "#1d7a3e", "#9a5400", "#7b4fb5", "#00838f", "#b0306a", "#5f6b00"];
+  const colour = (person) => COLOURS[given.persons.indexOf(person) % COLOURS.length];
+  const rounded = (value) => Math.round(value * 1000) / 1000;
+
+  let rows = given.rows; // of other takes
+  // By person: parts of the take, [{from, subject}], the first from its start.
+  let parts = first();
+
+  function first() {
+    return Object.fromEntries(given.persons.map((person) => [person.index, earlier(person.index)]));
+  }
+
+  // Parts of a person by the names given before.
+  function earlier(index) {
+    const told = given.named.filter((one) => one.person === index).sort((a, b) => a.time_s - b.time_s);
+    const found = [{ from: given.start_s, subject: told.length ? told[0].subject : "" }];
+    for (const [at, one] of told.entries()) {
+      const last = found[found.length - 1];
+      if (one.subject === last.subject) continue;
+      found.push({ from: one.from_s ?? (told[at - 1].time_s + one.time_s) / 2, subject: one.subject });
+    }
+    return found;
+  }
+
+  // ---- names ----
+  const endOf = (own, at) => (at + 1 < own.length ? own[at + 1].from : given.stop_s);
+  const within = (own, at) => (column) => column.time_s >= own[at].from && (column.time_s < endOf(own, at) || at + 1 === own.length);
+
+  /** Returns the largest picture of a column. */
+  function largest(column) {
+    return column.views.reduce((best, view) => (!best || view.size_px > best.size_px ? view : best), null);
+  }
+
+  function rowsOf(person) {
+    const own = parts[person.index], found = [];
+    own.forEach((part, at) => {
+      if (!part.subject) return;
+      const shown = person.columns.filter(within(own, at)).filter((column) => column.views.length);
+      for (const column of new Set([shown[0], shown[shown.length - 1]])) {
+        if (!column) continue;
+        const view = largest(column), [offset, scale] = given.clocks[view.camera];
+        const bounds = [part.from, endOf(own, at)].map((time) => rounded(time * scale + offset));
+        found.push([given.take, part.subject, view.camera, view.time_s, ...view.at_px, ...(own.length > 1 ? bounds : ["", ""])]);
+      }
+    });
+    return found;
+  }
+
+  function change(index, edit) {
+    edit(parts[index]);
+    courtside.storage.set(KEEP, parts);
+    render();
+  }
+
+  function split(person, column) {
+    change(person.index, (own) => {
+      const at = person.columns.indexOf(column);
+      const from = rounded((person.columns[at - 1].time_s + column.time_s) / 2);
+      own.push({ from, subject: "" });
+      own.sort((a, b) => a.from - b.from);
+    });
+  }
+
+  // ---- showing ----
+  function say(words, bad = false) {
+    byId("said").textContent = words;
+    byId("said").classList.toggle("bad", bad);
+  }
+
+  function element(parent, kind, properties = {}) {
+    const made = Object.assign(document.createElement(kind), properties);
+    parent.append(made);
+    return made;
+  }
+
+  function button(parent, words, action, properties = {}) {
+    element(parent, "button", { textContent: words, type: "button", ...properties }).addEventListener("click", action);
+  }
+
+  function render() {
+    byId("persons").replaceChildren();
+    for (const person of given.persons) renderPerson(person);
+    const named = new Set(Object.values(parts).flat().map((part) => part.subject));
+    const open = given.subjects.filter((name) => !named.has(name));
+    byId("missing").textContent = open.length ? `Not named yet: ${open.join(", ")}.` : "Every subject has a person.";
+    byId("missing").className = open.length ? "warn" : "good";
+    byId("text").value = text();
+  }
+
+  function renderPerson(person) {
+    const card = element(byId("persons"), "article", { className: "person" });
+    card.style.setProperty("--own", colour(person));
+    card.dataset.person = person.name;
+    element(card, "h2", { textContent: person.name });
+    const doubts = person.doubts.map(([, stop, kept]) => ` May be somebody else after ${stop.toFixed(1)} s (${Math.round(kept * 100)} % that not).`);
+    element(card, "p", {
+      className: doubts.length ? "about warn" : "about soft",
+      textContent: `Placed in ${Math.round(person.placed * 100)} % of the take; one person throughout with probability ${person.confidence.toFixed(2)}.${doubts.join("")}`,
+    });
+    const own = parts[person.index], list = element(card, "div", { className: "parts" });
+    own.forEach((part, at) => renderPart(list, person, part, at));
+    renderStrip(element(card, "div", { className: "strip" }), person);
+  }
+
+  function renderPart(list, person, part, at) {
+    const own = parts[person.index], row = element(list, "div", { className: "part" });
+    if (own.length > 1) renderBounds(row, person, part, at);
+    const label = element(row, "label", { textContent: "is " });
+    const choice = element(label, "select", { ariaLabel: `Name of ${person.name}${own.length > 1 ? ` from ${part.from.toFixed(1)} s` : ""}` });
+    for (const name of ["", ...given.subjects]) element(choice, "option", { value: name, textContent: name || "no subject" });
+    choice.value = part.subject;
+    choice.addEventListener("change", () => change(person.index, () => { part.subject = choice.value; }));
+    const pictured = person.columns.filter(within(own, at)).some((column) => column.views.length);
+    if (part.subject && !pictured) element(row, "span", { className: "bad", textContent: "There is no picture in this part: it cannot be saved." });
+  }
+
+  function renderBounds(row, person, part, at) {
+    const own = parts[person.index];
+    if (!at) element(row, "span", { textContent: `to ${endOf(own, at).toFixed(2)} s` });
+    else {
+      const label = element(row, "label", { textContent: "from " });
+      const field = element(label, "input", { type: "number", step: "0.01", value: part.from.toFixed(2), ariaLabel: `Part ${at + 1} of ${person.name} begins, s` });
+      field.addEventListener("change", () => {
+        const value = Number(field.value);
+        if (!(value > own[at - 1].from && value < endOf(own, at))) { render(); return say("A part begins after the one before and before the next one.", true); }
+        return change(person.index, () => { part.from = value; });
+      });
+      element(row, "span", { textContent: "s" });
+      button(row, "Join to the part before", () => change(person.index, () => { own.splice(at, 1); }));
+    }
+  }
+
+  function renderStrip(box, person) {
+    const table = element(box, "table"), own = parts[person.index];
+    const head = element(element(table, "thead"), "tr"), body = element(table, "tbody");
+    const cuts = own.slice(1).map((part) => person.columns.find((column) => column.time_s >= part.from));
+    element(head, "td");
+    person.columns.forEach((column, at) => {
+      const cell = element(head, "th", { scope: "col", className: cuts.includes(column) ? "cut" : "" });
+      element(cell, "div", { textContent: `${column.time_s.toFixed(1)} s` });
+      if (at && !cuts.includes(column)) button(cell, "Split here", () => split(person, column), { title: `Another name from about ${column.time_s.toFixed(1)} s on` });
+    });
+    for (const camera of Object.keys(given.clocks)) {
+      const views = person.columns.map((column) => column.views.find((view) => view.camera === camera));
+      if (!views.some(Boolean)) continue;
+      const row = element(body, "tr");
+      element(row, "th", { scope: "row", textContent: camera });
+      views.forEach((view, at) => {
+        const cell = element(row, "td", { className: cuts.includes(person.columns[at]) ? "cut" : "" });
+        if (view) element(cell, "img", { src: courtside.image(view.image), alt: `${person.name} in ${camera} at ${view.time_s.toFixed(1)} s` });
+      });
+    }
+  }
+
+  function renderFloor() {
+    const svg = byId("floor"), points = given.persons.flatMap((person) => person.path.map(([, x, y]) => [x, y]));
+    if (given.court) points.push([0, 0], given.court.size_m);
+    const axis = (at) => points.map((point) => point[at]);
+    const low = [0, 1].map((at) => Math.min(...axis(at)) - 1), high = [0, 1].map((at) => Math.max(...axis(at)) + 1);
+    if (!points.length) return;
+    const size = [high[0] - low[0], high[1] - low[1]], wide = Math.max(...size) / 90;
+    const draw = (kind, properties) => {
+      const made = document.createElementNS("http://www.w3.org/2000/svg", kind);
+      for (const [key, value] of Object.entries(properties)) made.setAttribute(key, String(value));
+      svg.append(made);
+    };
+    svg.setAttribute("viewBox", `${low[0]} ${-high[1]} ${size[0]} ${size[1]}`);
+    for (const [x0, y0, x1, y1] of given.court ? given.court.lines_m : []) {
+      draw("rect", { class: "line", x: Math.min(x0, x1), y: -Math.max(y0, y1), width: Math.abs(x1 - x0), height: Math.abs(y1 - y0) });
+    }
+    for (const person of given.persons) {
+      if (!person.path.length) continue;
+      const places = person.path.map(([, x, y]) => `${x},${-y}`).join(" "), [, x, y] = person.path[0];
+      draw("polyline", { class: "path", points: places, stroke: colour(person), "stroke-width": wide / 2 });
+      draw("circle", { cx: x, cy: -y, r: wide, fill: colour(person) });
+    }
+  }
+
+  // ---- files ----
+  function text() {
+    return peopleTable.written([...rows, ...given.persons.flatMap(rowsOf)]);
+  }
+
+  function save() {
+    courtside.download("people.csv", text(), "text/csv");
+    say(`Put the file where the workflow reads it: ${given.target}.`);
+  }
+
+  byId("save").addEventListener("click", save);
+  byId("load").addEventListener("click", () => byId("chooser").click());
+  byId("chooser").addEventListener("change", async (event) => {
+    const [file] = event.target.files;
+    event.target.value = "";
+    if (!file) return;
+    try {
+      rows = peopleTable.others(file.name, await file.text(), given.take);
+      say(`${rows.length} rows of other takes are kept and will be saved again.`);
+      render();
+    } catch (error) { say(error.message, true); }
+  });
+  byId("afresh").addEventListener("click", () => {
+    courtside.storage.remove(KEEP);
+    parts = first();
+    render();
+    say("Names are as the workflow has them.");
+  });
+  document.addEventListener("keydown", (event) => {
+    if ((event.ctrlKey || event.metaKey) && event.key === "s") { event.preventDefault(); save(); }
+  });
+
+  parts = courtside.storage.get(KEEP) || parts;
+  const takes = new Set(rows.map((row) => row[0])).size;
+  byId("where").textContent = `The workflow reads ${given.target}, where the session's file says people: ${given.target}. `
+    + `The file holds all takes: ${takes ? `the names of ${takes} other takes` : "no names of other takes"} were there when this page was made. If you named others since, load people.csv first.`;
+  byId("left-out").textContent = given.left_out ? `${given.left_out} more, seen in less than 2 % of the take, are not shown.` : "";
+  renderFloor();
+  render();
+})();
