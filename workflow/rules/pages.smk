@@ -1,9 +1,36 @@
-"""Pages and videos to look around in: viewers, videos with skeletons, Pose2Sim projects.
+"""Pages and videos to look around in: people to be named, viewers, videos, Pose2Sim projects.
 
 Inputs: 3D keypoints of all stages, devices, cameras, videos. Outputs:
 results/{session}/takes/{take}/pages/, videos/, pose2sim/.
-Steps: build_viewer, export_overlay_video, export_pose2sim.
+Steps: build_people_page, build_viewer, export_overlay_video, export_pose2sim.
 """
+
+
+rule build_people_page:
+    input:
+        found=of_job(pages.first_way, paths.FOUND_PEOPLE),
+        cameras=of_job(pages.first_way, paths.CAMERAS),
+        pose2d=of_job(pages.first_keypoints),
+        sync=of_job(pages.first_way, paths.CAMERA_CLOCKS),
+        skeleton=of_job(pages.first_skeleton),
+        court=of_job(Job.court_file),
+        videos=lambda w: list(take_of(w).videos.values()),
+        people_csv=of_job(takes.people_csv),
+    output:
+        page_html=paths.PEOPLE_PAGE,
+    log:
+        "results/{session}/logs/build_people_page/{take}.log",
+    params:
+        code=code("build_people_page.py"),
+        session=lambda w: w.session,
+        take=lambda w: w.take,
+        takes=lambda w: list(session_of(w).takes),
+        subjects=lambda w: list(take_of(w).subjects),
+        stated=of_job(takes.sightings),
+        target=of_job(pages.people_target),
+        shown=of_job(takes.blur_faces),  # demands the consent to pictures; faces are always hidden
+    script:
+        "../scripts/build_people_page.py"
 
 
 rule build_viewer:

@@ -2,8 +2,8 @@
 
 Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
 people, pose3d, pose3d_filtered, pose3d_corrected, kinematics.
-Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people,
-triangulate (raw, always kept), filter_motion, correct_joints, export_take, measure_kinematics.
+Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people
+(everybody), name_people (the subjects among them), triangulate (raw, always kept), filter_motion, correct_joints, export_take, measure_kinematics.
 """
 
 
@@ -49,16 +49,41 @@ rule associate_people:
         skeleton=of_job(Job.skeleton_file),
         court=of_job(Job.court_file),
     output:
-        people_npz=paths.PEOPLE,
+        people_npz=paths.FOUND_PEOPLE,
     log:
         "results/{session}/logs/associate_people/{take}.{calibration}.{model}.log",
     benchmark:
         "results/{session}/benchmarks/associate_people/{take}.{calibration}.{model}.tsv"
     params:
         code=code("associate_people.py"),
-        persons=lambda w: list(take_of(w).subjects),
+        several=lambda w: len(take_of(w).subjects) > 1,
     script:
         "../scripts/associate_people.py"
+
+
+rule name_people:
+    input:
+        found=paths.FOUND_PEOPLE,
+        cameras=paths.CAMERAS,
+        pose2d=of_job(takes.keypoints_2d),
+        sync=paths.CAMERA_CLOCKS,
+        court=of_job(Job.court_file),
+        people_csv=of_job(takes.people_csv),
+        page_html=ancient(of_job(pages.people_page)),  # where names are missing, the page is there
+    output:
+        people_npz=paths.PEOPLE,
+    log:
+        "results/{session}/logs/name_people/{take}.{calibration}.{model}.log",
+    params:
+        code=code("name_people.py"),
+        persons=lambda w: list(take_of(w).subjects),
+        stated=of_job(takes.sightings),
+        takes=lambda w: list(session_of(w).takes),
+        take=lambda w: f"{w.session}/{w.take}",
+        page=of_job(pages.people_page),
+        file=lambda w: session_of(w).file,
+    script:
+        "../scripts/name_people.py"
 
 
 rule triangulate:

@@ -102,7 +102,7 @@ def test_a_calibration_file_is_checked_by_what_cameras_see(job):
     assert take == {
         "pose2d": [f"{folder}/pose2d/blazepose-full/{camera}.npz" for camera in cameras],
         "sync": f"{folder}/sync/file/cameras.blazepose-full.json",
-        "people": f"{folder}/people/file/blazepose-full.npz",
+        "people": f"{folder}/people/file/blazepose-full.found.npz",
     }
     files = calibration.checked_files(job(session="walk-4cams-tiny"))
     assert files == [*take["pose2d"], take["sync"], take["people"]]

@@ -63,3 +63,15 @@ def test_videos_with_skeletons_are_written_as_the_study_says(job):
         "effort": "veryfast",
         "keep_background": False,
     }
+
+
+def test_the_page_of_people_is_by_the_first_calibration_and_network(job):
+    one = job(session="walk-4cams-tiny", take="balancing")
+    folder = "results/walk-4cams-tiny/takes/balancing"
+    assert pages.people_page(one) == [f"{folder}/pages/people.html"]
+    found = pages.first_way(one, "{take}/{calibration}/{model}.found.npz")
+    assert found == "balancing/file/blazepose-full.found.npz"
+    assert pages.first_keypoints(one)[0] == f"{folder}/pose2d/blazepose-full/cam01.npz"
+    assert pages.first_skeleton(one).name == "blazepose33.yaml"
+    assert pages.people_target(one) == "data/walk-4cams-tiny/people.csv"
+    assert pages.people_page(job(**SHOT)) == []

@@ -109,3 +109,21 @@ def test_tables_of_a_network_are_there_or_not(job, study):
     found = takes.known_of_network(known, paths.ERRORS_CSV)
     assert found == study.folder / "joint_errors" / "blazepose-full.csv"
     assert takes.known_of_network(job(**SHOT, model="net"), paths.OFFSETS_CSV) == []
+
+
+def test_sightings_are_those_of_the_take(job, study, tmp_path):
+    session = study.sessions["players-tiny"]
+    seen = ({"take": "rally", "camera": "back"}, {"camera": "front"})
+    subjects = {**session.subjects, "p1": replace(session.subjects["p1"], seen=seen)}
+    csv = tmp_path / "people.csv"
+    told = replace(session, subjects=subjects, people=str(csv))
+    of = replace(study, sessions={"players-tiny": told})
+    assert takes.sightings(job(of, **RALLY)) == [
+        ("p1", {"camera": "back"}),
+        ("p1", {"camera": "front"}),
+    ]
+    assert takes.sightings(job(of, **SHOT)) == [("p1", {"camera": "front"})]
+    assert takes.people_csv(job(of, **SHOT)) == []  # not saved yet
+    csv.touch()
+    assert takes.people_csv(job(of, **SHOT)) == str(csv)
+    assert takes.people_csv(job(**SHOT)) == []

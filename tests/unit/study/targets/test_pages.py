@@ -30,6 +30,23 @@ def test_sessions_that_wait_for_clicks_have_a_page_for_them(study):
     assert pages.every_clicking_page(study) == ["results/plain-tiny/pages/clicking.html"]
 
 
+def test_people_are_named_on_a_page_of_real_takes_and_of_takes_of_several(study):
+    assert pages.every_people_page(study) == [
+        "results/walk-4cams-tiny/takes/balancing/pages/people.html"
+    ]
+    session = study.sessions["players-tiny"]
+    both = replace(session.takes["shot"], subjects=("p1", "p2"))
+    assert pages.people_pages(session, both) == [
+        "results/players-tiny/takes/shot/pages/people.html"
+    ]
+    shy = replace(session.subjects["p1"], consent=("analysis",))
+    refused = replace(session, subjects={**session.subjects, "p1": shy})
+    assert pages.people_pages(refused, both) == []
+    assert (
+        pages.people_pages(replace(session, subjects=session.subjects), session.takes["shot"]) == []
+    )
+
+
 def test_plans_are_drawn_twice(study):
     stems = ("results/plans/plain-a/growth", "results/plans/plain-a/map")
     expected = [f"{stem}.{suffix}" for stem in stems for suffix in ("pdf", "png", "csv")]

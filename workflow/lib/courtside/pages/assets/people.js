@@ -90,8 +90,10 @@
     for (const person of given.persons) renderPerson(person);
     const named = new Set(Object.values(parts).flat().map((part) => part.subject));
     const open = given.subjects.filter((name) => !named.has(name));
-    byId("missing").textContent = open.length ? `Not named yet: ${open.join(", ")}.` : "Every subject has a person.";
-    byId("missing").className = open.length ? "warn" : "good";
+    const alone = given.subjects.length === 1 && given.persons.length === 1;
+    byId("missing").textContent = !open.length ? "Every subject has a person."
+      : alone ? "One subject and one person: no name is needed." : `Not named yet: ${open.join(", ")}.`;
+    byId("missing").className = open.length && !alone ? "warn" : "good";
     byId("text").value = text();
   }
 

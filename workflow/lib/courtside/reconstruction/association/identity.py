@@ -69,7 +69,7 @@ def confidence(doubts_: NDArray, n_persons: int) -> NDArray:
 def _occasions(path: NDArray, time_s: NDArray, person: int) -> list[tuple[int, int, int]]:
     """Return instants around meetings and gaps of a person, with the other one or -1."""
     placed = np.isfinite(path[..., 0])
-    own = np.flatnonzero(placed[person])
+    own = np.flatnonzero(placed[person]).tolist()
     found = []
     for left, right in pairwise(own):
         if time_s[right] - time_s[left] > GAP_S:
@@ -81,7 +81,7 @@ def _occasions(path: NDArray, time_s: NDArray, person: int) -> list[tuple[int, i
         for group in _groups(near, time_s):
             before, after = far[far < group[0]], far[far > group[-1]]
             if len(before) and len(after):
-                found.append((before[-1], after[0], other))
+                found.append((int(before[-1]), int(after[0]), other))
     return sorted(found)
 
 

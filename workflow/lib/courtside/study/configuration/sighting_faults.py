@@ -36,7 +36,7 @@ def _takes(content: Content) -> Content:
 
 def _holds(content: Content, take: str, subject: str) -> bool:
     stated: Content = _takes(content)[take] or {}
-    return subject in stated.get("subjects", content.get("subjects", {}))
+    return subject in (stated if "subjects" in stated else content)["subjects"]
 
 
 def _cameras(take: Content, content: Content) -> list[str]:

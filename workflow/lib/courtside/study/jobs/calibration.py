@@ -51,7 +51,7 @@ def checked(job: Job) -> list[dict[str, Any]]:
     for name in (name for name, take in job.session.takes.items() if take.videos):
         known = {**job.wildcards, "take": name, "model": model, "calibration": "file"}
         one = Job(job.study, known)
-        files = {"sync": one.fill(paths.CAMERA_CLOCKS), "people": one.fill(paths.PEOPLE)}
+        files = {"sync": one.fill(paths.CAMERA_CLOCKS), "people": one.fill(paths.FOUND_PEOPLE)}
         found.append({"pose2d": takes.keypoints_2d(one), **files})
     return found
 

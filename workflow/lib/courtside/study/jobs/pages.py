@@ -4,8 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
-from courtside.study.jobs import devices
+from courtside.study.jobs import devices, takes
 from courtside.study.jobs.job import Job
+from courtside.study.targets import pages as page_targets
 
 STAGE_WORDS = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 
@@ -59,6 +60,40 @@ def skeleton_files(job: Job) -> list[Path]:
     """Return the skeletons of a viewer's layers, each once, in their order."""
     names = dict.fromkeys(layer["of"] for layer in layers(job))
     return [job.study.folder / paths.SKELETON_YAML.format(skeleton=name) for name in names]
+
+
+def people_page(job: Job) -> list[str]:
+    """Return the page on which persons of a take are named; nothing where none is made."""
+    return page_targets.people_pages(job.session, job.take)
+
+
+def people_target(job: Job) -> str:
+    """Return where the file with names is to be saved."""
+    return job.session.people or job.fill(paths.PEOPLE_CSV)
+
+
+def _first(job: Job) -> dict[str, str]:
+    """Return the first ways to measure a session."""
+    session = job.session
+    return {
+        "calibration": session.take_calibrations()[0],
+        "model": session.parameters["models"][0],
+    }
+
+
+def first_way(job: Job, pattern: str) -> str:
+    """Return a file of a take, by the first calibration and network."""
+    return job.fill(pattern, **_first(job))
+
+
+def first_keypoints(job: Job) -> list[str]:
+    """Return the 2D keypoints of each camera by these."""
+    return takes.keypoints_2d(Job(job.study, {**job.wildcards, **_first(job)}))
+
+
+def first_skeleton(job: Job) -> Path:
+    """Return the skeleton of the first network."""
+    return job.study.skeleton_file(_first(job)["model"])
 
 
 def viewed_cameras(job: Job) -> str | list:

@@ -41,6 +41,22 @@ def _steadied(job: Job) -> bool:
     return job.take.steady and (way is None or Fusion.parse(way).steadied)
 
 
+def sightings(job: Job) -> list[tuple[str, dict[str, Any]]]:
+    """Return where the session's file says that subjects are in a take: (subject, entry)."""
+    return [
+        (name, {key: value for key, value in entry.items() if key != "take"})
+        for name in job.take.subjects
+        for entry in job.session.subjects[name].seen
+        if entry.get("take", job.take.name) == job.take.name
+    ]
+
+
+def people_csv(job: Job) -> str | list:
+    """Return the file in which people are named, where it was saved."""
+    stated = job.session.people
+    return stated if stated and Path(stated).is_file() else []
+
+
 def fusion(job: Job) -> dict[str, Any]:
     """Return which cameras of a take are fused, and by which rule."""
     named = job.session.fused_cameras(job["fusion"])

@@ -1,4 +1,4 @@
-"""What the study makes to look around in: viewers, clicking pages, videos with skeletons, plans."""
+"""What the study makes to look around in: viewers, pages to click and name on, videos, plans."""
 
 from courtside.study import paths
 from courtside.study.configuration import consent
@@ -23,6 +23,23 @@ def every_clicking_page(study: Study) -> list[str]:
     """Return the pages for clicking the court points of sessions that wait for them."""
     waiting = [session for session in study.sessions.values() if session.unclicked]
     return [paths.CLICKING_PAGE.format(session=session.name) for session in waiting]
+
+
+def every_people_page(study: Study) -> list[str]:
+    """Return the pages on which persons are named."""
+    return [path for session, take in study.takes() for path in people_pages(session, take)]
+
+
+def people_pages(session: Session, take: Take) -> list[str]:
+    """Return the page on which the persons of a take are named; none without consent to pictures.
+
+    A virtual take of one subject shows nobody else, and has none.
+    """
+    known = take.videos and session.take_calibrations() and session.parameters["models"]
+    wanted = not session.virtual or len(take.subjects) > 1
+    if not (known and wanted) or consent.refusing(session, take, "pictures"):
+        return []
+    return takes.files(paths.PEOPLE_PAGE, session, take)
 
 
 def every_overlay_video(study: Study) -> list[str]:
