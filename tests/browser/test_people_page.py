@@ -50,7 +50,7 @@ def saved(page, tmp_path):
         page.click("#save")
     path = tmp_path / "people.csv"
     waiting.value.save_as(path)
-    return path, sightings.read(path, "walk", ["walk", "run"], ["a", "b"], ["c0", "c1"])
+    return path, sightings.read(path, "walk", ["a", "b"], ["c0", "c1"])
 
 
 def name(page, person, subject, part=0):
@@ -102,7 +102,7 @@ def test_names_given_before_and_those_of_other_takes_are_kept(opened, tmp_path):
     ]
     page = opened(named=named, rows=[OTHER])
     path, found = saved(page, tmp_path)
-    assert sightings.of_other_takes(path, "walk") == [OTHER]
+    assert sightings.of_other_takes(path, "walk", ["walk", "run"]) == [OTHER]
     assert [one.subject for one in found] == ["b", "b", "a", "a", "b", "b"]
     assert found[2].to_s == 3.5
     name(page, "person-1", "")
@@ -120,7 +120,7 @@ def test_a_file_of_other_takes_can_be_loaded(opened, tmp_path):
     path.write_text(f"{head}\nrun,a,c0,1,2,3,,\nwalk,b,c0,1,2,3,,\n")
     page.set_input_files("#chooser", path)
     page.wait_for_function("document.getElementById('said').textContent.includes('other takes')")
-    assert sightings.of_other_takes(saved(page, tmp_path)[0], "walk") == [OTHER]
+    assert sightings.of_other_takes(saved(page, tmp_path)[0], "walk", ["walk", "run"]) == [OTHER]
     path.write_text("camera,point\n")
     page.set_input_files("#chooser", path)
     page.wait_for_function("document.getElementById('said').className.includes('bad')")

@@ -145,8 +145,8 @@ def named(folder):
 
 def read_named(path):
     """Read names of one take, and the rows of the others as their page does."""
-    found = sightings.read(path, "walk", ["walk", "run"], ["p1", "p2"], ["left", "right"])
-    return found, sightings.of_other_takes(path, "walk")
+    found = sightings.read(path, "walk", ["p1", "p2"], ["left", "right"])
+    return found, sightings.of_other_takes(path, "walk", ["walk", "run"])
 
 
 RECORDS = {

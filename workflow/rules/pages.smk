@@ -24,7 +24,7 @@ rule build_people_page:
         code=code("build_people_page.py"),
         session=lambda w: w.session,
         take=lambda w: w.take,
-        takes=lambda w: list(session_of(w).takes),
+        takes=of_job(pages.known_takes),
         subjects=lambda w: list(take_of(w).subjects),
         stated=of_job(takes.sightings),
         target=of_job(pages.people_target),

@@ -78,7 +78,6 @@ rule name_people:
         code=code("name_people.py"),
         persons=lambda w: list(take_of(w).subjects),
         stated=of_job(takes.sightings),
-        takes=lambda w: list(session_of(w).takes),
         take=lambda w: f"{w.session}/{w.take}",
         page=of_job(pages.people_page),
         file=lambda w: session_of(w).file,

@@ -21,9 +21,9 @@ def main(paths, page_html, *, session, take, takes, subjects, stated, target, sh
         shots += strips.pictures(one, one.video, found, columns, joints)
     rows, told = [], [sightings.stated("seen", name, entry) for name, entry in stated]
     if paths.people_csv:
-        rows = sightings.of_other_takes(paths.people_csv, take)
+        rows = sightings.of_other_takes(paths.people_csv, take, takes)
         cameras = [one.camera.name for one in seen]
-        told += sightings.read(paths.people_csv, take, takes, subjects, cameras)
+        told += sightings.read(paths.people_csv, take, subjects, cameras)
     named = earlier(told, found, seen, subjects)
     words = {"session": session, "take": take, "subjects": subjects, "target": target}
     lines = court.read(paths.court) if paths.court else None

@@ -8,7 +8,7 @@ from courtside.study.execution import log
 from courtside.study.execution.script import run
 
 
-def main(paths, people_npz, *, persons, stated, takes, take, page, file):
+def main(paths, people_npz, *, persons, stated, take, page, file):
     seen = footage.read(paths.cameras, paths.pose2d, None, paths.sync)
     found, said = people.read(paths.found), naming.Wording(take, " ".join(page), file)
     told = [
@@ -17,7 +17,7 @@ def main(paths, people_npz, *, persons, stated, takes, take, page, file):
     ]
     if paths.people_csv:
         cameras = [one.camera.name for one in seen]
-        told += sightings.read(paths.people_csv, take.split("/")[-1], takes, persons, cameras)
+        told += sightings.read(paths.people_csv, take.split("/")[-1], persons, cameras)
     lines = court.read(paths.court) if paths.court else None
     named = naming.name(found, seen, told, persons, said, lines)
     for line in naming.lines(named):

@@ -205,6 +205,7 @@ def test_single_rows_that_never_meet_are_one_person_who_is_never_placed():
     xy, _ = stick_figures.seen(cameras, people, rng, dropout=0)
     found = associate(cameras, [xy[0], xy[1] + [0, 400]], time_s)
     assert found.placed.tolist() == [0]
+    assert found.line() == "nobody placed from two views or more"
     assert [index.tolist() for index in found.index] == [[[0] * len(time_s)]] * 2
     assert np.isnan(found.path).all()
 

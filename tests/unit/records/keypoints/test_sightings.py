@@ -5,13 +5,14 @@ import pytest
 from courtside.records.keypoints import sightings
 from courtside.study.errors import InputError
 
+TAKES = ["walk", "run"]
 HEAD = "take,subject,camera,time_s,x_px,y_px"
 
 
 def read(tmp_path, *lines, head=HEAD):
     path = tmp_path / "people.csv"
     path.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
-    return sightings.read(path, "walk", ["walk", "run"], ["p1", "p2"], ["left", "right"])
+    return sightings.read(path, "walk", ["p1", "p2"], ["left", "right"])
 
 
 def test_rows_of_the_take_are_read(tmp_path):
@@ -27,7 +28,7 @@ def test_rows_of_the_take_are_read(tmp_path):
     assert (first.from_s, first.to_s) == (None, None)
     assert (second.from_s, second.to_s) == (1.0, None)
     assert second.where.endswith("people.csv: line 4")
-    others = sightings.of_other_takes(tmp_path / "people.csv", "walk")
+    others = sightings.of_other_takes(tmp_path / "people.csv", "walk", TAKES)
     assert others == [["run", "p1", "x", "1", "1", "1", "", ""]]
 
 
@@ -40,7 +41,6 @@ def test_the_bounds_may_be_left_out(tmp_path):
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("jump,p1,left,1,1,1", "line 2: expected a take of walk, run, found 'jump'"),
         ("walk,p3,left,1,1,1", "line 2: expected a subject of p1, p2, found 'p3'"),
         ("walk,p1,top,1,1,1", "line 2: expected a camera of left, right, found 'top'"),
         ("walk,p1,left,soon,1,1", "line 2: expected time_s as a finite number, found 'soon'"),
@@ -72,9 +72,15 @@ def test_another_table_is_refused(tmp_path, head):
         read(tmp_path, head=head)
 
 
+def test_a_row_of_no_take_is_named(tmp_path):
+    read(tmp_path, "walk,p1,left,1,1,1", "jump,p1,left,1,1,1")
+    with pytest.raises(InputError, match=r"line 3: expected a take of walk, run, found 'jump'"):
+        sightings.of_other_takes(tmp_path / "people.csv", "walk", TAKES)
+
+
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.csv: expected a readable CSV"):
-        sightings.of_other_takes(tmp_path / "none.csv", "walk")
+        sightings.of_other_takes(tmp_path / "none.csv", "walk", TAKES)
 
 
 def test_an_entry_of_a_session_is_a_sighting():

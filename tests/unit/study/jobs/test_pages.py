@@ -75,3 +75,12 @@ def test_the_page_of_people_is_by_the_first_calibration_and_network(job):
     assert pages.first_skeleton(one).name == "blazepose33.yaml"
     assert pages.people_target(one) == "data/walk-4cams-tiny/people.csv"
     assert pages.people_page(job(**SHOT)) == []
+
+
+def test_takes_are_known_to_the_page_where_names_were_saved(job, study, tmp_path):
+    csv = tmp_path / "people.csv"
+    session = replace(study.sessions["players-tiny"], people=str(csv), withheld={"late": ("p2",)})
+    one = job(replace(study, sessions={"players-tiny": session}), **SHOT)
+    assert pages.known_takes(one) == []
+    csv.touch()
+    assert pages.known_takes(one) == ["shot", "rally", "late"]

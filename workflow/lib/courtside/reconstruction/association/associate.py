@@ -38,6 +38,8 @@ class Association:
 
     def line(self) -> str:
         """Return a log line: how many people were found, and how often."""
+        if not self.placed.any():
+            return "nobody placed from two views or more"
         shares = ", ".join(f"{share:.0%}" for share in self.placed[self.placed >= COUNTS])
         few = int((self.placed < COUNTS).sum())
         more = f"; {few} more in less than {COUNTS:.0%}" if few else ""

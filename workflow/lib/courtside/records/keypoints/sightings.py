@@ -34,21 +34,19 @@ def stated(where: str, subject: str, content: Mapping[str, Any]) -> Sighting:
 
 
 def read(
-    path: StrPath, take: str, takes: Collection[str], subjects: Sequence[str],
-    cameras: Sequence[str],
-) -> list[Sighting]:  # fmt: skip
+    path: StrPath, take: str, subjects: Sequence[str], cameras: Sequence[str]
+) -> list[Sighting]:
     """Read the rows of one take.
 
     The CSV has the columns take, subject, camera, time_s, x_px, y_px, and may have from_s, to_s.
-    An `InputError` if it is no such table, or a row names an unknown take, subject or camera, or
-    holds no number.
+    An `InputError` if it is no such table, or a row of the take names an unknown subject or camera
+    or holds no number.
     """
     found = []
     for line, row in _rows(path):
-        where = f"{path}: line {line}"
-        _known(where, "take", row["take"], takes)
         if row["take"] != take:
             continue
+        where = f"{path}: line {line}"
         subject = _known(where, "subject", row["subject"], subjects)
         camera = _known(where, "camera", row["camera"], cameras)
         time_s, x, y = (_number(where, key, row[key]) for key in COLUMNS[3:])
@@ -67,10 +65,16 @@ def read(
     return found
 
 
-def of_other_takes(path: StrPath, take: str) -> list[list[str]]:
-    """Return the rows of other takes as they are, cells in the order of all columns."""
-    order = (*COLUMNS, *BOUNDS)
-    return [[row.get(key, "") for key in order] for _, row in _rows(path) if row["take"] != take]
+def of_other_takes(path: StrPath, take: str, takes: Collection[str]) -> list[list[str]]:
+    """Return the rows of other takes as they are, cells in the order of all columns.
+
+    An `InputError` if one names a take that is not among `takes`.
+    """
+    order, found = (*COLUMNS, *BOUNDS), []
+    for line, row in _rows(path):
+        if _known(f"{path}: line {line}", "take", row["take"], takes) != take:
+            found.append([row.get(key, "") for key in order])
+    return found
 
 
 def _rows(path: StrPath) -> Iterable[tuple[int, dict[str, str]]]:

@@ -72,6 +72,11 @@ def people_target(job: Job) -> str:
     return job.session.people or job.fill(paths.PEOPLE_CSV)
 
 
+def known_takes(job: Job) -> list[str]:
+    """Return the takes that a saved file with names may name; nothing without such a file."""
+    return [*job.session.takes, *job.session.withheld] if takes.people_csv(job) else []
+
+
 def _first(job: Job) -> dict[str, str]:
     """Return the first ways to measure a session."""
     session = job.session
