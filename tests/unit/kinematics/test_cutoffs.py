@@ -1,15 +1,20 @@
 """The cut-off that residual analysis chooses, against the one that is best by the truth."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from courtside.kinematics import cutoffs, filtering
+from courtside.kinematics import cutoffs, filtering, measures, skeleton_filter
 from courtside.records import tables
+from courtside.records.keypoints import derived_joints
 from courtside.study.errors import InputError
 from fixtures.people import footwork, walker
+
+CONFIG = Path(__file__).parents[3] / "config"
+DERIVED = derived_joints.read(CONFIG / "derived_joints.yaml")
 
 
 def player(rate_hz, sigma_m, seed=1):
@@ -107,3 +112,36 @@ def test_a_damaged_table_of_cutoffs_is_one_line(tmp_path, text):
     path.write_text(text)
     with pytest.raises(InputError, match="a table of cut-offs"):
         cutoffs.read(path)
+
+
+RATES = (10.0, 12.0, 25.0, 60.0, 120.0, 240.0)
+WANTED = {"head": 6, "trunk": 6, "arms": 10, "legs": 8}
+
+
+@pytest.mark.parametrize("rate_hz", RATES)
+@pytest.mark.parametrize("residual", [False, True])
+def test_every_frame_rate_is_filtered_and_measured(rate_hz, residual, caplog):
+    n_frames = int(6 * rate_hz)
+    record = walker.points(n_frames)
+    record = replace(record, time_s=np.arange(n_frames) / rate_hz)
+    points = skeleton_filter.prepare(record, 0.2)
+    wanted = dict.fromkeys(WANTED, "residual") if residual else WANTED
+    with caplog.at_level("WARNING", logger="courtside"):
+        choices = cutoffs.by_group(points, walker.SKELETON, wanted, path="x.npz")
+    most = 0.45 * rate_hz
+    assert all(choice.cutoff_hz <= most for choice in choices.values())
+    too_high = [name for name, hz in WANTED.items() if hz > most] if not residual else []
+    assert len(caplog.messages) == bool(too_high)
+    for name in too_high:
+        assert f"{name} {WANTED[name]}" in caplog.text
+        assert choices[name].cutoff_hz == pytest.approx(most, rel=0.01)
+    if not residual:
+        same = [name for name in WANTED if name not in too_high]
+        assert all(choices[name].cutoff_hz == WANTED[name] for name in same)
+    each_hz = np.array(walker.SKELETON.by_group({k: c.cutoff_hz for k, c in choices.items()}))
+    smooth = skeleton_filter.smooth(points, each_hz, 4)
+    assert np.isfinite(smooth.xyz).all()
+    how = measures.Filter(each_hz, 4)
+    people = measures.measure(smooth, points, DERIVED, "blazepose33", how, {"p1": "f"})
+    speed = np.linalg.norm(people[0].points["neck"].velocity, axis=1)
+    assert np.nanmedian(speed) == pytest.approx(0.02 * rate_hz, rel=0.1)

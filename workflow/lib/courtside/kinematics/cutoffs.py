@@ -12,6 +12,7 @@ from courtside.records import tables
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.records.keypoints.skeleton import Skeleton
 from courtside.study.errors import InputError, StrPath
+from courtside.study.execution import log
 
 RESIDUAL = "residual"  # in place of a number: choose by residual analysis
 TAIL = 0.5  # ASSUME: above this share of the highest candidate the residual is noise alone
@@ -116,8 +117,10 @@ def by_group(
     """Return the cut-off of each group of joints: the stated number, or `RESIDUAL`'s choice.
 
     `points` are of `skeleton_filter.prepare`, from the file `path`, which errors name. `wanted`
-    maps groups of the skeleton to Hz or `RESIDUAL`.
+    maps groups of the skeleton to Hz or `RESIDUAL`. A number above `HIGHEST` of the frame rate is
+    lowered to that, and the log says so in one line.
     """
+    wanted = _lowered(wanted, points.rate_hz)
     choices = {}
     for group, value in wanted.items():
         if value == RESIDUAL:
@@ -131,6 +134,20 @@ def by_group(
         else:
             choices[group] = Choice(float(value), np.zeros(0), np.zeros(0), float("nan"))
     return choices
+
+
+def _lowered(wanted: Mapping[str, float | str], rate_hz: float) -> dict[str, float | str]:
+    """Return cut-offs (Hz, or `RESIDUAL`) of which none is above what the frame rate allows."""
+    most = np.floor(100 * HIGHEST * rate_hz) / 100 if np.isfinite(rate_hz) else np.inf
+    high = [name for name, value in wanted.items() if value != RESIDUAL and float(value) > most]
+    if high:
+        log.logger.warning(
+            "filter_motion.cutoff_hz: %s lowered to %.2f Hz, the most at %.4g frames per second",
+            ", ".join(f"{name} {wanted[name]:g}" for name in high),
+            most,
+            rate_hz,
+        )
+    return {name: float(most) if name in high else value for name, value in wanted.items()}
 
 
 def table(choices: Mapping[str, Choice], order: int) -> pd.DataFrame:
