@@ -69,7 +69,7 @@ def test_a_comment_reruns_nothing(kept):
 
 
 def test_a_parameter_reruns_its_step_and_what_follows(kept):
-    with edited(kept / "config/config.yaml", "max_error_px: 15", "max_error_px: 16"):
+    with edited(kept / "config/config.yaml", "max_error_share: 0.05", "max_error_share: 0.06"):
         assert planned(root=kept) == {"triangulate": FUSED, **DOWNSTREAM_OF_3D}
 
 

@@ -259,3 +259,39 @@ def test_halves_of_different_takes_are_a_fault():
     left, right = halves()
     with pytest.raises(ValueError, match="expected halves of the same time_s"):
         fusion.merge(left, replace(right, time_s=right.time_s + 1), CAMERAS_HALFBODY)
+
+
+@pytest.mark.parametrize("scale", [0.4, 3.0])
+def test_limits_in_shares_need_no_scaling(scale):
+    """The same scene in pictures of another size accepts the same views of the same points."""
+    record, rng = walker.points(n_frames=20), np.random.default_rng(2)
+    shares = {"min_score": 0.3, "min_views": 2, "fix_sides": True, "max_error_share": 0.05}
+    noise = rng.normal(0, 5, (4, 1, 20, walker.N_JOINTS, 2))
+    noise[2, :, 5:9] += 60
+    found = []
+    for times in (1.0, scale):
+        cameras = [
+            replace(c, K=np.diag([times, times, 1]) @ c.K, size=(9999, 9999)) for c in scene.ring(4)
+        ]
+        views = walker.views(record, cameras)
+        for view_of, of_camera in zip(views, noise, strict=True):
+            view_of.xy[...] += times * of_camera
+        found.append(fusion.triangulate_take(cameras, views, walker.SKELETON, ["p1"], **shares))
+    np.testing.assert_array_equal(found[0].accepted, found[1].accepted)
+    assert found[0].accepted[0, 6, :, 2].mean() < 0.2 < 0.95 < found[0].accepted[..., 0].mean()
+    np.testing.assert_allclose(found[0].xyz, found[1].xyz, atol=1e-4)
+
+
+def test_pixels_replace_shares_and_one_of_both_is_needed():
+    cameras, views = scene.ring(4), walker.views(walker.points(20), scene.ring(4))
+    views[2].xy[...] += 12
+    common = {"min_score": 0.3, "min_views": 2, "fix_sides": False}
+
+    def accepted(**limits):
+        found = fusion.triangulate_take(cameras, views, walker.SKELETON, ["p1"], **common, **limits)
+        return found.accepted[..., 2].mean()
+
+    assert accepted(max_error_share=0.05) > 0.99 > 0.01 > accepted(max_error_px=5)
+    assert accepted(max_error_share=0.05, max_error_px=5, fade_px=7) < 0.01
+    with pytest.raises(ValueError, match="max_error_share or max_error_px"):
+        accepted()

@@ -25,7 +25,7 @@ def test_methods_state_the_configuration(study):
         "a standard deviation of 0.7 px per axis",
         "network blazepose-full",
         "<code>all-robust</code>: views are weighted",
-        "within 15 px",
+        "within 0.05 of the person's height",
         "6 Hz (head), 10 Hz (arms)",
         "nothing is filtered again",
     ):

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from courtside.geometry import epipolar
 from courtside.geometry.camera import Camera, project, undistort
 
-FADE = 4 / 3  # default of `fade_px`, in units of the limit: 20 px for 15, as in config/config.yaml
+FADE = 4 / 3  # default of `fade_px`, in units of the limit
 # ASSUME: the schedule of the robust kernel; outliers of 80 to 400 px are left out (tests).
 START = 12.0  # the first kernel, in units of the last
 GRADUATION = 1.6  # each round narrows the kernel by this factor
@@ -78,10 +78,10 @@ def triangulate_robust(
     score: NDArray,
     *,
     sigma_px: ArrayLike,
-    max_error_px: float,
+    max_error_px: ArrayLike,
     min_views: int = 2,
     min_score: float = 0.0,
-    fade_px: float | None = None,
+    fade_px: ArrayLike | None = None,
 ) -> Triangulated:
     """Triangulate points, leaving out views that disagree.
 
@@ -100,15 +100,17 @@ def triangulate_robust(
     score : (C, N) float; its square root scales the weight of a view
     sigma_px : float or (N,) float; standard deviation per axis of a keypoint with score 1: scales
         the covariance only
-    max_error_px : the limit: a view is accepted if its keypoint lies this close to the projected
-        point
+    max_error_px : float or (C, N) float; the limit: a view is accepted if its keypoint lies this
+        close to the projected point
     min_views : fewest accepted views of a point, at least 2
     min_score : keypoints below it are not used
-    fade_px : a view with this reprojection error has a quarter of its weight; 4/3 of the limit by
-        default
+    fade_px : float or (C, N) float; a view with this reprojection error has a quarter of its
+        weight; 4/3 of the limit by default
     """
     check(cameras, xy, score, min_views)
     sigma_px = np.broadcast_to(sigma_px, xy.shape[1:2])
+    limit_px = np.broadcast_to(np.asarray(max_error_px, dtype=float), score.shape)
+    fading_px = FADE * limit_px if fade_px is None else np.broadcast_to(fade_px, score.shape)
     pieces = [slice(at, at + BATCH) for at in range(0, max(xy.shape[1], 1), BATCH)]
     parts = [
         _solve(
@@ -118,8 +120,8 @@ def triangulate_robust(
             sigma_px[piece],
             min_views=min_views,
             min_score=min_score,
-            max_error_px=max_error_px,
-            fade_px=fade_px or FADE * max_error_px,
+            limit_px=limit_px[:, piece],
+            fade_px=fading_px[:, piece],
         )
         for piece in pieces
     ]
@@ -150,8 +152,8 @@ def _solve(
     *,
     min_views: int,
     min_score: float,
-    max_error_px: float,
-    fade_px: float,
+    limit_px: NDArray,
+    fade_px: NDArray,
 ) -> Triangulated:
     seen = np.isfinite(xy).all(axis=-1) & np.isfinite(score)
     usable = seen & (score >= min_score) & (score > 0)
@@ -160,23 +162,27 @@ def _solve(
     accepted = np.zeros_like(usable)
     at = np.flatnonzero(usable.sum(axis=0) >= min_views)
     if len(at):
-        found = _select_and_refine(views.of(at), max_error_px, fade_px, min_views)
+        found = _select_and_refine(views.of(at), limit_px[:, at], fade_px[:, at], min_views)
         xyz[at], accepted[:, at] = found
     covariance = _noise_covariance(views, xyz, accepted, sigma_px)
     return Triangulated(xyz, covariance, accepted, _reprojection_px(cameras, xy, xyz))
 
 
 def _select_and_refine(
-    views: Views, limit_px: float, fade_px: float, min_views: int
+    views: Views, limit_px: NDArray, fade_px: NDArray, min_views: int
 ) -> tuple[NDArray, NDArray]:
-    """Return points (N, 3), NaN where views disagree, and accepted views (C, N)."""
+    """Return points (N, 3), NaN where views disagree, and accepted views (C, N).
+
+    `limit_px` and `fade_px` are (C, N).
+    """
     xyz = _linear(views)
     bad = np.flatnonzero(((views.distance(xyz) > limit_px) & (views.weight > 0)).any(axis=0))
     if len(bad):
-        worst, scale_px = views.of(bad), START * fade_px
-        while scale_px > fade_px:
-            xyz[bad] = worst.stepped(xyz[bad], _faded(worst, xyz[bad], scale_px, np.inf))
-            scale_px /= GRADUATION
+        worst, last_px, times = views.of(bad), fade_px[:, bad], START
+        while times > 1:
+            weight = _faded(worst, xyz[bad], times * last_px, np.inf)
+            xyz[bad] = worst.stepped(xyz[bad], weight)
+            times /= GRADUATION
     for _ in range(SETTLING):
         xyz = views.stepped(xyz, _faded(views, xyz, fade_px, WIDEST * limit_px))
     accepted = _accept(views.distance(xyz), views.weight > 0, limit_px, min_views)
@@ -191,14 +197,14 @@ def _linear(views: Views) -> NDArray:
     return views.stepped(xyz, views.weight)
 
 
-def _accept(error: NDArray, usable: NDArray, limit_px: float, min_views: int) -> NDArray:
+def _accept(error: NDArray, usable: NDArray, limit_px: NDArray, min_views: int) -> NDArray:
     """Accept views within the limit; where these are too few, the closest up to `WIDEST` limits."""
-    error = np.where(usable, error, np.inf)
-    enough_px = np.sort(error, axis=0)[min_views - 1]
-    return error <= np.clip(enough_px, limit_px, WIDEST * limit_px)
+    limits = np.where(usable, error / limit_px, np.inf)
+    enough = np.sort(limits, axis=0)[min_views - 1]
+    return limits <= np.clip(enough, 1.0, WIDEST)
 
 
-def _faded(views: Views, xyz: NDArray, scale_px: float, widest_px: float) -> NDArray:
+def _faded(views: Views, xyz: NDArray, scale_px: NDArray, widest_px: NDArray | float) -> NDArray:
     """Return Geman-McClure weights (C, N): an error of `scale_px` leaves a quarter."""
     error = views.distance(xyz)
     return views.weight / (1 + (error / scale_px) ** 2) ** 2 * (error <= widest_px)

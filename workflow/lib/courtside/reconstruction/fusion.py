@@ -11,7 +11,7 @@ from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection
 from courtside.geometry import triangulation
 from courtside.geometry.camera import Camera
-from courtside.reconstruction import left_right, resampling
+from courtside.reconstruction import left_right, person_height, resampling
 from courtside.records.devices.clocks import Clock
 from courtside.records.keypoints import missing_reason
 from courtside.records.keypoints.keypoints import Keypoints2D, Keypoints3D, unknown_errors
@@ -26,9 +26,11 @@ def triangulate_take(
     *,
     min_score: float,
     min_views: int,
-    max_error_px: float,
-    fade_px: float,
     fix_sides: bool,
+    max_error_share: float | None = None,
+    fade_share: float | None = None,
+    max_error_px: float | None = None,
+    fade_px: float | None = None,
     clocks: Sequence[Clock] | None = None,
     time_s: NDArray | None = None,
     rule: str = "robust",
@@ -40,7 +42,9 @@ def triangulate_take(
     exchanges left and right in views that contradict the others. `time_s` (T,) is of the result, on
     the reference clock; by default `resampling.common_times` of the views. The `rule` "robust"
     weights and excludes views (`triangulation.triangulate_robust`, which the limits are of); "dlt"
-    uses all (`triangulation.triangulate_plain`).
+    uses all (`triangulation.triangulate_plain`). `max_error_share` and `fade_share` are in heights
+    of the person in each picture (`person_height.in_pictures`); `max_error_px` and `fade_px`, the
+    same everywhere, have precedence. A `ValueError` without a limit.
 
     The keypoints' standard deviation is measured per joint from the residuals of the accepted
     views, three degrees of freedom less per point. It contains what the views disagree on, but not
@@ -53,14 +57,16 @@ def triangulate_take(
     ]
     xy, score = (np.stack(part) for part in zip(*resampled, strict=True))
     swapped = np.zeros(score.shape, dtype=bool)
-    if fix_sides and rule == "robust":
-        xy, score, swapped = _fix_sides(cameras, xy, score, skeleton, max_error_px)
-    flat = score.reshape(len(cameras), -1)
-    options = {"min_views": min_views, "min_score": min_score, "sigma_px": 1.0}
+    options: dict[str, Any] = {"min_views": min_views, "min_score": min_score, "sigma_px": 1.0}
     solve: Callable[..., triangulation.Triangulated] = triangulation.triangulate_plain
     if rule == "robust":
         solve = triangulation.triangulate_robust
-        options |= {"max_error_px": max_error_px, "fade_px": fade_px}
+        stated = {"share": (max_error_share, fade_share), "px": (max_error_px, fade_px)}
+        limits = _limits(cameras, xy, score, skeleton.joints, **stated)
+        options |= {key: _per_joint(px, score) for key, px in limits.items()}
+        if fix_sides:
+            xy, score, swapped = _fix_sides(cameras, xy, score, skeleton, limits["max_error_px"])
+    flat = score.reshape(len(cameras), -1)
     found = solve(cameras, xy.reshape(len(cameras), -1, 2), flat, **options)
     points = _record(cameras, views[0], person_id, time_s, found, swapped)
     reason = why_missing(flat, found.xyz, min_score, min_views).reshape(points.xyz.shape[:-1])
@@ -69,13 +75,35 @@ def triangulate_take(
     return replace(points, reason=reason, covariance_2d=covariance)
 
 
-def _fix_sides(cameras, xy, score, skeleton, max_error_px) -> tuple[NDArray, NDArray, NDArray]:
+def _limits(cameras, xy, score, joints, share, px) -> dict[str, NDArray]:
+    """Return the limit and where a view fades, (C, P, T) px, from (limit, fade) in shares or px."""
+    if share[0] is None and px[0] is None:
+        raise ValueError("expected max_error_share or max_error_px, found neither")
+    if None in px:
+        height_px = person_height.in_pictures(cameras, xy, score, joints)
+    limit_px = np.full(score.shape[:3], float(px[0])) if px[0] else share[0] * height_px
+    if px[1]:
+        fade_px = np.full(score.shape[:3], float(px[1]))
+    elif px[0] or share[1] is None:
+        fade_px = triangulation.FADE * limit_px
+    else:
+        fade_px = share[1] * height_px
+    return {"max_error_px": limit_px, "fade_px": fade_px}
+
+
+def _per_joint(values: NDArray, score: NDArray) -> NDArray:
+    """Return values (C, P, T) for each joint of scores (C, P, T, J), flat: (C, P T J)."""
+    return np.repeat(values.reshape(len(values), -1), score.shape[3], axis=1)
+
+
+def _fix_sides(cameras, xy, score, skeleton, limit_px) -> tuple[NDArray, NDArray, NDArray]:
     mirror = np.array(skeleton.mirror())
     groups = [[skeleton.index(j) for j in g] for g in skeleton.side_groups()]
     swapped = np.zeros(score.shape, dtype=bool)
     for person in range(score.shape[1]):
+        most = {"max_error_px": np.median(limit_px[:, person], axis=1)}
         swapped[:, person] = left_right.swapped_views(
-            cameras, xy[:, person], score[:, person], mirror, groups, max_error_px=max_error_px
+            cameras, xy[:, person], score[:, person], mirror, groups, **most
         )
         xy[:, person] = left_right.apply_swaps(xy[:, person], swapped[:, person], mirror)
         score[:, person] = left_right.apply_swaps(score[:, person], swapped[:, person], mirror)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from courtside.geometry import epipolar, triangulation
 from courtside.geometry.camera import Camera
@@ -26,7 +26,7 @@ def swapped_views(
     mirror: Sequence[int] | NDArray,
     groups: Sequence[Sequence[int]],
     *,
-    max_error_px: float,
+    max_error_px: ArrayLike,
 ) -> NDArray:
     """Find where networks confused left and right in a take of one person.
 
@@ -35,7 +35,7 @@ def swapped_views(
     where unseen; `mirror` (J,) is the index of the same joint of the other side, its own for joints
     without sides. `groups` are joints that a network confuses together, such as both legs; each
     closed under `mirror`. Disagreement of a view is cut off at the reprojection error
-    `max_error_px`, or at `LIMIT` of the person's size in that view if this is less.
+    `max_error_px`, a number or (C,), or at `LIMIT` of the person's size there if this is less.
 
     For each group, the cheapest path over time through the hypotheses (Viterbi 1967). A hypothesis
     costs the disagreement of the views (`disagreement`) and a little for each view it exchanges; a
