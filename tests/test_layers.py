@@ -37,6 +37,7 @@ LEVELS = {  # a room imports rooms of lower levels only
     "drafting": 5,
     "validation": 5,
     "pages": 5,
+    "quality": 6,
     "evaluation": 6,
     "body_frame": 6,
     "synchronisation": 7,

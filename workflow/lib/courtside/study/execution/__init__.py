@@ -8,4 +8,5 @@ digest: `code_digest` and `Remembered`, which rerun rules whose code changed
 checksums: `Checksums` of large files, kept between runs
 future_dates, machine_resources: what is checked before any work
 summary: the words at the end of a run
+verdicts: `told`, `read`, `failed`: verdicts on takes, at the end of a run
 """

@@ -24,16 +24,22 @@ KINDS = (
 )
 
 
-def finished(made: Iterable[str], seconds: float, look_at: Iterable[str] = ()) -> str:
+def finished(
+    made: Iterable[str], seconds: float, look_at: Iterable[str] = (), n_failed: int = 0
+) -> str:
     """Return a few lines on a run in which everything was made.
 
-    `made` are the files that this run made; `look_at` is what to look at, where it exists.
+    `made` are the files that this run made; `look_at` is what to look at, where it exists;
+    `n_failed` counts the takes that were measured, but judged as failed.
     """
     made = list(made)
     if not made:
         return "Courtside: everything was there already, nothing had to be made."
     count = "1 file" if len(made) == 1 else f"{len(made)} files"
-    lines = [f"Courtside: finished, {count} made in {duration(seconds)}."]
+    takes = "1 take" if n_failed == 1 else f"{n_failed} takes"
+    but = f", but {takes} failed: see the end" if n_failed else ""
+    word = "" if n_failed else "finished, "
+    lines = [f"Courtside: {word}{count} made in {duration(seconds)}{but}."]
     lines += [
         f"  {kind} ({len(paths)}): {_places(paths)}" for kind, paths in _by_kind(made).items()
     ]

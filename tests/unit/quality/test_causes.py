@@ -1,0 +1,76 @@
+"""The cause of a camera's disagreement is found by test, for each fault that is planted."""
+
+import numpy as np
+import pytest
+
+from courtside.quality import causes
+from fixtures.people import judged
+
+SAME = dict.fromkeys(("c0", "c1", "c2", "c3"), (0, 1))
+
+
+def found(cameras, at=2):
+    return causes.find(judged.gathered(cameras), at, found_limit=0.9)
+
+
+@pytest.mark.parametrize("degrees", [1.0, -2.0, 3.0])
+@pytest.mark.parametrize("axis", [(0, 1, 0), (1, 0, 0)])
+def test_a_camera_that_is_turned(degrees, axis):
+    cause = found(judged.turned(judged.footage(), 2, degrees, axis))
+    assert cause.name == causes.CALIBRATION
+    assert f"turned by {abs(degrees):.1f} degrees" in cause.sentence
+
+
+@pytest.mark.parametrize("shift_s", [0.06, -0.1, 0.2, -0.4])
+def test_a_clock_that_is_off(shift_s):
+    cause = found(judged.footage(offset_s={2: shift_s}))
+    assert cause.name == causes.CLOCK
+    stated = float(cause.sentence.split("moved by ")[1].split(" s")[0])
+    assert stated == pytest.approx(-shift_s, abs=0.021)
+
+
+def test_a_camera_that_follows_the_other_person():
+    cause = found(judged.followed(judged.footage(), SAME | {"c2": (1, 0)}))
+    assert cause.name == causes.IDENTITY and "somebody else" in cause.sentence
+
+
+def test_a_person_who_is_found_and_not_followed():
+    cause = found(judged.followed(judged.footage(), SAME | {"c2": (-1, -1)}))
+    assert cause.name == causes.IDENTITY and "followed in 0%" in cause.sentence
+
+
+@pytest.mark.parametrize("share", [0.3, 1.0])
+def test_nobody_is_found(share):
+    cause = found(judged.footage(hidden={2: share}))
+    assert cause.name == causes.DETECTION and f"{share:.0%}" in cause.sentence
+
+
+def test_a_stranger_is_followed_and_the_person_never_found():
+    cameras = judged.footage()
+    view = cameras[2].tracklets
+    view.xy[...] = np.array([1920.0, 0.0]) + view.xy[:1] * np.array([-1.0, 1.0])  # goes elsewhere
+    cause = found(cameras)
+    assert cause.name == causes.DETECTION and "nobody found in it is the person" in cause.sentence
+
+
+def test_poor_keypoints():
+    cameras = judged.footage()
+    rng = np.random.default_rng(0)
+    cameras[2].tracklets.xy[...] += rng.normal(0, 25, cameras[2].tracklets.xy.shape)
+    cause = found(cameras)
+    assert cause.name == causes.DETECTION and "poor" in cause.sentence
+
+
+def test_of_two_cameras_neither_is_blamed():
+    cause = found(judged.turned(judged.footage(n_cameras=2), 1, 3.0), at=1)
+    assert cause.name == causes.UNKNOWN and "no third one" in cause.sentence
+
+
+def test_a_person_whom_the_others_do_not_place():
+    cause = found(judged.footage(hidden=dict.fromkeys((0, 1, 3), 1.0)))
+    assert cause.name == causes.UNKNOWN and "do not agree" in cause.sentence
+
+
+def test_nobody_is_followed_in_any_camera():
+    cause = found(judged.followed(judged.footage(), dict.fromkeys(SAME, (-1, -1))))
+    assert cause.name == causes.IDENTITY and "none of them is followed" in cause.sentence

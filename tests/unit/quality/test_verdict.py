@@ -1,0 +1,84 @@
+"""Verdicts: a fault of one camera is that camera's, its cause is named, and the rest is good."""
+
+import numpy as np
+import pytest
+
+from courtside.quality import causes, verdict
+from courtside.study.execution.verdicts import ALL, COLUMNS, DOUBTFUL, FAILED, GOOD, WHOLE
+from fixtures.people import judged
+
+SAME = dict.fromkeys(("c0", "c1", "c2", "c3"), (0, 1))
+
+
+def wholes(cameras):
+    """Return {(camera, person): row} of the verdicts, and the table."""
+    table = verdict.judge(judged.gathered(cameras))
+    rows = table[table["measure"] == WHOLE]
+    return {(row.camera, row.person): row for row in rows.itertuples()}, table
+
+
+def test_a_good_take_is_good_throughout():
+    rows, table = wholes(judged.footage())
+    assert {row.verdict for row in rows.values()} == {GOOD}
+    assert set(table["verdict"]) == {GOOD} and list(table.columns) == COLUMNS
+    assert list(rows) == [(ALL, ALL), *((f"c{k}", ALL) for k in range(4)), (ALL, "p1"), (ALL, "p2")]
+    assert table["sentence"].str.endswith(".").all()
+
+
+PLANTED = {
+    "turned by 2 degrees": (lambda: judged.turned(judged.footage(), 1, 2.0), causes.CALIBRATION),
+    "0.1 s late": (lambda: judged.footage(offset_s={1: 0.1}), causes.CLOCK),
+    "another person": (
+        lambda: judged.followed(judged.footage(), SAME | {"c1": (1, 0)}),
+        causes.IDENTITY,
+    ),
+    "nobody": (lambda: judged.footage(hidden={1: 1.0}), causes.DETECTION),
+}
+
+
+@pytest.mark.parametrize("fault", PLANTED)
+def test_one_wrong_camera_is_named_with_its_cause_and_the_others_are_good(fault):
+    cameras, cause = PLANTED[fault]
+    rows, _ = wholes(cameras())
+    assert rows["c1", ALL].verdict in (DOUBTFUL, FAILED) and rows["c1", ALL].cause == cause
+    assert {rows[f"c{k}", ALL].verdict for k in (0, 2, 3)} == {GOOD}
+    assert rows[ALL, ALL].verdict == DOUBTFUL and rows[ALL, ALL].cause == cause
+    assert "Camera c1: " in rows[ALL, ALL].sentence
+
+
+def test_of_three_cameras_that_contradict_each_other_none_is_blamed_for_sure():
+    """Cameras as high as what they look at, turned about the vertical: any two agree."""
+    rows, _ = wholes(judged.turned(judged.footage(n_cameras=3, height_m=1.0), 1, 1.0))
+    wrong = [row for row in rows.values() if row.camera != ALL and row.verdict != GOOD]
+    assert len(wrong) > 1
+    assert all(verdict.ANY in row.sentence for row in wrong)
+    assert rows[ALL, ALL].cause == causes.CALIBRATION
+
+
+@pytest.mark.parametrize("n_cameras", [2, 4])
+def test_a_take_in_which_nobody_was_found_failed(n_cameras):
+    rows, _ = wholes(judged.footage(n_cameras=n_cameras, hidden=dict.fromkeys(range(4), 1.0)))
+    assert {row.verdict for row in rows.values()} == {FAILED}
+    assert rows[ALL, ALL].cause == causes.DETECTION
+    said = rows[ALL, ALL].sentence
+    assert said.count("found nobody in 100% of the frames") == 1 and "Cameras c0, c1" in said
+
+
+def test_cameras_that_follow_different_people_fail_the_take():
+    """One subject is stated: two cameras follow one person, one the other, one a stranger."""
+    cameras = judged.footage()
+    stranger = cameras[3].tracklets
+    stranger.xy[...] = np.array([1920.0, 0.0]) + stranger.xy[:1] * np.array([-1.0, 1.0])
+    rows, _ = wholes(judged.followed(cameras, {"c0": (0,), "c1": (1,), "c2": (1,), "c3": (0,)}))
+    assert rows[ALL, ALL].verdict == FAILED
+    assert rows["c3", ALL].verdict == FAILED
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"), [(0.95, GOOD), (0.7, DOUBTFUL), (0.3, FAILED), (float("nan"), FAILED)]
+)
+def test_a_value_is_judged_by_its_limit(value, expected):
+    limit = verdict.Limit(0.9, 0.5, "{:.0%} of it")
+    assert verdict.level(limit, value) == expected
+    high = verdict.Limit(0.1, 0.5, "{:.3f}", falling=False)
+    assert verdict.level(high, 1 - value) == expected

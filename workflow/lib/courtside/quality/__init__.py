@@ -1,0 +1,7 @@
+"""Verdicts on takes: shares, errors, and by test why a camera disagrees with the others.
+
+seen: `gather`, `without`, `disagreement`: a take on common times, persons by the other cameras
+measures: `of_camera`, `of_person`: shares, errors in heights of the person, limb lengths
+causes: `find`: detection, identity, clock or calibration, by test
+verdict: `judge`, `level`: good, doubtful or failed, in words
+"""

@@ -1,0 +1,196 @@
+"""Why a camera disagrees with the others: detection, identity, clock or calibration, by test.
+
+Each test changes one thing of one camera and asks whether its keypoints then lie where the other
+cameras place the joints. Errors are in heights of the person in that picture.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from courtside.geometry import camera as camera_models
+from courtside.quality import seen as views
+from courtside.quality.seen import Seen
+
+DETECTION, IDENTITY, CLOCK, CALIBRATION = "detection", "identity", "clock", "calibration"
+UNKNOWN = "unknown"
+# ASSUME: usual takes have 0.012 to 0.03 (`verdict.LIMITS`); another body is 0.3 away and more.
+FITS = 0.08
+NEARER = 0.6  # a change explains an error if at most this share of it is left
+LEAST = 0.3  # a test needs the person in this share of the frames looked at
+SOME = 0.02  # share of frames without anybody that is worth a word
+MOST_S = 0.5  # clocks are searched to either side
+FINEST_S = 0.008  # and not in finer steps than this, or a frame
+MOST_DEG = 15.0  # a camera that is turned further is not recognised
+MOST_POINTS = 3000  # of the fit of a direction
+SPREAD = 0.02  # heights: errors beyond it weigh less in that fit
+
+
+@dataclass(frozen=True)
+class Cause:
+    """The likelier cause of a camera's disagreement."""
+
+    name: str  # `detection`, `identity`, `clock`, `calibration`, `unknown`
+    sentence: str  # what the test found
+
+
+@dataclass(frozen=True, eq=False)
+class _Camera:
+    """What the tests of one camera share."""
+
+    seen: Seen
+    at: int
+    expected: NDArray  # (P, S): where the person should be in the picture
+    followed: NDArray  # (P, S, K, 2) px
+    nearest: NDArray  # (P, S, K, 2) px: the tracklet whose keypoints are nearest, found or not
+    row: NDArray  # (P, S): its number, -1 without one
+
+    def left(self, xy: NDArray, model: camera_models.Camera | None = None) -> float:
+        """Return the median error over the frames of keypoints (P, S, K, 2); NaN if too few."""
+        frames = views.typical(self.seen.errors(self.at, xy, model))
+        known = np.isfinite(frames)
+        enough = known.sum() >= max(LEAST * self.expected.sum(), 2)
+        return float(np.median(frames[known])) if enough else float("nan")
+
+
+def find(seen: Seen, camera: int, *, found_limit: float) -> Cause:
+    """Return the likelier cause of a camera's disagreement with the others.
+
+    `found_limit` is the share of persons found below which detection alone explains it. Where the
+    other cameras do not place the person, or there are only two cameras, the cause of errors is not
+    known.
+    """
+    there = np.isfinite(seen.others[camera]).all(axis=-1).mean(axis=-1) >= views.HALF
+    expected = seen.expected(camera)
+    some = np.any(views.shown(seen.rows[camera][:, seen.at]), axis=0)
+    wanted = np.any(expected, axis=0)
+    absent = float((wanted & ~some).sum() / max(wanted.sum(), 1))
+    if absent > 1 - found_limit:
+        return Cause(DETECTION, _absent(absent))
+    if len(seen.cameras) < 3:
+        words = "two cameras contradict each other, and no third one tells which of them is wrong"
+        return Cause(UNKNOWN, words)
+    if not (there & expected).any() and not seen.followed[camera].any():
+        return Cause(IDENTITY, "people are found there, but none of them is followed")
+    if not (there & expected).any():
+        return Cause(UNKNOWN, "the other cameras do not agree on where the person is")
+    return _by_tests(_of_camera(seen, camera, there & expected), absent)
+
+
+def _of_camera(seen: Seen, camera: int, expected: NDArray) -> _Camera:
+    rows = seen.rows[camera][:, seen.at]
+    errors = np.stack([seen.errors(camera, row[None]) for row in rows]) if len(rows) else None
+    followed = np.where(expected[..., None, None], seen.xy[camera][:, seen.at], np.nan)
+    nearest, best = np.full(followed.shape, np.nan), np.full(expected.shape, -1)
+    if errors is not None:
+        frames = np.nan_to_num(views.typical(errors), nan=np.inf)
+        best = np.where(np.isfinite(frames.min(axis=0)) & expected, frames.argmin(axis=0), -1)
+        picked = rows[np.maximum(best, 0), np.arange(len(seen.at))]
+        nearest = np.where((best >= 0)[..., None, None], picked, np.nan)
+    return _Camera(seen, camera, expected, followed, nearest, best)
+
+
+def _by_tests(one: _Camera, absent: float) -> Cause:
+    """Return the cause whose test leaves least of the error."""
+    own = one.left(one.followed)
+    nearest = one.left(one.nearest)
+    if np.isnan(own) and nearest <= FITS:
+        return Cause(IDENTITY, _not_followed(one))
+    tested = one.followed if np.isfinite(own) else one.nearest
+    before = own if np.isfinite(own) else nearest
+    if np.isnan(before):
+        return Cause(DETECTION, _absent(absent))
+    shift_s, clock = _best_shift(one, tested)
+    angle_deg, turned = _best_turn(one, tested)
+    left = {CLOCK: clock, CALIBRATION: turned} | ({IDENTITY: nearest} if _is_other(one) else {})
+    name = min(left, key=lambda key: np.nan_to_num(left[key], nan=np.inf))
+    if not left[name] <= NEARER * before:
+        return _unexplained(one, before, absent)
+    words = {
+        IDENTITY: "it follows somebody else: with another person found there",
+        CLOCK: f"its clock is off: moved by {shift_s:+.3f} s",
+        CALIBRATION: f"its calibration is off: turned by {angle_deg:.1f} degrees",
+    }[name]
+    fell = f"the error falls from {before:.2f} to {left[name]:.2f} of a person's height"
+    return Cause(name, f"{words} {fell}")
+
+
+def _is_other(one: _Camera) -> bool:
+    """Say whether the nearest tracklet is mostly somebody else than the one that is followed."""
+    apart_px = np.linalg.norm(one.nearest.mean(axis=2) - one.followed.mean(axis=2), axis=-1)
+    apart = apart_px / one.seen.height_px[one.at][:, one.seen.at]
+    known = np.isfinite(apart)
+    return bool(known.any() and (apart[known] > FITS).mean() > LEAST)
+
+
+def _unexplained(one: _Camera, before: float, absent: float) -> Cause:
+    """Return what no test explains: nobody who fits was found, or the keypoints are poor."""
+    if before > FITS:
+        words = "nobody found in it is the person that the other cameras see"
+        return Cause(DETECTION, words)
+    if absent > SOME:
+        return Cause(DETECTION, _absent(absent))
+    errors = np.linalg.norm(one.seen.errors(one.at, one.nearest), axis=-1)
+    poor = float((errors > views.AGREED)[np.isfinite(errors)].mean())
+    words = f"its keypoints are poor: {poor:.0%} of them are not where the other cameras see them"
+    return Cause(DETECTION, words)
+
+
+def _absent(share: float) -> str:
+    return f"the network found nobody in {share:.0%} of the frames that should show somebody"
+
+
+def _not_followed(one: _Camera) -> str:
+    follows = views.shown(one.followed)[one.expected].mean()
+    return (
+        f"the person is found there, but followed in {follows:.0%} of the frames only: "
+        "the tracks were not joined"
+    )
+
+
+def _best_shift(one: _Camera, tested: NDArray) -> tuple[float, float]:
+    """Return the shift of the clock (s) that leaves least error, and that error."""
+    seen = one.seen
+    step = max(1, round(FINEST_S * seen.points.rate_hz))
+    most = int(MOST_S * seen.points.rate_hz) // step
+    followed = np.isfinite(one.left(one.followed))
+    found = []
+    for frames in step * np.arange(-most, most + 1):
+        at = seen.at + frames
+        inside = (at >= 0) & (at < seen.xy.shape[2])
+        moved = np.full(tested.shape, np.nan)
+        if followed:
+            moved[:, inside] = seen.xy[one.at][:, at[inside]]
+        else:
+            rows = seen.rows[one.at][:, at[inside]]
+            picked = rows[np.maximum(one.row[:, inside], 0), np.arange(inside.sum())]
+            moved[:, inside] = np.where((one.row[:, inside] >= 0)[..., None, None], picked, np.nan)
+        error = one.left(np.where(one.expected[..., None, None], moved, np.nan))
+        found.append((np.nan_to_num(error, nan=np.inf), abs(frames), frames))
+    error, _, frames = min(found)
+    return float(frames / seen.points.rate_hz), float(error)
+
+
+def _best_turn(one: _Camera, tested: NDArray) -> tuple[float, float]:
+    """Return by how many degrees a camera is turned that leaves least error, and that error."""
+    camera, seen = one.seen.cameras[one.at], one.seen
+    known = np.isfinite(seen.errors(one.at, tested)).all(axis=-1)
+    if known.sum() < 10:
+        return float("nan"), float("nan")
+    chosen = np.flatnonzero(known)[:: max(1, int(known.sum()) // MOST_POINTS)]
+    xyz, xy = seen.others[one.at].reshape(-1, 3)[chosen], tested.reshape(-1, 2)[chosen]
+    height_px = np.broadcast_to(seen.height_px[one.at][:, seen.at, None], known.shape).ravel()[
+        chosen
+    ]
+
+    def residual(vector: NDArray) -> NDArray:
+        there = camera_models.project(camera_models.turned(camera, vector), xyz)
+        return np.nan_to_num((xy - there) / height_px[:, None], nan=1.0).ravel()
+
+    most = np.deg2rad(MOST_DEG)
+    options = {"loss": "soft_l1", "f_scale": SPREAD, "bounds": (-most, most), "x_scale": 0.01}
+    vector = scipy.optimize.least_squares(residual, np.zeros(3), **options).x
+    angle_deg = float(np.rad2deg(np.linalg.norm(vector)))
+    return angle_deg, one.left(tested, camera_models.turned(camera, vector))

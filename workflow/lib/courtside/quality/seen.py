@@ -1,0 +1,146 @@
+"""A take as its cameras saw it, on common times, and its persons placed by the other cameras.
+
+C cameras, P persons, T frames, K middles between the same joint of both sides (shoulders, ...,
+ankles), R tracklets of a camera. S of the T frames are looked at. Lengths in pictures are in px, or
+in heights of the person there. Middles do not depend on which side is which, which fusion decides
+from all cameras, wrong ones too.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.geometry import triangulation
+from courtside.geometry.camera import Camera, project
+from courtside.reconstruction import person_height, resampling
+from courtside.records.cameras.footage import Footage
+from courtside.records.keypoints import skeleton as limbs
+from courtside.records.keypoints.keypoints import Keypoints3D
+from courtside.records.keypoints.skeleton import Skeleton
+
+MOST_FRAMES = 600  # ASSUME: of all persons together; enough for shares known to 2 %
+AGREED = 0.05  # heights: as `triangulate.max_error_share`
+MIN_SCORE = 0.05  # of a keypoint that counts, as `triangulate.min_score`
+HALF = 0.5  # of the middles: fewer do not show a person
+MARGIN = 0.05  # of the picture: somebody nearer to its border may be cut off
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What the cameras saw of a take."""
+
+    cameras: Sequence[Camera]
+    points: Keypoints3D  # of the limb joints only
+    xy: NDArray  # (C, P, T, K, 2) px: keypoints by person, NaN where not followed
+    score: NDArray  # (C, P, T, K)
+    rows: Sequence[NDArray]  # of each camera (R, T, K, 2) px: keypoints by tracklet
+    height_px: NDArray  # (C, P, T)
+    at: NDArray  # (S,): the frames that are looked at
+    # (C, P, S, K, 3) m: middles by all cameras but one and those of `out`; NaN where these disagree
+    others: NDArray
+    out: tuple[int, ...] = ()  # cameras that place nobody
+
+    @property
+    def followed(self) -> NDArray:
+        """Whether each camera follows each person, (C, P, T)."""
+        return shown(self.xy)
+
+    def expected(self, camera: int) -> NDArray:
+        """Return where a person should be in a picture, (P, S): there, or not known to be away."""
+        middle = np.ma.median(np.ma.masked_invalid(self.others[camera]), axis=2).filled(np.nan)
+        unknown = np.isnan(middle).any(axis=-1)
+        size = np.array(self.cameras[camera].size)
+        with np.errstate(invalid="ignore"):
+            place = project(self.cameras[camera], middle)
+            inside = ((place > MARGIN * size) & (place < (1 - MARGIN) * size)).all(axis=-1)
+        return inside | unknown
+
+    def errors(self, camera: int, xy: NDArray, model: Camera | None = None) -> NDArray:
+        """Return keypoints (P, S, K, 2) minus the others' projections, heights."""
+        there = project(model or self.cameras[camera], self.others[camera])
+        return (xy - there) / self.height_px[camera][:, self.at, None, None]
+
+
+def shown(xy: NDArray) -> NDArray:
+    """Return where keypoints (..., K, 2) show half of the middles or more, (...)."""
+    return np.isfinite(xy).all(axis=-1).mean(axis=-1) >= HALF
+
+
+def typical(errors: NDArray) -> NDArray:
+    """Return the median length (...) of errors (..., K, 2); NaN where few middles have one."""
+    length = np.ma.masked_invalid(np.linalg.norm(errors, axis=-1))
+    enough = (~np.ma.getmaskarray(length)).mean(axis=-1) >= HALF
+    return np.where(enough, np.ma.median(length, axis=-1).filled(np.nan), np.nan)
+
+
+def gather(footage: Sequence[Footage], points: Keypoints3D, skeleton: Skeleton) -> Seen:
+    """Bring a take together; `footage` are the cameras of `points`, in its order."""
+    cameras = [one.camera for one in footage]
+    seen = [resampling.resample(one.view, points.time_s, one.clock) for one in footage]
+    xy, score = (np.stack(part) for part in zip(*seen, strict=True))
+    height_px = person_height.in_pictures(cameras, xy, score, skeleton.joints)
+    sides = [[skeleton.index(side + limb) for limb in limbs.LIMBS] for side in ("left_", "right_")]
+    tracks = [resampling.resample(one.tracklets, points.time_s, one.clock)[0] for one in footage]
+    rows = [(track[:, :, sides[0]] + track[:, :, sides[1]]) / 2 for track in tracks]
+    xy = (xy[:, :, :, sides[0]] + xy[:, :, :, sides[1]]) / 2
+    score = np.minimum(score[:, :, :, sides[0]], score[:, :, :, sides[1]])
+    step = max(1, len(points.time_s) * max(xy.shape[1], 1) // MOST_FRAMES)
+    at = np.arange(0, len(points.time_s), step)
+    nowhere = np.full((*xy[:, :, at].shape[:-1], 3), np.nan)
+    points = _of_joints(points, sides[0] + sides[1])
+    whole = Seen(cameras, points, xy, score, rows, height_px, at, nowhere)
+    return without(whole, ())
+
+
+def without(seen: Seen, out: tuple[int, ...]) -> Seen:
+    """Return the same take with the cameras of `out` left out where others place the persons."""
+    found = np.full(seen.others.shape, np.nan)
+    xy, score = seen.xy[:, :, seen.at], seen.score[:, :, seen.at]
+    for camera in range(len(seen.cameras)):
+        rest = [at for at in range(len(seen.cameras)) if at != camera and at not in out]
+        if len(rest) > 1:
+            found[camera] = _placed(seen, rest, xy, score)
+    return replace(seen, others=found, out=out)
+
+
+def disagreement(seen: Seen, used: Sequence[int]) -> float:
+    """Return how far some cameras, all used alike, are from showing the same persons, heights.
+
+    The median over the middles of the root mean square error that is left per degree of freedom;
+    NaN where no two of them see one.
+    """
+    xy = seen.xy[list(used)][:, :, seen.at].reshape(len(used), -1, 2)
+    cameras = [seen.cameras[at] for at in used]
+    xyz = triangulation.triangulate_all(cameras, xy)
+    there = np.stack([project(camera, xyz) for camera in cameras])
+    n_middles = seen.xy.shape[3]
+    height_px = np.repeat(
+        seen.height_px[list(used)][:, :, seen.at].reshape(len(used), -1), n_middles, axis=1
+    )
+    square = np.square((xy - there) / height_px[..., None]).sum(axis=-1)
+    n_views = np.isfinite(square).sum(axis=0)
+    left = np.nansum(square, axis=0)[n_views > 1] / (2 * n_views[n_views > 1] - 3)
+    return float(np.sqrt(np.median(left))) if len(left) else float("nan")
+
+
+def _of_joints(points: Keypoints3D, chosen: list[int]) -> Keypoints3D:
+    """Return a record of some joints only, without its errors."""
+    per_joint = ("xyz", "n_views", "reproj_error_px", "accepted", "swapped", "reason")
+    cut = {key: getattr(points, key)[:, :, chosen] for key in per_joint}
+    return replace(points, joints=points.joints[chosen], **cut)
+
+
+def _placed(seen: Seen, rest: list[int], xy: NDArray, score: NDArray) -> NDArray:
+    """Return middles (P, S, K, 3) m as some cameras place them."""
+    limit_px = AGREED * seen.height_px[rest][:, :, seen.at]
+    placed = triangulation.triangulate_robust(
+        [seen.cameras[at] for at in rest],
+        xy[rest].reshape(len(rest), -1, 2),
+        score[rest].reshape(len(rest), -1),
+        sigma_px=1.0,
+        max_error_px=np.repeat(limit_px.reshape(len(rest), -1), score.shape[-1], axis=1),
+        min_score=MIN_SCORE,
+    )
+    return placed.xyz.reshape(*score.shape[1:], 3)

@@ -1,0 +1,238 @@
+"""Verdicts: good, doubtful or failed for each camera, each person and the take, in plain words."""
+
+from collections.abc import Mapping
+from itertools import chain
+from typing import NamedTuple
+
+import pandas as pd
+
+from courtside.quality import causes, measures
+from courtside.quality.seen import Seen, disagreement, without
+from courtside.study.execution.verdicts import (
+    ALL,
+    COLUMNS,
+    DOUBTFUL,
+    FAILED,
+    GOOD,
+    ORDER,
+    WHOLE,
+)
+
+AGREES = "it agrees with the other cameras"
+ANY = "another of the cameras that disagree may be the wrong one"
+
+
+AGREED = 0.02  # heights: usual takes have a disagreement of 0.007 to 0.012
+
+
+class Limit(NamedTuple):
+    """From where on a value is doubtful and failed, and in words what it is."""
+
+    doubtful: float
+    failed: float
+    words: str  # with `{}` for the value
+    falling: bool = True  # whether low values are the bad ones
+
+
+# ASSUME: chosen on the takes of the virtual sessions and walk-4cams, whose errors are known. With
+# their usual network, cameras find and follow persons in 0.98 to 1 of the frames, 0.69 to 1 of
+# their keypoints are used, and these are 0.012 to 0.031 of a height off; 0.96 to 1 of the joints
+# rest on two views, 0.6 to 0.92 on three, all 0.007 to 0.01 off; limbs vary by 0.025 to 0.046.
+# Failed is where less than half is right.
+OF_CAMERA = {
+    "found": Limit(0.9, 0.5, "{:.0%} of the persons who should be in its picture were found"),
+    "followed": Limit(0.9, 0.5, "{:.0%} of the persons who should be in its picture are followed"),
+    "accepted": Limit(0.65, 0.35, "{:.0%} of its keypoints of limbs agree with the other cameras"),
+    "reprojection": Limit(
+        0.035, 0.1, "its keypoints are {:.3f} of a person's height from the other cameras'", False
+    ),
+}
+OF_PERSON = {
+    "views_2": Limit(0.9, 0.5, "{:.0%} of the joints rest on two cameras or more"),
+    "views_3": Limit(0.5, 0.0, "{:.0%} of the joints rest on three cameras or more"),
+    "accepted": Limit(0.75, 0.4, "{:.0%} of the keypoints of limbs agree with each other"),
+    "reprojection": Limit(
+        0.02, 0.06, "keypoints are {:.3f} of a person's height from the joints", False
+    ),
+    "limb_length": Limit(0.09, 0.25, "the lengths of limbs vary by {:.0%}", False),
+}
+
+
+def level(limit: Limit, value: float) -> str:
+    """Return the verdict on a value; an unknown one is `FAILED`: nothing was measured."""
+    sign = 1 if limit.falling else -1
+    if not sign * value >= sign * limit.failed:
+        return FAILED
+    return GOOD if sign * value >= sign * limit.doubtful else DOUBTFUL
+
+
+def worst(verdicts: list[str]) -> str:
+    """Return the worst of some verdicts; `GOOD` of none."""
+    return max(verdicts, key=ORDER.index, default=GOOD)
+
+
+def judge(seen: Seen) -> pd.DataFrame:
+    """Judge a take: a row for each measure of each camera and person, and for each as a whole.
+
+    Columns `COLUMNS`. A row with the measure `WHOLE` has the verdict, the likelier cause where it
+    is not good, and one sentence; that with `ALL` cameras and persons is the take's. A take failed
+    if a person failed in it, or half of its cameras; another camera that is not good makes it
+    doubtful.
+    """
+    by_camera = _cameras(seen)
+    by_person = [_person(seen, at) for at in range(len(seen.points.person_id))]
+    take = _take([rows[0] for rows in by_camera], [rows[0] for rows in by_person])
+    return pd.DataFrame([take, *chain(*by_camera, *by_person)], columns=COLUMNS)
+
+
+def _cameras(seen: Seen) -> list[list[dict]]:
+    """Return the rows of each camera, that of the whole first.
+
+    A camera that is wrong moves the joints that the others are compared with. The one without
+    which the others agree is therefore left out, and the others are judged again.
+    """
+    fixed: dict[int, list[dict]] = {}
+    while True:
+        others = [at for at in range(len(seen.cameras)) if at not in fixed]
+        odd = _odd_one(seen, others)
+        fewer = bool(fixed) or not all(seen.followed[at].any() for at in others)
+        agreed = fewer and disagreement(seen, others) <= AGREED
+        judged = {at: _camera(seen, at, agreed) for at in others}
+        if odd is None or judged[odd][0]["verdict"] == GOOD:
+            rows = fixed | _uncertain(judged)
+            return [rows[at] for at in range(len(seen.cameras))]
+        fixed[odd] = judged[odd]
+        seen = without(seen, (*seen.out, odd))
+
+
+def _uncertain(judged: dict[int, list[dict]]) -> dict[int, list[dict]]:
+    """Say of several cameras that contradict each other that any of them may be the wrong one."""
+    wrong = [
+        at
+        for at, (whole, *rows) in judged.items()
+        if whole["verdict"] != GOOD
+        and any(row["measure"] == "reprojection" and row["verdict"] != GOOD for row in rows)
+    ]
+    if len(wrong) < 2:
+        return judged
+    found = dict(judged)
+    for at in wrong:
+        whole, *rows = judged[at]
+        poor = whole["cause"] == causes.DETECTION
+        cause = causes.UNKNOWN if poor else whole["cause"]
+        said = whole["sentence"].removesuffix(".")
+        found[at] = [{**whole, "cause": cause, "sentence": f"{said}; {ANY}."}, *rows]
+    return found
+
+
+def _odd_one(seen: Seen, others: list[int]) -> int | None:
+    """Return the camera without which the others agree far better, None if there is none."""
+    if len(others) < 3:
+        return None
+    rest = {
+        at: disagreement(seen, [one for one in others if one != at])
+        for at in others
+        if seen.followed[at].any()
+    }
+    ranked = sorted((value, at) for at, value in rest.items() if value == value)
+    if len(ranked) < 3 or ranked[0][0] > causes.NEARER * ranked[1][0]:
+        return None
+    return ranked[0][1]
+
+
+def _judged(
+    found: Mapping[str, float], limits: Mapping[str, Limit], camera: str, person: str
+) -> list[dict]:
+    return [
+        {
+            "camera": camera,
+            "person": person,
+            "measure": name,
+            "value": found[name],
+            "doubtful_from": limits[name].doubtful,
+            "failed_from": limits[name].failed,
+            "verdict": level(limits[name], found[name]),
+            "cause": "",
+            "sentence": _said(limits[name], found[name]),
+        }
+        for name in limits
+        if name in found
+    ]
+
+
+def _said(limit: Limit, value: float) -> str:
+    words = "nothing is known of: " + limit.words.replace("{:.0%} of ", "").replace("{:.0%}", "")
+    text = limit.words.format(value) if value == value else words.replace("{:.3f} of ", "")
+    return text[:1].upper() + text[1:] + "."
+
+
+def _whole(camera: str, person: str, verdict: str, cause: str, sentence: str) -> dict:
+    empty = dict.fromkeys(("value", "doubtful_from", "failed_from"), float("nan"))
+    about = {"camera": camera, "person": person, "measure": WHOLE, **empty}
+    return {**about, "verdict": verdict, "cause": cause, "sentence": sentence}
+
+
+def _camera(seen: Seen, at: int, agreed: bool) -> list[dict]:
+    """Judge a camera: its rows, that of the whole first.
+
+    `agreed`: all cameras agree but those that are left out or follow nobody. The errors are then
+    theirs, or those of joints placed by two cameras that face each other.
+    """
+    name = seen.cameras[at].name
+    found = measures.of_camera(seen, at)
+    if found["followed"] == 0:  # what is not followed has no keypoints to be judged
+        found = {key: found[key] for key in ("found", "followed")}
+    rows = _judged(found, OF_CAMERA, name, ALL)
+    # Keypoints are not accepted where a camera that is left out moved the joints.
+    theirs = ("accepted", "reprojection") if agreed else ("accepted",) if seen.out else ()
+    counted = [row for row in rows if row["measure"] not in theirs]
+    verdict = worst([row["verdict"] for row in counted])
+    if verdict == GOOD:
+        return [_whole(name, ALL, GOOD, "", f"Camera {name}: {AGREES}."), *rows]
+    why = causes.find(seen, at, found_limit=OF_CAMERA["found"].doubtful)
+    return [_whole(name, ALL, verdict, why.name, f"Camera {name}: {why.sentence}."), *rows]
+
+
+def _person(seen: Seen, at: int) -> list[dict]:
+    """Judge a person over all cameras: the rows, that of the whole first."""
+    name = str(seen.points.person_id[at])
+    found = measures.of_person(seen, at)
+    if len(seen.cameras) < 3:  # by design no joint rests on three
+        del found["views_3"]
+    if found["views_2"] == 0:
+        found = {"views_2": 0.0}
+    judged = _judged(found, OF_PERSON, ALL, name)
+    verdict = worst([row["verdict"] for row in judged])
+    bad = [row["sentence"] for row in judged if row["verdict"] == verdict != GOOD]
+    said = bad[0] if bad else "The cameras agree."
+    whole = _whole(ALL, name, verdict, "", f"{name}: {said[:1].lower()}{said[1:]}")
+    return [whole, *judged]
+
+
+def _together(rows: list[dict]) -> list[str]:
+    """Return the sentences on cameras, each once, with the cameras that share it."""
+    names: dict[str, list[str]] = {}
+    for row in rows:
+        said = row["sentence"].removeprefix(f"Camera {row['camera']}: ")
+        names.setdefault(said, []).append(row["camera"])
+    return [
+        f"Camera{'s' if len(of) > 1 else ''} {', '.join(of)}: {said}" for said, of in names.items()
+    ]
+
+
+def _take(cameras: list[dict], persons: list[dict]) -> dict:
+    failed = [row for row in cameras if row["verdict"] == FAILED]
+    verdict = worst([row["verdict"] for row in persons])
+    if 2 * len(failed) >= len(cameras):
+        verdict = FAILED
+    if verdict == GOOD and any(row["verdict"] != GOOD for row in cameras):
+        verdict = DOUBTFUL
+    if verdict == GOOD:
+        return _whole(ALL, ALL, GOOD, "", "The cameras agree on every person.")
+    bad = [row for row in cameras if row["verdict"] != GOOD]
+    named = sorted(bad, key=lambda row: -ORDER.index(row["verdict"]))
+    parts = [row["sentence"] for row in persons if row["verdict"] != GOOD]
+    parts += _together(named)
+    known = [row["cause"] for row in named if row["cause"] != causes.UNKNOWN]
+    cause = max(known, key=known.count) if known else causes.UNKNOWN
+    return _whole(ALL, ALL, verdict, cause, " ".join(parts))
