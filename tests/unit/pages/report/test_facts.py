@@ -96,3 +96,9 @@ def test_warnings_of_a_check_join_those_of_the_calibration_file(tmp_path):
         "covariance": "unknown",
         "warnings": ["cam02 is mirrored"],
     }
+
+
+def test_verdicts_are_those_of_the_way_that_is_reported(tmp_path):
+    rows = report_facts.of_take(report_made.files_of_take(tmp_path))["quality"]
+    assert {row["calibration"] for row in rows} == {"sfm-n40"} and len(rows) == 3
+    assert rows[2]["value"] == 0.064 and np.isnan(rows[0]["value"])

@@ -58,6 +58,13 @@ def test_errors_of_simulated_takes_are_those_of_their_fusion(tmp_path):
     assert ">52<" not in html and ">1<" not in html
 
 
+def test_verdicts_are_stated_with_their_limits(tmp_path):
+    html = page(tmp_path)
+    assert "<td>It is 0.064 off.</td>" in html and "of another calibration" not in html
+    assert re.search(r"0\.035</td>\s*<td[^>]*>0\.100</td>\s*<td>doubtful</td>", html)
+    assert "The take is <b>doubtful</b>, likelier cause: clock" in html
+
+
 def test_unknown_numbers_are_a_dash():
     assert quality.number(None) == quality.number(math.nan) == "–"
     assert quality.percent(None) == "–"

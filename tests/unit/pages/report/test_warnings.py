@@ -111,12 +111,22 @@ def test_pictures_that_were_not_registered_are_counted(lost, expected):
     assert not lost or f"{lost} of 42" in found.text
 
 
-def test_a_camera_that_others_contradict_gives_a_warning():
-    assert warned.contradicts("c1", {"accepted": 0.95, "median_px": 4.0}) is None
-    assert level(warned.contradicts("c1", {"accepted": 0.7, "median_px": 4.0})) == warned.LOOK
-    found = warned.contradicts("c1", {"accepted": 0.3, "median_px": 4.0})
-    assert found.level == warned.DOUBT and "70%" in found.text
-    assert level(warned.contradicts("c1", {"accepted": None, "median_px": None})) == warned.LOOK
+def verdict(word, camera="c1", person="all", measure="whole"):
+    said = "Camera c1: its clock is off."
+    row = {"camera": camera, "person": person, "measure": measure, "verdict": word}
+    return row | {"cause": "clock", "sentence": said}
+
+
+def test_a_camera_that_is_not_good_is_told_with_its_cause():
+    assert warned.judged(verdict("good")) is None
+    assert warned.judged(verdict("doubtful")) == (warned.LOOK, "Camera c1: its clock is off.")
+    assert level(warned.judged(verdict("failed"))) == warned.DOUBT
+    assert level(warned.judged(verdict("failed", camera="all", person="p1"))) == warned.DOUBT
+
+
+def test_the_take_and_single_measures_are_not_told_twice():
+    assert warned.judged(verdict("failed", camera="all")) is None
+    assert warned.judged(verdict("failed", measure="found")) is None
 
 
 def joint(missing=0.0, few=0.0):
@@ -191,7 +201,7 @@ def test_warnings_are_sorted_by_level():
         "shake": [],
         "clocks": {"back": Clock(status="unknown"), "left": Clock(status="assumed")},
         "devices": [],
-        "cameras": {},
+        "quality": [verdict("good")],
         "joints": {},
         "left_out": {},
         "true_paths": [],

@@ -8,6 +8,7 @@ import pytest
 from courtside.study.jobs import report_page
 
 REAL = "results/walk-4cams-tiny/takes/balancing"
+WAY = {"calibration": "file", "fusion": "all-robust", "model": "blazepose-full"}
 
 
 class Output(SimpleNamespace):
@@ -123,6 +124,7 @@ def test_takes_are_told_with_their_measures_errors_and_links(content):
         "pose3d": f"{REAL}/pose3d/{way}.npz",
         "sync": f"{REAL}/sync/file/cameras.blazepose-full.json",
         "movement": [f"{REAL}/movement/cam0{k}.csv" for k in (1, 2, 3)],
+        "quality": {"file": f"{REAL}/quality.csv", "way": WAY},
     }
     short = REAL.removeprefix("results/")
     assert take["links"] == [

@@ -11,6 +11,7 @@ from courtside.records.devices import clocks
 from courtside.records.keypoints import keypoints, missing_reason, skeleton
 from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import StrPath
+from courtside.study.execution import verdicts
 from courtside.study.execution.files import read_json
 
 NINE_IN_TEN = 1.645  # half of the 90 % interval of normal errors, in standard deviations
@@ -24,12 +25,13 @@ def of_take(files: dict) -> dict:
     `persons`: {person: {measure: (value, half of the 90 % interval, unit, whether the error of the
     calibration is known)}}; `left_out`: {person: (frames without a neck, frames, {reason:
     frames})}; `seconds`; `joints` and `cameras` as `of_skeleton` returns them; `clocks`: {camera:
-    Clock}; `shake`: lines; `movement`, `devices`, `truth` and `true_paths`: rows. Empty without a
-    file. `InputError` if a file is missing or has another content.
+    Clock}; `shake`: lines; `movement`, `devices`, `truth`, `true_paths` and `quality`: rows. Empty
+    without a file. `InputError` if a file is missing or has another content.
 
     `files` are paths by `summary` and `frames` (kinematics), `pose3d`, `sync`, `movement` (a list),
-    `shake` (text), `checks` (clocks of devices), `errors` and `kinematics` (against the truth);
-    each may be left out.
+    `shake` (text), `checks` (clocks of devices), `errors` and `kinematics` (against the truth), and
+    by `quality` the `file` of verdicts and the `way` in which the take was measured; each may be
+    left out.
     """
     facts: dict = {"persons": {}, "left_out": {}, "seconds": None, "joints": {}, "cameras": {}}
     if files.get("summary"):
@@ -45,8 +47,16 @@ def of_take(files: dict) -> dict:
     facts["shake"] = [line.strip() for line in text.splitlines() if line.strip()]
     facts["devices"] = _rows(files, "checks", ("source", "status"))
     facts["truth"] = _rows(files, "errors", ("stage", "fusion", "person", "joint", "median_mm"))
+    facts["quality"] = _verdicts(**files["quality"]) if files.get("quality") else []
     facts["true_paths"] = _rows(files, "kinematics", ("person", "point", "distance_error_percent"))
     return facts
+
+
+def _verdicts(file: StrPath, way: dict[str, str]) -> list[dict]:
+    """Return the verdicts on a take that was measured in one way; a value is a number or NaN."""
+    rows = [row for row in verdicts.read(file) if all(row[key] == way[key] for key in way)]
+    numbers = ("value", "doubtful_from", "failed_from")
+    return [{**row, **{key: float(row[key] or "nan") for key in numbers}} for row in rows]
 
 
 def of_session(files: dict) -> dict:

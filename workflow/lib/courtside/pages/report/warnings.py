@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from courtside.pages.report.facts import NINE_IN_TEN
 from courtside.records.devices.clocks import Clock
+from courtside.study.execution import verdicts
 
 GOOD, LOOK, DOUBT = 0, 1, 2  # their marks: LIGHTS in assets/report_parts.html
 MS_90 = 1645  # half of the 90 % interval of a normal error with a sigma of 1 s, in ms
@@ -21,7 +22,6 @@ LIMITS = {
     "expected_cm": (2, 5, "expected error of the calibration over the playing volume, cm"),
     "tie_px": (1, 2, "residual of the tie points between pictures of the walk, px"),
     "unregistered": (0.1, 0.3, "share of the pictures that were not registered in the model"),
-    "contradicts": (0.25, 0.5, "share of a camera's limb joints that the other cameras contradict"),
     "missing": (0.05, 0.2, "share of the limb joints that are missing, before filtering"),
     "two_views": (0.5, 0.8, "share of the reconstructed limb joints that only two cameras see"),
     "distance": (0.05, 0.2, "error bar of the neck's distance, as a share of the distance"),
@@ -59,7 +59,7 @@ def of_take(facts: dict, *, max_shift_px: float, max_zoom_percent: float) -> lis
     found += [clock(camera, each) for camera, each in facts["clocks"].items()]
     found += [device(row) for row in facts["devices"]]
     found += [no_tpose(row) for row in facts["devices"]]
-    found += [contradicts(camera, each) for camera, each in facts["cameras"].items()]
+    found += [judged(row) for row in facts["quality"]]
     found += joints(facts["joints"])
     found += [frames(person, *each) for person, each in facts["left_out"].items()]
     found += [distance(person, measures) for person, measures in facts["persons"].items()]
@@ -180,14 +180,13 @@ def registered(model: dict) -> Warned | None:
     return Warned(level, f"Structure from motion: {text}.") if level else None
 
 
-def contradicts(camera: str, found: dict) -> Warned | None:
-    """Return a warning if other cameras contradict one; `found` is of `facts.of_skeleton`."""
-    if found["accepted"] is None:
-        return Warned(LOOK, f"Camera {camera}: nobody was tracked in it.")
-    level = _level_of("contradicts", 1 - found["accepted"])
-    text = f"the other cameras contradict {1 - found['accepted']:.0%} of its joints"
-    hint = "it may have moved, be calibrated wrongly, or be on another clock"
-    return Warned(level, f"Camera {camera}: {text}; {hint}.") if level else None
+def judged(row: dict) -> Warned | None:
+    """Return a warning of a camera or person that is not good; `row` is of the verdicts' table."""
+    both = row["camera"] == row["person"] == verdicts.ALL
+    if row["measure"] != verdicts.WHOLE or both or row["verdict"] == verdicts.GOOD:
+        return None
+    level = DOUBT if row["verdict"] == verdicts.FAILED else LOOK
+    return Warned(level, row["sentence"])
 
 
 def joints(found: dict) -> list[Warned]:

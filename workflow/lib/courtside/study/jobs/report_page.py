@@ -8,6 +8,7 @@ from typing import Any
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
+from courtside.study.execution import verdicts
 from courtside.study.methods import Calibration, Variant
 from courtside.study.targets import calibration, devices, pages, takes, together
 
@@ -204,6 +205,8 @@ def _measured(session: Session, take: Take, known: dict[str, str]) -> dict[str, 
     patterns |= {"shake": paths.SHAKE_TEXT} if take.steady else {}
     named: dict[str, Any] = {name: pattern.format(**known) for name, pattern in patterns.items()}
     named["movement"] = takes.checks(session, take)
+    way = {key: known[key] for key in verdicts.WAY}
+    named["quality"] = {"file": paths.QUALITY.format(**known), "way": way}
     if session.virtual:
         named["errors"] = paths.ERRORS.format(**known)
         named["kinematics"] = paths.MEASURE_ERRORS.format(**known)
