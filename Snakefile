@@ -52,14 +52,18 @@ onstart:
 onsuccess:
     files.delete_unfinished("results")
     record_provenance()
+    told, n_failed = run.verdicts(workflow)
     print(
-        end_of_run(),
+        end_of_run(n_failed),
         *run.waiting_for_clicks(STUDY),
         *run.left_out(STUDY),
         *asked(run.lost_pictures, STUDY),
+        *told,
         sep="\n",
         file=sys.stderr,
     )
+    if n_failed:
+        sys.exit(1)
 
 
 onerror:
@@ -79,6 +83,7 @@ rule all:
         targets.takes.every_figure(STUDY),
         targets.takes.every_shake(STUDY),
         targets.takes.every_kinematics(STUDY),
+        targets.takes.every_verdict(STUDY),
         targets.takes.every_comparison_of_views(STUDY),
         targets.together.every_players_figure(STUDY),
         targets.devices.every_device_export(STUDY),

@@ -63,6 +63,7 @@ PLACES = {
     "*/takes/*/kinematics/*.summary.csv": [": `.summary.csv`:"],
     "*/takes/*/kinematics/*.cutoffs.csv": [": `.cutoffs.csv`:"],
     "*/takes/*/pose3d*/*.csv": [TIDY],
+    "*/takes/*/quality.csv": ["Columns of the verdicts"],
     "figures/calibration.csv": [f"{TOGETHER} | calibration.csv", OF_CALIBRATION],
     "figures/players.csv": [f"{TOGETHER} | players.csv", f"{TAKES} | errors", LABELS],
     "figures/angles.csv": [f"{TOGETHER} | {end}.csv" for end in ("angles", "players")]

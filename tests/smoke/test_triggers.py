@@ -55,6 +55,7 @@ REAL_FUSED = {
     "correct_joints": 1,
     "export_take": 3,  # one person, three stages
     "measure_kinematics": 1,
+    "judge_take": 1,
     "build_viewer": 1,
     "export_overlay_video": 4,  # one for each camera, all with the same skeleton
     **{
@@ -73,6 +74,7 @@ PLAYERS_FUSED = {
     "filter_motion": 2 * 5,
     "correct_joints": 2 * 5,
     "measure_kinematics": 2 + 4,  # the exported way in both takes, the others where they are drawn
+    "judge_take": 2,
     "evaluate_kinematics": 2 + 4,
     "evaluate_take": 2,
     "evaluate_angles": 2,

@@ -38,6 +38,7 @@ DOWNSTREAM_OF_3D = {
     **DOWNSTREAM_OF_FILTER,
     "filter_motion": FILTERED,
     "export_take": 3,
+    "judge_take": 3,
     "evaluate_fusions": 4,
     "evaluate_round_trip": 1,
     "compare_views": 1,

@@ -2,7 +2,8 @@
 
 Inputs: all jobs that the run asked for. Outputs: results/run/: provenance.json of the run,
 checksums.json of the inputs, provenance/<file>.json beside each figure, table and exported file.
-Steps: record_provenance and end_of_run, called in `onsuccess` and `onerror` of the Snakefile.
+Steps: record_provenance and end_of_run, called in `onsuccess` and `onerror` of the Snakefile. A run
+in which a take was judged as failed ends with a line on it and exit code 1.
 """
 
 import time
@@ -20,7 +21,7 @@ def record_provenance():
     asked(run.record, workflow, REPOSITORY, config, map(str, read))
 
 
-def end_of_run():
-    """Return the words at the end of a run."""
+def end_of_run(n_failed=0):
+    """Return the words at the end of a run; `n_failed` takes were made, but judged as failed."""
     viewers = targets.pages.every_viewer(STUDY)[:1]
-    return run.ending(workflow, time.monotonic() - STARTED_S, LOOK_AT + viewers)
+    return run.ending(workflow, time.monotonic() - STARTED_S, LOOK_AT + viewers, n_failed)

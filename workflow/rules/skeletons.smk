@@ -1,9 +1,10 @@
 """Metric skeletons and the files that other programs open.
 
 Inputs: 2D keypoints, shake, cameras. Outputs: results/{session}/takes/{take}/ pose2d_steadied, sync,
-people, pose3d, pose3d_filtered, pose3d_corrected, kinematics.
+people, pose3d, pose3d_filtered, pose3d_corrected, kinematics, quality.csv.
 Steps: steady_keypoints (of a take whose cameras shake), synchronise_cameras, associate_people
-(everybody), name_people (the subjects among them), triangulate (raw, always kept), filter_motion, correct_joints, export_take, measure_kinematics.
+(everybody), name_people (the subjects among them), triangulate (raw, always kept), filter_motion,
+correct_joints, export_take, measure_kinematics, judge_take.
 """
 
 
@@ -183,3 +184,19 @@ rule measure_kinematics:
         sex_of=of_job(takes.sexes),
     script:
         "../scripts/measure_kinematics.py"
+
+
+# A take that failed is judged in each run: none ends as if nothing was wrong.
+rule judge_take:
+    input:
+        of_job(takes.judged_files),
+    output:
+        quality_csv=paths.QUALITY,
+    log:
+        "results/{session}/logs/judge_take/{take}.log",
+    params:
+        code=code("judge_take.py"),
+        ways=of_job(takes.judged),
+        pin=of_job(takes.failed_before),
+    script:
+        "../scripts/judge_take.py"

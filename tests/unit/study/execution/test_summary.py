@@ -28,6 +28,12 @@ def test_what_was_made_is_counted_by_kind():
     assert not any("features.db" in line for line in lines)
 
 
+@pytest.mark.parametrize(("n_failed", "words"), [(1, "1 take failed"), (3, "3 takes failed")])
+def test_a_failed_take_is_not_called_finished(n_failed, words):
+    first = summary.finished(MADE, 12.0, n_failed=n_failed).splitlines()[0]
+    assert first == f"Courtside: 13 files made in 12 s, but {words}: see the end."
+
+
 def test_many_folders_are_counted():
     made = [f"results/s{at}/figures/x.png" for at in range(9)]
     assert "s0/figures/, results/s1/figures/, results/s2/figures/ and 6 more" in summary.finished(

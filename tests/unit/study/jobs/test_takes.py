@@ -6,6 +6,7 @@ import pytest
 
 from courtside.study import paths
 from courtside.study.errors import InputError
+from courtside.study.execution import verdicts
 from courtside.study.jobs import takes
 
 RALLY = {"session": "players-tiny", "take": "rally"}
@@ -127,3 +128,31 @@ def test_sightings_are_those_of_the_take(job, study, tmp_path):
     csv.touch()
     assert takes.people_csv(job(of, **SHOT)) == str(csv)
     assert takes.people_csv(job(**SHOT)) == []
+
+
+def test_a_take_is_judged_in_each_way_in_which_it_is_measured(job, study):
+    one = job(**REAL)
+    ways = takes.judged(one)
+    assert [way["labels"]["calibration"] for way in ways] == one.session.take_calibrations()
+    first, folder = ways[0], "results/walk-4cams-tiny/takes/balancing"
+    assert first["labels"] == {
+        "calibration": "file",
+        "fusion": "all-robust",
+        "model": "blazepose-full",
+    }
+    assert first["pose3d"] == f"{folder}/pose3d/file/all-robust/blazepose-full.npz"
+    assert first["pose2d"][0] == f"{folder}/pose2d/blazepose-full/cam01.npz"
+    named = takes.judged_files(one)
+    assert len(named) == len(set(named)) and set(first["pose2d"]) < set(named)
+    assert {first[key] for key in ("cameras", "people", "sync", "pose3d", "skeleton")} < set(named)
+
+
+def test_only_a_take_that_failed_is_judged_in_each_run(job, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert takes.failed_before(job(**REAL)) == 0
+    path = tmp_path / paths.QUALITY.format(**REAL)
+    path.parent.mkdir(parents=True)
+    head = ",".join([*verdicts.WAY, *verdicts.COLUMNS])
+    for word in verdicts.ORDER:
+        path.write_text(f"{head}\nfile,r,net,all,all,whole,,,,{word},,Words.\n", encoding="utf-8")
+        assert (takes.failed_before(job(**REAL)) > 0) == (word == "failed")

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from courtside.study.errors import InputError
+from courtside.study.execution import verdicts
 from courtside.study.provenance import run
 
 
@@ -154,3 +155,20 @@ def test_what_is_left_out_for_want_of_consent_is_told_with_what_remains(
     made = "results/walk-4cams-tiny/takes/balancing"
     (tmp_path / made).mkdir(parents=True)
     assert run.left_out(study)[1] == f"walk-4cams-tiny: {made} was made before: delete it"
+
+
+def test_takes_of_this_run_are_told_with_their_verdicts(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    files = [f"results/hall/takes/{take}/quality.csv" for take in ("a", "b")]
+    head = ",".join([*verdicts.WAY, *verdicts.COLUMNS])
+    for path, word in zip(files, ("good", "failed"), strict=True):
+        (tmp_path / path).parent.mkdir(parents=True)
+        row = f"file,all-robust,net,all,all,whole,,,,{word},clock,Camera c1 is {word}."
+        (tmp_path / path).write_text(f"{head}\n{row}\n", encoding="utf-8")
+    judged = [made_up("judge_take", path) for path in files]
+    (told, n_failed), other = run.verdicts(workflow(judged)), made_up("draw", "x/quality.csv")
+    assert n_failed == 1 and told[0] == "Verdicts on takes: 1 good, 1 failed."
+    assert told[1].startswith("  failed: hall/b")
+    assert run.verdicts(workflow([judged[0], other])) == (["Verdicts on takes: 1 good."], 0)
+    words = run.ending(workflow(judged, judged, failed=[]), 3.0, [], 1)
+    assert words.startswith("Courtside: 2 files made in 3 s, but 1 take failed")

@@ -29,6 +29,14 @@ def test_cameras_with_a_static_recording_are_checked_unless_shake_is_measured(st
     ]
 
 
+def test_every_take_that_fixed_cameras_measure_is_judged(study):
+    takes_of = (
+        "walk-4cams-tiny/takes/balancing",
+        *(f"players-tiny/takes/{t}" for t in ("shot", "rally")),
+    )
+    assert takes.every_verdict(study) == [f"results/{take}/quality.csv" for take in takes_of]
+
+
 def test_skeletons_of_every_stage_are_exported(study):
     stages = ("pose3d", "pose3d_filtered", "pose3d_corrected")
     assert takes.every_export(study) == [

@@ -87,6 +87,7 @@ KINEMATICS = TAKE + "/kinematics/" + FUSED
 FRAME_MEASURES = KINEMATICS + ".frames.csv"
 MEASURES = KINEMATICS + ".summary.csv"
 CUTOFFS = KINEMATICS + ".cutoffs.csv"
+QUALITY = TAKE + "/quality.csv"
 VIEW_DISTANCES = TAKE + "/views/{calibration}.{model}.csv"
 OVERLAY_VIDEO = TAKE + "/videos/" + FUSED + ".{camera}.mp4"
 VIEWER = TAKE + "/pages/viewer.{model}.html"

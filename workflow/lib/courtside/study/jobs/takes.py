@@ -1,9 +1,12 @@
 """Files and settings of takes: keypoints, skeletons, measures, exports."""
 
+import time
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
+from courtside.study.execution import verdicts
 from courtside.study.jobs.job import Job
 from courtside.study.methods import Fusion
 
@@ -101,6 +104,37 @@ def measured(job: Job) -> str:
 def measured_stage(job: Job) -> str:
     """Return in a word what these skeletons are: filtered or corrected."""
     return job.stages()[-1].removeprefix("pose3d_")
+
+
+def judged(job: Job) -> list[dict[str, Any]]:
+    """Return the files of each way in which a take is measured and exported, with its labels."""
+    session, found = job.session, []
+    ways = session.take_calibrations(), session.fusions(), session.parameters["models"]
+    for way in product(*ways):
+        labels = dict(zip(verdicts.WAY, way, strict=True))
+        one = Job(job.study, {**job.wildcards, **labels})
+        patterns = {
+            "cameras": paths.CAMERAS,
+            "people": paths.PEOPLE,
+            "sync": paths.CAMERA_CLOCKS,
+            "pose3d": paths.POSE3D,
+        }
+        files = {name: one.fill(pattern) for name, pattern in patterns.items()}
+        more = {"pose2d": keypoints_2d(one), "skeleton": one.skeleton_file().as_posix()}
+        found.append({"labels": labels, **files, **more})
+    return found
+
+
+def judged_files(job: Job) -> list[str]:
+    """Return all files that a take is judged by."""
+    named = [{key: of for key, of in way.items() if key != "labels"} for way in judged(job)]
+    lists = [of if isinstance(of, list) else [of] for way in named for of in way.values()]
+    return list(dict.fromkeys(path for paths_of in lists for path in paths_of))
+
+
+def failed_before(job: Job) -> float:
+    """Return another number in each run for a take that failed: no run then has nothing to say."""
+    return time.time() if verdicts.failed(job.fill(paths.QUALITY)) else 0.0
 
 
 def blur_faces(job: Job) -> bool:

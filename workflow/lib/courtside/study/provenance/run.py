@@ -10,6 +10,7 @@ from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study
 from courtside.study.errors import InputError
 from courtside.study.execution import files, summary
+from courtside.study.execution import verdicts as verdict_files
 from courtside.study.provenance import environment, provenance
 
 
@@ -74,15 +75,24 @@ def repeating_command(settings: Any, repository: Path) -> list[str]:
     return words + (["--config", *changed] if changed else [])
 
 
-def ending(workflow: Any, seconds: float, look_at: Iterable[str]) -> str:
-    """Return the words at the end of a run, finished or stopped."""
+def verdicts(workflow: Any) -> tuple[list[str], int]:
+    """Return the verdicts on the takes that a run was asked for, and how many of them failed."""
+    made = {Path(name).as_posix() for job in workflow.dag.jobs for name in job.output}
+    name = Path(paths.QUALITY).name
+    return verdict_files.told(
+        sorted(path for path in made if path.endswith(f"/{name}") and "/takes/" in path)
+    )
+
+
+def ending(workflow: Any, seconds: float, look_at: Iterable[str], n_failed: int = 0) -> str:
+    """Return the words at the end of a run, finished or stopped; `n_failed` takes failed."""
     dag, scheduler = workflow.dag, workflow.scheduler
     wanted = [job for job in dag.needrun_jobs(exclude_finished=False) if job.output]
     done = [job for job in wanted if dag.finished(job)]
     failed = scheduler.failed if scheduler else ()
     if not failed and len(done) == len(wanted):
         made = [str(path) for job in done for path in job.output]
-        return summary.finished(made, seconds, list(look_at))
+        return summary.finished(made, seconds, list(look_at), n_failed)
     faults = [(job.name, [str(path) for path in job.log]) for job in failed]
     return summary.failed(faults, len(done), len(wanted), seconds)
 

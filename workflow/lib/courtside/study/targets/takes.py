@@ -55,6 +55,17 @@ def every_export(study: Study) -> list[str]:
     return found
 
 
+def every_verdict(study: Study) -> list[str]:
+    """Return the tables of verdicts on all takes that fixed cameras measure."""
+    return [path for session, take in study.takes() for path in verdicts(session, take)]
+
+
+def verdicts(session: Session, take: Take) -> list[str]:
+    """Return the table of verdicts on a take; none where it has no videos or no calibration."""
+    measured = take.videos and session.take_calibrations() and session.fusions()
+    return files(paths.QUALITY, session, take) if measured else []
+
+
 def every_figure(study: Study) -> list[str]:
     """Return the figures of all takes."""
     stems = []
