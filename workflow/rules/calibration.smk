@@ -124,6 +124,28 @@ rule resect_cameras:
         "../scripts/resect_cameras.py"
 
 
+rule resect_together:
+    input:
+        clicks_csv=lambda w: session_of(w).court_points,
+        court_yaml=of_job(Job.court_file),
+        pictures=of_job(calibration.of_full_size),
+    output:
+        cameras_toml=paths.CAMERAS,
+        covariance_npz=paths.CAMERA_COVARIANCE,
+        quality_json=paths.CALIBRATION_QUALITY,
+    log:
+        "results/{session}/logs/resect_together/{calibration}.log",
+    wildcard_constraints:
+        calibration="known",
+    params:
+        code=code("resect_together.py"),
+        step=of_job(calibration.clicks),
+        cameras=lambda w: list(session_of(w).cameras),
+        placed=lambda w: session_of(w).placed,
+    script:
+        "../scripts/resect_together.py"
+
+
 rule propose_court_points:
     input:
         cameras_toml=paths.CAMERAS,

@@ -17,6 +17,7 @@ from courtside.study.methods import Calibration, Fusion, Variant
         ("paper-n40", Calibration("paper-n40", "paper", Variant("incremental", 40, 0))),
         ("paper-global-n40", Calibration("paper-global-n40", "paper", Variant("global", 40, 0))),
         ("paper-n5-o2", Calibration("paper-n5-o2", "paper", Variant("incremental", 5, 2))),
+        ("known", Calibration("known", "known")),
         ("known18", Calibration("known18", "known", n_points=18)),
         ("known8-board", Calibration("known8-board", "known", n_points=8, board=True)),
         ("dlt18", Calibration("dlt18", "dlt", n_points=18)),
@@ -26,15 +27,16 @@ def test_a_calibration_is_parsed_from_its_name(name, expected):
     assert Calibration.parse(name) == expected
 
 
-@pytest.mark.parametrize("name", ["", "sfm", "sfm-n", "sfm-global-n40", "known", "n40", "file2"])
+@pytest.mark.parametrize("name", ["", "sfm", "sfm-n", "sfm-global-n40", "known-n8", "n40", "file2"])
 def test_a_name_of_no_calibration_is_an_error_with_examples(name):
     with pytest.raises(InputError, match="such as file, sfm-n40 or known18, found"):
         Calibration.parse(name)
 
 
-def test_only_the_joint_adjustment_gives_a_covariance():
+def test_adjusting_all_cameras_together_gives_a_covariance():
     names = ["file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40", "known18", "dlt18"]
-    assert [name for name in names if Calibration.parse(name).has_covariance] == ["sfm-n40"]
+    found = [name for name in [*names, "known"] if Calibration.parse(name).has_covariance]
+    assert found == ["sfm-n40", "known"]
 
 
 def test_a_structure_from_motion_is_parsed_and_named():

@@ -10,7 +10,8 @@ from courtside.calibration.court import court as court_files
 from courtside.study.errors import InputError
 
 FOLDER = Path(__file__).parents[4] / "config" / "courts"
-NAMES = ["badminton", "tennis", "rectangle-10x5"]
+NAMES = ["badminton", "tennis", "rectangle-10x5", "volleyball"]
+ARCS = ["basketball", "futsal", "sports-hall"]  # points of these may lie on arcs
 
 
 def court(name="badminton"):
@@ -33,13 +34,25 @@ def distance(where, first, second):
         ("tennis", ("p08", "p09"), 12.80),  # two service courts of 6.40 m
         ("tennis", ("p10", "p11"), 12.798),  # posts, 0.914 m outside each side line
         ("rectangle-10x5", ("p02", "p03"), np.hypot(10, 5)),
+        ("volleyball", ("p05", "p07"), 6.0),  # both front zones
+        ("volleyball", ("p01", "p05"), 6.0),  # back zone
+        ("basketball", ("p01", "p02"), 15.0),  # inner edges of the boundary
+        ("basketball", ("p01", "p03"), 28.0),
+        ("basketball", ("p11", "p12"), 4.9),  # restricted area
+        ("basketball", ("p17", "p18"), 3.6),  # centre circle, radius 1.80 m
+        ("basketball", ("p19", "p20"), 3.6),
+        ("basketball", ("p15", "p16"), 28 - 2 * (1.575 + 6.75)),  # between three-point arcs
+        ("futsal", ("p01", "p04"), np.hypot(20, 40)),
+        ("futsal", ("p07", "p08"), 6.0),  # centre circle, radius 3 m
+        ("futsal", ("p13", "p14"), 3.16),  # between the arcs of the penalty area
+        ("futsal", ("p09", "p10"), 3.16 + 2 * 6.0),
     ],
 )
 def test_lengths_agree_with_the_rule_books(name, pair, length_m):
     assert distance(court(name), *pair) == pytest.approx(length_m, abs=6e-4)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, *ARCS])
 def test_courts_are_symmetric_about_both_middles(name):
     found = court(name)
     places = {tuple(np.round(p, 6)) for p in found.xyz}
@@ -69,6 +82,35 @@ def test_lines_have_the_width_and_points_lie_on_paint(name):
             assert np.abs(shift).max() == pytest.approx(found.line_width_m / 2)
         else:
             np.testing.assert_allclose(shift, 0, atol=1e-9)
+
+
+def test_arcs_of_the_penalty_area_are_6_m_about_the_goal_posts():
+    futsal = court("futsal")
+    for post_x, corner, meets in ((8.42, "p13", "p09"), (11.58, "p14", "p10")):
+        at = futsal.xyz[futsal.indices([corner, meets])]
+        away = np.linalg.norm(at - [post_x, 0, 0], axis=1)
+        np.testing.assert_allclose(away, 6.0, atol=1e-9)
+
+
+def test_a_sports_hall_is_its_courts_centred_on_one_another():
+    hall = court("sports-hall")
+    places = dict(zip(hall.points, hall.xyz, strict=True))
+    for sport in ("futsal", "basketball", "volleyball"):
+        own = court(sport)
+        shift = [*(hall.size_m - own.size_m) / 2, 0]
+        for name, xyz in zip(own.points, own.xyz, strict=True):
+            np.testing.assert_allclose(places.pop(name.replace("p", sport[0])), xyz + shift)
+        for line in own.lines_m:
+            moved = line + np.tile(shift[:2], 2)
+            assert np.abs(hall.lines_m - moved).max(axis=1).min() < 1e-9
+    assert not places
+
+
+def test_places_become_a_court_without_lines():
+    found = court_files.of_places("points", ["a", "b"], np.array([[1.0, 2, 0], [4, 9, 2.4]]))
+    assert (found.points, found.size_m.tolist()) == (("a", "b"), [3, 7])
+    assert found.sigma_m.tolist() == [0.005, 0.015]
+    assert found.indices("all").tolist() == [0, 1] and len(found.lines_m) == 0
 
 
 def test_the_badminton_court_is_the_papers():

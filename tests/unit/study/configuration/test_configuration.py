@@ -370,7 +370,7 @@ def test_every_number_of_the_calibration_has_its_limits(folder, step, key, value
         "sfm",
         "sfm-40",
         "sfm-n0",
-        "known",
+        "known-board",
         "dlt-n8",
         "paper-global",
         "known8-boards",

@@ -36,6 +36,7 @@ VIRTUAL = {
 def root(tmp_path):
     for name in ("a.mp4", "b.mp4", "w.mp4", "p.csv", "c.toml"):
         (tmp_path / name).touch()
+    (tmp_path / "placed.csv").write_text("camera,x_px,y_px,x_m,y_m,z_m\n")
     (tmp_path / "courts").mkdir()
     (tmp_path / "courts" / "badminton.yaml").touch()
     return tmp_path
@@ -52,6 +53,7 @@ def without(content, *keys):
 
 
 FILMED = {"virtual": {"motion": "shot", "seconds": 2, "seed": 1, "players": {"p1": {"body": "m1"}}}}
+ALONE = without(RECORDED, "walks")
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
@@ -59,6 +61,8 @@ PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
     "content",
     [
         RECORDED,
+        ALONE,
+        ALONE | {"court": "none", "court_points": "placed.csv"},
         VIRTUAL,
         PLAYERS | {"views": {"two": ["side", "back"]}},
         without(PLAYERS, "walks")
@@ -112,7 +116,18 @@ def test_good_sessions_have_no_fault(root, content):
             },
             ["court_points: expected a file", "q.csv"],
         ),
-        (RECORDED | {"court": "none"}, ["court_points: expected none without a court"]),
+        (
+            RECORDED | {"court": "none"},
+            ["court_points: expected none without a court", "the columns x_m, y_m and z_m"],
+        ),
+        (
+            RECORDED | {"court_points": "placed.csv"},
+            ["court_points: expected points of the court by their names beside `walks`"],
+        ),
+        (
+            ALONE | {"cameras": {"a": {"static": "a.mp4"}, "b": None}},
+            ["cameras.b: expected `static` or a video in a take", "the size of its picture"],
+        ),
         (
             RECORDED
             | {"calibration": OVERRIDDEN["calibration"] | {"principal_point_px": {"q": 1}}},

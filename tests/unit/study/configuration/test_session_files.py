@@ -59,6 +59,26 @@ PARAMETERS = {
 }
 
 
+@pytest.mark.parametrize(
+    ("header", "placed"),
+    [
+        (b"camera,x_px,y_px,x_m,y_m,z_m\n", True),
+        (b"\xef\xbb\xbfx_m, y_m ,camera\n", True),
+        (b"camera,point,frame_idx,x_px,y_px\n", False),
+        (b"\xff\xfe\x00x_m", False),
+        (b"", False),
+    ],
+)
+def test_a_table_of_points_says_whether_it_states_their_places(tmp_path, header, placed):
+    (tmp_path / "p.csv").write_bytes(header)
+    content = {"description": "d", "court": "none", "court_points": "p.csv", "cameras": {"a": {}}}
+    found = session_files.session("s", "s.yaml", content, PARAMETERS, tmp_path)
+    assert (found.placed, found.also_known) == (placed, False)
+    asked = content | {"override": {"calibrations": ["file", "known"]}}
+    assert session_files.session("s", "s.yaml", asked, PARAMETERS, tmp_path).also_known
+    assert not session_files.has_places(tmp_path / "none.csv")
+
+
 def test_a_session_with_walks_names_its_recordings(tmp_path):
     (tmp_path / "p.csv").touch()
     content = {

@@ -31,7 +31,7 @@ def test_blazepose_needs_no_input():
 
 WAYS = [
     *("file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40"),
-    *("known18", "known8", "dlt18", "known18-board"),
+    *("known", "known18", "known8", "dlt18", "known18-board"),
 ]
 BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
 
@@ -56,10 +56,19 @@ def session(**changes):
     [
         ({"calibration_file": "c.toml"}, ["file"]),
         ({"walks": {"w": "w.mp4"}}, ["sfm-n40"]),
-        ({"court_points": "p.csv"}, ["known18", "known8", "dlt18"]),
+        ({"court_points": "p.csv"}, ["known", "known18", "known8", "dlt18"]),
+        ({"court_points": "p.csv", "placed": True}, ["known"]),
+        (
+            {"court_points": "p.csv", "calibration_file": "c.toml"},
+            ["file", "known18", "known8", "dlt18"],
+        ),
+        (
+            {"court_points": "p.csv", "calibration_file": "c.toml", "also_known": True},
+            ["file", "known", "known18", "known8", "dlt18"],
+        ),
         (
             {"court_points": "p.csv", "walks": {"w": "w.mp4"}},
-            [way for way in WAYS if way not in ("file", "known18-board")],
+            [way for way in WAYS if way not in ("file", "known", "known18-board")],
         ),
         ({"walks": {"w": "photos"}, "cameras": {}}, []),
         ({}, []),

@@ -18,6 +18,13 @@ def test_files_of_each_fixed_camera_and_of_each_walk(job):
     assert calibration.each_walk(job(**PLAIN), paths.FRAME_TABLE) == frames
 
 
+def test_the_size_of_clicked_pictures_is_that_of_the_static_recording_or_of_a_take(job):
+    static = ["results/plain-tiny/static/side.png", "results/plain-tiny/static/back.png"]
+    assert calibration.of_full_size(job(**PLAIN)) == static
+    mixed = calibration.of_full_size(job(session="walk-4cams-tiny"))
+    assert [path.rpartition("/")[2] for path in mixed][::3] == ["cam01.png", "cam04.mp4"]
+
+
 def test_a_mapper_has_its_own_options_and_attempts(job):
     found = calibration.mapping(job(**PLAIN, mapper="global"))
     assert found == {"rule": "even", "seed": 0, "options": {}, "attempts": 6}

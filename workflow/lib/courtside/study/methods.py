@@ -7,7 +7,7 @@ from courtside.study.errors import InputError
 
 # The default choice of bridging images is o0; a name leaves it out.
 CALIBRATION = re.compile(
-    r"file|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
+    r"file|(?P<alone>known)|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
     r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?"
 )
 VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
@@ -67,12 +67,12 @@ def distinct_offsets(n_images: int, n_frames: int, n_offsets: int) -> list[int]:
 class Calibration:
     """A way to find the fixed cameras of a session."""
 
-    # `file`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`, `paper-global-n40`, `known18`,
-    # `known8-board`, `dlt18` and the like
+    # `file`, `known`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`, `paper-global-n40`,
+    # `known18`, `known8-board`, `dlt18` and the like
     name: str
     # `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
     # together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
-    # `known` (resection), `dlt`
+    # `known` (resection; without a number all points, all cameras together), `dlt`
     kind: str
     # The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
     # the paper
@@ -92,7 +92,7 @@ class Calibration:
             n_points, board = int(found["n_points"]), bool(found["board"])
             return cls(name, found["points"], n_points=n_points, board=board)
         if not found["kind"]:
-            return cls(name, "file")
+            return cls(name, found["alone"] or "file")
         incremental = found["kind"] == "paper" and not found["mapped"]
         mapper = "incremental" if incremental else "global"
         variant = Variant(mapper, int(found["n_images"]), int(found["offset"] or 0))
@@ -101,7 +101,7 @@ class Calibration:
     @property
     def has_covariance(self) -> bool:
         """Whether the covariance of the cameras is known."""
-        return self.kind == "sfm"
+        return self.kind == "sfm" or self.name == "known"
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,8 @@ from courtside.study.configuration import schemas
 from courtside.study.errors import InputError, StrPath
 
 ON_EDGE_M = 1e-6  # for rounding only: files state millimetres
+# ASSUME: of points that no court file names, as of those in config/courts: standard deviations, m.
+PLACED_M = {"floor": 0.005, "raised": 0.015}
 # Clicked court points by camera name: (P, 2) px in the order of `Court.points`, NaN where not
 # clicked.
 ClickedPoints: TypeAlias = Mapping[str, NDArray]
@@ -75,6 +77,24 @@ def read(path: StrPath) -> Court:
     )
     _check(path, court)
     return court
+
+
+def of_places(name: str, points: Sequence[str], xyz: NDArray) -> Court:
+    """Return points at any places (P, 3) m as a court without lines; its size is their extent."""
+    xyz = np.asarray(xyz, dtype=float)
+    return Court(
+        name=name,
+        description=f"{len(points)} points at known places",
+        size_m=np.ptp(xyz[:, :2], axis=0),
+        line_width_m=0.0,
+        points=tuple(points),
+        xyz=xyz,
+        edges=("",) * len(points),
+        sigma_m=np.where(xyz[:, 2] > 0, PLACED_M["raised"], PLACED_M["floor"]),
+        sets={"all": tuple(points)},
+        lines_m=np.zeros((0, 4)),
+        net=None,
+    )
 
 
 def _check(path: StrPath, court: Court) -> None:

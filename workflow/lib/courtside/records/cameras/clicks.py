@@ -26,18 +26,18 @@ def read(path: StrPath, cameras: Sequence[str], points: Sequence[str]) -> dict[s
     clicks = {camera: np.full((len(points), 2), np.nan) for camera in cameras}
     index = {point: at for at, point in enumerate(points)}
     seen: dict[tuple[str, str], int] = {}
-    for line, row in _rows(path):
+    for line, row in table(path, COLUMNS):
         where = f"{path}: line {line}"
-        camera = _known(where, "camera", row["camera"], clicks)
-        point = _known(where, "point", row["point"], index)
-        _number(where, "frame_idx", row["frame_idx"], expected=STATIC)
+        camera = known(where, "camera", row["camera"], clicks)
+        point = known(where, "point", row["point"], index)
+        number(where, "frame_idx", row["frame_idx"], expected=STATIC)
         if (camera, point) in seen:
             raise InputError(
                 f"{where}: expected one click for point {point} in camera {camera}, found another "
                 f"in line {seen[camera, point]}; delete one"
             )
         seen[camera, point] = line
-        clicks[camera][index[point]] = [_number(where, key, row[key]) for key in ("x_px", "y_px")]
+        clicks[camera][index[point]] = [number(where, key, row[key]) for key in ("x_px", "y_px")]
     return clicks
 
 
@@ -47,7 +47,7 @@ def read_static(path: StrPath, cameras: Sequence[str]) -> tuple[list[str], NDArr
     The table is as for `read`, with names of one's own. An `InputError` also if a point is clicked
     in one camera only, which nothing can check.
     """
-    rows = _rows(path)
+    rows = table(path, COLUMNS)
     points = list(dict.fromkeys(row["point"] for _, row in rows))
     clicks = read(path, cameras, points)
     xy = np.stack([clicks[camera] for camera in cameras])
@@ -76,20 +76,27 @@ def write(path: StrPath, clicks: Mapping[str, NDArray], points: Sequence[str]) -
                     writer.writerow([camera, point, STATIC, x, y])
 
 
-def _rows(path: StrPath) -> list[tuple[int, dict[str, str]]]:
-    """Return (line number, row) of every row, cells stripped."""
+def table(
+    path: StrPath, columns: Sequence[str], more: Sequence[str] = ()
+) -> list[tuple[int, dict[str, str]]]:
+    """Return (line number, row) of every row of a CSV, cells stripped.
+
+    The header has the `columns`, and perhaps `more`, in any order; an `InputError` otherwise.
+    """
     kinds = (OSError, UnicodeDecodeError, csv.Error)
     with (
         reading(path, "a readable CSV file", "save it again as CSV (UTF-8)", kinds=kinds),
         Path(path).open(newline="", encoding="utf-8-sig") as stream,
     ):
-        table = csv.reader(stream, strict=True)
-        lines = [(table.line_num, [cell.strip() for cell in row]) for row in table]
+        cells = csv.reader(stream, strict=True)
+        lines = [(cells.line_num, [cell.strip() for cell in row]) for row in cells]
     lines = [(number, row) for number, row in lines if any(row)]
     header = lines[0][1] if lines else []
-    if sorted(header) != sorted(COLUMNS):
+    if sorted(set(header) | set(more)) != sorted([*columns, *more]) or len(set(header)) < len(
+        header
+    ):
         raise InputError(
-            f"{path}: expected the columns {','.join(COLUMNS)} with commas between, found "
+            f"{path}: expected the columns {','.join(columns)} with commas between, found "
             f"{','.join(header)[:80] or 'an empty file'}; correct the first line"
         )
     for line, row in lines[1:]:
@@ -100,7 +107,8 @@ def _rows(path: StrPath) -> list[tuple[int, dict[str, str]]]:
     return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
 
 
-def _known(where: str, what: str, name: str, names: Collection[str]) -> str:
+def known(where: str, what: str, name: str, names: Collection[str]) -> str:
+    """Return a name; an `InputError` if it is none of `names`."""
     if name not in names:
         raise InputError(
             f"{where}: expected a {what} of {', '.join(names)}, found {name[:40]!r}; correct it or "
@@ -109,12 +117,13 @@ def _known(where: str, what: str, name: str, names: Collection[str]) -> str:
     return name
 
 
-def _number(where: str, key: str, text: str, expected: float | None = None) -> float:
+def number(where: str, key: str, text: str, expected: float | None = None) -> float:
+    """Return a cell as a number; an `InputError` if it is not finite, or not the `expected` one."""
     try:
-        number = float(text)
+        value = float(text)
     except ValueError:
-        number = math.nan
-    if not math.isfinite(number) or expected not in (None, number):
+        value = math.nan
+    if not math.isfinite(value) or expected not in (None, value):
         wanted = "a finite number" if expected is None else f"{expected}, the static picture"
         raise InputError(f"{where}: expected {key} as {wanted}, found {text[:40]!r}; correct it")
-    return number
+    return value

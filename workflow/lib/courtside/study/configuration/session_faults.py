@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from courtside.study.configuration import consent, sighting_faults, take_faults
-from courtside.study.configuration.session_files import is_there, of_configuration
+from courtside.study.configuration.session_files import has_places, is_there, of_configuration
 from courtside.study.configuration.yaml_files import Content
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.paths import CAMERAS, EXTERNAL, VIRTUAL
@@ -30,7 +30,7 @@ def find(
         yield f"{file}: court: expected 'none' or one of {known_courts}, found {court!r}"
     for name in sorted(set(cameras) & set(content.get("walks", {}))):
         yield f"{file}: walks.{name}: expected a name that no camera has, found {name!r}; rename it"
-    yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content)
+    yield from _virtual_faults(file, content) if virtual else _recorded_faults(file, content, root)
     yield from _override_faults(file, content)
     yield from consent.faults(file, content)
     yield from sighting_faults.find(file, content)
@@ -126,7 +126,7 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
     yield from _setting_faults(f"{file}: virtual", content["virtual"])
 
 
-def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
+def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     cameras, walks = content["cameras"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
     found = {"walks", "calibration", "court_points"} & set(content)
@@ -150,14 +150,44 @@ def _recorded_faults(file: Path, content: Content) -> Iterator[str]:
                 f"{file}: cameras.{name}: expected `static`, a recording or photo of the empty "
                 "court, found none; bridging images are tied to it"
             )
+    yield from _point_faults(file, content, root)
+
+
+def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
+    """Yield the faults of court points, or points with places of their own."""
+    cameras, walks = content["cameras"], content.get("walks", {})
     clicked = "court_points" in content
-    if content["court"] == "none" and clicked:
-        yield f"{file}: court_points: expected none without a court, found some; name their court"
+    placed = clicked and has_places(root / content["court_points"])
+    if content["court"] == "none" and clicked and not placed:
+        yield (
+            f"{file}: court_points: expected none without a court, found some; name their court, "
+            "or add the columns x_m, y_m and z_m with their places"
+        )
+    if placed and walks:
+        yield (
+            f"{file}: court_points: expected points of the court by their names beside `walks`, "
+            "found places x_m, y_m, z_m; name the points, or remove the walks"
+        )
+    there = clicked and is_there(root / content["court_points"])
+    if there and not walks and "calibration" not in content:
+        yield from _unsized(file, content)
     if content["court"] != "none" and walks and cameras and not clicked:
         yield (
             f"{file}: expected `court_points` for a session with a court, found none; say where "
             "they are to be saved, and the study makes a page to click them on, or set court: none"
         )
+
+
+def _unsized(file: Path, content: Content) -> Iterator[str]:
+    """Yield the cameras of which nothing tells the size of the picture that points are in."""
+    takes = [take for take in content.get("takes", {}).values() if take]
+    filmed = {name for take in takes for name in take.get("videos", {})}
+    for name, camera in content["cameras"].items():
+        if not (camera or {}).get("static") and name not in filmed:
+            yield (
+                f"{file}: cameras.{name}: expected `static` or a video in a take, which tell the "
+                "size of its picture, found neither; add one or remove the camera"
+            )
 
 
 def _setting_faults(where: str, virtual: Content) -> list[str]:

@@ -34,6 +34,15 @@ def is_there(path: Path) -> bool:
         return False
 
 
+def has_places(path: Path) -> bool:
+    """Tell whether a table of clicked points states their places, m; False if it is no table."""
+    try:
+        with path.open(encoding="utf-8-sig") as stream:
+            return "x_m" in [cell.strip() for cell in stream.readline().split(",")]
+    except (OSError, UnicodeDecodeError, ValueError):
+        return False
+
+
 def of_configuration(path: str | None, folder: Path) -> str | None:
     """Return a path of a session; one that begins with `config/` is below the `folder` config/."""
     inside = (path or "").removeprefix("config/")
@@ -77,6 +86,8 @@ def session(
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
         court_points=recordings.get("court_points") or clicked,
+        placed=bool(clicked) and has_places(Path(root) / str(clicked)),
+        also_known="known" in content.get("override", {}).get("calibrations", []),
         unclicked=unclicked,
         virtual=content.get("virtual"),
         condition={},

@@ -97,6 +97,9 @@ class Session:
     # The cameras that play `centre`, `left`, `right` in the paper's rule for three cameras
     halfbody: dict[str, str] | None
     parameters: dict[str, Any]  # the steps' parameters of the study, with this session's overrides
+    placed: bool = False  # whether the file of court points states their places itself
+    # Whether cameras are calibrated from points alone, too, where there are better ways
+    also_known: bool = False
     unclicked: str | None = None  # where court points that nobody has clicked yet are to be saved
     # Of `calibration`, where numbers of the file are replaced: `principal_point_px` and `reason`
     calibration_override: dict[str, Any] = field(default_factory=dict)
@@ -114,6 +117,8 @@ class Session:
     def calibrations(self) -> list[str]:
         """Return the study's calibrations for which this session has recordings."""
         clicked, walked = self.court_points is not None and bool(self.cameras), bool(self.walks)
+        alone = clicked and (self.also_known or not (walked or self.calibration_file))
+        clicked = clicked and not self.placed
         boards = clicked and all(camera.chessboard for camera in self.cameras.values())
         possible = {
             "file": self.calibration_file is not None,
@@ -124,7 +129,11 @@ class Session:
             "paper": walked and clicked,
         }
         ways = map(Calibration.parse, self.parameters["calibrations"])
-        return [way.name for way in ways if possible[way.kind] and (boards or not way.board)]
+        return [
+            way.name
+            for way in ways
+            if (alone if way.name == "known" else possible[way.kind] and (boards or not way.board))
+        ]
 
     def take_calibrations(self) -> list[str]:
         """Return the session's calibrations that its takes are measured with."""

@@ -15,6 +15,17 @@ def each_fixed(job: Job, pattern: str) -> list[str]:
     return job.of_each(pattern, camera=job.session.cameras)
 
 
+def of_full_size(job: Job) -> list[str]:
+    """Return of each fixed camera a picture or video of the size that its clicks are in."""
+    session = job.session
+    return [
+        job.fill(paths.STATIC, camera=name)
+        if camera.static
+        else next(take.videos[name] for take in session.takes.values() if name in take.videos)
+        for name, camera in session.cameras.items()
+    ]
+
+
 def each_walk(job: Job, pattern: str) -> list[str]:
     """Return a file of each walk of a session."""
     return job.of_each(pattern, walk=job.session.walks)

@@ -1,0 +1,127 @@
+"""Cameras from points alone, together: the true ones within what the covariance states."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from courtside.calibration.bundle.problem import IMAGE, LENS
+from courtside.calibration.court import court, points_alone
+from courtside.geometry.camera import Camera, in_picture
+from courtside.study.errors import InputError
+from fixtures.cameras.scene import look_at, opencv_projection
+
+HALL = court.read(Path(__file__).parents[4] / "config" / "courts" / "sports-hall.yaml")
+SIZE = (1920, 1080)
+WEIGHTS = {"click_sigma_px": 2.5, "click_bias_px": 1.25, "click_loss": 4.0}
+STATED_PX = 1.25  # of a click, in a picture of this width
+
+
+def true_cameras(k1=-0.29, k2=0.06):
+    """Return four cameras on the stands, wide lenses with the principal point off the centre."""
+    places = {"east": (27, 18, 7), "west": (-7, 22, 6.5), "south": (9, -6, 7), "north": (12, 46, 6)}
+    matrix = np.array([[1010.0, 0, 966.5], [0, 1010, 551.5], [0, 0, 1]])
+    return [
+        Camera(name, SIZE, matrix, (k1, k2, 0, 0, 0), look_at(at, (10, 20, 0)))
+        for name, at in places.items()
+    ]
+
+
+def clicked(cameras, noise_px=1.0, seed=0):
+    rng = np.random.default_rng(seed)
+    found = {}
+    for camera in cameras:
+        xy = opencv_projection(camera, HALL.xyz)
+        in_cam = HALL.xyz @ camera.cam_from_world[:, :3].T + camera.cam_from_world[:, 3]
+        shown = in_picture(camera, xy) & (in_cam[:, 2] > 1)
+        radius = np.hypot(*(in_cam[:, :2] / in_cam[:, 2:]).T)
+        shown &= radius < camera.fold_radius
+        noisy = xy + rng.normal(0, noise_px, xy.shape)
+        found[camera.name] = np.where(shown[:, None], noisy, np.nan)
+    return found
+
+
+def calibrate(clicks, cameras=None):
+    return points_alone.calibrate(HALL, clicks, dict.fromkeys(cameras or clicks, SIZE), **WEIGHTS)
+
+
+def apart_px(found, true):
+    grid = np.stack(np.meshgrid([3.0, 10, 17], [8, 20, 32], [0, 1, 2]), axis=-1).reshape(-1, 3)
+    xy = opencv_projection(true, grid)
+    seen = in_picture(true, xy)
+    return np.linalg.norm(opencv_projection(found, grid) - xy, axis=1)[seen]
+
+
+def test_exact_clicks_give_the_true_pictures():
+    made = true_cameras()
+    found = calibrate(clicked(made, noise_px=0)).solution.cameras
+    for camera, true in zip(found, made, strict=True):
+        assert apart_px(camera, true).max() < 1.0
+        assert camera.K[1, 1] == pytest.approx(true.K[1, 1], rel=0.01)
+
+
+def test_errors_are_about_as_large_as_stated():
+    made, square = true_cameras(), []
+    for seed in range(4):
+        found = calibrate(clicked(made, seed=seed)).solution
+        spread = np.sqrt(np.diag(found.covariance))
+        first = IMAGE * len(made) + LENS.index("f_px")
+        for at, (camera, true) in enumerate(zip(found.cameras, made, strict=True)):
+            sigma = spread[first + len(LENS) * at]
+            square.append(((camera.K[1, 1] - true.K[1, 1]) / sigma) ** 2)
+    assert 0.2 < np.mean(square) < 3
+
+
+def test_the_expected_error_is_of_places_that_two_cameras_see():
+    found = calibrate(clicked(true_cameras()))
+    here, nowhere = np.array([[10.0, 20, 1]]), np.array([[10.0, 20, 1000]])
+    error_cm, share = points_alone.expected_cm(found, here)
+    assert 0.1 < error_cm < 5 and share == 1
+    assert np.isnan(points_alone.expected_cm(found, nowhere)[0])
+    assert points_alone.expected_cm(found, np.concatenate([here, nowhere])) == (error_cm, 0.5)
+
+
+def test_a_wrong_click_is_named_and_moves_nothing():
+    made = true_cameras()
+    clicks = clicked(made)
+    at = int(np.flatnonzero(np.isfinite(clicks["north"][:, 0]))[5])
+    clicks["north"][at] += [40, -25]
+    found = calibrate(clicks)
+    (wrong,) = found.wrong
+    assert (wrong.camera, wrong.point) == ("north", HALL.points[at])
+    assert wrong.error_px == pytest.approx(np.hypot(40, 25), abs=8)
+    assert apart_px(found.solution.cameras[3], made[3]).max() < 6
+    assert str(wrong) in found.warnings
+
+
+def test_a_camera_whose_points_fit_badly_is_named():
+    made = true_cameras()
+    clicks = clicked(made)
+    rng = np.random.default_rng(1)
+    clicks["west"] += rng.normal(0, 12, clicks["west"].shape)
+    assert any(line.startswith("camera west: expected its points to fit") for line in
+               calibrate(clicks).warnings)  # fmt: skip
+
+
+def test_too_few_points_name_the_camera():
+    clicks = clicked(true_cameras())
+    seen = np.flatnonzero(np.isfinite(clicks["east"][:, 0]))
+    clicks["east"][seen[6:]] = np.nan
+    with pytest.raises(InputError, match="camera east: expected 8 clicked points"):
+        calibrate(clicks)
+
+
+def test_free_places_are_a_court_without_lines():
+    places = court.of_places("points", HALL.points, HALL.xyz - [10, 20, 0])
+    moved = replace(HALL, xyz=places.xyz)
+    clicks = clicked(true_cameras())
+    one, other = (
+        points_alone.calibrate(of, clicks, dict.fromkeys(clicks, SIZE), **WEIGHTS)
+        for of in (places, replace(moved, sigma_m=places.sigma_m))
+    )
+    np.testing.assert_allclose(one.solution.covariance, other.solution.covariance)
+    said = points_alone.said(one)
+    assert said["n_points"]["east"] == np.isfinite(clicks["east"][:, 0]).sum()
+    assert 0.5 < said["rms_px"]["east"] < 1.5
+    assert said["f_sigma_px"]["east"] > 0

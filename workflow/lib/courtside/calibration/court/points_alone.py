@@ -1,0 +1,173 @@
+"""All fixed cameras from points at known places alone, weighted together, with their covariance.
+
+Each camera is found by itself (`resection`). Then all are adjusted together: a point's place is one
+unknown for all cameras that see it, and the scatter of clicks is estimated from all residuals.
+Clicks that contradict a camera lose weight and are named.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection, solver, variance_components
+from courtside.calibration.bundle.problem import IMAGE, LENS
+from courtside.calibration.court import click_checks, joint_adjustment, resection
+from courtside.calibration.court.court import ClickedPoints, Court
+from courtside.calibration.court.joint_adjustment import Solution, Ties
+from courtside.calibration.records import covariance as camera_covariance
+from courtside.geometry.camera import Camera, in_picture, project
+
+# ASSUME: what lenses and sensors usually are, standard deviations: square pixels, a principal point
+# within 1 % of the picture's width of its centre, barrel distortion that a k2 follows. Points on a
+# floor tell the principal point badly; fixed at the centre it makes other errors look too small.
+CENTRE_SHARE = 0.01  # of the picture's width
+SPREAD = {"aspect": 1e-3, "k1": 0.3, "k2": 0.2, "p1": 5e-4, "p2": 5e-4}
+MAX_ITERATIONS = 200
+ROUNDS, SETTLED = 8, 0.05  # of the variance factors: see `joint_adjustment`
+SCATTERED = 3.0  # ASSUME: a camera whose clicks scatter so much more than the others' is named
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Cameras from points alone."""
+
+    solution: Solution
+    error_px: dict[str, NDArray]  # (P,) by camera: of each click, NaN where there is none
+    wrong: list[click_checks.WrongClick]  # clicks that their camera's others contradict
+    warnings: list[str]
+
+
+def calibrate(
+    court: Court,
+    clicks: ClickedPoints,
+    sizes: Mapping[str, tuple[int, int]],
+    *,
+    click_sigma_px: float,
+    click_bias_px: float,
+    click_loss: float,
+) -> Found:
+    """Calibrate cameras, whose pictures have the given sizes (px), from their clicks.
+
+    The weights are those of `joint_adjustment.solve`. Raises `InputError` if the points do not
+    determine a camera: each needs eight, not on one line.
+    """
+    weights = {
+        "click_sigma_px": click_sigma_px,
+        "click_bias_px": click_bias_px,
+        "click_loss": click_loss,
+    }
+    starts = []
+    for name, size in sizes.items():
+        sigma_px = joint_adjustment.click_sigma(click_sigma_px, size)
+        known = {"sigma_px": sigma_px, "xyz_sigma": court.sigma_m, "name": name}
+        starts.append(resection.nonlinear(court.xyz, clicks[name], size, **known).camera)
+    solved = _solved(_lenses(starts), clicks, court, weights)
+    projected = np.stack([project(camera, court.xyz) for camera in solved.cameras])
+    clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])
+    table = click_checks.LeaveOneOut(
+        court.points, tuple(sizes), np.full_like(court.xyz, np.nan), projected, clicked
+    )
+    sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, solved.cameras)
+    wrong = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
+    warnings = [str(one) for one in wrong] + _scattered(solved, click_sigma_px)
+    return Found(solved, dict(zip(sizes, table.error_px, strict=True)), wrong, warnings)
+
+
+def said(found: Found) -> dict[str, Any]:
+    """Return for a JSON file how well the points fit, and the lenses with their uncertainty.
+
+    By camera: `n_points`; `rms_px`, per axis; `f_px` and `k1` with their standard deviations.
+    """
+    report: dict[str, Any] = {"warnings": found.warnings}
+    cameras, spread = found.solution.cameras, np.sqrt(np.diag(found.solution.covariance))
+    lens_sigma = spread[IMAGE * len(cameras) :].reshape(len(cameras), len(LENS))
+    for camera, sigma in zip(cameras, lens_sigma, strict=True):
+        seen = found.error_px[camera.name][np.isfinite(found.error_px[camera.name])]
+        one = {
+            "n_points": len(seen),
+            "rms_px": np.sqrt(np.mean(seen**2) / 2),
+            "f_px": camera.K[1, 1],
+            "f_sigma_px": sigma[LENS.index("f_px")],
+            "k1": camera.dist[0],
+            "k1_sigma": sigma[LENS.index("k1")],
+        }
+        for key, value in one.items():
+            report.setdefault(key, {})[camera.name] = round(float(value), 4)
+    return report
+
+
+def expected_cm(found: Found, xyz: NDArray) -> tuple[float, float]:
+    """Return the expected error of places (N, 3) m, root mean square, cm, and the share seen.
+
+    Of places that two cameras or more have in their pictures, from these alone; NaN of none.
+    """
+    cameras = found.solution.cameras
+    shared = camera_covariance.of_network([c.name for c in cameras], found.solution.covariance)
+    seen = np.stack([in_picture(c, project(c, xyz)) for c in cameras], axis=1)
+    rows: list[NDArray] = []
+    for who in np.unique(seen[seen.sum(axis=1) > 1], axis=0):
+        chosen = [camera for camera, one in zip(cameras, who, strict=True) if one]
+        spread = shared.of([camera.name for camera in chosen]).of_columns()
+        there = xyz[(seen == who).all(axis=1)]
+        network = selection.of_cameras(chosen)
+        rows.append(point_covariance.point_covariance(network, spread, there))
+    share = float((seen.sum(axis=1) > 1).mean())
+    if not rows:
+        return float("nan"), share
+    variance = np.trace(np.concatenate(rows), axis1=1, axis2=2)
+    return float(100 * np.sqrt(variance.mean())), share
+
+
+def _lenses(starts: Sequence[Camera]) -> Ties:
+    """Return what is known of the lenses before any click, about cameras to start from."""
+    network = selection.of_cameras(starts)
+    information = np.zeros((network.n_columns, network.n_columns))
+    reference = network.lens.copy()
+    for at, camera in enumerate(starts):
+        width, height = camera.size
+        mean = {"aspect": 1.0, "cx_px": (width - 1) / 2, "cy_px": (height - 1) / 2}
+        sigma = SPREAD | dict.fromkeys(("cx_px", "cy_px"), CENTRE_SHARE * width)
+        for name, spread in sigma.items():
+            column = IMAGE * len(starts) + len(LENS) * at + LENS.index(name)
+            information[column, column] = spread**-2.0
+            reference[at, LENS.index(name)] = mean.get(name, 0.0)
+    known = solver.Quadratic(
+        replace(network, lens=reference), information, np.zeros(len(information))
+    )
+    return Ties(tuple(c.name for c in starts), tuple(c.size for c in starts), known)
+
+
+def _solved(lenses: Ties, clicks: ClickedPoints, court: Court, weights: dict) -> Solution:
+    """Adjust all cameras, their clicks weighted by the scatter that the residuals show."""
+    options = {**weights, "max_iterations": MAX_ITERATIONS}
+    solved = joint_adjustment.solve(lenses, clicks, court, **options)
+    for _ in range(ROUNDS):
+        before = solved.factors
+        found = variance_components.estimate(solved.network, lenses.knowledge, before)
+        found = replace(found, ties=1.0, ties_redundancy=0.0)  # of lenses, which are no ties
+        solved = joint_adjustment.solve(
+            lenses, clicks, court, **options, factors=found, start=solved.network
+        )
+        if np.abs(np.log(found.clicks / before.clicks)).max() < SETTLED:
+            break
+    return solved
+
+
+def _scattered(solved: Solution, click_sigma_px: float) -> list[str]:
+    """Name the cameras whose clicks scatter far more than those of the others."""
+    share = np.sqrt(solved.factors.clicks.mean(axis=1))
+    found = []
+    for at, camera in enumerate(solved.cameras):
+        others = np.delete(share, at)
+        if len(others) and share[at] > SCATTERED * max(1.0, np.median(others)):
+            stated = joint_adjustment.click_sigma(click_sigma_px, camera.size)
+            found.append(
+                f"camera {camera.name}: expected its points to fit as those of the other cameras "
+                f"do, to {stated * np.median(others):.1f} px, found {stated * share[at]:.1f} px; "
+                "check the names and places of its points"
+            )
+    return found
