@@ -5,7 +5,7 @@ or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
 Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras (`sfm-n40`, the default), align_cameras
 (`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
-`known8-board`, `dlt18`); propose_court_points (where the points probably are), build_clicking_page.
+`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras); propose_court_points (where the points probably are), build_clicking_page.
 """
 
 

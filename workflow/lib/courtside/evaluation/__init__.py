@@ -8,6 +8,7 @@ detection: `evaluate`, `torso_px`: errors of a network's 2D joints in the pictur
 kinematics: `table`, `angles`: errors of paths and speeds, of joint angles
 sources: `errors`, `table`, `split`: errors of devices and cameras, and their parts
 round_trip: `table`, `distance_after`: the paper's table 1
+marker_system: `fit`, `table`: joints against an optical marker system
 camera_sets: `compare`, `gains`: fewer cameras, and other fusions
 skin_depths: `estimate`: depth of joints behind the skin
 calibration: `of_ties`, `of_known`, `score`: one trial of calibration

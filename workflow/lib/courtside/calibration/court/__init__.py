@@ -1,12 +1,14 @@
 """Calibration by a known court: clicks, alignment, joint adjustment, resection, checks.
 
-court: read, to_line_centres, Court, ClickedPoints
+court: read, of_places, to_line_centres, Court, ClickedPoints
 line_edges: named, post, middle_line, stretches, paint: edges and areas of the painted lines
 sfm_alignment: reconstruct, align, paper_frame, check, stretch, refuse_exchanged_cameras
 joint_adjustment: condense, condense_free, solve, free, Ties, Solution: tie points with clicked
     court points
 resection: dlt, nonlinear: one camera from known points, by `one_camera`
-known_points: method, calibrate, cameras: all cameras from known points alone
+known_points: method, calibrate, cameras: all cameras from known points, each by itself
+points_alone: calibrate, said, expected_cm: all cameras from points alone, together
+place_checks: shifts: cameras whose points are all at wrong places
 click_checks: leave_one_out, find_wrong_clicks, inward_shift, inward_shift_of_points, check
 quality: check_cameras, adjust_and_check, check_maps, leave_one_out_errors; errors against the truth
 """

@@ -63,8 +63,15 @@ def calibrate(
     starts = []
     for name, size in sizes.items():
         sigma_px = joint_adjustment.click_sigma(click_sigma_px, size)
-        known = {"sigma_px": sigma_px, "xyz_sigma": court.sigma_m, "name": name}
-        starts.append(resection.nonlinear(court.xyz, clicks[name], size, **known).camera)
+        found = resection.nonlinear(
+            court.xyz,
+            clicks[name],
+            size,
+            sigma_px=sigma_px,
+            xyz_sigma=court.sigma_m,
+            name=name,
+        )
+        starts.append(found.camera)
     solved = _solved(_lenses(starts), clicks, court, weights)
     projected = np.stack([project(camera, court.xyz) for camera in solved.cameras])
     clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])

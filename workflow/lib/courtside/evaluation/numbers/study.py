@@ -37,7 +37,8 @@ MEASURED = (  # of the results of a default run
     devices.body_frames,
 )
 STATED = (
-    *("real-checks", "device-checks", "stated-errors", "file-evidence", "file-mended"),
+    *("real-checks", "markers", "hall-points", "device-checks", "stated-errors"),
+    *("file-evidence", "file-mended"),
     *("file-faults", "mapping-checks", "click-model", "click-alarms", "worlds"),
     *("speed", "costs", "stages", "faults", "trust"),
 )

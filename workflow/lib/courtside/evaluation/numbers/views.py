@@ -154,6 +154,28 @@ VIEWS = {
             "with": "{raw_median.command}",
         },
     ),
+    "markers": View(
+        "markers",
+        {
+            "joint; cameras": "{row}",
+            **{
+                heading: f"{{{part}_median}} ({{{part}_median_from}} to {{{part}_median_to}}) / "
+                f"{{{part}_p90}}"
+                for part, heading in {
+                    **dict(zip(STAGES, STAGES, strict=True)),
+                    "hand": "set by hand, same cameras",
+                }.items()
+            },
+            "90 % hold, raw / filtered / corrected, %": " / ".join(
+                f"{{{stage}_coverage_90}}" for stage in STAGES
+            ),
+            "missing, raw / corrected, %": "{raw_missing} / {corrected_missing}",
+            "scale off, raw / corrected / by hand, %": (
+                "{raw_scale} / {corrected_scale} / {hand_scale}"
+            ),
+            "joints": "{raw_median.n}",
+        },
+    ),
     "joints": View(
         "joints",
         {
@@ -224,7 +246,7 @@ VIEWS = {
     },
     **{
         name: View(name, {"what": "{row}", "found": "{found}", **FOUND})
-        for name in ("file-evidence", "mapping-checks", "costs")
+        for name in ("hall-points", "file-evidence", "mapping-checks", "costs")
     },
     "stated-errors": View(
         "stated-errors",

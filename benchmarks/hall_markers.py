@@ -1,0 +1,222 @@
+"""A real hall against a marker system: joints, with two calibrations, beside hand annotations.
+
+    python benchmarks/hall_markers.py DATA [--study FOLDER] [--csv TABLE.csv]
+
+DATA is a folder of the recording "mocap_8" (pictures CC BY 4.0), which is no part of the project:
+`cam02.mp4`, `cam05.mp4`, `cam08.mp4`, `cam13.mp4`, their cameras in `calibration_refined.toml`,
+points of the court in `court_points.csv`, what the marker system saw in `mocap.csv`, and joints set
+by hand in `annotations.csv`. The script writes a study of this one session into FOLDER (by default
+a temporary one), with the file's cameras and with cameras found from court points alone, runs it,
+and compares with the markers: time shift and one rigid motion are found from the joints, the scale
+is not fitted. It writes docs/numbers/hall_markers.csv, a source of docs/make_tables.py.
+"""
+
+import argparse
+import csv
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import yaml
+
+from many_sessions import ROOT, copied
+
+sys.path.insert(0, str(ROOT / "workflow" / "lib"))
+
+from courtside.evaluation import marker_system
+from courtside.geometry import camera as camera_models
+from courtside.geometry import triangulation
+from courtside.records.cameras import placed_points
+from courtside.records.keypoints import keypoints
+from courtside.study.configuration import yaml_files
+
+CAMERAS = ("cam02", "cam05", "cam08", "cam13")
+FILES = ("mocap.csv", "annotations.csv", "court_points.csv", "calibration_refined.toml")
+# Both persons of the pictures: the study names them in an order of its own, and the one nearer the
+# markers is taken. A subject who is pointed out in a picture (`seen`) would be enough.
+SUBJECTS = {"p1": {"consent": ["analysis"]}, "p2": {"consent": ["analysis"]}}
+# 12 pictures a second: a filter cannot pass more than half of that.
+CUTOFFS = {"cutoff_hz": {"head": 5, "trunk": 5, "arms": 5, "legs": 5}}
+WAYS = {"file": "cameras of the source, refined", "known": "cameras from court points alone"}
+STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
+FUSED = "takes/play/{stage}/{way}/all-robust/{model}.npz"
+# Of the marker system, wrong in the first 2 s: the study and the hand annotations agree with each
+# other there, to 38 mm in the median, and both are 0.2 to 0.5 m from it.
+DOUBTFUL = ("left_ankle",)
+LABEL = "real, basketball player in a marker suit, sports hall, against the marker system's joints"
+COMMAND = "`python benchmarks/hall_markers.py DATA`"
+COLUMNS = ["table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin"]
+
+
+def write_study(folder, data):
+    """Write the session and its study; return the name of the study's configuration."""
+    (folder / "data").mkdir(exist_ok=True)
+    points = pd.read_csv(data / "court_points.csv").assign(z_m=0.0)
+    points = points[points["camera"].isin(CAMERAS)]
+    points[list(placed_points.COLUMNS)].to_csv(folder / "data" / "court_points.csv", index=False)
+    content = {
+        "description": "A sports hall with a marker system, 4 fixed cameras, 12 pictures a second",
+        "court": "none",
+        "subjects": SUBJECTS,
+        "cameras": {name: {} for name in CAMERAS},
+        "calibration": {"file": str(data / "calibration_refined.toml")},
+        "court_points": "data/court_points.csv",
+        "takes": {
+            "play": {
+                "synchronised": True,
+                "videos": {name: str(data / f"{name}.mp4") for name in CAMERAS},
+            }
+        },
+        "override": {
+            "calibrations": list(WAYS),
+            "take_calibrations": list(WAYS),
+            "filter_motion": CUTOFFS,
+        },
+    }
+    session = folder / "config" / "sessions" / "hall-markers.yaml"
+    session.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    study = folder / "config" / "hall-markers-study.yaml"
+    study.write_text(
+        yaml.safe_dump({"sessions": ["hall-markers"], "plans": [], "variations": []}),
+        encoding="utf-8",
+    )
+    return str(study.relative_to(folder))
+
+
+def run(folder, data, model):
+    """Make the skeletons of all stages with both calibrations; return the results' folder."""
+    if not (folder / "Snakefile").exists():
+        copied(folder)
+    study, results = write_study(folder, data), Path("results") / "hall-markers"
+    made = [results / FUSED.format(stage=s, way=w, model=model) for s in STAGES for w in WAYS]
+    command = [sys.executable, "-m", "snakemake", "--configfile", study, "--", *map(str, made)]
+    subprocess.run(command, cwd=folder, check=True)
+    return folder / results
+
+
+def truth(data):
+    """Return the times (U,) s and places (U, J, 3) m of the marker system's joints."""
+    table = pd.read_csv(data / "mocap.csv")
+    places = [
+        table[[f"{name}_{axis}_m" for axis in "xyz"]] for name in marker_system.JOINTS.values()
+    ]
+    return table["time_s"].to_numpy(), np.stack(places, axis=1)
+
+
+def by_hand(data, cameras, rate_hz):
+    """Return times (T,) s and joints (T, J, 3) m set by hand, triangulated by these cameras."""
+    table = pd.read_csv(data / "annotations.csv")
+    shape = (len(cameras), table["frame_idx"].max() + 1, len(marker_system.JOINTS))
+    xy = np.full((*shape, 2), np.nan)
+    names = {theirs: at for at, theirs in enumerate(marker_system.JOINTS.values())}
+    order = {camera.name: at for at, camera in enumerate(cameras)}
+    table = table[table["joint"].isin(names) & table["camera"].isin(order)]
+    at = table["camera"].map(order), table["frame_idx"], table["joint"].map(names)
+    xy[tuple(column.to_numpy() for column in at)] = table[["x_px", "y_px"]]
+    score = np.isfinite(xy[..., 0]).astype(float)
+    step = dict(yaml_files.read(ROOT / "config" / "config.yaml")["triangulate"])
+    step.pop("fix_sides")
+    flat = xy.reshape(len(cameras), -1, 2), score.reshape(len(cameras), -1)
+    found = triangulation.triangulate_robust(cameras, *flat, sigma_px=1, **step)
+    return np.arange(shape[1]) / rate_hz, found.xyz.reshape(*shape[1:], 3)
+
+
+def measured(results, data, model):
+    """Yield (way, stage, name of the person, Fit, table of errors)."""
+    names, (true_s, true) = list(marker_system.JOINTS), truth(data)
+    for way in WAYS:
+        for stage, word in STAGES.items():
+            points = keypoints.read_3d(results / FUSED.format(stage=stage, way=way, model=model))
+            own, rate_hz = [points.joints.tolist().index(name) for name in names], points.rate_hz
+            fits = {}
+            for person, xyz in zip(points.person_id, points.xyz, strict=True):
+                fits[person] = marker_system.fit(points.time_s, xyz[:, own], true_s, true)
+            nearest = min(fits, key=lambda name: np.nanmedian(np.abs(fits[name].error)))
+            covariance = points.covariance[list(fits).index(nearest)][:, own]
+            known = covariance, rate_hz, DOUBTFUL
+            table = marker_system.table(names, fits[nearest], *known)
+            yield way, word, nearest, fits[nearest], table
+        cameras = camera_models.read_toml(results / "calibration" / way / "cameras.toml")
+        time_s, xyz = by_hand(data, cameras, rate_hz)
+        found = marker_system.fit(time_s, xyz, true_s, true)
+        unknown = np.full((*xyz.shape, 3), np.nan)
+        table = marker_system.table(names, found, unknown, rate_hz, DOUBTFUL)
+        yield way, "hand", "annotated", found, table
+
+
+def rows(found):
+    """Yield the rows of docs/numbers: one line of the table `footage`, and the table `markers`."""
+    for way, stage, _, fit, table in found:
+        every = table.iloc[0]
+        if stage != "hand":
+            for part in ("median", "p90"):
+                value = f"{every[f'{part}_mm']:.1f}"
+                yield "footage", f"{LABEL}; {WAYS[way]}", f"{stage}_{part}", value, "mm", every
+        for _, row in table.iterrows():
+            label = f"{row['joint'].replace('_', ' ')}; {WAYS[way]}"
+            for part, unit in (("median", "mm"), ("p90", "mm"), ("coverage_90", "%")):
+                key = f"{part}_percent" if unit == "%" else f"{part}_mm"
+                if np.isfinite(row[key]):
+                    yield "markers", label, f"{stage}_{part}", f"{row[key]:.0f}", unit, row
+            for end in ("from", "to"):
+                value = f"{row[f'median_{end}_mm']:.0f}"
+                yield "markers", label, f"{stage}_median_{end}", value, "mm", row
+            value = f"{row['missing_percent']:.1f}"
+            yield "markers", label, f"{stage}_missing", value, "%", row
+        label = f"all; {WAYS[way]}"
+        yield "markers", label, f"{stage}_scale", f"{100 * (fit.scale - 1):+.1f}", "%", every
+
+
+def write_numbers(path, found):
+    """Write the rows as docs/make_tables.py reads them."""
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow([*COLUMNS, "command"])
+        for name, row, part, value, unit, counted in rows(found):
+            n, missing = int(counted["n"]), counted["missing_percent"] / 100
+            failed = round(n * missing / (1 - missing))
+            about = [name, row, part, value, unit, "hall-markers", n, failed]
+            table.writerow([*about, "benchmark", COMMAND])
+
+
+def checked(data):
+    """End with one line where the recording is not there."""
+    lacking = [name for name in (*FILES, *(f"{one}.mp4" for one in CAMERAS))]
+    lacking = [name for name in lacking if not (data / name).is_file()]
+    if lacking:
+        sys.exit(
+            f"{data}: expected the recording mocap_8, found no {lacking[0]}; it is no part of the "
+            "project: docs/measured.md says where it is from"
+        )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("data", type=Path)
+    parser.add_argument("--study", type=Path, help="a folder for the study, kept")
+    parser.add_argument("--results", type=Path, help="of a run that is finished")
+    parser.add_argument("--model", default="blazepose-full")
+    parser.add_argument("--csv", type=Path, help="where the errors are written, too")
+    given = parser.parse_args()
+    checked(given.data)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = given.study or Path(temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        results = given.results or run(folder, given.data.resolve(), given.model)
+        found = list(measured(results, given.data, given.model))
+    for way, stage, person, fit, table in found:
+        print(f"\n{WAYS[way]}, {stage} ({person}): the markers' clock is found {fit.shift_s:.3f} s "
+              f"ahead; scale {fit.scale:.4f}, not fitted")  # fmt: skip
+        print(table.round(1).to_string(index=False))
+    if given.csv:
+        labelled = [table.assign(way=way, stage=stage) for way, stage, _, _, table in found]
+        pd.concat(labelled).to_csv(given.csv, index=False, float_format="%.3f")
+    if given.model == "blazepose-full":
+        write_numbers(ROOT / "docs" / "numbers" / "hall_markers.csv", found)
+
+
+if __name__ == "__main__":
+    main()
