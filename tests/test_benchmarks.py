@@ -2,6 +2,7 @@
 
 import inspect
 import runpy
+import shutil
 import sqlite3
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ import onnx
 import pytest
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))  # last: both have a `scene`
+import hall_markers
 import long_take
 import mapping_seeds
 import real_footage
@@ -20,7 +22,7 @@ import rows
 import run_log
 import structure_from_motion
 from comparisons import pose
-from courtside.study.configuration import yaml_files
+from courtside.study.configuration import configuration, yaml_files
 
 ROOT = Path(__file__).parents[1]
 LOG = """Provided cores: 2
@@ -149,3 +151,28 @@ def test_real_footage_gives_its_script_what_it_takes(monkeypatch):
     config = yaml_files.read(ROOT / "config" / "config.yaml")
     real_footage.filtered(mock.Mock(), config["filter_motion"])
     main.assert_called_once()
+
+
+def test_without_the_recording_of_the_hall_one_line_says_where_it_is_from(tmp_path):
+    with pytest.raises(SystemExit) as caught:
+        hall_markers.checked(tmp_path)
+    assert "expected the recording mocap_8, found no mocap.csv" in str(caught.value)
+    assert "docs/measured.md" in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_the_session_of_the_hall_is_a_session(tmp_path):
+    data = tmp_path / "recording"
+    data.mkdir()
+    for name in (*hall_markers.FILES, *(f"{one}.mp4" for one in hall_markers.CAMERAS)):
+        (data / name).write_text("")
+    (data / "court_points.csv").write_text(
+        "camera,x_px,y_px,x_m,y_m\ncam02,1,2,3,4\ncam01,5,6,3,4\n"
+    )
+    hall_markers.checked(data)
+    config = tmp_path / "config"
+    shutil.copytree(ROOT / "config", config)
+    written = hall_markers.write_study(tmp_path, data)
+    study = yaml_files.read(config / "config.yaml") | yaml_files.read(tmp_path / written)
+    found = configuration.load(study, written, config, tmp_path).sessions["hall-markers"]
+    assert found.calibrations() == found.take_calibrations() == list(hall_markers.WAYS)
+    assert (tmp_path / "data" / "court_points.csv").read_text().count("cam0") == 1

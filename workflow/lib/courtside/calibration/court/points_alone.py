@@ -103,7 +103,8 @@ def said(found: Found) -> dict[str, Any]:
             "k1_sigma": sigma[LENS.index("k1")],
         }
         for key, value in one.items():
-            report.setdefault(key, {})[camera.name] = round(float(value), 4)
+            shown = value if isinstance(value, int) else round(float(value), 4)
+            report.setdefault(key, {})[camera.name] = shown
     return report
 
 
