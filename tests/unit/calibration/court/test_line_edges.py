@@ -16,7 +16,7 @@ COURTS = sorted(FOLDER.glob("*.yaml"))
 
 @pytest.mark.parametrize("path", COURTS, ids=lambda path: path.stem)
 def test_sides_are_as_the_words_say(path):
-    """ "outer", "nearest the net", "nearest the back" and "middle" each name one side."""
+    """ "outer", "inner", "nearest the net", "nearest the back", "middle" each name one side."""
     court = court_files.read(path)
     named = line_edges.named(court)
     middle = court.size_m / 2
@@ -25,13 +25,18 @@ def test_sides_are_as_the_words_say(path):
         if court.xyz[at, 2] > 0:
             assert edges == ()
             continue
-        assert len(edges) == (2 if "foot" not in words else min(len(edges), 1)), court.points[at]
+        # A point on an arc or a mark lies on one straight edge at most.
+        single = any(word in words for word in ("foot", "arc", "circle", "mark"))
+        assert len(edges) == (min(len(edges), 1) if single else 2), court.points[at]
+        inner = {0: "inner edge" in words and "side line" in words}
+        inner[1] = "inner edge" in words and "end line" in words
+        inwards = "nearest the net", "nearest the centre", "where the arc meets"
         assert words.count("middle") >= sum(edge.side == 0 for edge in edges)
         for edge in edges:
             outwards = np.sign(edge.at_m - middle[edge.axis])
             if edge.side == 0:
                 assert "middle" in words
-            elif "nearest the net" in words and edge.axis == 1:
+            elif inner[edge.axis] or (edge.axis == 1 and any(word in words for word in inwards)):
                 assert edge.side == -outwards
             else:
                 assert edge.side == outwards

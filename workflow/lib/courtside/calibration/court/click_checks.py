@@ -102,12 +102,12 @@ def leave_one_out(cameras: Sequence[Camera], clicks: ClickedPoints, court: Court
         residual[at] = fitted.points(xyz[at]) - court.xyz[at]
         for row, camera in enumerate(cameras):
             projected[row, at] = project(fitted.camera(camera), court.xyz[at])
-            crossing[row, at] = _crossing(fitted.camera(camera), court.xyz[at])
+            crossing[row, at] = crossing_of(fitted.camera(camera), court.xyz[at])
     names = tuple(camera.name for camera in cameras)
     return LeaveOneOut(court.points, names, residual, projected, clicked, crossing)
 
 
-def _crossing(camera: Camera, xyz: NDArray) -> NDArray:
+def crossing_of(camera: Camera, xyz: NDArray) -> NDArray:
     """Return the covariance (2, 2) of a click of unit error across the edges of its point.
 
     The edges of a point on the floor lie along the court's axes. Those of a post's tip are upright

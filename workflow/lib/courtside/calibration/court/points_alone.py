@@ -75,8 +75,12 @@ def calibrate(
     solved = _solved(_lenses(starts), clicks, court, weights)
     projected = np.stack([project(camera, court.xyz) for camera in solved.cameras])
     clicked = np.stack([np.asarray(clicks[name], float) for name in sizes])
+    crossing = np.array(
+        [[click_checks.crossing_of(c, xyz) for xyz in court.xyz] for c in solved.cameras]
+    )
+    unplaced = np.full_like(court.xyz, np.nan)
     table = click_checks.LeaveOneOut(
-        court.points, tuple(sizes), np.full_like(court.xyz, np.nan), projected, clicked
+        court.points, tuple(sizes), unplaced, projected, clicked, crossing
     )
     sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, solved.cameras)
     wrong = click_checks.find_wrong_clicks(table, sigma_px=sigma_px)
