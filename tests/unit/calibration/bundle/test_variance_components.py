@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy import integrate
 
+from courtside.calibration import point_covariance
 from courtside.calibration.bundle import selection, variance_components
 from courtside.calibration.court import court as court_files
-from courtside.calibration.court import joint_adjustment
+from courtside.calibration.court import joint_adjustment, sfm_alignment
 from fixtures.cameras import networks_made
 from fixtures.cameras.scene import opencv_projection
 
@@ -63,6 +64,38 @@ def test_few_clicks_leave_the_prior():
     assert found.clicks_redundancy.sum() < 6 < every.clicks_redundancy.sum()
     none = variance_components.none(2)
     assert (none.clicks == 1).all() and none.ties == none.bias == 1
+
+
+@pytest.mark.parametrize("redundancy", [1.2, 4.0, 20.0])
+def test_few_residuals_widen_the_ellipsoid_as_the_scatter_drawn_from_them_asks(redundancy):
+    rng = np.random.default_rng(0)
+    factors = replace(
+        variance_components.none(2), clicks_redundancy=np.full((2, 2), redundancy / 4)
+    )
+    freedom = variance_components.CLICKS_PRIOR + redundancy
+    # Of scale 1: the variance that is true, given what prior and residuals showed.
+    variance = freedom / rng.chisquare(freedom, 20_000)
+    error = rng.normal(size=(20_000, 3)) * np.sqrt(variance)[:, None]
+    limit = point_covariance.ellipsoid(0.9) * factors.widening
+    assert np.mean(np.sum(error**2, axis=1) <= limit) == pytest.approx(0.9, abs=0.006)
+
+
+def test_much_redundancy_widens_nothing():
+    many = replace(variance_components.none(2), clicks_redundancy=np.full((2, 2), 1e4))
+    assert many.widening == pytest.approx(1, abs=1e-3)
+
+
+def test_three_clicks_hold_nine_in_ten_of_the_errors_of_scattered_clicks():
+    few = np.isin(COURT.points, COURT.sets["three"])
+    inside = []
+    for seed in range(16):
+        found, truth = solved(np.full((2, 2), 3.0), points=few, seed=seed)
+        exact = networks_made.fixed_cameras(truth)
+        seen = {camera.name: opencv_projection(camera, COURT.xyz) for camera in exact}
+        error = sfm_alignment.reconstruct(found.cameras, seen) - COURT.xyz
+        distance = point_covariance.mahalanobis(error, found.point_covariance(COURT.xyz))
+        inside.append(np.mean(distance <= point_covariance.ellipsoid(0.9)))
+    assert 0.8 < np.mean(inside) < 0.97, np.mean(inside)
 
 
 def test_the_covariance_holds_where_clicks_scatter_three_times_as_much():

@@ -297,7 +297,8 @@ def solve(
 def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **options: Any) -> Solution:
     """Do as `solve`, with weights and covariance by the residuals: `variance_components`.
 
-    The sigmas of clicks and ties say what is expected of them before their residuals are known.
+    The sigmas of clicks and ties say what is expected of them before their residuals are known. Few
+    clicks tell little of their scatter: the covariance is widened for it (`Factors.widening`).
     `**options` are those of `solve`, without `factors`.
     """
     solved = solve(ties, clicks, court, **options)
@@ -309,7 +310,7 @@ def solve_with_factors(ties: Ties, clicks: ClickedPoints, court: Court, **option
         change = np.append(found.clicks / before.clicks, found.ties / before.ties)
         if np.abs(np.log(change)).max() < FACTOR_TOLERANCE:
             break
-    return solved
+    return replace(solved, covariance=solved.covariance * solved.factors.widening)
 
 
 def _with_bias(ties: Ties, click_bias_px: float, factors: Factors) -> Network:
