@@ -15,8 +15,8 @@ from courtside.study.execution.script import run
 
 
 def main(paths, errors_csv, *, takes, about, step):
-    table, joints = joint_correction.read(paths.offsets), skeleton.read(paths.skeleton)
-    parts = []
+    table = joint_correction.read(paths.offsets) if paths.offsets else None
+    joints, parts = skeleton.read(paths.skeleton), []
     for take, people, sync, true in zip(takes, paths.people, paths.sync, paths.truth, strict=True):
         seen = footage.read(paths.cameras, take["pose2d"], people, sync)
         truth = take_truth.read(true)

@@ -35,3 +35,6 @@ def test_errors_are_those_beside_the_known_offset():
     assert np.median(np.linalg.norm(error, axis=1)) < 0.02  # of noise; offsets are up to 0.1
     assert (weight == error_fit.WEIGHT[3]).all()
     assert (error_fit.joints_of(seen[:2], *given)[3] == error_fit.WEIGHT[2]).all()
+    none = *given[:2], None, *given[3:]  # of a network without known offsets
+    _, whole, _, _ = error_fit.joints_of(seen, *none)
+    assert np.median(np.linalg.norm(whole, axis=1)) > np.median(np.linalg.norm(error, axis=1))

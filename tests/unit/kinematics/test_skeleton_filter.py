@@ -119,3 +119,20 @@ def test_a_take_of_a_few_frames_has_a_skeleton(n_frames):
     raw = record(wave(1.0, n_frames))
     smoothed = skeleton_filter.smooth(skeleton_filter.prepare(raw, 0.1), [6.0], 4)
     assert np.isfinite(smoothed.xyz).all()
+
+
+def test_a_large_error_of_the_network_is_stated_as_far_as_the_filter_spreads_it():
+    still = record(np.zeros((121, 1, 3)))
+    network = np.broadcast_to(1e-4 * np.eye(3), still.covariance_network.shape).copy()
+    network[0, 60] = np.eye(3)
+    still = replace(still, covariance_network=network)
+    moved = still.xyz.copy()
+    moved[0, 60, 0] = 1.0  # by as much as is stated there
+    found = skeleton_filter.smooth(replace(still, xyz=moved), 6.0, 4)
+    stated = np.sqrt(found.covariance_network[0, :, 0, 0, 0])
+    assert (stated >= np.sqrt(network[0, :, 0, 0, 0]) - 1e-12).all() and stated[60] == 1
+    # The filter's weights have both signs: the sum of their sizes is 1.2, not 1.
+    assert (np.abs(found.xyz[0, :, 0, 0]) <= 1.2 * stated).all()
+    np.testing.assert_allclose(stated[:30], 0.01, rtol=1e-2)
+    unknown = skeleton_filter.smooth(record(np.zeros((30, 1, 3))), 6.0, 4)
+    assert np.isnan(unknown.covariance_network).all()

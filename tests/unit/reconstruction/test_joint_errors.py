@@ -71,7 +71,8 @@ def test_limbs_joints_are_stated_and_others_stay_unknown():
     stated = np.isfinite(record.covariance_2d[:, :, at]).all(axis=(-2, -1))
     np.testing.assert_array_equal(np.isfinite(found.outlier[:, :, at]), stated)
     good, share = model.of(joint_errors.design(signs, list(record.joints)))
-    variance = joint_errors.WIDER * ((1 - share) * good + share * model.sigma_m**2)
+    variance = joint_errors.STATED_GOOD * (1 - share) * good
+    variance = variance + joint_errors.STATED_OUTLIER * share * model.sigma_m**2
     expected = np.where(stated, variance, np.nan)[..., None, None] * np.eye(3)
     np.testing.assert_allclose(found.covariance_network[:, :, at], expected)
     np.testing.assert_array_equal(found.xyz, record.xyz)

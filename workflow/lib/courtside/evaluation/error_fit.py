@@ -24,22 +24,24 @@ def joints_of(
     seen: Sequence[Footage],
     skeleton: Skeleton,
     sex_of: Mapping[str, str | None],
-    table: pd.DataFrame,
+    table: pd.DataFrame | None,
     truth: Truth,
     options: Mapping[str, Any],
 ) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Return what `joint_errors.fit` needs of one take and set of cameras.
 
     Columns (N, K), errors less the network's offset (N, 3) m, covariance (N, 3, 3) m2 and weights
-    (N,) of the limbs' joints that are placed and true. `table` holds the offsets, `options` are
-    those of the triangulation.
+    (N,) of the limbs' joints that are placed and true. `table` holds the offsets; None, where a
+    network has none, leaves them in the errors. `options` are those of the triangulation.
     """
     cameras, views = [one.camera for one in seen], [one.view for one in seen]
     clocks = [one.clock for one in seen]
     raw = fusion.triangulate_take(cameras, views, skeleton, list(sex_of), clocks=clocks, **options)
     xy, score = error_signs.keypoints_used(views, clocks, raw, skeleton)
     signs = error_signs.of_points(cameras, raw, xy, score, skeleton)
-    placed = replace(raw, xyz=raw.xyz - joint_correction.offsets(raw, table, sex_of))
+    placed = raw
+    if table is not None:
+        placed = replace(raw, xyz=raw.xyz - joint_correction.offsets(raw, table, sex_of))
     names, error, _ = joints.errors(placed, truth.joints.tolist(), joints.true_places(raw, truth))
     error = error[:, :, [names.index(joint) for joint in limbs.JOINTS]]
     at = [raw.joints.tolist().index(joint) for joint in limbs.JOINTS]

@@ -95,6 +95,14 @@ def block_covariance(
     return noise.scale * matrix @ correlation(n_block, rate_hz, noise) @ matrix.T
 
 
+@lru_cache(maxsize=64)
+def weights(rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
+    """Return the sizes of the filter's weights far from ends, an odd number, of sum 1."""
+    matrix = _operator(_block(10**6, rate_hz, cutoff_hz), rate_hz, cutoff_hz, order, 0)
+    found = np.abs(matrix[len(matrix) // 2])
+    return found / found.sum()
+
+
 def autocorrelation(
     n_lags: int, rate_hz: float, cutoff_hz: float, order: int, noise: Noise, derivative: int
 ) -> NDArray:

@@ -36,6 +36,8 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
     by one, and the same values stay missing; runs of one or two frames stay as they are.
     `covariance_2d` is that of the filtered noise, by the noise model of each joint's own path
     (`noise_propagation.estimate`); it stays unknown where it was, as in filled gaps.
+    `covariance_network` grows where the filter brings in errors of frames around that are larger
+    (`_spread`): it lessens none, for they last longer than its reach.
     """
     if order < 2 or order % 2:
         raise InputError(
@@ -46,6 +48,7 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
     each_hz = np.broadcast_to(np.asarray(cutoff_hz, dtype=float), points.joints.shape)
     check_cutoff(float(each_hz.max()), points.rate_hz)
     xyz, covariance = points.xyz.copy(), points.covariance_2d.copy()
+    network = points.covariance_network.copy()
     for one_hz in np.unique(each_hz):
         joints = np.flatnonzero(each_hz == one_hz)
         for person in range(len(xyz)):
@@ -60,7 +63,26 @@ def smooth(points: Keypoints3D, cutoff_hz: ArrayLike, order: int) -> Keypoints3D
             float(each_hz[joint]),
             order,
         )
-    return replace(points, xyz=xyz, covariance_2d=covariance)
+        network[person, :, joint] = _spread(
+            points.covariance_network[person, :, joint],
+            points.rate_hz,
+            float(each_hz[joint]),
+            order,
+        )
+    return replace(points, xyz=xyz, covariance_2d=covariance, covariance_network=network)
+
+
+def _spread(covariance: NDArray, rate_hz: float, cutoff_hz: float, order: int) -> NDArray:
+    """Return covariances (T, 3, 3) of errors, none smaller, after a filter that spreads them.
+
+    Isotropic: the standard deviation is the mean of those around by the filter's weights, as of
+    errors that agree.
+    """
+    variance = np.trace(covariance, axis1=1, axis2=2) / 3
+    weights = noise_propagation.weights(rate_hz, cutoff_hz, order)
+    sigma = np.nan_to_num(np.sqrt(variance))
+    around = np.convolve(np.pad(sigma, len(weights) // 2, mode="edge"), weights, mode="valid")
+    return covariance + np.maximum(around**2 - variance, 0.0)[:, None, None] * np.eye(3)
 
 
 def _covariance(

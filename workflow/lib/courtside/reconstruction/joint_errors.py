@@ -21,10 +21,11 @@ from courtside.records.keypoints.keypoints import Keypoints3D
 from courtside.study.errors import InputError, StrPath, reading
 
 OUTLIER_M = 0.1  # an error above it is an outlier's: half the length of a forearm
-# Variance stated over variance fitted. Bodies that are not in the fit have more outliers than the
-# weights say: the least factor that holds 60 % of errors above `OUTLIER_M` of the development
-# bodies when each is left out of the fit (docs/measured.md).
-WIDER = 1.5
+# Variances stated over variances fitted, of good places and of outliers. Bodies that are not in the
+# fit have more outliers than the weights say, and an outlier's ellipsoid is too small by its share.
+# Chosen on development bodies, each left out of the fit, so that 90 % ellipsoids hold 60 % or more
+# of the errors above `OUTLIER_M` with two, three and four views (docs/measured.md).
+STATED_GOOD, STATED_OUTLIER = 0.5, 2.0
 GOOD_M = (0.001, 0.1)  # least and most standard deviation of a good place, per axis
 START_M, START_LOGIT, START_OUTLIER_M = 0.02, -2.0, 0.08  # where the fit begins
 RIDGE = 1e-3, 3e-4  # of weights of good places and of outliers, per squared weight and joint
@@ -79,7 +80,7 @@ def state(points: Keypoints3D, model: Model, signs: Mapping[str, NDArray]) -> Ke
     known = np.isfinite(covariance).all(axis=(-2, -1))
     outlier, network = points.outlier.copy(), points.covariance_network.copy()
     outlier[:, :, at] = np.where(known, (1 - share) * beyond[0] + share * beyond[1], np.nan)
-    variance = WIDER * ((1 - share) * good + share * model.sigma_m**2)
+    variance = STATED_GOOD * (1 - share) * good + STATED_OUTLIER * share * model.sigma_m**2
     variance = np.where(known, variance, np.nan)
     network[:, :, at] = variance[..., None, None] * np.eye(3)
     return replace(points, outlier=outlier, covariance_network=network)
