@@ -42,6 +42,10 @@ def test_covariances_add_up_and_name_their_parts(record):
     both = layers.of_points("raw", known, walker.SKELETON)
     np.testing.assert_allclose(both.covariance, 3 * record.covariance_2d)
     assert both.covers == "keypoints and cameras"
+    network = replace(known, covariance_network=3 * record.covariance_2d)
+    every = layers.of_points("raw", replace(network, offset=0.1 + 0 * record.xyz), walker.SKELETON)
+    np.testing.assert_allclose(every.covariance, 6 * record.covariance_2d + 0.01)
+    assert every.covers == "keypoints, network, offset and cameras"
 
 
 def test_the_reprojection_error_is_that_of_views_used(record):

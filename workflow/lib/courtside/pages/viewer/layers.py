@@ -56,11 +56,8 @@ class Layer:
 def of_points(name: str, points: Keypoints3D, skeleton: Skeleton, *, shown: bool = True) -> Layer:
     """Return the layer of triangulated skeletons.
 
-    Its covariance is that of keypoints and cameras together, or of the keypoints alone if that of
-    the cameras is unknown throughout.
+    Its covariance is that of all errors, as files state it (`Keypoints3D.covariance`).
     """
-    with_cameras = np.isfinite(points.covariance_camera).any()
-    covariance = points.covariance_2d + (points.covariance_camera if with_cameras else 0)
     used = points.accepted & np.isfinite(points.reproj_error_px)
     squares = np.where(used, points.reproj_error_px, 0) ** 2
     n_used = used.sum(axis=-1)
@@ -72,13 +69,26 @@ def of_points(name: str, points: Keypoints3D, skeleton: Skeleton, *, shown: bool
         tuple(points.person_id.tolist()),
         points.time_s,
         points.xyz,
-        covariance,
+        points.covariance,
         np.where(n_used > 0, np.sqrt(mean), np.nan),
         points.reason,
         points.n_views,
-        "keypoints and cameras" if with_cameras else "keypoints only, cameras taken as exact",
+        _covers(points),
         shown,
     )
+
+
+def _covers(points: Keypoints3D) -> str:
+    """Return what a record's covariance includes, and what is taken as exact, in words."""
+    known = {
+        "keypoints": True,
+        "network": np.isfinite(points.covariance_network).any(),
+        "offset": np.nan_to_num(points.offset).any(),
+        "cameras": np.isfinite(points.covariance_camera).any(),
+    }
+    *others, last = (name for name, there in known.items() if there)
+    words = f"{', '.join(others)} and {last}" if others else f"{last} only"
+    return words if known["cameras"] else f"{words}, cameras taken as exact"
 
 
 def of_device(
