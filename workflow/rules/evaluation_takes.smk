@@ -28,8 +28,11 @@ rule evaluate_take:
 
 rule evaluate_reliability:
     input:
-        pose3d_npz=of_job(evaluation.exported_skeletons),
-        truth_npz=paths.TRUE_TAKE,
+        pose3d=of_job(evaluation.exported_skeletons),
+        frames=of_job(evaluation.exported_measures, paths.FRAME_MEASURES),
+        summary=of_job(evaluation.exported_measures, paths.MEASURES),
+        derived=CONFIG / paths.DERIVED_JOINTS_YAML,
+        truth=paths.TRUE_TAKE,
     output:
         counts_csv=paths.RELIABILITY,
     log:
@@ -37,6 +40,7 @@ rule evaluate_reliability:
     params:
         code=code("evaluate_reliability.py"),
         labels=of_job(evaluation.exported_labels),
+        sex_of=of_job(takes.sexes),
     script:
         "../scripts/evaluate_reliability.py"
 
@@ -154,7 +158,7 @@ rule evaluate_joint_errors:
         people=of_job(takes.every_take, paths.PEOPLE, calibration="known18"),
         sync=of_job(takes.every_take, paths.CAMERA_CLOCKS, calibration="known18"),
         truth=of_job(evaluation.true_takes),
-        offsets=lambda w: CONFIG / paths.OFFSETS_CSV.format(model=w.model),
+        offsets=of_job(takes.known_of_network, paths.OFFSETS_CSV),
         skeleton=of_job(Job.skeleton_file),
     output:
         errors_csv=paths.JOINT_ERRORS,

@@ -167,6 +167,8 @@ rule measure_kinematics:
     input:
         skeletons=of_job(takes.measured),
         raw=paths.POSE3D,
+        cameras=paths.CAMERAS,
+        covariance=of_job(calibration.covariance),
         cutoffs=paths.CUTOFFS,
         skeleton=of_job(Job.skeleton_file),
         derived=CONFIG / paths.DERIVED_JOINTS_YAML,

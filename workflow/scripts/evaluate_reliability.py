@@ -1,20 +1,28 @@
-"""Evaluate how far stated errors of joints hold: 3D keypoints of every stage, truth -> counts."""
+"""Evaluate how far stated errors hold: joints of every stage, measures, truth -> counts."""
 
 import pandas as pd
 
-from courtside.evaluation import joints, reliability
+from courtside.evaluation import joints, kinematics, reliability
 from courtside.records import tables
-from courtside.records.keypoints import keypoints
+from courtside.records.keypoints import derived_joints, keypoints
 from courtside.records.truth import take_truth
 from courtside.study.execution.script import run
 
 
-def main(pose3d_npz, truth_npz, counts_csv, *, labels):
-    truth, parts = take_truth.read(truth_npz), []
-    for path, about in zip(pose3d_npz, labels, strict=True):
+def main(paths, counts_csv, *, labels, sex_of):
+    truth, parts = take_truth.read(paths.truth), []
+    derived = derived_joints.read(paths.derived)
+    for path, about in zip(paths.pose3d, labels, strict=True):
         points = keypoints.read_3d(path).between(truth.time_s[0], truth.time_s[-1])
         true = joints.true_places(points, truth)
         parts.append(reliability.counts(points, truth.joints.tolist(), true).assign(**about))
+        measured = {"angle": kinematics.all_angles(points, truth)}
+        if about is labels[-1]:
+            frames, summary = pd.read_csv(paths.frames), pd.read_csv(paths.summary)
+            given = truth, derived, sex_of
+            measured["speed"] = kinematics.speeds(frames, *given)
+            measured["distance"] = kinematics.distances(kinematics.table(frames, summary, *given))
+        parts.append(reliability.of_measures(measured).assign(**about))
     rows = pd.concat(parts, ignore_index=True)
     tables.write(counts_csv, rows.set_index(list(labels[0])).reset_index())
 

@@ -1,10 +1,16 @@
 """Measure one take on the skeletons that are exported.
 
-Reads them, the raw keypoints for their noise, and the cut-offs that were used; writes speeds,
-distances, accelerations and angles with uncertainty.
+Reads them, the raw keypoints for their noise, the cut-offs that were used, and the covariance of
+the cameras; writes speeds, distances, accelerations and angles with uncertainty.
 """
 
+import numpy as np
+
+from courtside.calibration import point_covariance
+from courtside.calibration.bundle import selection
+from courtside.calibration.records import covariance
 from courtside.exports import measures
+from courtside.geometry import camera
 from courtside.kinematics import cutoffs, skeleton_filter
 from courtside.kinematics import measures as kinematics
 from courtside.records import tables
@@ -18,9 +24,17 @@ def main(paths, frames_csv, summary_csv, *, max_gap_s, stage, sex_of):
     shape, (chosen, order) = skeleton.read(paths.skeleton), cutoffs.read(paths.cutoffs)
     how = kinematics.Filter(shape.by_group(chosen), order)
     table = derived_joints.read(paths.derived)
-    people = kinematics.measure(points, raw, table, shape.name, how, sex_of)
+    field = field_of_cameras(paths, points.cameras) if paths.covariance else None
+    people = kinematics.measure(points, raw, table, shape.name, how, sex_of, field)
     tables.write(frames_csv, measures.frames(people))
     tables.write(summary_csv, measures.summary(people, stage))
+
+
+def field_of_cameras(paths, names):
+    seen = {one.name: one for one in camera.read_toml(paths.cameras)}
+    network = selection.of_cameras([seen[name] for name in names])
+    known = covariance.read(paths.covariance).of(names).of_columns()
+    return point_covariance.field(network, known) if np.isfinite(known).all() else None
 
 
 if __name__ == "__main__":

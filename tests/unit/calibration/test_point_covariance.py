@@ -73,6 +73,20 @@ def test_covariance_is_that_of_drawn_cameras():
         np.testing.assert_allclose(whitening @ found @ whitening.T, np.eye(3), atol=0.24)
 
 
+def test_the_field_of_errors_correlates_places_as_the_cameras_do():
+    network, rng = pair(), np.random.default_rng(1)
+    sizes = np.concatenate([SMALL, SMALL, SMALL_LENS, SMALL_LENS])
+    root = rng.normal(size=(38, 38)) / np.sqrt(38) * sizes[:, None]
+    covariance = root @ root.T
+    found = point_covariance.field(network, covariance)(XYZ)
+    by_column = point_covariance.sensitivity(network, XYZ)
+    for one, other in ((0, 0), (0, 1), (1, 0)):
+        expected = by_column[one] @ covariance @ by_column[other].T
+        np.testing.assert_allclose(
+            found[one] @ found[other].T, expected, atol=1e-9 + 1e-6 * expected.max()
+        )
+
+
 def test_certain_cameras_give_certain_points():
     network = pair()
     assert not point_covariance.point_covariance(network, np.zeros((38, 38)), XYZ).any()

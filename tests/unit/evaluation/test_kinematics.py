@@ -28,7 +28,7 @@ def truth(seconds=8.0, rate_hz=60):
     )
 
 
-def measured(real, shift_m=0.0, faster=0.0, sigma=0.1, step=2):
+def measured(real, shift_m=0.0, faster=0.0, sigma=0.1, step=2, camera_m=np.nan):
     """Return frames and summary of a perfect measurement, moved and sped up."""
     time_s, place = real.time_s[::step], real.xyz[0, ::step, 0]
     speed = 2 * np.pi * RADIUS_M / TURN_S + faster
@@ -41,8 +41,11 @@ def measured(real, shift_m=0.0, faster=0.0, sigma=0.1, step=2):
         columns[f"{point}_speed_sd_m_s"] = sigma
     length_m = 1.02 * 2 * np.pi * RADIUS_M * (time_s[-1] - time_s[0]) / TURN_S
     summary = pd.DataFrame(
-        [("p1", f"{point}_distance", length_m, 0.1) for point in ("neck", "centre", "mass")],
-        columns=["person", "measure", "value", "sigma"],
+        [
+            ("p1", f"{point}_distance", length_m, 0.1, camera_m)
+            for point in ("neck", "centre", "mass")
+        ],
+        columns=["person", "measure", "value", "sigma", "sigma_camera"],
     )
     return pd.DataFrame(columns), summary
 
@@ -60,6 +63,8 @@ def test_a_perfect_path_has_no_error_and_a_2_percent_error_is_found():
     assert found["distance_error_percent"] == pytest.approx(2, abs=1e-3)
     assert found["distance_sigma_percent"] == pytest.approx(10 / (8 * np.pi), rel=1e-3)
     assert (found["n"], found["speed_within_90_percent"]) == (241, 100)
+    found = errors(real, *measured(real, camera_m=0.1))
+    assert found["distance_sigma_percent"] == pytest.approx(np.sqrt(2) * 10 / (8 * np.pi), rel=1e-3)
 
 
 def test_known_errors_of_position_and_speed_are_separated():
@@ -69,6 +74,37 @@ def test_known_errors_of_position_and_speed_are_separated():
     assert found["speed_bias_m_s"] == pytest.approx(0.3, abs=1e-3)
     assert found["ground_speed_rmse_m_s"] == pytest.approx(0.3, abs=1e-3)
     assert found["speed_within_90_percent"] == 0
+
+
+def test_errors_of_speeds_and_distances_come_with_their_sigmas():
+    real = truth()
+    frames, summary = measured(real, faster=0.3, sigma=0.2)
+    error, sigma = kinematics.speeds(frames, real, TABLE, {"p1": "m"})
+    np.testing.assert_allclose(error, 0.3, atol=1e-3)
+    assert len(error) == 3 * 241 and (sigma == 0.2).all()
+    error, sigma = kinematics.distances(kinematics.table(frames, summary, real, TABLE, {"p1": "m"}))
+    np.testing.assert_allclose(error, 2, atol=1e-3)
+    np.testing.assert_allclose(sigma, 10 / (8 * np.pi), rtol=1e-3)
+
+
+def test_errors_of_all_angles_are_those_of_the_table():
+    real = posed(60.0)
+    measured = skeletons(real)
+    measured.xyz[0, :, :6] = posed(50.0).xyz[0, :, :6]
+    error, sigma = kinematics.all_angles(measured, real)
+    rows = kinematics.angles(measured, real).set_index("angle")
+    assert len(error) == len(sigma) == 10 * 121
+    one_side = rows.loc[
+        [name for name in rows.index if name.startswith(("left_", "right_", "trunk"))]
+    ]
+    assert np.sqrt(np.mean(error**2)) == pytest.approx(np.sqrt(np.mean(one_side["rmse_deg"] ** 2)))
+
+
+def test_times_rounded_beyond_the_truth_count_as_its_end():
+    real = truth()
+    frames, summary = measured(real)
+    late = frames.assign(time_s=frames["time_s"] + 5e-7)
+    assert errors(real, late, summary)["distance_error_percent"] == pytest.approx(2, abs=1e-3)
 
 
 def test_frames_beyond_the_truth_or_missing_give_no_distance():
@@ -114,6 +150,8 @@ def skeletons(real, sigma_m=0.01):
         xyz=real.xyz.copy(),
         covariance_2d=nothing + sigma_m**2 * np.eye(3),
         covariance_camera=nothing,
+        covariance_network=nothing,
+        offset=np.zeros_like(real.xyz),
     )
 
 

@@ -80,3 +80,19 @@ def test_tables_of_takes_add_up():
     assert row(found, "all", "limbs")["held_90_percent"] == pytest.approx(
         100 * row(one, "all", "limbs")["held_90"] / row(one, "all", "limbs")["n"]
     )
+
+
+def test_intervals_of_measures_hold_what_normal_errors_of_their_sigma_do():
+    rng = np.random.default_rng(0)
+    error, sigma = rng.normal(size=4000), np.ones(4000)
+    error[:10], sigma[10:20] = np.nan, np.nan
+    found = reliability.of_measures({"speed": (error, sigma), "angle": (2 * error, sigma)})
+    rows = reliability.pooled(found, [])
+    assert row(rows, "measure", "speed")["n"] == 3980
+    for level in reliability.LEVELS:
+        held = row(rows, "measure", "speed")[f"held_{level}_percent"]
+        assert held == pytest.approx(level, abs=2)
+    assert row(rows, "measure", "angle")["held_90_percent"] == pytest.approx(59, abs=2)
+    points, true = made(n_frames=10)
+    counted = reliability.counts(points, points.joints.tolist(), true)
+    assert found.columns.tolist() == counted.columns.tolist()

@@ -87,15 +87,29 @@ def test_the_summary_is_that_of_the_frames(people):
     assert not rows.index.duplicated().any()
 
 
-def test_the_calibration_bounds_a_distance_by_its_share_of_the_extent(people):
-    rows = measures.summary(people, "filtered").set_index("measure")
-    neck = people[0].points["neck"]
-    known = neck.position[np.isfinite(neck.position).all(axis=1)]
-    extent = np.linalg.norm(known.max(axis=0) - known.min(axis=0))
-    sigma = np.sqrt(3e-4)  # of every joint, in the made-up record
-    assert rows.loc["neck_distance", "sigma_camera"] == pytest.approx(
-        rows.loc["neck_distance", "value"] * np.sqrt(2) * sigma / extent, rel=1e-6
-    )
+def test_what_the_cameras_add_stands_beside_what_the_keypoints_add():
+    time_s, neck = footwork.neck(30, 4, seed=1)
+    xyz, _ = footwork.body(neck, time_s)
+    record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
+    how = kinematics.Filter(np.full(len(walker.SKELETON.joints), 6.0))
+    smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
+
+    def rows(field):
+        people = kinematics.measure(smooth, record, TABLE, "blazepose33", how, None, field)
+        return (
+            measures.summary(people, "filtered").set_index("measure"),
+            measures.frames(people),
+        )
+
+    (known, wide), (unknown, narrow) = rows(lambda xyz: 0.05 * xyz[:, :, None]), rows(None)
+    distance = known.loc["neck_distance_measured", "value"]
+    assert known.loc["neck_distance", "sigma_camera"] == pytest.approx(0.05 * distance, rel=1e-6)
+    assert known.loc["neck_distance", "sigma"] == unknown.loc["neck_distance", "sigma"]
+    assert np.isnan(unknown.loc["neck_distance", "sigma_camera"])
+    largest = known.loc["neck_speed_max"]
+    assert largest.sigma_camera == pytest.approx(0.05 * largest.value, rel=1e-3)
+    both = np.hypot(narrow.neck_speed_sd_m_s, 0.05 * narrow.neck_speed_m_s)
+    np.testing.assert_allclose(wide.neck_speed_sd_m_s, both, atol=2e-4)
 
 
 def test_nobody_seen_is_a_table_of_missing_values():

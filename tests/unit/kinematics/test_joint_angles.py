@@ -1,10 +1,19 @@
 """Angles of poses that are bent by known amounts, and the coverage of their sigmas."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
-from courtside.kinematics import joint_angles
+from courtside.kinematics import joint_angles, shared_errors
 from fixtures.people import footwork, walker
+
+
+def own(*covariances):
+    """Return the variance of independent points with covariances (T, 3, 3) each."""
+    errors = shared_errors.independent(np.stack(covariances, axis=1))
+    return partial(errors.variance, range(len(covariances)))
+
 
 NONE = np.zeros((1, 3, 3))
 
@@ -21,7 +30,7 @@ def hinge(degrees, n_frames=1):
 
 @pytest.mark.parametrize("degrees", [0.0, 1e-6, 20.0, 90.0, 150.0, 180.0])
 def test_two_segments_at_a_known_angle(degrees):
-    angle = joint_angles.between(*hinge(degrees), (NONE, NONE, NONE))
+    angle = joint_angles.between(*hinge(degrees), own(NONE, NONE, NONE))
     assert angle.degrees[0] == pytest.approx(degrees, abs=1e-6)
 
 
@@ -35,14 +44,14 @@ def test_the_sigma_of_an_angle_holds_ninety_percent(degrees):
         place + rng.normal(size=(n_draws, 3)) @ root.T
         for place, root in zip(hinge(degrees, n_draws), roots, strict=True)
     ]
-    angle = joint_angles.between(*moved, covariances)
+    angle = joint_angles.between(*moved, own(*covariances))
     inside = np.abs(angle.degrees - degrees) < 1.645 * angle.sigma_deg
     assert 0.885 < inside.mean() < 0.915
 
 
 def measured(xyz):
-    covariance = np.zeros((*xyz.shape[:2], 3, 3))
-    return joint_angles.measure(xyz, covariance, walker.SKELETON.joints)
+    errors = shared_errors.independent(np.zeros((*xyz.shape[:2], 3, 3)))
+    return joint_angles.measure(xyz, errors, walker.SKELETON.joints)
 
 
 def test_a_player_is_bent_as_he_was_made():
@@ -74,7 +83,7 @@ def upright(elbow):
             joints.append(side + name)
             xyz.append(np.add(place, [-0.2 * sign, 0, 0]))
     xyz = np.array(xyz)[None]
-    return joint_angles.measure(xyz, np.zeros((1, 12, 3, 3)), joints)
+    return joint_angles.measure(xyz, shared_errors.independent(np.zeros((1, 12, 3, 3))), joints)
 
 
 @pytest.mark.parametrize(
@@ -94,7 +103,7 @@ def test_leaning_back_is_negative_and_sideways_is_not_forward():
     for move, forward in shift.values():
         hips = [np.array([[x, 0, 0.9]]) for x in (-0.1, 0.1)]
         shoulders = [np.array([[x, 0, 1.4]]) + move for x in (-0.2, 0.2)]
-        lean, ahead = joint_angles.trunk(hips, shoulders, [NONE] * 4)
+        lean, ahead = joint_angles.trunk(hips, shoulders, own(*[NONE] * 4))
         assert lean.degrees[0] == pytest.approx(21.801, abs=1e-3)
         assert ahead.degrees[0] == pytest.approx(forward, abs=1e-3)
 
@@ -105,7 +114,9 @@ def test_the_sigma_of_the_trunk_holds_ninety_percent():
     spread = np.diag([0.01, 0.02, 0.015])
     noisy = xyz + rng.normal(size=xyz.shape) @ spread
     covariance = np.broadcast_to(spread**2, (*xyz.shape[:2], 3, 3))
-    angle = joint_angles.measure(noisy, covariance, walker.SKELETON.joints)["trunk_lean_forward"]
+    angle = joint_angles.measure(
+        noisy, shared_errors.independent(covariance), walker.SKELETON.joints
+    )["trunk_lean_forward"]
     inside = np.abs(angle.degrees - known["trunk_lean_forward"]) < 1.645 * angle.sigma_deg
     assert 0.885 < inside.mean() < 0.915
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.kinematics import filtering, measures, skeleton_filter
+from courtside.kinematics import filtering, measures, shared_errors, skeleton_filter
 from courtside.kinematics.noise_propagation import Noise
 from courtside.reconstruction import joint_correction
 from courtside.records.keypoints import derived_joints, missing_reason
@@ -148,15 +148,101 @@ def test_gaps_are_missing_with_their_reason_and_not_differentiated_across():
     assert np.isnan(person.angles["left_elbow_flexion"].degrees[100:130]).all()
 
 
-def test_the_calibration_counts_once_for_all_frames():
+def shift(xyz):
+    """Return a field that moves all places alike, by 20 mm along x."""
+    return np.broadcast_to(np.array([[0.02], [0], [0]]), (len(xyz), 3, 1))
+
+
+def stretch(xyz):
+    """Return a field that stretches space by 1 % about its origin."""
+    return 0.01 * xyz[:, :, None]
+
+
+def with_field(record, field):
+    how = measures.Filter(CUTOFFS_HZ)
+    smooth = skeleton_filter.smooth(record, how.cutoff_hz, how.order)
+    return measures.measure(smooth, record, TABLE, "blazepose33", how, None, field)[0]
+
+
+def test_cameras_that_shift_all_places_alike_err_in_no_speed_distance_or_angle():
     time_s, xyz = circling(seconds=2)
     record = footwork.record(xyz, time_s, 0.01, 0.0, np.random.default_rng(0))
-    point = measured(record).points["mass"]
-    np.testing.assert_allclose(point.camera_sigma_m, np.sqrt(3e-4))
-    larger = replace(record, covariance_camera=100 * record.covariance_camera)
-    np.testing.assert_array_equal(
-        measured(larger).points["mass"].covariance[1], point.covariance[1]
+    person, without = with_field(record, shift), with_field(record, None)
+    for name, point in person.points.items():
+        position, velocity, acceleration = point.camera_covariance
+        np.testing.assert_allclose(position[:, 0, 0], 0.02**2, rtol=1e-9)
+        np.testing.assert_allclose(velocity, 0, atol=1e-12)
+        np.testing.assert_allclose(acceleration, 0, atol=1e-9)
+        assert point.distance.camera_sigma_m == pytest.approx(0, abs=1e-9)
+        assert np.isnan(without.points[name].distance.camera_sigma_m)
+    for name, angle in person.angles.items():
+        np.testing.assert_allclose(angle.sigma_deg, without.angles[name].sigma_deg)
+
+
+def test_cameras_that_stretch_space_err_by_the_same_share_in_speed_and_distance():
+    time_s, xyz = circling(seconds=4)
+    record = footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(0))
+    person = with_field(record, stretch)
+    for point in person.points.values():
+        speed, sigma = measures.size(point.velocity, point.camera_covariance[1])
+        np.testing.assert_allclose(sigma, 0.01 * speed, rtol=1e-6)
+        for distance in (point.distance, point.ground_distance):
+            assert distance.camera_sigma_m == pytest.approx(0.01 * distance.measured_m, rel=1e-6)
+    for angle in person.angles.values():
+        assert angle.sigma_deg.max() < 0.01
+
+
+def slow(rng, n_frames, rate_hz, sigma_m, memory_s):
+    """Return errors (T, J, 3) as the network's: slow, and alike along arms and legs."""
+    root = np.linalg.cholesky(shared_errors.alike(walker.SKELETON.joints))
+    fresh = rng.normal(size=(n_frames, 3, walker.N_JOINTS)) @ root.T
+    stay = np.exp(-1 / (rate_hz * memory_s))
+    made = fresh.copy()
+    for frame in range(1, n_frames):
+        made[frame] = stay * made[frame - 1] + np.sqrt(1 - stay**2) * fresh[frame]
+    return sigma_m * made.swapaxes(1, 2)
+
+
+def test_errors_of_the_network_are_held_in_speeds_distances_and_angles():
+    rate_hz, sigma_m, keypoints_m = 30.0, 0.02, 0.001
+    time_s, xyz = circling(rate_hz=rate_hz, seconds=20.0)
+    base = footwork.record(xyz, time_s, keypoints_m, 0.0, np.random.default_rng(9))
+    stated = sigma_m**2 / shared_errors.NETWORK_SHARE * np.eye(3)
+    base = replace(base, covariance_network=np.broadcast_to(stated, (*base.xyz.shape, 3)).copy())
+    clean = with_field(replace(base, xyz=xyz[None]), None)
+    inside = {"speed": [], "angle": []}
+    lengths, sigmas = [], []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        error = slow(rng, len(time_s), rate_hz, sigma_m, shared_errors.NETWORK.memory_s)
+        person = with_field(replace(base, xyz=(xyz + error)[None]), None)
+        for name, point in person.points.items():
+            speed, sigma = measures.size(point.velocity, point.covariance[1])
+            ideal, _ = measures.size(clean.points[name].velocity, point.covariance[1])
+            inside["speed"].append(np.abs(speed - ideal) < 1.645 * sigma)
+        lengths.append([point.distance.measured_m for point in person.points.values()])
+        sigmas.append([point.distance.sigma_m for point in person.points.values()])
+        for name, angle in person.angles.items():
+            error_deg = angle.degrees - clean.angles[name].degrees
+            inside["angle"].append(np.abs(error_deg) < 1.645 * angle.sigma_deg)
+    shares = {name: np.mean(values) for name, values in inside.items()}
+    assert all(0.85 < share < 0.96 for share in shares.values()), shares
+    scatter = np.sqrt(np.mean(np.var(lengths, axis=0, ddof=1))) / np.sqrt(
+        np.mean(np.square(sigmas))
     )
+    assert 0.4 < scatter < 1.5, scatter
+
+
+def test_a_known_offset_counts_where_it_was_not_taken_away():
+    time_s, xyz = circling(seconds=2)
+    record = footwork.record(xyz, time_s, TINY_M, 0.0, np.random.default_rng(0))
+    offset = np.zeros_like(record.xyz)
+    knee = walker.SKELETON.index("left_knee")
+    offset[:, :, knee] = [0.0, 0.0, 0.03]
+    stated = with_field(replace(record, offset=offset), None).angles["left_knee_flexion"]
+    moved = with_field(replace(record, xyz=record.xyz + offset), None).angles["left_knee_flexion"]
+    none = with_field(record, None).angles["left_knee_flexion"]
+    np.testing.assert_allclose(stated.sigma_deg, abs(moved.degrees - none.degrees), atol=0.5)
 
 
 def test_a_take_of_a_few_frames_and_one_without_anybody():

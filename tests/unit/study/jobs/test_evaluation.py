@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from courtside.study import paths
 from courtside.study.jobs import evaluation
 
 SHOT = {"session": "players-tiny", "take": "shot", "calibration": "known18"}
@@ -38,6 +39,9 @@ def test_stated_errors_are_judged_in_the_fusion_that_is_exported(job):
     assert evaluation.exported_skeletons(job(**NET)) == [
         f"{folder}/{stage}/known18/all-robust/blazepose-static.npz" for stage in stages
     ]
+    assert evaluation.exported_measures(job(**NET), paths.MEASURES) == (
+        f"{folder}/kinematics/known18/all-robust/blazepose-static.summary.csv"
+    )
     assert evaluation.exported_labels(job(**NET)) == [{**NET, "stage": one} for one in stages]
 
 

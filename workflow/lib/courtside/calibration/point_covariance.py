@@ -1,5 +1,7 @@
 """Covariance of triangulated points that the uncertainty of the cameras causes."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import gammaincinv
@@ -9,6 +11,7 @@ from courtside.calibration.bundle.problem import Network
 from courtside.calibration.bundle.solver import Normal
 
 WITHIN_90 = 1.645  # standard deviations to either side hold 90 % of normal errors
+PLACES = 4096  # at once, for the memory that their derivatives need
 MEDIAN_2D = 1.177  # median length of a normal vector in two dimensions, sigma 1 per axis
 
 
@@ -43,6 +46,25 @@ def point_covariance(network: Network, covariance: NDArray, xyz: NDArray) -> NDA
     """
     by_column = sensitivity(network, xyz)
     return by_column @ covariance @ by_column.transpose(0, 2, 1)
+
+
+def field(network: Network, covariance: NDArray) -> Callable[[NDArray], NDArray]:
+    """Return a function from places (N, 3) m to how far causes move points there, (N, 3, R) m.
+
+    The causes are independent, of standard deviation 1, and the same for all places: the errors of
+    the cameras at two places are correlated as their covariance says. Parameters as for
+    `point_covariance`, which is the product of the result with its transpose.
+    """
+    scale = np.sqrt(np.diag(covariance))
+    unit = np.where(scale > 0, scale, 1.0)
+    extent, axes = np.linalg.eigh(covariance / np.outer(unit, unit))
+    root = unit[:, None] * (axes * np.sqrt(np.maximum(extent, 0.0)))[:, extent > 0]
+
+    def at(xyz: NDArray) -> NDArray:
+        parts = np.array_split(xyz, len(xyz) // PLACES + 1)
+        return np.concatenate([sensitivity(network, part) @ root for part in parts])
+
+    return at
 
 
 def of_columns(normal: Normal) -> NDArray:

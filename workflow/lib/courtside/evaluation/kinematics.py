@@ -1,6 +1,6 @@
 """Errors of a simulated take's paths, speeds and joint angles against the truth."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import pandas as pd
@@ -10,13 +10,14 @@ from scipy.interpolate import CubicSpline
 from courtside.calibration import point_covariance
 from courtside.evaluation import joints
 from courtside.evaluation.joints import Truth
-from courtside.kinematics import joint_angles, measures
+from courtside.kinematics import joint_angles, measures, shared_errors
 from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.derived_joints import DerivedJoints
 from courtside.records.keypoints.keypoints import Keypoints3D
 
 FINE = 10  # ASSUME: true points per frame, for the length of the true path; chords err little
+CLOSE_S = 1e-6  # times of measures are rounded to this
 COLUMNS = [
     "person", "point", "n", "seconds", "distance_m", "true_distance_m", "distance_error_percent",
     "distance_sigma_percent", "position_median_mm", "position_p95_mm", "speed_rmse_m_s",
@@ -45,37 +46,78 @@ def table(
     first and the last are missing: the paths would differ in span.
     """
     rows, measured = [], summary.set_index(["person", "measure"])
+    for part, point, path in _paths(frames, truth, derived, sex_of):
+        row = {"person": part["person"].iloc[0], "point": point, **_errors(part, point, path)}
+        rows.append(row | _distances(part, point, path, measured.loc[row["person"]]))
+    return pd.DataFrame(rows).reindex(columns=COLUMNS)
+
+
+def _paths(
+    frames: pd.DataFrame, truth: Truth, derived: DerivedJoints, sex_of: dict[str, str | None]
+) -> Iterator[tuple[pd.DataFrame, str, CubicSpline]]:
+    """Yield each person's frames with each point and its true path."""
     for person, part in frames.groupby("person", sort=False):
         of = truth.person_id.tolist().index(person)
         weights, _ = measures.definitions(
-            derived, derived_joints.RIG, truth.joints, sex_of.get(person)
+            derived, derived_joints.RIG, truth.joints, sex_of.get(str(person))
         )
-        inside = part["time_s"].between(truth.time_s[0], truth.time_s[-1])
         for point, shares in weights.items():
-            path = CubicSpline(truth.time_s, np.einsum("j,tjk->tk", shares, truth.xyz[of]))
-            row = {"person": person, "point": point, **_errors(part[inside], point, path)}
-            rows.append(row | _distances(part, point, path, measured.loc[person]))
-    return pd.DataFrame(rows).reindex(columns=COLUMNS)
+            xyz = np.einsum("j,tjk->tk", shares, truth.xyz[of])
+            yield part, point, CubicSpline(truth.time_s, xyz)
+
+
+def speeds(
+    frames: pd.DataFrame, truth: Truth, derived: DerivedJoints, sex_of: dict[str, str | None]
+) -> tuple[NDArray, NDArray]:
+    """Return errors of the speeds of every point and frame within the truth, and their sigmas.
+
+    Both (N,) m/s, NaN where missing; parameters as for `table`.
+    """
+    found = [
+        _speed_errors(_inside(part, path), point, path)
+        for part, point, path in _paths(frames, truth, derived, sex_of)
+    ]
+    error, sigma = (np.concatenate(values) for values in zip(*found, strict=True))
+    return error, sigma
+
+
+def distances(errors: pd.DataFrame) -> tuple[NDArray, NDArray]:
+    """Return the errors of distances, and their sigmas, (N,) percent, of a table of `table`."""
+    columns = ("distance_error_percent", "distance_sigma_percent")
+    error, sigma = (errors[name].to_numpy(dtype=float) for name in columns)
+    return error, sigma
+
+
+def _inside(part: pd.DataFrame, path: CubicSpline) -> pd.DataFrame:
+    return part[part["time_s"].between(path.x[0], path.x[-1])]
+
+
+def _speed_errors(part: pd.DataFrame, point: str, path: CubicSpline) -> tuple[NDArray, NDArray]:
+    true = np.linalg.norm(path(part["time_s"].to_numpy(), 1), axis=1)
+    speed, sigma = (part[f"{point}_{name}"].to_numpy() for name in ("speed_m_s", "speed_sd_m_s"))
+    return speed - true, sigma
 
 
 def _distances(part: pd.DataFrame, point: str, path: CubicSpline, measured: pd.DataFrame) -> dict:
     known = np.flatnonzero(part[f"{point}_x_m"].notna())
     time_s = part["time_s"].to_numpy()[known]
     whole = len(known) > 1 and np.ptp(known) == len(known) - 1
-    if not whole or time_s[0] < path.x[0] or time_s[-1] > path.x[-1]:
+    if not whole or time_s[0] < path.x[0] - CLOSE_S or time_s[-1] > path.x[-1] + CLOSE_S:
         return {}
     fine_s = np.linspace(time_s[0], time_s[-1], FINE * len(time_s))
     true_m = np.linalg.norm(np.diff(path(fine_s), axis=0), axis=1).sum()
     found = measured.loc[f"{point}_distance"]
+    sigma_m = float(np.hypot(found["sigma"], np.nan_to_num(found["sigma_camera"])))
     return {
         "distance_m": found["value"],
         "true_distance_m": true_m,
         "distance_error_percent": 100 * (found["value"] / true_m - 1),
-        "distance_sigma_percent": 100 * found["sigma"] / true_m,
+        "distance_sigma_percent": 100 * sigma_m / true_m,
     }
 
 
 def _errors(part: pd.DataFrame, point: str, path: CubicSpline) -> dict:
+    part = _inside(part, path)
     time_s = part["time_s"].to_numpy()
     place = part[[f"{point}_{axis}_m" for axis in "xyz"]].to_numpy()
     apart_mm = 1000 * np.linalg.norm(place - path(time_s), axis=1)
@@ -83,11 +125,9 @@ def _errors(part: pd.DataFrame, point: str, path: CubicSpline) -> dict:
     row = {"n": int(known.sum()), "seconds": float(np.ptp(time_s)) if len(time_s) else 0.0}
     if not known.any():
         return row
-    velocity = path(time_s, 1)
-    speed = part[f"{point}_speed_m_s"].to_numpy() - np.linalg.norm(velocity, axis=1)
+    speed, sigma = _speed_errors(part, point, path)
     ground = part[f"{point}_ground_speed_m_s"].to_numpy()
-    ground = ground - np.linalg.norm(velocity[:, :2], axis=1)
-    sigma = part[f"{point}_speed_sd_m_s"].to_numpy()
+    ground = ground - np.linalg.norm(path(time_s, 1)[:, :2], axis=1)
     stated = np.isfinite(sigma) & np.isfinite(speed)
     inside = np.abs(speed[stated]) <= point_covariance.WITHIN_90 * sigma[stated]
     return {
@@ -110,20 +150,40 @@ def angles(points: Keypoints3D, truth: Truth) -> pd.DataFrame:
     of the stated standard deviations. A true angle that folds at 0 or 180 degrees (a straight limb)
     makes the bias one-sided.
     """
-    true_xyz = joints.true_places(points, truth)
-    names = [name for name in truth.joints.tolist() if name in limbs.JOINTS]
-    true_xyz = true_xyz[:, :, [truth.joints.tolist().index(name) for name in names]]
-    known = np.zeros((*true_xyz.shape[1:3], 3, 3))
     rows = []
     for at, person in enumerate(map(str, points.person_id)):
-        found = measures.angles(points, at)
-        true = joint_angles.measure(true_xyz[at], known, names)
-        for angle, sides in _by_angle(found).items():
-            error = np.concatenate([found[s].degrees - true[s].degrees for s in sides])
-            there = np.concatenate([np.isfinite(true[s].degrees) for s in sides])
-            sigma = np.concatenate([found[s].sigma_deg for s in sides])
-            rows.append({"person": person, "angle": angle, **_of_angle(error, sigma, there)})
+        errors = _angle_errors(points, truth, at)
+        for angle, sides in _by_angle(errors).items():
+            parts = zip(*(errors[side] for side in sides), strict=True)
+            row = _of_angle(*(np.concatenate(part) for part in parts))
+            rows.append({"person": person, "angle": angle, **row})
     return pd.DataFrame(rows).reindex(columns=ANGLE_COLUMNS)
+
+
+def all_angles(points: Keypoints3D, truth: Truth) -> tuple[NDArray, NDArray]:
+    """Return the errors of all angles of all persons, and their sigmas: (N,) degrees."""
+    found = [
+        one
+        for at in range(len(points.person_id))
+        for one in _angle_errors(points, truth, at).values()
+    ]
+    error, sigma, _ = (np.concatenate(values) for values in zip(*found, strict=True))
+    return error, sigma
+
+
+def _angle_errors(
+    points: Keypoints3D, truth: Truth, person: int
+) -> dict[str, tuple[NDArray, NDArray, NDArray]]:
+    """Return by angle of one person: errors and sigmas (T,) degrees; where there is truth (T,)."""
+    true_xyz = joints.true_places(points, truth)[person]
+    names = [name for name in truth.joints.tolist() if name in limbs.JOINTS]
+    true_xyz = true_xyz[:, [truth.joints.tolist().index(name) for name in names]]
+    known = shared_errors.independent(np.zeros((*true_xyz.shape[:2], 3, 3)))
+    true = joint_angles.measure(true_xyz, known, names)
+    return {
+        angle: (one.degrees - true[angle].degrees, one.sigma_deg, np.isfinite(true[angle].degrees))
+        for angle, one in measures.angles(points, person).items()
+    }
 
 
 def _by_angle(found: Mapping[str, object]) -> dict[str, list[str]]:

@@ -1,10 +1,11 @@
-"""How often ellipsoids of 3D joints hold the truth, and how well outliers are flagged."""
+"""How often ellipsoids of joints and intervals of measures hold the truth; flags of outliers."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy import special
 
 from courtside.calibration.point_covariance import ellipsoid, mahalanobis
 from courtside.evaluation import joints
@@ -59,6 +60,28 @@ def _rows(error: NDArray, covariance: NDArray, outlier: NDArray) -> pd.DataFrame
     numbers["n_flagged_large"] = large & flagged
     size = np.array(SIZES_MM)[np.searchsorted(SIZES_MM, 1000 * size_m, side="right") - 1]
     return pd.DataFrame(numbers).astype(int).assign(error=size)
+
+
+def of_measures(found: Mapping[str, tuple[NDArray, NDArray]]) -> pd.DataFrame:
+    """Count the values of measures that lie in their intervals, with the columns of `counts`.
+
+    `found` gives for each measure the errors and their stated standard deviations, (N,) each; those
+    without either are left out. A row for each measure, `by` of "measure".
+    """
+    rows = []
+    for name, (error, sigma) in found.items():
+        known = np.isfinite(error) & np.isfinite(sigma)
+        ratio = np.abs(error[known]) / sigma[known]
+        held = {
+            key: int((ratio <= _half_width(k)).sum()) for key, k in zip(HELD, LEVELS, strict=True)
+        }
+        rows.append({"by": "measure", "group": name, "n": int(known.sum()), **held})
+    return pd.DataFrame(rows).reindex(columns=["by", "group", *COUNTS], fill_value=0)
+
+
+def _half_width(level: int) -> float:
+    """Return half the interval that holds a share, in percent, of normal errors, in sigmas."""
+    return float(special.ndtri((1 + level / 100) / 2))
 
 
 def pooled(rows: pd.DataFrame, keys: Sequence[str]) -> pd.DataFrame:

@@ -11,7 +11,6 @@ from courtside.kinematics import measures, path_length
 from courtside.kinematics.joint_angles import Angle
 from courtside.records.keypoints import missing_reason
 
-LEAST_EXTENT_M = 1.0  # ASSUME: over shorter paths a relative error of lengths says little
 # The data dictionary of config/README.md describes the columns.
 SUMMARY_COLUMNS = (
     "person", "measure", "value", "sigma", "sigma_camera", "unit", "n", "definition",
@@ -40,7 +39,10 @@ def _frames_of(person: measures.Person) -> pd.DataFrame:
 
 
 def _columns(point: measures.Point) -> dict[str, NDArray]:
-    position, velocity, acceleration = point.covariance
+    position, velocity, acceleration = (
+        own + np.nan_to_num(camera)
+        for own, camera in zip(point.covariance, point.camera_covariance, strict=True)
+    )
     speed, speed_sd = measures.size(point.velocity, velocity)
     ground, ground_sd = measures.size(point.velocity, velocity, path_length.GROUND)
     change, change_sd = measures.size(point.acceleration, acceleration)
@@ -77,45 +79,31 @@ def summary(people: Sequence[measures.Person], stage: str) -> pd.DataFrame:
     return table.assign(definition=table["definition"] + f"; {stage} joints")
 
 
-def _camera_share(point: measures.Point) -> float:
-    """Return the largest relative error of lengths from the calibration, one standard deviation.
-
-    The errors at both ends of the path are taken as independent; in truth those of near places are
-    alike, and errors that all places share change no length.
-    """
-    known = point.position[np.isfinite(point.position).all(axis=1)]
-    camera = point.camera_sigma_m[np.isfinite(point.camera_sigma_m)]
-    if not len(known) or not len(camera):
-        return float("nan")
-    extent = max(float(np.linalg.norm(np.ptp(known, axis=0))), LEAST_EXTENT_M)
-    return float(np.sqrt(2 * np.mean(camera**2)) / extent)
-
-
 def _distances(point: measures.Point) -> Iterator[Row]:
     n_frames = int(np.isfinite(point.velocity).all(axis=1).sum())
-    share, unknown = _camera_share(point), float("nan")
+    unknown = float("nan")
     for prefix, found in (("", point.distance), ("ground_", point.ground_distance)):
-        value, sigma = found.corrected_m, found.sigma_m
+        value, sigma, camera = found.corrected_m, found.sigma_m, found.camera_sigma_m
         seconds = found.seconds if found.seconds > 0 else unknown
-        yield f"{prefix}distance", value, sigma, share * value, "m", n_frames
+        yield f"{prefix}distance", value, sigma, camera, "m", n_frames
         yield f"{prefix}distance_measured", found.measured_m, unknown, unknown, "m", n_frames
         bias = found.bias_m, found.bias_sigma_m
         yield f"{prefix}distance_noise_bias", *bias, unknown, "m", n_frames
         most = found.bias_most_m
         yield f"{prefix}distance_noise_bias_most", most, unknown, unknown, "m", n_frames
-        mean = value / seconds
-        yield f"{prefix}speed_mean", mean, sigma / seconds, share * mean, "m/s", n_frames
+        mean = value / seconds, sigma / seconds, camera / seconds
+        yield f"{prefix}speed_mean", *mean, "m/s", n_frames
 
 
 def _extremes(point: measures.Point) -> Iterator[Row]:
-    share = _camera_share(point)
-    for name, vectors, covariance, unit in (
-        ("speed_max", point.velocity, point.covariance[1], "m/s"),
-        ("acceleration_max", point.acceleration, point.covariance[2], "m/s2"),
+    for name, vectors, order, unit in (
+        ("speed_max", point.velocity, 1, "m/s"),
+        ("acceleration_max", point.acceleration, 2, "m/s2"),
     ):
-        value, sigma = measures.size(vectors, covariance)
+        value, sigma = measures.size(vectors, point.covariance[order])
+        _, camera = measures.size(vectors, point.camera_covariance[order])
         at, n_frames = _largest(value)
-        yield name, value[at], sigma[at], share * value[at], unit, n_frames
+        yield name, value[at], sigma[at], camera[at] or float("nan"), unit, n_frames
 
 
 def _largest(values: NDArray) -> tuple[int, int]:

@@ -4,6 +4,7 @@ filtering: `fill_gaps`, `leave_out_uncertain`, `zero_lag`, `runs`
 skeleton_filter: `prepare`, `smooth` (of a take)
 cutoffs: `by_group`, `choose_cutoff`, `table`, `read`
 noise_propagation: `Noise`, `estimate`, `filtered_covariance`, `differentiate`
+shared_errors: `Errors`, `of_person`, `alike` (what errors of joints have in common)
 path_length: `measure`, `mean_norm`
 joint_angles: `measure`, `between`, `trunk`
 centre_of_mass: `shares`, `weights`

@@ -8,12 +8,17 @@ not about which axis: abduction and flexion of the hip are one number, and axial
 seen.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from courtside.kinematics.shared_errors import Errors
+
+# Slopes (T, 3) of a value, radians per metre of each point -> its variance (T,).
+Variance = Callable[[Sequence[NDArray]], NDArray]
 SIDES = ("left_", "right_")
 UP = np.array([0.0, 0.0, 1.0])
 LINES = {  # angle: first, middle, last joint; whether it is measured from the straight line
@@ -45,12 +50,10 @@ class Angle:
     sigma_deg: NDArray
 
 
-def between(
-    first: NDArray, middle: NDArray, last: NDArray, covariances: Sequence[NDArray]
-) -> Angle:
+def between(first: NDArray, middle: NDArray, last: NDArray, variance: Variance) -> Angle:
     """Return the angle, 0 to 180 degrees, at the middle one of three points (T, 3) m.
 
-    `covariances` are three (T, 3, 3) m2; the errors of the points are independent.
+    `variance` is of the errors of these points (`Errors.variance`).
 
     A point at distance l that moves across its line turns the line by 1 / l. This holds while the
     error is much smaller than the bend: near 0 and 180 degrees the angle folds, and noise only ever
@@ -66,7 +69,7 @@ def between(
     by_first = -np.cross(normal, u) / length_u
     by_last = np.cross(normal, v) / length_v
     slopes = (by_first, -by_first - by_last, by_last)
-    return _angle(radians, slopes, covariances)
+    return _angle(radians, slopes, variance)
 
 
 def _any_normal(u: NDArray) -> NDArray:
@@ -76,45 +79,44 @@ def _any_normal(u: NDArray) -> NDArray:
     return found / np.linalg.norm(found, axis=-1, keepdims=True)
 
 
-def _angle(radians: NDArray, slopes: Sequence[NDArray], covariances: Sequence[NDArray]) -> Angle:
-    variance = sum(
-        np.einsum("ti,tij,tj->t", slope, covariance, slope)
-        for slope, covariance in zip(slopes, covariances, strict=True)
-    )
-    return Angle(np.degrees(radians), np.degrees(np.sqrt(variance)))
+def _angle(radians: NDArray, slopes: Sequence[NDArray], variance: Variance) -> Angle:
+    return Angle(np.degrees(radians), np.degrees(np.sqrt(variance(slopes))))
 
 
 def trunk(
-    hips: Sequence[NDArray], shoulders: Sequence[NDArray], covariances: Sequence[NDArray]
+    hips: Sequence[NDArray], shoulders: Sequence[NDArray], variance: Variance
 ) -> tuple[Angle, Angle]:
     """Return the trunk's lean and its forward part, as `DICTIONARY` defines them.
 
-    Points (T, 3) and covariances (T, 3, 3) are of the left and right hip, the left and right
+    Points (T, 3) m, and what `variance` is of, are the left and right hip, the left and right
     shoulder. Forwards is level and at right angles to the line of the hips. That line's own
     uncertainty is left out: turned by 3 degrees, it changes a forward lean of 20 degrees by 0.03,
     and a sideways lean of 20 degrees reads as 1 degree forward.
     """
     along = (shoulders[0] + shoulders[1] - hips[0] - hips[1]) / 2
-    parts = [np.broadcast_to(c, (len(along), 3, 3)) / 4 for c in covariances]
-    total = sum(parts, np.zeros((3, 3)))
     length = np.linalg.norm(along, axis=-1, keepdims=True)
     level = along * [1, 1, 0]
     flat = np.linalg.norm(level, axis=-1, keepdims=True)
     height = along[:, 2:]
     direction = np.where(flat > 1e-9, level / np.where(flat > 1e-9, flat, 1), [1.0, 0, 0])
     lean_slope = (direction * height - UP * flat) / length**2
-    lean = _angle(np.arctan2(flat, height)[:, 0], [lean_slope], [total])
+    lean = _angle(np.arctan2(flat, height)[:, 0], _of_ends(lean_slope), variance)
     ahead = np.cross((hips[0] - hips[1]) * [1, 1, 0], UP)
     ahead /= np.linalg.norm(ahead, axis=-1, keepdims=True)
     reach = np.sum(along * ahead, axis=-1, keepdims=True)
     slope = (ahead * height - UP * reach) / (reach**2 + height**2)
-    return lean, _angle(np.arctan2(reach, height)[:, 0], [slope], [total])
+    return lean, _angle(np.arctan2(reach, height)[:, 0], _of_ends(slope), variance)
 
 
-def measure(xyz: NDArray, covariance: NDArray, joints: Sequence[str]) -> dict[str, Angle]:
+def _of_ends(slope: NDArray) -> list[NDArray]:
+    """Return the slopes of the trunk's four corners, from that of the line between its ends."""
+    return [-slope / 2, -slope / 2, slope / 2, slope / 2]
+
+
+def measure(xyz: NDArray, errors: Errors, joints: Sequence[str]) -> dict[str, Angle]:
     """Return all angles of a person by name, those of limbs with their side: `left_knee_flexion`.
 
-    `xyz` (T, J, 3) m are filtered joints, the 12 limb joints among them; `covariance` (T, J, 3, 3).
+    `xyz` (T, J, 3) m are filtered joints, the 12 limb joints among them, and `errors` theirs.
     """
     at = {joint: index for index, joint in enumerate(joints)}
     angles = {}
@@ -122,10 +124,10 @@ def measure(xyz: NDArray, covariance: NDArray, joints: Sequence[str]) -> dict[st
         for side in SIDES:
             three = [at[side + end] for end in ends]
             first, middle, last = (xyz[:, index] for index in three)
-            found = between(first, middle, last, [covariance[:, index] for index in three])
+            found = between(first, middle, last, partial(errors.variance, three))
             angles[side + name] = Angle(180 - found.degrees, found.sigma_deg) if rest else found
     four = [at[joint] for joint in TRUNK]
     points = [xyz[:, index] for index in four]
-    leans = trunk(points[:2], points[2:], [covariance[:, index] for index in four])
+    leans = trunk(points[:2], points[2:], partial(errors.variance, four))
     angles["trunk_lean"], angles["trunk_lean_forward"] = leans
     return angles

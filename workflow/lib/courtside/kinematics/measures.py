@@ -6,10 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.kinematics import centre_of_mass, joint_angles, noise_propagation, path_length
+from courtside.kinematics import (
+    centre_of_mass,
+    filtering,
+    joint_angles,
+    noise_propagation,
+    path_length,
+    shared_errors,
+)
 from courtside.kinematics.joint_angles import Angle
 from courtside.kinematics.noise_propagation import Noise
-from courtside.kinematics.path_length import Distance
+from courtside.kinematics.path_length import Distance, Others
+from courtside.kinematics.shared_errors import Field
 from courtside.records.keypoints import derived_joints
 from courtside.records.keypoints import skeleton as limbs
 from courtside.records.keypoints.derived_joints import DerivedJoints
@@ -41,12 +49,10 @@ class Point:
     position: NDArray
     velocity: NDArray
     acceleration: NDArray
-    # Of these three, (T, 3, 3): of the position as stated for the skeleton, NaN in filled gaps; of
-    # the others from the keypoints' noise.
+    # Of these three, (T, 3, 3), from keypoints, network and known offset; NaN in filled gaps.
     covariance: tuple[NDArray, ...]
-    # (T,): sigma of the position from the calibration, root of the sum over the axes: one error for
-    # all frames, which changes slowly over the hall and hardly affects speeds.
-    camera_sigma_m: NDArray
+    # Of the same, from the cameras; 0 where nothing is known of them.
+    camera_covariance: tuple[NDArray, ...]
     noise: Noise
     reason: NDArray  # (T,): `courtside.records.keypoints.missing_reason`
     # distance, ground_distance: in space, and of the path's projection on the floor.
@@ -73,6 +79,7 @@ class _Take:
     raw: Keypoints3D
     person: int
     how: Filter
+    field: Field | None
 
     def of(self, points: Keypoints3D, key: str) -> NDArray:
         """Return a value of this person's joints (T, J, ...)."""
@@ -124,44 +131,50 @@ def measure(
     skeleton: str,
     how: Filter,
     sex_of: Mapping[str, str | None] | None = None,
+    field: Field | None = None,
 ) -> list[Person]:
     """Measure all persons of a take on its filtered skeletons.
 
     `skeletons`, of the named `skeleton`, are those that are exported, corrected or not: filtered
     last, as `how` says (`skeleton_filter.smooth`). `raw` is what they were made from
     (`skeleton_filter.prepare`): its noise is that of the measures. `sex_of` gives "m", "f" or None
-    for persons.
+    for persons, `field` the errors of the cameras, where known.
 
     Nothing is filtered again. Points are means of the skeletons' joints, speeds and accelerations
-    the derivatives of their cubic splines, distances the integrals of the speeds. Uncertainties of
-    positions and angles are those stated for the skeletons; those of derivatives come from the raw
-    noise that passes the filter. The joints' errors are taken to be independent. In no uncertainty
-    of a derivative: what the filter removes of the motion, and how the error of a corrected joint
-    changes with the posture.
+    the derivatives of their cubic splines, distances the integrals of the speeds. The keypoints'
+    noise is that of the raw joints that passes the filter, each joint's own. The network's errors
+    are alike in neighbouring joints and last for some frames, an offset that was not taken away
+    counts with the square of its derivative, and the cameras' errors are one field in space for the
+    whole take (`shared_errors`): a point that rests has none in its speed. In no uncertainty of a
+    derivative: what the filter removes of the motion.
     """
     made = []
     for at, person in enumerate(skeletons.person_id):
         sex = (sex_of or {}).get(str(person))
         weights, words = definitions(table, skeleton, skeletons.joints, sex)
-        take = _Take(skeletons, raw, at, how)
+        take = _Take(skeletons, raw, at, how, field)
         found = {name: _point(take, weights[name], words[name]) for name in weights}
-        made.append(Person(str(person), skeletons.time_s, found, angles(skeletons, at)))
+        made.append(Person(str(person), skeletons.time_s, found, angles(skeletons, at, field)))
     return made
 
 
 def _point(take: _Take, weights: NDArray, words: str) -> Point:
-    position, covariance, reason = _combined(take, take.skeletons, weights)
-    noise, rate_hz, used = _noise(take, weights), take.raw.rate_hz, np.flatnonzero(weights)
-    parts = _parts(take, weights)
-    known = np.isfinite(position).all(axis=1)
+    position, _, reason = _combined(take, take.skeletons, weights)
+    noise, rate_hz, order = _noise(take, weights), take.raw.rate_hz, take.how.order
+    parts, network = _parts(take, weights), _network_parts(take, weights)
     velocity = noise_propagation.differentiate(position, rate_hz)
-    camera = np.trace(take.of(take.skeletons, "covariance_camera")[:, used], axis1=-2, axis2=-1)
-    spreads = [
-        noise_propagation.summed_covariance(parts, known, noise, rate_hz, take.how.order, at)
-        for at in (1, 2)
-    ]
+    cameras = [_camera_field(take, position, derivative) for derivative in range(3)]
+    spreads = [_position_covariance(take, weights)]
+    known = np.isfinite(position).all(axis=1)
+    for at in (1, 2):
+        own, slow = (
+            noise_propagation.summed_covariance(of, known, by, rate_hz, order, at)
+            for of, by in ((parts, noise), (network, shared_errors.NETWORK))
+        )
+        spreads.append(own + np.nan_to_num(slow) + _of_offset(take, weights, at))
+    others = Others(network, shared_errors.NETWORK, cameras[1])
     distances = [
-        path_length.measure(position, parts, rate_hz, noise, take.how.order, axes, MODEL_BIAS)
+        path_length.measure(position, parts, rate_hz, noise, order, axes, MODEL_BIAS, others)
         for axes in (path_length.SPACE, path_length.GROUND)
     ]
     return Point(
@@ -169,12 +182,66 @@ def _point(take: _Take, weights: NDArray, words: str) -> Point:
         position,
         velocity,
         noise_propagation.differentiate(velocity, rate_hz),
-        (covariance, *spreads),
-        np.sqrt(camera @ np.abs(weights[used])),
+        tuple(spreads),
+        tuple(field @ field.swapaxes(1, 2) for field in cameras),
         noise,
         reason,
         *distances,
     )
+
+
+def _position_covariance(take: _Take, weights: NDArray) -> NDArray:
+    """Return the covariance (T, 3, 3) of a mean of joints, without the cameras' part."""
+    used = np.flatnonzero(weights)
+    errors, axes = shared_errors.of_person(take.skeletons, take.person), np.eye(3)
+    n_frames = len(take.skeletons.time_s)
+
+    def variance(direction: NDArray) -> NDArray:
+        slopes = [np.broadcast_to(weights[at] * direction, (n_frames, 3)) for at in used]
+        return errors.variance(used.tolist(), slopes)
+
+    along = [variance(axis) for axis in axes]
+    found = np.empty((n_frames, 3, 3))
+    for i, j in np.ndindex(3, 3):
+        both = variance(axes[i] + axes[j]) if i != j else 4 * along[i]
+        found[:, i, j] = (both - along[i] - along[j]) / 2
+    return found
+
+
+def _camera_field(take: _Take, position: NDArray, derivative: int) -> NDArray:
+    """Return how the cameras' errors move a path (T, 3), or its derivative: (T, 3, R)."""
+    if take.field is None:
+        return np.zeros((*position.shape, 0))
+    found = shared_errors.over(take.field, position)
+    lines = found.reshape(len(found), -1)
+    for _ in range(derivative):
+        lines = noise_propagation.differentiate(lines, take.raw.rate_hz)
+    return lines.reshape(found.shape)
+
+
+def _network_parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
+    """Return what the network's errors add to a mean of joints, as `_parts`, all scales at 1."""
+    cutoffs_hz, used = np.asarray(take.how.cutoff_hz), weights != 0
+    sigma = weights * np.sqrt(shared_errors.variances(take.of(take.raw, "covariance_network")))
+    alike = shared_errors.alike(take.raw.joints.tolist())
+    each = sigma * (sigma @ alike)  # what errors have in common counts half for each
+    return {
+        float(cutoff_hz): each[:, used & (cutoffs_hz == cutoff_hz)].sum(axis=1)[:, None, None]
+        * np.eye(3)
+        for cutoff_hz in np.unique(cutoffs_hz[used])
+    }
+
+
+def _of_offset(take: _Take, weights: NDArray, derivative: int) -> NDArray:
+    """Return the square (T, 3, 3) of the derivative of a mean's known offset, 0 where unknown."""
+    line = np.einsum("j,tjk->tk", weights, np.nan_to_num(take.of(take.skeletons, "offset")))
+    if not line.any():
+        return np.zeros((*line.shape, 3))
+    slowest_hz = float(np.min(np.asarray(take.how.cutoff_hz)[weights != 0]))
+    line = filtering.zero_lag(line, take.raw.rate_hz, slowest_hz, take.how.order)
+    for _ in range(derivative):
+        line = noise_propagation.differentiate(line, take.raw.rate_hz)
+    return np.nan_to_num(line[:, :, None] * line[:, None])
 
 
 def _combined(
@@ -201,9 +268,7 @@ def _parts(take: _Take, weights: NDArray) -> dict[float, NDArray]:
     return parts
 
 
-def angles(skeletons: Keypoints3D, person: int) -> dict[str, Angle]:
+def angles(skeletons: Keypoints3D, person: int, field: Field | None = None) -> dict[str, Angle]:
     """Return the joint angles of one person, by the person's index, as `measure` states them."""
-    joints = [joint for joint in skeletons.joints if joint in limbs.JOINTS]
-    at = [skeletons.joints.tolist().index(joint) for joint in joints]
-    xyz, covariance = (getattr(skeletons, key)[person][:, at] for key in ("xyz", "covariance_2d"))
-    return joint_angles.measure(xyz, covariance, joints)
+    errors = shared_errors.of_person(skeletons, person, field)
+    return joint_angles.measure(skeletons.xyz[person], errors, skeletons.joints.tolist())

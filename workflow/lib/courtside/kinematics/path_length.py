@@ -54,8 +54,18 @@ class Distance:
     # Measured, less the bias. What the filter cuts off corners and hops is not added.
     corrected_m: float
     sigma_m: float  # standard deviation of `corrected_m`, that of the bias included
+    camera_sigma_m: float  # from the calibration; NaN: unknown
     # Time over which the path is known; gaps that stayed open are not in the distance.
     seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class Others:
+    """Errors of a path besides the keypoints' noise, which do not lengthen it on average."""
+
+    parts: Mapping[float, NDArray]  # raw covariance (T, 3, 3) by cut-off, as for `measure`
+    noise: Noise  # of these parts
+    field: NDArray  # (T, 3, R): derivative of what each cause that all frames share moves, m/s
 
 
 UNKNOWN = Distance(*(float("nan") for _ in fields(Distance)))
@@ -69,6 +79,7 @@ def measure(
     order: int,
     axes: slice = SPACE,
     model_bias: tuple[float, float] = MODEL_BIAS,
+    others: Others | None = None,
 ) -> Distance:
     """Return the length of a filtered path.
 
@@ -76,7 +87,7 @@ def measure(
     (Hz) of the zero-lag filter, the raw covariance (T, 3, 3) of the joints that were filtered at
     it, weighted as in the path; NaN where unknown. `axes` is `SPACE`, or `GROUND` for the path's
     projection on the floor; `model_bias` the mean and standard deviation of the true bias over the
-    expected one.
+    expected one; `others` errors of which only the scatter counts.
 
     The length is the integral of the speed by the trapezoidal rule. Noise e with covariance S
     lengthens a velocity v to E|v + e|, by about the variance across v over 2 |v| where the noise is
@@ -92,12 +103,9 @@ def measure(
     used = weight_s > 0
     weight_s = weight_s[used]
     measured = float(np.linalg.norm(velocity[used][:, axes], axis=1) @ weight_s)
-    spreads = {
-        cutoff_hz: noise_propagation.filtered_covariance(
-            part, known, noise, rate_hz, cutoff_hz, order, 1
-        )[used]
-        for cutoff_hz, part in parts.items()
-    }
+    filters = rate_hz, order
+    spreads = _velocity_spreads(parts, known, noise, *filters)
+    spreads = {cutoff_hz: spread[used] for cutoff_hz, spread in spreads.items()}
     spread = np.sum(list(spreads.values()), axis=0)[:, axes, axes]
     if not used.any() or not np.isfinite(spread).any():
         return replace(UNKNOWN, measured_m=measured, seconds=float(weight_s.sum()))
@@ -105,9 +113,10 @@ def measure(
     slow, slow_spread = _slower(position, parts, known, rate_hz, noise, order)
     true = true_velocity(slow[used][:, axes], _filled(slow_spread[used][:, axes, axes]))
     bias, bias_sigma = float(_lengthening(true, spread) @ weight_s) * np.array(model_bias)
-    filters = _Filters(_shares(spreads), rate_hz, order)
-    scatter = variance(true, spread, weight_s, filters.correlation(len(true), noise))
-    most = spread * filters.largest_variance_ratio(noise)
+    of_noise = _Filters(_shares(spreads), *filters)
+    scatter = variance(true, spread, weight_s, of_noise.correlation(len(true), noise))
+    scatter += _scatter_of_others(others, true, known, used, weight_s, axes, filters)
+    most = spread * of_noise.largest_variance_ratio(noise)
     return Distance(
         measured,
         float(bias),
@@ -115,8 +124,40 @@ def measure(
         float(_lengthening(true, most) @ weight_s),
         float(measured - bias),
         float(np.hypot(np.sqrt(scatter), bias_sigma)),
+        _camera_sigma(others, velocity[used], weight_s, used, axes),
         float(weight_s.sum()),
     )
+
+
+def _velocity_spreads(parts, known, noise, rate_hz, order) -> dict[float, NDArray]:
+    """Return the covariance (T, 3, 3) of the velocity's noise by cut-off."""
+    return {
+        cutoff_hz: noise_propagation.filtered_covariance(
+            part, known, noise, rate_hz, cutoff_hz, order, 1
+        )
+        for cutoff_hz, part in parts.items()
+    }
+
+
+def _scatter_of_others(others, true, known, used, weight_s, axes, filters) -> float:
+    """Return the variance, m2, of a path's length by the noise of `others`."""
+    if others is None or not any(np.any(part[known] > 0) for part in others.parts.values()):
+        return 0.0
+    spreads = _velocity_spreads(others.parts, known, others.noise, *filters)
+    spreads = {at: np.nan_to_num(spread[used]) for at, spread in spreads.items()}
+    spread = np.sum(list(spreads.values()), axis=0)[:, axes, axes]
+    along_time = _Filters(_shares(spreads), *filters).correlation(len(true), others.noise)
+    return variance(true, spread, weight_s, along_time)
+
+
+def _camera_sigma(others, velocity, weight_s, used, axes) -> float:
+    """Return the standard deviation, m, of a path's length by what all its frames share."""
+    if others is None or not others.field.shape[-1]:
+        return float("nan")
+    velocity, field = velocity[:, axes], others.field[used][:, axes]
+    size = np.linalg.norm(velocity, axis=1, keepdims=True)
+    direction = velocity / np.where(size > 0, size, 1.0)
+    return float(np.linalg.norm(np.einsum("n,ni,nir->r", weight_s, direction, field)))
 
 
 def _slower(

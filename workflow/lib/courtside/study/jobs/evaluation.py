@@ -47,6 +47,11 @@ def exported_skeletons(job: Job) -> list[str]:
     return job.of_each(paths.SKELETONS, stage=job.stages(), fusion=job.session.fusions()[:1])
 
 
+def exported_measures(job: Job, pattern: str) -> str:
+    """Return a file of measures, of the fusion that is exported first."""
+    return job.fill(pattern, fusion=job.session.fusions()[0])
+
+
 def exported_labels(job: Job) -> list[dict[str, str]]:
     """Return the labels of these skeletons."""
     return [{**job.wildcards, "stage": stage} for stage in job.stages()]
