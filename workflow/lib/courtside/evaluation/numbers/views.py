@@ -258,6 +258,16 @@ VIEWS = {
             "with": "{raw.command}",
         },
     ),
+    "flags": View(
+        "flags",
+        {
+            "flag of errors above 100 mm": "{row}",
+            "four views: right / found, %": "{four}",
+            "three views: right / found, %": "{three}",
+            "by": "{four.origin}",
+            "with": "{four.command}",
+        },
+    ),
     "file-mended": View(
         "file-mended",
         {
