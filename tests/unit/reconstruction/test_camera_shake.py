@@ -132,7 +132,7 @@ def test_association_gets_the_people_of_the_still_cameras():
             views.append((moved, camera_shake.steady(moved, camera, table)))
         found += [
             associate.associate(
-                cameras, [view[which].xy for view in views], time_s, 2, trunk=stick_figures.TRUNK
+                cameras, [view[which].xy for view in views], time_s, trunk=stick_figures.TRUNK
             )
             for which in (0, 1)
         ]

@@ -38,10 +38,13 @@ class Hall:
             self.content["takes"][take] = {"videos": videos, "synchronised": True}
         self.calibrate(rooms_filmed.SIZE)
 
-    def calibrate(self, size, **sizes):
+    def calibrate(self, size, apart=1, **sizes):
         matrix = np.array([[300.0, 0, 160], [0, 300, 90], [0, 0, 1]])
-        pose = np.eye(3, 4)
-        cameras = [Camera(c, sizes.get(c, size), matrix, np.zeros(5), pose) for c in CAMERAS]
+        poses = [np.hstack([np.eye(3), [[apart * at], [0], [0]]]) for at in range(len(CAMERAS))]
+        cameras = [
+            Camera(name, sizes.get(name, size), matrix, np.zeros(5), pose)
+            for name, pose in zip(CAMERAS, poses, strict=True)
+        ]
         geometry.write_toml(self.root / "cameras.toml", cameras, source="test")
 
     def around(self):

@@ -32,7 +32,8 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
     if path is None or not Path(path).exists() or "file" not in session.calibrations():
         return
     try:
-        known = {camera.name: camera for camera in file_formats.read(path)}
+        read = file_formats.read(path, session.calibration_unit)
+        known = {camera.name: camera for camera in read}
     except InputError as error:
         yield from error.lines
         return
@@ -52,6 +53,7 @@ def faults(session: Session, sizes: Sizes) -> Iterator[str]:
         there = _named(
             session, {o: known[theirs] for o, theirs in names.items() if theirs in known}
         )
+        file_formats.check_apart(path, list(there.values()))
         shown = {name: _shown(session, name, camera) for name, camera in there.items()}
         yield from _exchanged_by_points(session, shown) if not missing else ()
     except InputError as error:

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration import consent
@@ -58,7 +59,6 @@ def session(
     """
     clicked, unclicked = _clicks(content, root)
     subjects, walks = _subjects(content), content.get("walks", {}).items()
-    given = content.get("calibration", {})
     recordings = {} if content.get("virtual") is None else _virtual(name, content)
     shared = {key: content[key] for key in FOR_ALL_TAKES if key in content}
     takes = {
@@ -79,9 +79,7 @@ def session(
         cameras=cameras,
         takes={key: take for key, take in takes.items() if key not in withheld},
         withheld=withheld,
-        calibration_file=given.get("file"),
-        calibration_override={key: given[key] for key in OVERRIDDEN if key in given},
-        calibration_unit=given.get("unit"),
+        **_calibration(content.get("calibration", {})),
         static_points=of_configuration(content.get("static_points"), config),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
@@ -96,6 +94,15 @@ def session(
         halfbody=content.get("halfbody"),
         parameters=_merged(parameters, content.get("override", {})),
     )
+
+
+def _calibration(given: Content) -> dict[str, Any]:
+    """Return a session's fields of its calibration file."""
+    return {
+        "calibration_file": given.get("file"),
+        "calibration_override": {key: given[key] for key in OVERRIDDEN if key in given},
+        "calibration_unit": given.get("unit"),
+    }
 
 
 def _clicks(content: Content, root: StrPath) -> tuple[str | None, str | None]:
