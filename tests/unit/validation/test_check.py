@@ -239,7 +239,7 @@ def test_exchanged_real_cameras_are_told(hall, pair):
     assert any(f"cameras {pair[0]} and {pair[1]}: expected points" in line for line in faults)
 
 
-def test_a_calibration_in_another_unit_is_told_unless_the_unit_is_stated(hall):
+def test_a_calibration_in_another_unit_is_told(hall):
     hall.calibrate((320, 180), apart=1000)
     assert (
         "camera right: expected it within 300 m of the world's origin, found 1000 m" in hall.fault()
@@ -248,7 +248,9 @@ def test_a_calibration_in_another_unit_is_told_unless_the_unit_is_stated(hall):
     assert "expected cameras 0.1 to 150 m apart, found 200 m" in hall.fault()
     hall.calibrate((320, 180), apart=1000)
     hall.content["calibration"]["unit"] = "mm"
-    assert hall.said() == ([], [])
+    assert "expected `unit` under calibration in the session file for a file that states none" in (
+        hall.fault()
+    )
 
 
 def test_what_the_check_accepts_the_import_makes(hall, monkeypatch):
