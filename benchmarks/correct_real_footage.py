@@ -8,7 +8,6 @@ definitions, not truth. Writes docs/numbers/real_footage.csv, a source of docs/m
 """
 
 import argparse
-import csv
 import sys
 from pathlib import Path
 
@@ -19,6 +18,7 @@ import real_footage
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
+from courtside.evaluation.numbers import stated
 from courtside.records.keypoints import keypoints, skeleton
 
 TAKE = "walk-4cams/takes/balancing/{stage}/file/all-robust/blazepose-full.npz"
@@ -28,7 +28,6 @@ LABEL = (
     "unmended file (no truth)"
 )
 COMMAND = "`python benchmarks/correct_real_footage.py`"
-COLUMNS = ["table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin"]
 
 
 def distances(points, theirs):
@@ -54,7 +53,5 @@ if __name__ == "__main__":
     parser.add_argument("recordings", type=Path)
     parser.add_argument("--results", type=Path, default=ROOT / "results")
     given = parser.parse_args()
-    with (ROOT / "docs/numbers/real_footage.csv").open("w", newline="", encoding="utf-8") as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow([*COLUMNS, "command"])
-        table.writerows(rows(given.results, real_footage.reference(given.recordings)))
+    table = rows(given.results, real_footage.reference(given.recordings))
+    stated.write(ROOT / stated.FOLDER / "real_footage.csv", table)

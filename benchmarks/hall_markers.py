@@ -12,7 +12,6 @@ is not fitted. It writes docs/numbers/hall_markers.csv, a source of docs/make_ta
 """
 
 import argparse
-import csv
 import subprocess
 import sys
 import tempfile
@@ -27,6 +26,7 @@ from many_sessions import ROOT, copied
 sys.path.insert(0, str(ROOT / "workflow" / "lib"))
 
 from courtside.evaluation import marker_system
+from courtside.evaluation.numbers import stated
 from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.records.cameras import placed_points
@@ -48,7 +48,6 @@ FUSED = "takes/play/{stage}/{way}/all-robust/{model}.npz"
 DOUBTFUL = ("left_ankle",)
 LABEL = "real, basketball player in a marker suit, sports hall, against the marker system's joints"
 COMMAND = "`python benchmarks/hall_markers.py DATA`"
-COLUMNS = ["table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin"]
 
 
 def write_study(folder, data):
@@ -170,16 +169,12 @@ def rows(found):
         yield "markers", label, f"{stage}_scale", f"{100 * (fit.scale - 1):+.1f}", "%", every
 
 
-def write_numbers(path, found):
-    """Write the rows as docs/make_tables.py reads them."""
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        table = csv.writer(stream, lineterminator="\n")
-        table.writerow([*COLUMNS, "command"])
-        for name, row, part, value, unit, counted in rows(found):
-            n, missing = int(counted["n"]), counted["missing_percent"] / 100
-            failed = round(n * missing / (1 - missing))
-            about = [name, row, part, value, unit, "hall-markers", n, failed]
-            table.writerow([*about, "benchmark", COMMAND])
+def register_rows(found):
+    """Yield the rows as docs/make_tables.py reads them."""
+    for name, row, part, value, unit, counted in rows(found):
+        n, missing = int(counted["n"]), counted["missing_percent"] / 100
+        failed = round(n * missing / (1 - missing))
+        yield [name, row, part, value, unit, "hall-markers", n, failed, "benchmark", COMMAND]
 
 
 def checked(data):
@@ -215,7 +210,7 @@ def main():
         labelled = [table.assign(way=way, stage=stage) for way, stage, _, _, table in found]
         pd.concat(labelled).to_csv(given.csv, index=False, float_format="%.3f")
     if given.model == "blazepose-full":
-        write_numbers(ROOT / "docs" / "numbers" / "hall_markers.csv", found)
+        stated.write(ROOT / stated.FOLDER / "hall_markers.csv", register_rows(found))
 
 
 if __name__ == "__main__":

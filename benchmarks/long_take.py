@@ -94,7 +94,7 @@ def steps(folder, given):
         (given.cameras, pose2d, sync),
         {"synchronised": False, "stated": {}, **parameters["synchronise_cameras"]},
     )
-    yield "associate_people", (paths, made["people"]), {"persons": given.persons}
+    yield "associate_people", (paths, made["people"]), {"several": len(given.persons) > 1}
     fusion = {"sex_of": dict.fromkeys(given.persons), "fusion": {"used": names, "rule": "robust"}}
     yield "triangulate", (paths, made["raw"]), {**fusion, **parameters["triangulate"]}
     tables = {key: folder / "made" / f"{key}.csv" for key in ("cutoffs", "frames", "summary")}
@@ -108,7 +108,7 @@ def steps(folder, given):
     yield "correct_joints", (paths, made["last"]), about
     paths = Paths(
         skeletons=made["last"], raw=made["raw"], cutoffs=tables["cutoffs"],
-        skeleton=shape, derived=table,
+        skeleton=shape, derived=table, cameras=given.cameras, covariance=given.covariance,
     )  # fmt: skip
     sex_of = dict.fromkeys(given.persons, "m")
     measured = {"max_gap_s": filtering["max_gap_s"], "stage": "corrected", "sex_of": sex_of}
@@ -156,7 +156,7 @@ def main():
     given = SimpleNamespace(
         cameras=calibration / "cameras.toml",
         covariance=covariance if covariance.is_file() else None,
-        persons=["p1"],
+        persons=["person-1"],
         model=asked.model,
         skeleton=skeleton_of(views[0]),
     )

@@ -316,6 +316,7 @@ def test_photos_in_a_folder_are_compared_one_by_one(tmp_path):
         cv2.imwrite(str(photos / f"{at}.png"), cv2.resize(picture, (480, 360)))
     session = {"description": "photos", "court": "none", "cameras": {}}
     session["walks"] = {"hall": {"images": "data/hall"}}
+    session["override"] = {"sweep": {"n_images": [4], "n_offsets": 1}}
     (tmp_path / SESSIONS / "hall.yaml").write_text(yaml.safe_dump(session))
     asked = ("--config", "sessions=[hall]", "--", "results/hall/frames/hall.csv")
     run(*asked, root=tmp_path)

@@ -167,7 +167,7 @@ rule measure_kinematics:
     input:
         skeletons=of_job(takes.measured),
         raw=paths.POSE3D,
-        cameras=paths.CAMERAS,
+        cameras=of_job(calibration.cameras_of_covariance),
         covariance=of_job(calibration.covariance),
         cutoffs=paths.CUTOFFS,
         skeleton=of_job(Job.skeleton_file),

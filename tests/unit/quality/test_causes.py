@@ -53,6 +53,15 @@ def test_a_stranger_is_followed_and_the_person_never_found():
     assert cause.name == causes.DETECTION and "nobody found in it is the person" in cause.sentence
 
 
+@pytest.mark.parametrize("away_px", [-600, -300, 300, 600])
+def test_a_bystander_near_the_person_is_no_turned_camera(away_px):
+    cameras = judged.footage()
+    view = cameras[2].tracklets
+    view.xy[...] = view.xy[:1, :1] + np.array([away_px, 0.0])  # stands still
+    cause = found(cameras)
+    assert cause.name == causes.DETECTION and "nobody found in it is the person" in cause.sentence
+
+
 def test_poor_keypoints():
     cameras = judged.footage()
     rng = np.random.default_rng(0)

@@ -18,7 +18,8 @@ DETECTION, IDENTITY, CLOCK, CALIBRATION = "detection", "identity", "clock", "cal
 UNKNOWN = "unknown"
 # ASSUME: usual takes have 0.012 to 0.03 (`verdict.LIMITS`); another body is 0.3 away and more.
 FITS = 0.08
-NEARER = 0.6  # a change explains an error if at most this share of it is left
+NEARER = 0.6  # a change explains an error if at most this share of it is left,
+SAME = 0.15  # and no more heights than this: half of what another body is away
 LEAST = 0.3  # a test needs the person in this share of the frames looked at
 SOME = 0.02  # share of frames without anybody that is worth a word
 MOST_S = 0.5  # clocks are searched to either side
@@ -106,7 +107,7 @@ def _by_tests(one: _Camera, absent: float) -> Cause:
     angle_deg, turned = _best_turn(one, tested)
     left = {CLOCK: clock, CALIBRATION: turned} | ({IDENTITY: nearest} if _is_other(one) else {})
     name = min(left, key=lambda key: np.nan_to_num(left[key], nan=np.inf))
-    if not left[name] <= NEARER * before:
+    if not left[name] <= min(NEARER * before, SAME):
         return _unexplained(one, before, absent)
     words = {
         IDENTITY: "it follows somebody else: with another person found there",

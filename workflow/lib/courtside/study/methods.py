@@ -11,6 +11,7 @@ CALIBRATION = re.compile(
     r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?"
 )
 VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
+IMPORTED = "imported"  # in place of a calibration: 3D joints are another program's
 HALFBODY = "halfbody"  # the paper's rule for three cameras
 OFFSETS = 3  # choices of so many bridging images: they start thirds of their spacing late
 

@@ -1,10 +1,12 @@
 """Numbers that no study makes: measured by hand or by a benchmark, or published by others."""
 
+import csv
 import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from courtside.evaluation.numbers.register import ORIGINS, STUDY, Number, Source
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 FOLDER = "docs/numbers"  # of their tables, one for each command that writes one, and one by hand
 COLUMNS = ("table", "row", "part", "printed", "unit", "sessions", "n", "n_failed", "origin")
@@ -25,6 +27,14 @@ def numbers(documents: Source, table: str) -> list[Number]:
             if row["table"] == table:
                 found.append(_number(documents, file, at, row))
     return found
+
+
+def write(path: StrPath, rows: Iterable[Sequence[object]]) -> None:
+    """Write the table of one command; each row has the values of `COLUMNS`, then the command."""
+    with Path(path).open("w", newline="", encoding="utf-8") as stream:
+        table = csv.writer(stream, lineterminator="\n")
+        table.writerow([*COLUMNS, "command"])
+        table.writerows(rows)
 
 
 def _number(documents: Source, file: str, line: int, row: dict[str, str]) -> Number:

@@ -40,6 +40,7 @@ STATED = (
     *("real-checks", "markers", "hall-points", "device-checks", "stated-errors", "flags"),
     *("file-evidence", "file-mended"),
     *("file-faults", "mapping-checks", "click-model", "click-alarms", "worlds"),
+    *("halls", "halls-strengths"),
     *("speed", "costs", "stages", "faults", "trust"),
 )
 

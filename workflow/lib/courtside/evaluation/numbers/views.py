@@ -19,6 +19,38 @@ def _stages(pattern: str) -> dict[str, str]:
     return {stage: pattern.replace("STAGE", stage) for stage in STAGES}
 
 
+WALKS = {
+    "walk18": "walk + 18 clicks",
+    "walk3": "walk + 3 clicks",
+    "known18": "18 points, no walk",
+}
+LENSES = {"board18": "18 points, known lens"}
+PUBLISHED = {"paper": "the published walk, re-enacted"}
+
+
+def _over_halls(ways: dict[str, str]) -> dict[str, str]:
+    return {
+        "over": "{row}",
+        **{words: f"{_interval(name)}, worst {{{name}_worst}}" for name, words in ways.items()},
+        "walk + 18 less 18 points": _interval("walk18_less_known18"),
+        "walk + 3 less 18 points": _interval("walk3_less_known18"),
+    }
+
+
+STRENGTHS = {
+    "session, clicks": "{row}",
+    **{
+        words: f"{{{part}_median}} / {{{part}_p95}}; {{{part}_coverage}} %"
+        for part, words in {
+            "walk18": "walk + 18 clicks",
+            "walk8": "walk + 8 clicks",
+            "walk3": "walk + 3 clicks",
+        }.items()
+    },
+    "18 points, no walk": "{known18_median} / {known18_p95}",
+    "trials": "{walk18_median.n}",
+}
+
 VIEWS = {
     "calibration": View(
         "calibration",
@@ -34,25 +66,21 @@ VIEWS = {
         },
         HALL,
     ),
-    "calibration-halls": View(
-        "calibration",
+    "calibration-halls": View("calibration", _over_halls(WALKS | LENSES | PUBLISHED), HALLS),
+    "halls": View(
+        "halls",
         {
-            "over": "{row}",
-            **{
-                words: f"{_interval(name)}, worst {{{name}_worst}}"
-                for name, words in {
-                    "walk18": "walk + 18 clicks",
-                    "walk3": "walk + 3 clicks",
-                    "known18": "18 points, no walk",
-                    "board18": "18 points, known lens",
-                    "paper": "the published walk, re-enacted",
-                }.items()
-            },
-            "walk + 18 less 18 points": _interval("walk18_less_known18"),
-            "walk + 3 less 18 points": _interval("walk3_less_known18"),
+            "hall": "{row}",
+            "walk + 18 clicks": _walk("walk18"),
+            "walk + 3 clicks": _walk("walk3"),
+            "18 points, no walk": _walk("known18"),
+            "trials, failed": "{walk18.n}, {walk18.n_failed}",
+            "walk less 18 points, 95 % interval": _interval("walk18_less_known18"),
         },
-        HALLS,
+        HALL,
     ),
+    "halls-together": View("halls", _over_halls(WALKS), HALLS),
+    "halls-strengths": View("halls-strengths", STRENGTHS),
     "calibration-ways": View(
         "calibration-ways",
         {
@@ -72,22 +100,7 @@ VIEWS = {
             "trials, failed": "{median.n}, {median.n_failed}",
         },
     ),
-    "calibration-strengths": View(
-        "calibration-strengths",
-        {
-            "session, clicks": "{row}",
-            **{
-                words: f"{{{part}_median}} / {{{part}_p95}}; {{{part}_coverage}} %"
-                for part, words in {
-                    "walk18": "walk + 18 clicks",
-                    "walk8": "walk + 8 clicks",
-                    "walk3": "walk + 3 clicks",
-                }.items()
-            },
-            "18 points, no walk": "{known18_median} / {known18_p95}",
-            "trials": "{walk18_median.n}",
-        },
-    ),
+    "calibration-strengths": View("calibration-strengths", STRENGTHS),
     "capture": View(
         "capture",
         {

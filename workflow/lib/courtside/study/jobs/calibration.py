@@ -5,7 +5,7 @@ from typing import Any
 from courtside.study import paths
 from courtside.study.jobs import recordings, takes
 from courtside.study.jobs.job import Job
-from courtside.study.methods import Calibration
+from courtside.study.methods import IMPORTED, Calibration
 
 CLICK_KEYS = ("click_sigma_px", "click_bias_px", "click_loss")
 
@@ -80,7 +80,13 @@ def ties(job: Job) -> str:
 
 def covariance(job: Job) -> str | list:
     """Return the covariance of cameras where their calibration has one."""
-    return job.fill(paths.CAMERA_COVARIANCE) if _way(job).has_covariance else []
+    known = job["calibration"] != IMPORTED and _way(job).has_covariance
+    return job.fill(paths.CAMERA_COVARIANCE) if known else []
+
+
+def cameras_of_covariance(job: Job) -> str | list:
+    """Return the cameras where their covariance is known."""
+    return job.fill(paths.CAMERAS) if covariance(job) else []
 
 
 def _way(job: Job) -> Calibration:

@@ -6,6 +6,7 @@ from itertools import product
 from courtside.study import paths
 from courtside.study.configuration import consent
 from courtside.study.configuration.sessions import Session, Study, Take
+from courtside.study.methods import IMPORTED
 
 # Figures that show persons in pictures.
 PICTURED = ("overlay", "badminton_fig09", "badminton_fig10", "badminton_fig11")
@@ -95,7 +96,7 @@ def every_kinematics(study: Study) -> list[str]:
     """Return the measures of all takes, those of other programs' skeletons included."""
     imported, own = [], []
     for session, take in study.takes():
-        trc = {"calibration": "imported", "fusion": "trc", "model": take.pose3d}
+        trc = {"calibration": IMPORTED, "fusion": "trc", "model": take.pose3d}
         imported += files(paths.MEASURES, session, take, **trc)
         own += files(paths.MEASURES, session, take)
     return imported + own
