@@ -81,7 +81,9 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     session = {
         "description": "OpenPose's keypoints",
         "court": "none",
-        "subjects": {"p1": {"sex": "m"}},
+        "subjects": {
+            "p1": {"sex": "m", "seen": {"camera": "cam01", "time_s": 0.0, "at_px": [430, 620]}}
+        },
         "cameras": {name: cropped if name in names[:2] else None for name in names},
         "calibration": {"file": str(walk / "calibration" / "Calib.qca.txt")},
         "takes": {
