@@ -35,11 +35,15 @@ from courtside.study.configuration import yaml_files
 
 CAMERAS = ("cam02", "cam05", "cam08", "cam13")
 FILES = ("mocap.csv", "annotations.csv", "court_points.csv", "calibration_refined.toml")
-# Both persons of the pictures: the study names them in an order of its own, and the one nearer the
-# markers is taken. A subject who is pointed out in a picture (`seen`) would be enough.
-SUBJECTS = {"p1": {"consent": ["analysis"]}, "p2": {"consent": ["analysis"]}}
-# 12 pictures a second: a filter cannot pass more than half of that.
-CUTOFFS = {"cutoff_hz": {"head": 5, "trunk": 5, "arms": 5, "legs": 5}}
+# Who is meant, as a user says it: the player stands there in the first picture. Somebody else is in
+# all pictures, too.
+SUBJECTS = {
+    "player": {
+        "consent": ["analysis"],
+        "seen": {"camera": "cam02", "time_s": 0, "at_px": [1980, 1000]},
+    }
+}
+HAND_PX = {"max_error_px": 15, "fade_px": 20}  # of joints set by hand, persons 160 to 540 px tall
 WAYS = {"file": "cameras of the source, refined", "known": "cameras from court points alone"}
 STAGES = {"pose3d": "raw", "pose3d_filtered": "filtered", "pose3d_corrected": "corrected"}
 FUSED = "takes/play/{stage}/{way}/all-robust/{model}.npz"
@@ -72,7 +76,6 @@ def write_study(folder, data):
         "override": {
             "calibrations": list(WAYS),
             "take_calibrations": list(WAYS),
-            "filter_motion": CUTOFFS,
         },
     }
     session = folder / "config" / "sessions" / "hall-markers.yaml"
@@ -116,39 +119,35 @@ def by_hand(data, cameras, rate_hz):
     at = table["camera"].map(order), table["frame_idx"], table["joint"].map(names)
     xy[tuple(column.to_numpy() for column in at)] = table[["x_px", "y_px"]]
     score = np.isfinite(xy[..., 0]).astype(float)
-    step = dict(yaml_files.read(ROOT / "config" / "config.yaml")["triangulate"])
-    step.pop("fix_sides")
+    step = yaml_files.read(ROOT / "config" / "config.yaml")["triangulate"]
+    step = {key: step[key] for key in ("min_score", "min_views")}
     flat = xy.reshape(len(cameras), -1, 2), score.reshape(len(cameras), -1)
-    found = triangulation.triangulate_robust(cameras, *flat, sigma_px=1, **step)
+    found = triangulation.triangulate_robust(cameras, *flat, sigma_px=1, **step, **HAND_PX)
     return np.arange(shape[1]) / rate_hz, found.xyz.reshape(*shape[1:], 3)
 
 
 def measured(results, data, model):
-    """Yield (way, stage, name of the person, Fit, table of errors)."""
+    """Yield (way, stage, Fit, table of errors)."""
     names, (true_s, true) = list(marker_system.JOINTS), truth(data)
     for way in WAYS:
         for stage, word in STAGES.items():
             points = keypoints.read_3d(results / FUSED.format(stage=stage, way=way, model=model))
             own, rate_hz = [points.joints.tolist().index(name) for name in names], points.rate_hz
-            fits = {}
-            for person, xyz in zip(points.person_id, points.xyz, strict=True):
-                fits[person] = marker_system.fit(points.time_s, xyz[:, own], true_s, true)
-            nearest = min(fits, key=lambda name: np.nanmedian(np.abs(fits[name].error)))
-            covariance = points.covariance[list(fits).index(nearest)][:, own]
-            known = covariance, rate_hz, DOUBTFUL
-            table = marker_system.table(names, fits[nearest], *known)
-            yield way, word, nearest, fits[nearest], table
+            fit = marker_system.fit(points.time_s, points.xyz[0][:, own], true_s, true)
+            covariance = points.covariance[0][:, own]
+            table = marker_system.table(names, fit, covariance, rate_hz, DOUBTFUL)
+            yield way, word, fit, table
         cameras = camera_models.read_toml(results / "calibration" / way / "cameras.toml")
         time_s, xyz = by_hand(data, cameras, rate_hz)
         found = marker_system.fit(time_s, xyz, true_s, true)
         unknown = np.full((*xyz.shape, 3), np.nan)
         table = marker_system.table(names, found, unknown, rate_hz, DOUBTFUL)
-        yield way, "hand", "annotated", found, table
+        yield way, "hand", found, table
 
 
 def rows(found):
     """Yield the rows of docs/numbers: one line of the table `footage`, and the table `markers`."""
-    for way, stage, _, fit, table in found:
+    for way, stage, fit, table in found:
         every = table.iloc[0]
         if stage != "hand":
             for part in ("median", "p90"):
@@ -202,12 +201,12 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         results = given.results or run(folder, given.data.resolve(), given.model)
         found = list(measured(results, given.data, given.model))
-    for way, stage, person, fit, table in found:
-        print(f"\n{WAYS[way]}, {stage} ({person}): the markers' clock is found {fit.shift_s:.3f} s "
+    for way, stage, fit, table in found:
+        print(f"\n{WAYS[way]}, {stage}: the markers' clock is found {fit.shift_s:.3f} s "
               f"ahead; scale {fit.scale:.4f}, not fitted")  # fmt: skip
         print(table.round(1).to_string(index=False))
     if given.csv:
-        labelled = [table.assign(way=way, stage=stage) for way, stage, _, _, table in found]
+        labelled = [table.assign(way=way, stage=stage) for way, stage, _, table in found]
         pd.concat(labelled).to_csv(given.csv, index=False, float_format="%.3f")
     if given.model == "blazepose-full":
         stated.write(ROOT / stated.FOLDER / "hall_markers.csv", register_rows(found))

@@ -6,7 +6,7 @@ import yaml
 from courtside.drafting import draft as session_draft
 from courtside.drafting import guess as session_guess
 from courtside.drafting.guess import Recording
-from courtside.study.configuration import schemas, session_faults
+from courtside.study.configuration import schemas, session_faults, session_files, yaml_files
 from courtside.study.errors import InputError
 
 
@@ -161,7 +161,12 @@ def test_a_draft_that_its_schema_refuses_leaves_no_file(tmp_path):
 
 
 def test_without_a_walk_takes_rest_on_the_clicked_points():
-    assert draft(*TAKE)[2]["override"] == {"take_calibrations": ["known18"]}
+    content = draft(*TAKE)[2]
+    parameters = yaml_files.read("config/config.yaml")
+    clicked = content | {"court_points": "results/clicks.csv"}
+    drafted = session_files.session("north", "config/sessions/north.yaml", clicked, parameters)
+    assert drafted.take_calibrations() == ["known"]
+    assert "override" not in content
     assert "override" not in draft(*TAKE, WALK)[2]
     assert "override" not in draft(*TAKE, court="none")[2]
 

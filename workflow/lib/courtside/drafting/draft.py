@@ -47,7 +47,7 @@ def text(guess: Guess, *, title: str, folder: str, court: str = "badminton") -> 
     clicked = measured and court != "none"
     lines += [*_cameras(guess), *_walks(guess), *_places(guess, folder, clicked)]
     lines += [*_synchronised(guess), *_takes(guess)]
-    lines += [*_override(guess, clicked), *_unused(guess)]
+    lines += [*_fewer_images(guess, clicked), *_unused(guess)]
     return "\n".join(lines) + "\n"
 
 
@@ -208,17 +208,10 @@ def _devices(guess: Guess, take: str) -> list[str]:
     return ["    devices:", *lines] if lines else []
 
 
-def _override(guess: Guess, clicked: bool) -> list[str]:
-    """Return the keys by which takes are measured, and walks mapped, with what there is."""
-    if guess.walks:
-        return _fewer_images(guess, clicked)
-    if not clicked or not guess.takes:
-        return []
-    return [f"override: {{take_calibrations: [known18]}}  {MARK} no walk was found"]
-
-
 def _fewer_images(guess: Guess, clicked: bool) -> list[str]:
     """Return the keys that ask for as many bridging images as walks give, where they are few."""
+    if not guess.walks:
+        return []
     each = [_bridging_images(recording) for recording in guess.walks.values()]
     n_images = max(2, sum(each))
     if n_images >= USUAL_IMAGES:
