@@ -1,11 +1,14 @@
 """Formats of the study itself: configuration, sessions, plans, courts, skeletons, run records."""
 
+import base64
 import json
 import re
 import shutil
 import zipfile
 from pathlib import Path
 
+import cv2
+import numpy as np
 import yaml
 
 from courtside.calibration.court import court
@@ -16,11 +19,14 @@ from courtside.study.configuration import (
     plans,
     yaml_files,  # fmt: skip
 )
-from courtside.study.execution import artefacts, checksums, files
+from courtside.study.execution import artefacts, checksums, files, verdicts
 from courtside.study.provenance import comparison, verification
+from courtside.validation import remembered
+from courtside.video.glance import SMALL_PX
 from fuzz.format import Format, require
 
 ROOT = Path(__file__).parents[2]
+PICTURE = "the picture"  # in place of its path and date
 CONFIG = ROOT / "config"
 NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 SESSIONS = ("players-tiny", "single-view-tiny", "walk-4cams-tiny", "plain-tiny", "players-b")
@@ -198,6 +204,43 @@ def read_sums(path):
     return found
 
 
+def looks(folder):
+    """Write what is remembered of a picture; its reader puts the picture there."""
+    small = base64.b64encode(bytes(SMALL_PX[0] * SMALL_PX[1])).decode()
+    look = {"size": [6, 4], "n_frames": None, "rate_hz": None, "even": True, "small": small}
+    content = {"format": remembered.FORMAT, "looks": {PICTURE: look}}
+    (folder / "recordings.json").write_text(json.dumps(content), encoding="utf-8")
+
+
+def read_looks(path):
+    """Look at the picture, which is remembered or looked at again."""
+    picture, kept = path.parent / "picture.png", path.parent / "kept.json"
+    cv2.imwrite(str(picture), np.zeros((4, 6, 3), np.uint8))
+    state = picture.stat()
+    key = f"{picture.absolute()} {state.st_size} {state.st_mtime_ns} None"
+    kept.write_bytes(path.read_bytes().replace(PICTURE.encode(), key.encode()))
+    known = remembered.Remembered(kept)
+    found = known.look(picture)
+    require(found.small.shape == SMALL_PX[::-1], "no small picture")
+    known.save()
+    return found
+
+
+def verdicts_of(folder):
+    """Write verdicts on a take."""
+    head = ",".join([*verdicts.WAY, *verdicts.COLUMNS])
+    rows = [
+        "file,r,net,all,all,whole,,,,doubtful,clock,Words.",
+        "file,r,net,a,all,found,1,,,good,,",
+    ]
+    (folder / "quality.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+
+
+def read_verdicts(path):
+    """Read verdicts, and tell them as the end of a run does."""
+    return verdicts.read(path), verdicts.told([path])
+
+
 def facts(folder):
     """Write JSON as rules hand it to the report."""
     text = json.dumps({"warnings": ["a"], "n_images": 12, "error_px": 0.4, "versions": {"a": "1"}})
@@ -231,6 +274,8 @@ FORMATS = [
     Format("clocks", 700, clocks, read_clocks),
     Format("sidecar", 300, sidecars, read_sidecars),
     Format("checksums", 300, sums, read_sums, refuses=False),
+    Format("looks", 400, looks, read_looks, refuses=False),
+    Format("quality-csv", 400, verdicts_of, read_verdicts),
     Format("facts", 200, facts, files.read_json),
     Format("comparison", 300, results, compare, refuses=False),
 ]

@@ -69,8 +69,14 @@ def _restored(entry: dict[str, Any]) -> Glance | None:
     """Return what was kept; None where it is damaged."""
     try:
         small = np.frombuffer(base64.b64decode(entry["small"]), np.uint8)
-        width, height = entry["size"]
-        kept = {**entry, "size": (width, height), "small": small.reshape(SMALL_PX[::-1])}
-        return Glance(**kept)
+        width, height = map(int, entry["size"])
+        n_frames, rate_hz = entry["n_frames"], entry["rate_hz"]
+        return Glance(
+            (width, height),
+            small.reshape(SMALL_PX[::-1]),
+            None if n_frames is None else int(n_frames),
+            None if rate_hz is None else float(rate_hz),
+            bool(entry["even"]),
+        )
     except DAMAGED:
         return None
