@@ -17,7 +17,7 @@ from courtside.calibration import file_formats
 from courtside.exports import trc
 from courtside.geometry import camera as cameras
 from courtside.geometry import triangulation
-from courtside.pose import decoders, foreground, tracking
+from courtside.pose import decoders, foreground, tracklets
 from courtside.pose.blazepose import BlazePoseDetector
 from courtside.reconstruction import fusion
 from courtside.records.keypoints import keypoints, skeleton
@@ -102,18 +102,25 @@ def detect(name, joints, find, place, study):
     scene = foreground.Foreground(
         static_picture.temporal_median(every_fourth), step["min_difference"]
     )
-    limits = {"min_presence": step["min_presence"], "redetect": False}
-    track = tracking.track_person(reader.frames(path), find, place, scene, **limits)
+    track = tracklets.track_people(
+        reader.frames(path),
+        find,
+        place,
+        scene,
+        max_people=1 + step["extra_people"],
+        min_presence=step["min_presence"],
+    )
+    assert len(track.xy) == 1, "one person is seen, and followed without a break"
     return keypoints.Keypoints2D(
         camera=name,
         model="blazepose-full",
         joints=np.array(joints),
         size=np.array(reader.probe(path).size),
         time_s=track.time_s,
-        xy=track.xy[None],
-        score=track.score[None],
-        reason=track.reason[None],
-        xyz_in_body=track.xyz_in_body[None],
+        xy=track.xy,
+        score=track.score,
+        reason=track.reason,
+        xyz_in_body=track.xyz_in_body,
     )
 
 

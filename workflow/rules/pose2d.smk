@@ -27,7 +27,7 @@ rule detect_pose:
         redetect=lambda w: not STUDY.models[w.model].tracking,
         decoder=lambda w: STUDY.models[w.model].decoder_options(),
         trim_s=of_job(recordings.trim_s),
-        max_people=of_job(recordings.max_people),
+        n_wanted=of_job(recordings.n_wanted),
     script:
         "../scripts/detect_pose.py"
 

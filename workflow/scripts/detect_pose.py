@@ -3,33 +3,27 @@
 import cv2
 import numpy as np
 
-from courtside.pose import decoders, foreground, tracklets
+from courtside.pose import decoders, foreground, tracking, tracklets
 from courtside.pose.blazepose import BlazePoseDetector
+from courtside.pose.search import Search, middle
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
 from courtside.study.execution.script import run
 from courtside.video import images, reader
 
 
-def main(
-    paths, pose2d_npz, *, camera, model, decoder, trim_s, max_people, min_difference, **options
-):
+def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, n_wanted, **options):
     cv2.setNumThreads(1)
     joints = skeleton.read(paths.skeleton).joints
     start_s, stop_s = trim_s or (None, None)
     info = reader.probe(paths.video, stop_s=stop_s)
     frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)
-    changed = foreground.Whole()
-    if paths.background:
-        changed = foreground.Foreground(images.read(paths.background), min_difference)
-    track = tracklets.track_people(
-        log.progress(frames, info.n_frames if not trim_s else None, f"{camera}: frames"),
+    frames = log.progress(frames, info.n_frames if not trim_s else None, f"{camera}: frames")
+    networks = (
         BlazePoseDetector(paths.detector),
         decoders.landmark_network(paths.landmarks, joints, **decoder),
-        changed,
-        max_people=max_people,
-        **options,
     )
+    track = follow(frames, networks, paths.background, camera, n_wanted, **options)
     found = keypoints.Keypoints2D(
         camera=camera,
         model=model,
@@ -42,6 +36,23 @@ def main(
         xyz_in_body=track.xyz_in_body,
     )
     keypoints.write_2d(pose2d_npz, found)
+
+
+def follow(frames, networks, background, camera, n_wanted, *, extra_people, min_difference, **how):
+    if not background:
+        return tracklets.alone(tracking.track_person(frames, *networks, **how))
+    image = images.read(background)
+    shown = Search(*networks, None, how["min_presence"]).everywhere(image, [])
+    if shown:
+        places = ", ".join(f"({x:.0f}, {y:.0f})" for x, y in map(middle, shown))
+        log.logger.warning(
+            "%s: %s shows %d people, around %s px: they are searched for as everybody else, but a "
+            "background without people makes detection faster",
+            *(camera, background, len(shown), places),
+        )
+    changed = foreground.Foreground(image, min_difference)
+    limit = n_wanted + extra_people
+    return tracklets.track_people(frames, *networks, changed, max_people=limit, **how)
 
 
 if __name__ == "__main__":

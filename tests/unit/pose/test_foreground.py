@@ -30,9 +30,3 @@ def test_the_largest_change_comes_first():
 def test_an_empty_room_has_no_boxes():
     empty = room(np.random.default_rng(2))
     assert foreground.Foreground(empty, 30).boxes(empty) == []
-
-
-def test_without_a_background_the_whole_picture_counts():
-    assert foreground.Whole().boxes(np.zeros((90, 160, 3), np.uint8), [(0, 0, 9, 9)]) == [
-        (0, 0, 160, 90)
-    ]

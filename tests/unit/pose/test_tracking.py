@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courtside.pose import foreground, tracking
+from courtside.pose import tracking
 from courtside.pose.detector import Pose, Region
 from courtside.records.keypoints import missing_reason
 
@@ -52,7 +52,6 @@ def follow(places, redetect=False):
         frames,
         finder,
         Placer(),
-        foreground.Foreground(EMPTY, 30),
         min_presence=0.5,
         redetect=redetect,
     )
@@ -68,7 +67,7 @@ def test_the_detector_is_asked_once_while_the_track_holds():
 
 def test_a_lost_person_is_searched_again():
     track, asked = follow([20, 30, 200, 210, None, None, 100])
-    assert asked == 3
+    assert asked == 5
     assert (track.reason[4:6] == missing_reason.UNSEEN).all()
     assert np.isnan(track.xy[4:6]).all()
     np.testing.assert_allclose(track.xy[[2, 3, 6], 0, 0], [219.5, 229.5, 119.5])
@@ -98,24 +97,8 @@ def test_the_search_looks_near_the_foreground(finds):
         finder.detect = lambda _: []
     region = tracking.regions_near(image, (200, 100, 40, 40), finder)[0]
     assert (region.x, region.y) == pytest.approx((219.5, 119.5), abs=1)
-
-
-def test_a_track_that_leaves_what_moves_is_searched_again():
-    finder, place = Finder(), Placer()
-    frames = [(at / 30, picture(x)) for at, x in enumerate([20, 30, 40])]
-    strays = iter([False, True, False])
-
-    def estimate(image, region):
-        pose = Placer.estimate(place, image, region)
-        away = 250.0 if next(strays, False) else 0.0
-        return Pose(pose.xy + away, pose.score, pose.xyz_in_body, pose.presence, pose.region)
-
-    place.estimate = estimate
-    track = tracking.track_person(
-        frames, finder, place, foreground.Foreground(EMPTY, 30), min_presence=0.5, redetect=False
-    )
-    assert finder.asked == 2
-    np.testing.assert_allclose(track.xy[:, 0, 0], [39.5, 49.5, 59.5])
+    without = tracking.regions_near(image, (200, 100, 40, 40), finder, fallback=False)
+    assert len(without) == finds
 
 
 def test_straying_is_told_by_the_boxes():

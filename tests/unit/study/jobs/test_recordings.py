@@ -45,14 +45,14 @@ def test_backgrounds_are_recorded_or_estimated_and_devices_have_none(job, wildca
     assert recordings.background(job(**wildcards)) == path
 
 
-def test_one_more_than_several_persons_are_followed(job, study):
-    assert recordings.max_people(job(**REAL, camera="cam01")) == 1
-    assert recordings.max_people(job(**DEVICE)) == 1
+def test_a_video_is_filmed_for_its_subjects_and_that_of_a_device_for_one_person(job, study):
+    assert recordings.n_wanted(job(**REAL, camera="cam01")) == 1
+    assert recordings.n_wanted(job(**DEVICE)) == 1
     session = study.sessions["walk-4cams-tiny"]
     pair = replace(session.takes["balancing"], subjects=("p1", "p2"))
     sessions = {"walk-4cams-tiny": replace(session, takes={"balancing": pair})}
     one = job(replace(study, sessions=sessions), **REAL, camera="cam01")
-    assert recordings.max_people(one) == 3
+    assert recordings.n_wanted(one) == 2
 
 
 def test_networks_come_from_pinned_artefacts(job, study):

@@ -42,14 +42,6 @@ class Foreground:
         return [tuple(int(v) * SHRINK for v in stats[at, :4]) for at in large]
 
 
-class Whole:
-    """In place of a `Foreground` if one person always fills much of the picture."""
-
-    def boxes(self, image: NDArray, without: Iterable[tuple[float, ...]] = ()) -> list[Box]:
-        """Return the whole picture as one box, whatever `without` holds."""
-        return [(0, 0, image.shape[1], image.shape[0])]
-
-
 def _shrink(image: NDArray) -> NDArray:
     size = (image.shape[1] // SHRINK, image.shape[0] // SHRINK)
     return cv2.resize(image, size, interpolation=cv2.INTER_AREA)

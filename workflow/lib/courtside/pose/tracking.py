@@ -1,4 +1,4 @@
-"""Follow one person through the pictures of one fixed camera."""
+"""Follow the one person whom a camera films."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
-from courtside.pose.foreground import Box, Foreground, Whole
+from courtside.pose.foreground import Box
 from courtside.records.keypoints import missing_reason
 
 # ASSUME: the foreground misses less than this of a body, and a track on it strays by less.
 SEARCH_MARGIN = 1.3  # the detector looks at the foreground box times this
-STRAY = 0.25  # a track whose middle leaves every foreground box by this share of the box is lost
+STRAY = 0.25  # a track whose middle leaves every foreground box by this share of the box strayed
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,14 @@ def track_person(
     frames: Iterable[tuple[float, NDArray]],
     detector: PersonDetector,
     landmarks: LandmarkNetwork,
-    foreground: Foreground | Whole,
     *,
     min_presence: float,
     redetect: bool,
 ) -> Track:
-    """Follow the largest moving person through a video: a track with one row per frame.
+    """Follow the person who fills most of each picture: a track with one row per frame.
 
-    The detector, used when there is no track, sees only the surroundings of the foreground, so that
-    a person who is small in the picture is large in its input.
+    This is for a device that films one person from near. The detector sees the whole picture when
+    there is no track.
 
     Parameters
     ----------
@@ -51,14 +50,13 @@ def track_person(
     rows: list[tuple[NDArray, ...]] = []
     region: Region | None = None
     for time_s, image in frames:
-        boxes = foreground.boxes(image)
         pose: Pose | None = None
         if region is not None and not redetect:
             pose = landmarks.estimate(image, region)
-        if pose is None or pose.presence < min_presence or strayed(pose.xy, boxes):
-            near = regions_near(image, boxes[0], detector) if boxes else []
-            pose = landmarks.estimate(image, near[0]) if near else None
-        found = pose if pose is not None and pose.presence >= min_presence else None
+        if pose is None or pose.presence < min_presence:
+            whole = (0, 0, image.shape[1], image.shape[0])
+            pose = landmarks.estimate(image, regions_near(image, whole, detector)[0])
+        found = pose if pose.presence >= min_presence else None
         region = None if found is None else found.region
         times.append(time_s)
         rows.append(as_row(found, landmarks.n_joints, image.shape))
@@ -67,7 +65,7 @@ def track_person(
 
 
 def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:
-    """Return whether joints (J, 2) px have left the foreground, for a bystander or a poster.
+    """Return whether joints (J, 2) px have left the foreground, perhaps for a poster.
 
     Without foreground it returns False: a person may stand still for long.
     """
@@ -80,17 +78,19 @@ def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:
     return bool(boxes)
 
 
-def regions_near(image: NDArray, box: Box, detector: PersonDetector) -> list[Region]:
+def regions_near(
+    image: NDArray, box: Box, detector: PersonDetector, *, fallback: bool = True
+) -> list[Region]:
     """Return the regions of all persons in or near a foreground box, best first.
 
-    Where the detector finds nobody, the only region is the box itself, upright.
+    Where the detector finds nobody, the only region is the box itself, upright, with `fallback`.
     """
     x, y, width, height = box
     half = SEARCH_MARGIN * max(width, height) / 2
     centre_x, centre_y = x + width / 2, y + height / 2
     left, top = max(0, int(centre_x - half)), max(0, int(centre_y - half))
     found = detector.detect(image[top : int(centre_y + half), left : int(centre_x + half)])
-    if not found:
+    if not found and fallback:
         return [Region(centre_x, centre_y, SEARCH_MARGIN * max(width, height))]
     return [Region(one.x + left, one.y + top, one.side, one.angle_rad) for one in found]
 

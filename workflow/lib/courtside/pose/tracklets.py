@@ -1,4 +1,4 @@
-"""Follow several people at once through the pictures of one fixed camera, as tracklets.
+"""Follow everybody in the pictures of one fixed camera, as tracklets.
 
 A tracklet certainly shows one body: it ends where its tracker may have changed to another one.
 """
@@ -13,18 +13,19 @@ from numpy.typing import NDArray
 
 from courtside.pose import tracking
 from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
-from courtside.pose.foreground import Foreground, Whole
+from courtside.pose.foreground import Foreground
+from courtside.pose.search import MEETING, Search, are_twins, middle, size_px
 from courtside.pose.tracking import Track
 
-# ASSUME: for people who play or walk, filmed at 25 frames a second or more; shares are of a body's
-# size in the picture.
-SEARCH_EVERY = 5  # frames between two searches for people who are not followed yet
+# ASSUME: for people who play or walk; shares are of a body's size in the picture.
+HINT_S = 0.09  # between two looks at what differs from the background
+SEARCH_S = 0.99  # between two searches of some tiles, and two looks of the detector at a body
 REST_S = 0.1  # a row stays empty for so long between two tracklets
 JUMP = 0.25  # a body further from its prediction is another one
-TWINS = 0.12  # poses closer than this, on the average of their joints, are one body
-MEETING = 0.35  # bodies with middles closer than this may be taken for one another
 STEADY = 0.5  # share of the old velocity in the new one
-BODY_MARGIN = 0.15  # foreground this close to a body's joints is explained by it
+# A body is given up after so many looks in which the detector did not find it; the second number is
+# for one that has left the foreground.
+DOUBTS, STRAY_DOUBTS = 4, 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +35,17 @@ class _Body:
     row: int
     pose: Pose
     velocity: NDArray
+    looked_s: float  # when the detector last looked for it
+    doubts: int = 0  # looks since the detector last found it
+    stray: bool = False  # whether it had left the foreground at the last look at that
 
     def off_px(self, pose: Pose) -> float:
         """Return how far a pose is from where this body's is predicted."""
         return float(np.linalg.norm(middle(pose) - (middle(self.pose) + self.velocity)))
+
+    def goes_on(self, pose: Pose) -> bool:
+        """Return whether a pose lies on this body's course."""
+        return self.off_px(pose) <= JUMP * size_px(pose)
 
     def moved(self, pose: Pose) -> _Body:
         """Return the body in its next pose."""
@@ -50,60 +58,61 @@ class _Body:
         return replace(self.pose.region, x=self.pose.region.x + x, y=self.pose.region.y + y)
 
 
-def middle(pose: Pose) -> NDArray:
-    """Return the position of a pose, (2,) px: the median of its joints."""
-    return np.median(pose.xy, axis=0)
-
-
-def size_px(pose: Pose) -> float:
-    """Return the longer side of the box around a pose's joints."""
-    return float(np.ptp(pose.xy, axis=0).max())
-
-
 def track_people(
     frames: Iterable[tuple[float, NDArray]],
     detector: PersonDetector,
     landmarks: LandmarkNetwork,
-    foreground: Foreground | Whole,
+    foreground: Foreground,
     *,
     max_people: int,
     min_presence: float,
     redetect: bool = False,
 ) -> Track:
-    """Follow several people through a video: a track whose arrays have a leading axis of P rows.
+    """Follow everybody through a video: a track whose arrays have a leading axis of P rows.
+
+    People are searched for in tiles of all sizes at the start, in a part of them once a second, and
+    where a body was lost; also where the picture differs from the background, ten times a second,
+    as long as fewer than `max_people` are followed.
 
     A row holds tracklets one after another, at least 0.1 s apart: P stays a few more than
     `max_people`, however often tracklets end; a gap may change the person.
 
-    A body is lost where the network doubts it, where it leaves the foreground or jumps off its
-    course. Of two tracks on one body, the one further off its course is dropped. Where two bodies
-    come close and where they part, both tracklets end: the other views decide who is who. At most
-    `max_people` are followed at once; with 1, the result is that of `tracking.track_person`, which
-    explains the other parameters.
+    A body is lost where the landmark network doubts it, or where the detector, which looks at it
+    once a second and when it leaves the foreground, does not find it several times. Of two tracks
+    on one body, the one further off its course is dropped. Where two bodies come close and where
+    they part, both tracklets end: the other views decide who is who. So does that of a body that
+    jumps off its course, unless it is alone. A body that is alone is looked for where it was, the
+    others where their motion takes them.
+
+    Parameters
+    ----------
+    frames : time in seconds, and picture (H, W, 3) uint8, BGR
+    min_presence : below this confidence, 0 to 1, the landmark network's answer is dropped
+    redetect : search in every frame instead of following: slower, and without memory
     """
-    if max_people == 1:
-        track = tracking.track_person(
-            frames, detector, landmarks, foreground, min_presence=min_presence, redetect=redetect
-        )
-        time_s, *arrays = vars(track).values()
-        return Track(time_s, *(array[None] for array in arrays))
-    crowd = _Crowd(detector, landmarks, foreground, max_people, min_presence)
+    search = Search(detector, landmarks, foreground, min_presence)
+    crowd = _Crowd(search, max_people)
     times: list[float] = []
     found: list[dict[int, tuple[NDArray, ...]]] = []
-    for count, (time_s, image) in enumerate(frames):
+    for time_s, image in frames:
         crowd.now_s = time_s
         if redetect:
-            crowd.match(crowd.search(image, []))
+            crowd.find_again(image)
         else:
             crowd.follow(image)
-            if len(crowd.bodies) < max_people and count % SEARCH_EVERY == 0:
-                crowd.match(crowd.search(image, [body.pose for body in crowd.bodies]), keep=True)
+        crowd.look(image)
         crowd.part()
         times.append(time_s)
         found.append(
             {b.row: tracking.as_row(b.pose, landmarks.n_joints, image.shape) for b in crowd.bodies}
         )
     return _stacked(np.array(times), found, landmarks.n_joints)
+
+
+def alone(track: Track) -> Track:
+    """Return the track of one person as that of `track_people`, with one row."""
+    time_s, *arrays = vars(track).values()
+    return Track(time_s, *(array[None] for array in arrays))
 
 
 def _stacked(
@@ -123,36 +132,40 @@ def _stacked(
 class _Crowd:
     """The followed bodies of one camera."""
 
-    detector: PersonDetector
-    landmarks: LandmarkNetwork
-    foreground: Foreground | Whole
+    search: Search
     max_people: int
-    min_presence: float
     bodies: list[_Body] = field(default_factory=list)
     now_s: float = 0.0
+    hinted_s: float = -np.inf  # when the foreground was last looked at
+    searched_s: float = -np.inf  # when tiles were last searched
+    lost: list[_Body] = field(default_factory=list)  # in this frame
     ended_s: dict[int, float] = field(default_factory=dict)  # by row: when its last tracklet ended
     meeting: set[int] = field(default_factory=set)  # rows of bodies that are close to another
 
+    @property
+    def poses(self) -> list[Pose]:
+        return [body.pose for body in self.bodies]
+
     def follow(self, image: NDArray) -> None:
         """Find the same bodies in the next picture."""
-        boxes = self.foreground.boxes(image) if self.bodies else []
-        kept = []
+        kept, alone = [], len(self.bodies) == 1
         for body in self.bodies:
-            pose = self.landmarks.estimate(image, body.region)
-            if pose.presence >= self.min_presence and not tracking.strayed(pose.xy, boxes):
+            region = body.pose.region if alone else body.region
+            pose = self.search.landmarks.estimate(image, region)
+            if pose.presence >= self.search.min_presence:
                 kept.append((body, pose))
-        self._end(set(self.bodies) - {body for body, _ in kept})
+        self.lost = [body for body in self.bodies if body not in {b for b, _ in kept}]
         self.bodies = []
         for body, pose in self._without_twins(kept):
             followed = body.moved(pose)
-            jumped = body.off_px(pose) > JUMP * size_px(pose)
-            self.bodies.append(self._renewed(followed) if jumped else followed)
+            steady = alone or body.goes_on(pose)
+            self.bodies.append(followed if steady else self._renewed(followed))
 
     def _without_twins(self, pairs: list[tuple[_Body, Pose]]) -> list[tuple[_Body, Pose]]:
         """Drop, of two bodies with one pose, the one further off its course; end both tracklets."""
         kept: list[tuple[_Body, Pose]] = []
         for body, pose in sorted(pairs, key=lambda pair: pair[0].off_px(pair[1])):
-            twin = next((k for k in kept if _are_twins(k[1], pose)), None)
+            twin = next((k for k in kept if are_twins(k[1], pose)), None)
             if twin is None:
                 kept.append((body, pose))
                 continue
@@ -160,39 +173,76 @@ class _Crowd:
             kept[kept.index(twin)] = (self._renewed(twin[0]), twin[1])
         return kept
 
-    def search(self, image: NDArray, known: list[Pose]) -> list[Pose]:
-        """Return the poses of people who are not in `known`, largest foreground first."""
-        poses: list[Pose] = []
-        for box in self.foreground.boxes(image, [around(pose) for pose in known]):
-            for region in tracking.regions_near(image, box, self.detector):
-                if any(_inside(region, pose) for pose in known + poses):
-                    continue
-                pose = self.landmarks.estimate(image, region)
-                if pose.presence < self.min_presence:
-                    continue
-                if not any(_are_twins(pose, other) for other in known + poses):
-                    poses.append(pose)
-        return poses[: self.max_people - len(known)]
+    def find_again(self, image: NDArray) -> None:
+        """Find everybody in the next picture without following them."""
+        old, self.bodies, self.hinted_s = self.bodies, [], self.now_s
+        poses = self.search.changed(image, [], self.now_s)
+        for body in old:
+            if not any(body.goes_on(pose) for pose in poses):
+                poses += self.search.near(image, body.pose, poses)
+        self.lost = old
+        self.match(poses, old)
+        self._end_lost()
 
-    def match(self, poses: list[Pose], keep: bool = False) -> None:
-        """Assign poses to the bodies they continue, and start new bodies with the rest."""
+    def look(self, image: NDArray) -> None:
+        """Look at the bodies again, and for people who are not followed yet."""
+        for body in self.lost:
+            if self._free():
+                self.match(self.search.near(image, body.pose, self.poses), [body])
+        wait_s = HINT_S if self.bodies else 0.0
+        if self.now_s - self.hinted_s > wait_s:
+            self.hinted_s = self.now_s
+            self._doubt(image)
+            if self._free():
+                self.match(self.search.changed(image, self.poses, self.now_s), self.lost)
+        if self._free() and self.now_s - self.searched_s > SEARCH_S:
+            search = self.search.part if np.isfinite(self.searched_s) else self.search.everywhere
+            self.searched_s = self.now_s
+            self.match(search(image, self.poses), [])
+        self._end_lost()
+
+    def _doubt(self, image: NDArray) -> None:
+        """Let the detector look at bodies once a second, and at those that leave the foreground."""
+        if not self.bodies:
+            return
+        boxes = self.search.foreground.boxes(image)
+        others: list[Pose] = []
+        for at, body in enumerate(self.bodies):
+            stray = tracking.strayed(body.pose.xy, boxes)
+            hurry = stray and (not body.stray or body.doubts > 0)
+            self.bodies[at] = replace(body, stray=stray)
+            if hurry or self.now_s - body.looked_s > SEARCH_S:
+                known = [*self.poses, *others]
+                sure, beside = self.search.look_at(image, body.pose, known)
+                doubts = 0 if sure else body.doubts + 1
+                self.bodies[at] = replace(body, stray=stray, looked_s=self.now_s, doubts=doubts)
+                others += beside
+        given_up = [b for b in self.bodies if b.doubts >= (STRAY_DOUBTS if b.stray else DOUBTS)]
+        self._end(given_up)
+        self.bodies = [body for body in self.bodies if body not in given_up]
+        self.match(others, [])
+
+    def match(self, poses: Sequence[Pose], lost: Sequence[_Body]) -> None:
+        """Assign poses to the lost bodies that they continue, and start new bodies with the rest.
+
+        At most `max_people` bodies are followed at once.
+        """
+        if not poses and not lost:
+            return
         # Imported here: one person needs none of it, and loading it takes as long as 15 frames.
         from scipy.optimize import linear_sum_assignment
 
-        old: list[_Body] = [] if keep else self.bodies
-        bodies = list(self.bodies) if keep else []
+        old = [body for body in lost if body.row not in {b.row for b in self.bodies}]
         cost = np.array([[body.off_px(pose) / size_px(pose) for pose in poses] for body in old])
         taken = set()
         for at, to in zip(*linear_sum_assignment(cost.reshape(len(old), len(poses))), strict=True):
             if cost[at, to] <= JUMP:
-                bodies.append(old[at].moved(poses[to]))
+                body = replace(old[at].moved(poses[to]), looked_s=self.now_s, doubts=0)
+                self.bodies.append(body)
                 taken.add(to)
-        rows = {body.row for body in bodies}
-        self._end([body for body in old if body.row not in rows])
-        self.bodies = bodies
         for to, pose in enumerate(poses):
-            if to not in taken:
-                self.bodies.append(_Body(self._free_row(), pose, np.zeros(2)))
+            if to not in taken and self._free():
+                self.bodies.append(_Body(self._free_row(), pose, np.zeros(2), self.now_s))
 
     def part(self) -> None:
         """End the tracklets of bodies that begin or cease to be close."""
@@ -209,6 +259,13 @@ class _Crowd:
                 self.bodies[at] = self._renewed(body)
                 self.meeting |= {self.bodies[at].row} if body.row in close else set()
 
+    def _free(self) -> bool:
+        return len(self.bodies) < self.max_people
+
+    def _end_lost(self) -> None:
+        self._end([body for body in self.lost if body.row not in {b.row for b in self.bodies}])
+        self.lost = []
+
     def _renewed(self, body: _Body) -> _Body:
         """Return the body with a new tracklet."""
         row = self._free_row()
@@ -221,28 +278,9 @@ class _Crowd:
             self.ended_s[body.row] = self.now_s
 
     def _free_row(self) -> int:
-        used = {body.row for body in self.bodies}
+        used = {body.row for body in [*self.bodies, *self.lost]}
         row = 0
         while row in used or self.now_s - self.ended_s.get(row, -np.inf) < REST_S:
             row += 1
         self.ended_s[row] = np.inf  # not free until it ends
         return row
-
-
-def _are_twins(one: Pose, other: Pose) -> bool:
-    """Return whether two poses are of one body."""
-    apart = np.linalg.norm(one.xy - other.xy, axis=1).mean()
-    return bool(apart < TWINS * max(size_px(one), size_px(other)))
-
-
-def around(pose: Pose) -> tuple[float, float, float, float]:
-    """Return the box (x, y, width, height) that a pose explains, px."""
-    margin = BODY_MARGIN * size_px(pose)
-    low, high = pose.xy.min(axis=0) - margin, pose.xy.max(axis=0) + margin
-    return (*low, *(high - low))
-
-
-def _inside(region: Region, pose: Pose) -> bool:
-    """Return whether a region shows the body of a pose."""
-    apart = np.hypot(region.x - pose.region.x, region.y - pose.region.y)
-    return apart < MEETING * size_px(pose) / 2

@@ -36,13 +36,9 @@ def background(job: Job) -> str | list:
     return job.fill(paths.STATIC if job.camera.static else paths.BACKGROUND)
 
 
-def max_people(job: Job) -> int:
-    """Return how many people are followed in a video.
-
-    Of several, one more, so that a bystander takes no one's place. A device follows one.
-    """
-    n_people = len(job.take.subjects) if job["camera"] in job.take.videos else 1
-    return 1 if n_people == 1 else n_people + 1
+def n_wanted(job: Job) -> int:
+    """Return how many people a video is filmed for: its take's subjects; one for a device."""
+    return len(job.take.subjects) if job["camera"] in job.take.videos else 1
 
 
 def network(job: Job) -> Network:

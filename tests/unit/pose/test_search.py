@@ -1,0 +1,109 @@
+"""Search for people: tiles, foreground and a second look; a stand-in network that sees squares."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from courtside.pose import blazepose, foreground, search
+from courtside.pose.detector import Pose, Region
+from fixtures.recordings import networks
+from fixtures.recordings.real_data import REAL, needs_real
+
+CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, 0]], float)
+
+
+def pose(x, y, side=100.0, presence=0.9):
+    xy = CORNERS * side / 2 + [x, y]
+    return Pose(xy, np.ones(5), np.full((5, 3), np.nan), presence, Region(x, y, 1.4 * side))
+
+
+def test_a_pose_explains_what_is_close_to_it():
+    assert search.around(pose(200, 300)) == pytest.approx((135, 235, 130, 130))
+    assert search.surroundings(pose(200, 300)) == Region(200, 300, 200)
+
+
+def test_the_same_body_is_told_by_its_joints():
+    assert search.are_twins(pose(200, 300), pose(208, 300))
+    assert not search.are_twins(pose(200, 300), pose(220, 300))
+    assert search.inside(Region(210, 300, 100), pose(200, 300))
+    assert not search.inside(Region(210, 300, 100), pose(200, 300), reach=0.05)
+
+
+def skiers():
+    """Return a real skier twice: whole, and another time half as large beside it."""
+    skier = cv2.imread(str(REAL / "people" / "000000000785.jpg"))
+    half = cv2.resize(cv2.flip(skier, 1), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+    empty = np.full((720, 1280, 3), 225, np.uint8)
+    one, two = empty.copy(), empty.copy()
+    one[100 : 100 + skier.shape[0], 40 : 40 + skier.shape[1]] = skier
+    two[:] = one
+    two[300 : 300 + half.shape[0], 850 : 850 + half.shape[1]] = half
+    return empty, one, two
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return (
+        blazepose.BlazePoseDetector(networks.detector_onnx()),
+        blazepose.BlazePoseLandmarks(networks.landmarks_onnx()),
+    )
+
+
+@needs_real
+def test_tiles_find_people_whom_the_background_shows_and_no_one_twice(pair):
+    empty, one, two = skiers()
+    looking = search.Search(*pair, foreground.Foreground(two, 30), 0.5)
+    found = looking.everywhere(two, [])
+    assert len(found) == 2
+    assert looking.everywhere(two, found) == []
+    assert looking.changed(two, [], 0.0) == []  # nothing differs from this background
+    assert looking.everywhere(empty, []) == []
+    assert len(looking.everywhere(one, [])) == 1
+
+
+@needs_real
+def test_the_turns_of_a_search_cover_the_picture(pair):
+    _, one, two = skiers()
+    looking = search.Search(*pair, foreground.Foreground(two, 30), 0.5)
+    known = looking.everywhere(one, [])
+    later = [new for _ in range(4) for new in looking.part(two, known)]
+    assert later
+    assert all(np.median(new.xy[:, 0]) > 800 for new in later)
+
+
+@needs_real
+def test_a_vain_look_at_the_foreground_is_not_repeated_for_a_second(pair):
+    empty, one, _ = skiers()
+    detector, landmarks = pair
+    looking = search.Search(detector, landmarks, foreground.Foreground(empty, 30), 0.5)
+    known = looking.everywhere(one, [])
+    image = one.copy()
+    image[200:500, 1000:1200] = 20  # a dark box: no person
+    asked = []
+
+    class Counting:
+        def detect(self, image):
+            asked.append(image.shape)
+            return detector.detect(image)
+
+    looking.detector = Counting()
+    assert looking.changed(image, known, 0.0) == []
+    once = len(asked)
+    assert once
+    for time_s in (0.1, 0.9):
+        assert looking.changed(image, known, time_s) == []
+    assert len(asked) == once
+    assert looking.changed(image, known, 1.1) == []
+    assert len(asked) == 2 * once
+
+
+@needs_real
+def test_the_detector_confirms_a_person_and_no_furniture(pair):
+    _, one, _ = skiers()
+    looking = search.Search(*pair, foreground.Foreground(one, 30), 0.5)
+    skier = looking.everywhere(one, [])[0]
+    assert looking.look_at(one, skier, [skier]) == (True, [])
+    moved = replace(skier, xy=np.add(skier.xy, (600, 0)), region=Region(900, 300, 400))
+    assert looking.look_at(one, moved, [skier, moved])[0] is False

@@ -1,0 +1,169 @@
+"""Where people are looked for in the pictures of one fixed camera, and whether one is there.
+
+A difference from the background says where to look first. It is never a condition: the tiles of the
+whole picture are searched as well, and a person who stands in the background is found in them.
+"""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.pose import tiles, tracking
+from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
+from courtside.pose.foreground import Box, Foreground
+
+# ASSUME: this block has no source but the development takes; shares are of a body's size.
+TWINS = 0.12  # poses closer than this, on the average of their joints, are one body
+MEETING = 0.35  # bodies with middles closer than this may be taken for one another
+CLOSE = 0.08  # a second person is searched for where regions' centres are at least this far apart
+PART = 0.85  # a pose smaller than this within another is a part of that body
+BODY_MARGIN = 0.15  # foreground this close to a body's joints is explained by it
+CROP = 2.0  # a body is looked at in a square of this many times its size
+TILES_A_SEARCH = 8  # of a search once a second: a tenth of the time of following one person
+VAIN_S = 1.0  # a place where nobody was found is left alone for so long
+VAIN_OVERLAP = 0.5  # intersection over union of places that are the same
+
+
+def middle(pose: Pose) -> NDArray:
+    """Return the position of a pose, (2,) px: the median of its joints."""
+    return np.median(pose.xy, axis=0)
+
+
+def size_px(pose: Pose) -> float:
+    """Return the longer side of the box around a pose's joints."""
+    return float(np.ptp(pose.xy, axis=0).max())
+
+
+def are_twins(one: Pose, other: Pose) -> bool:
+    """Return whether two poses are of one body."""
+    apart = np.linalg.norm(one.xy - other.xy, axis=1).mean()
+    return bool(apart < TWINS * max(size_px(one), size_px(other)))
+
+
+def around(pose: Pose) -> tuple[float, float, float, float]:
+    """Return the box (x, y, width, height) that a pose explains, px."""
+    margin = BODY_MARGIN * size_px(pose)
+    low, high = pose.xy.min(axis=0) - margin, pose.xy.max(axis=0) + margin
+    return (*low, *(high - low))
+
+
+def inside(region: Region, pose: Pose, reach: float = MEETING / 2) -> bool:
+    """Return whether a region shows the body of a pose: whether their centres are close."""
+    apart = np.hypot(region.x - pose.region.x, region.y - pose.region.y)
+    return bool(apart < reach * size_px(pose))
+
+
+def _is_part(pose: Pose, whole: Pose) -> bool:
+    """Return whether a pose is a smaller one within another: a part taken for a whole body."""
+    x, y, width, height = around(whole)
+    low, high = pose.xy.min(axis=0) >= (x, y), pose.xy.max(axis=0) <= (x + width, y + height)
+    return bool(low.all() and high.all() and size_px(pose) < PART * size_px(whole))
+
+
+class Search:
+    """Looks for people in pictures of one camera; a pose counts from the `min_presence`, 0 to 1."""
+
+    def __init__(
+        self,
+        detector: PersonDetector,
+        landmarks: LandmarkNetwork,
+        foreground: Foreground,
+        min_presence: float,
+    ) -> None:
+        self.detector, self.landmarks = detector, landmarks
+        self.foreground, self.min_presence = foreground, min_presence
+        self._tiles: list[Region] = []
+        self._next = 0
+        self._vain: list[tuple[float, Box]] = []
+
+    def everywhere(self, image: NDArray, known: Sequence[Pose]) -> list[Pose]:
+        """Return the poses of people in all tiles of a picture who are not in `known`."""
+        height, width = image.shape[:2]
+        self._tiles, self._next = tiles.tiles(width, height), 0
+        return self._in_tiles(image, self._tiles, known)
+
+    def part(self, image: NDArray, known: Sequence[Pose]) -> list[Pose]:
+        """Do the same for the next few tiles; later calls go on with the others, in turns."""
+        count = min(TILES_A_SEARCH, len(self._tiles))
+        chosen = [self._tiles[(self._next + at) % len(self._tiles)] for at in range(count)]
+        self._next += count
+        return self._in_tiles(image, chosen, known)
+
+    def _in_tiles(
+        self, image: NDArray, among: Iterable[Region], known: Sequence[Pose]
+    ) -> list[Pose]:
+        regions = tiles.search(image, among, self.detector)
+        return self._poses(image, regions, known, sure=True)
+
+    def changed(self, image: NDArray, known: Sequence[Pose], now_s: float) -> list[Pose]:
+        """Return the poses of people who are not in `known`, where the background has changed.
+
+        Those in the largest foreground come first. A place where nobody was found is left alone for
+        a second. While nobody at all is known, the largest foreground is taken for a person, even
+        if the detector does not find one in it.
+        """
+        self._vain = [(at, box) for at, box in self._vain if now_s - at < VAIN_S]
+        poses: list[Pose] = []
+        for count, box in enumerate(self.foreground.boxes(image, [around(p) for p in known])):
+            lonely = not known and not count
+            if not lonely and any(_overlap(box, vain) > VAIN_OVERLAP for _, vain in self._vain):
+                continue
+            regions = tracking.regions_near(image, box, self.detector, fallback=lonely)
+            found = self._poses(image, regions, [*known, *poses], sure=False)
+            poses += found
+            if not found:
+                self._vain.append((now_s, box))
+        return poses
+
+    def near(self, image: NDArray, pose: Pose, known: Sequence[Pose]) -> list[Pose]:
+        """Return the poses of people who are not in `known`, around the place of a lost pose."""
+        regions = tiles.look(image, surroundings(pose), self.detector)
+        return self._poses(image, regions, known, sure=False)
+
+    def look_at(self, image: NDArray, pose: Pose, known: Sequence[Pose]) -> tuple[bool, list[Pose]]:
+        """Let the detector look at a pose: whether it finds a person there, and who else it finds.
+
+        The others are people who are not in `known`, such as one whom this person covers in part.
+        """
+        regions = tiles.look(image, surroundings(pose), self.detector)
+        confirmed = any(inside(region, pose) for region in regions)
+        return confirmed, self._poses(image, regions, known, sure=True)
+
+    def _poses(
+        self, image: NDArray, regions: Iterable[Region], known: Sequence[Pose], sure: bool
+    ) -> list[Pose]:
+        """Return the poses in regions; where they must be `sure`, those of two looks that agree."""
+        poses: list[Pose] = []
+        reach = CLOSE if sure else MEETING / 2
+        for region in regions:
+            others = [*known, *poses]
+            if any(inside(region, pose, reach) for pose in others):
+                continue
+            pose = self.landmarks.estimate(image, region)
+            if sure and pose.presence >= self.min_presence:
+                pose = self.landmarks.estimate(image, pose.region)
+            if pose.presence < self.min_presence or any(are_twins(pose, o) for o in others):
+                continue
+            if not sure or (not any(_is_part(pose, o) for o in others) and self._seen(image, pose)):
+                poses.append(pose)
+        return poses
+
+    def _seen(self, image: NDArray, pose: Pose) -> bool:
+        return any(inside(r, pose) for r in tiles.look(image, surroundings(pose), self.detector))
+
+
+def surroundings(pose: Pose) -> Region:
+    """Return the square in which the detector looks for the person of a pose."""
+    low, high = pose.xy.min(axis=0), pose.xy.max(axis=0)
+    x, y = (low + high) / 2
+    return Region(float(x), float(y), max(1.0, CROP * size_px(pose)))
+
+
+def _overlap(one: Box, other: Box) -> float:
+    """Return the intersection over union of two boxes."""
+    (ax, ay, aw, ah), (bx, by, bw, bh) = one, other
+    width = min(ax + aw, bx + bw) - max(ax, bx)
+    height = min(ay + ah, by + bh) - max(ay, by)
+    shared = max(0, width) * max(0, height)
+    return shared / (aw * ah + bw * bh - shared)
