@@ -58,7 +58,9 @@ def test_tiles_find_people_whom_the_background_shows_and_no_one_twice(pair):
     found = looking.everywhere(two, [])
     assert len(found) == 2
     assert looking.everywhere(two, found) == []
-    assert looking.changed(two, [], 0.0) == []  # nothing differs from this background
+    assert (
+        looking.changed(two, [], 0.0, looking.foreground.boxes(two)) == []
+    )  # nothing differs from this background
     assert looking.everywhere(empty, []) == []
     assert len(looking.everywhere(one, [])) == 1
 
@@ -68,7 +70,7 @@ def test_the_turns_of_a_search_cover_the_picture(pair):
     _, one, two = skiers()
     looking = search.Search(*pair, foreground.Foreground(two, 30), 0.5)
     known = looking.everywhere(one, [])
-    later = [new for _ in range(4) for new in looking.part(two, known)]
+    later = [new for _ in range(6) for new in looking.part(two, known)]
     assert later
     assert all(np.median(new.xy[:, 0]) > 800 for new in later)
 
@@ -81,6 +83,7 @@ def test_a_vain_look_at_the_foreground_is_not_repeated_for_a_second(pair):
     known = looking.everywhere(one, [])
     image = one.copy()
     image[200:500, 1000:1200] = 20  # a dark box: no person
+    boxes = looking.foreground.boxes(image)
     asked = []
 
     class Counting:
@@ -89,13 +92,13 @@ def test_a_vain_look_at_the_foreground_is_not_repeated_for_a_second(pair):
             return detector.detect(image)
 
     looking.detector = Counting()
-    assert looking.changed(image, known, 0.0) == []
+    assert looking.changed(image, known, 0.0, boxes) == []
     once = len(asked)
     assert once
     for time_s in (0.1, 0.9):
-        assert looking.changed(image, known, time_s) == []
+        assert looking.changed(image, known, time_s, boxes) == []
     assert len(asked) == once
-    assert looking.changed(image, known, 1.1) == []
+    assert looking.changed(image, known, 1.1, boxes) == []
     assert len(asked) == 2 * once
 
 
@@ -107,3 +110,14 @@ def test_the_detector_confirms_a_person_and_no_furniture(pair):
     assert looking.look_at(one, skier, [skier]) == (True, [])
     moved = replace(skier, xy=np.add(skier.xy, (600, 0)), region=Region(900, 300, 400))
     assert looking.look_at(one, moved, [skier, moved])[0] is False
+
+
+@needs_real
+def test_people_in_the_background_are_recognised_there_or_gone(pair):
+    empty, one, two = skiers()
+    held = search.Search(*pair, foreground.Foreground(two, 30), 0.5)
+    known = held.everywhere(one, [])
+    found = held.behind(two, one, np.stack([p.xy for p in known]))  # one stays, the other has left
+    assert sorted(np.median(p.xy[:, 0]) > 800 for p in found) == [False, True]
+    clean = search.Search(*pair, foreground.Foreground(empty, 30), 0.5)
+    assert clean.behind(empty, one, np.stack([p.xy for p in known])) == []

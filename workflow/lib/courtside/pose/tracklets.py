@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from courtside.pose import tracking
 from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
-from courtside.pose.foreground import Foreground
+from courtside.pose.foreground import Box, Foreground
 from courtside.pose.search import MEETING, Search, are_twins, middle, size_px
 from courtside.pose.tracking import Track
 
 # ASSUME: for people who play or walk; shares are of a body's size in the picture.
 HINT_S = 0.09  # between two looks at what differs from the background
 SEARCH_S = 0.99  # between two searches of some tiles, and two looks of the detector at a body
+CROWDED_S = 1.0  # the detector often looks at a body for so long after another one was lost there
 REST_S = 0.1  # a row stays empty for so long between two tracklets
 JUMP = 0.25  # a body further from its prediction is another one
 STEADY = 0.5  # share of the old velocity in the new one
@@ -38,6 +39,7 @@ class _Body:
     looked_s: float  # when the detector last looked for it
     doubts: int = 0  # looks since the detector last found it
     stray: bool = False  # whether it had left the foreground at the last look at that
+    crowded_s: float = -np.inf  # until when the detector often looks for another one beside it
 
     def off_px(self, pose: Pose) -> float:
         """Return how far a pose is from where this body's is predicted."""
@@ -170,13 +172,14 @@ class _Crowd:
                 kept.append((body, pose))
                 continue
             self._end([body])
-            kept[kept.index(twin)] = (self._renewed(twin[0]), twin[1])
+            kept[kept.index(twin)] = (self._crowded(self._renewed(twin[0])), twin[1])
         return kept
 
     def find_again(self, image: NDArray) -> None:
         """Find everybody in the next picture without following them."""
         old, self.bodies, self.hinted_s = self.bodies, [], self.now_s
-        poses = self.search.changed(image, [], self.now_s)
+        boxes = self.search.foreground.boxes(image)
+        poses = self.search.changed(image, [], self.now_s, boxes)
         for body in old:
             if not any(body.goes_on(pose) for pose in poses):
                 poses += self.search.near(image, body.pose, poses)
@@ -192,31 +195,32 @@ class _Crowd:
         wait_s = HINT_S if self.bodies else 0.0
         if self.now_s - self.hinted_s > wait_s:
             self.hinted_s = self.now_s
-            self._doubt(image)
+            boxes = self.search.foreground.boxes(image)
+            self._doubt(image, boxes)
             if self._free():
-                self.match(self.search.changed(image, self.poses, self.now_s), self.lost)
+                found = self.search.changed(image, self.poses, self.now_s, boxes)
+                self.match(found, self.lost)
         if self._free() and self.now_s - self.searched_s > SEARCH_S:
             search = self.search.part if np.isfinite(self.searched_s) else self.search.everywhere
             self.searched_s = self.now_s
             self.match(search(image, self.poses), [])
         self._end_lost()
 
-    def _doubt(self, image: NDArray) -> None:
+    def _doubt(self, image: NDArray, boxes: Sequence[Box]) -> None:
         """Let the detector look at bodies once a second, and at those that leave the foreground."""
-        if not self.bodies:
-            return
-        boxes = self.search.foreground.boxes(image)
         others: list[Pose] = []
         for at, body in enumerate(self.bodies):
             stray = tracking.strayed(body.pose.xy, boxes)
             hurry = stray and (not body.stray or body.doubts > 0)
             self.bodies[at] = replace(body, stray=stray)
-            if hurry or self.now_s - body.looked_s > SEARCH_S:
+            due = hurry or self.now_s - body.looked_s > SEARCH_S
+            if due or self.now_s < body.crowded_s:
                 known = [*self.poses, *others]
                 sure, beside = self.search.look_at(image, body.pose, known)
+                others += beside
+            if due:
                 doubts = 0 if sure else body.doubts + 1
                 self.bodies[at] = replace(body, stray=stray, looked_s=self.now_s, doubts=doubts)
-                others += beside
         given_up = [b for b in self.bodies if b.doubts >= (STRAY_DOUBTS if b.stray else DOUBTS)]
         self._end(given_up)
         self.bodies = [body for body in self.bodies if body not in given_up]
@@ -227,19 +231,12 @@ class _Crowd:
 
         At most `max_people` bodies are followed at once.
         """
-        if not poses and not lost:
-            return
-        # Imported here: one person needs none of it, and loading it takes as long as 15 frames.
-        from scipy.optimize import linear_sum_assignment
-
         old = [body for body in lost if body.row not in {b.row for b in self.bodies}]
-        cost = np.array([[body.off_px(pose) / size_px(pose) for pose in poses] for body in old])
         taken = set()
-        for at, to in zip(*linear_sum_assignment(cost.reshape(len(old), len(poses))), strict=True):
-            if cost[at, to] <= JUMP:
-                body = replace(old[at].moved(poses[to]), looked_s=self.now_s, doubts=0)
-                self.bodies.append(body)
-                taken.add(to)
+        for at, to in _assigned(old, poses):
+            body = replace(old[at].moved(poses[to]), looked_s=self.now_s, doubts=0)
+            self.bodies.append(body)
+            taken.add(to)
         for to, pose in enumerate(poses):
             if to not in taken and self._free():
                 self.bodies.append(_Body(self._free_row(), pose, np.zeros(2), self.now_s))
@@ -249,8 +246,7 @@ class _Crowd:
         close: set[int] = set()
         for at, one in enumerate(self.bodies):
             for other in self.bodies[at + 1 :]:
-                apart = np.linalg.norm(middle(one.pose) - middle(other.pose))
-                if apart < MEETING * max(size_px(one.pose), size_px(other.pose)):
+                if _are_close(one.pose, other.pose):
                     close |= {one.row, other.row}
         changed = close ^ {row for row in self.meeting if row in {b.row for b in self.bodies}}
         self.meeting = close - changed
@@ -262,9 +258,16 @@ class _Crowd:
     def _free(self) -> bool:
         return len(self.bodies) < self.max_people
 
+    def _crowded(self, body: _Body) -> _Body:
+        return replace(body, crowded_s=self.now_s + CROWDED_S)
+
     def _end_lost(self) -> None:
-        self._end([body for body in self.lost if body.row not in {b.row for b in self.bodies}])
+        lost = [body for body in self.lost if body.row not in {b.row for b in self.bodies}]
+        self._end(lost)
         self.lost = []
+        for at, body in enumerate(self.bodies):
+            if any(_are_close(body.pose, other.pose) for other in lost):
+                self.bodies[at] = self._crowded(body)
 
     def _renewed(self, body: _Body) -> _Body:
         """Return the body with a new tracklet."""
@@ -284,3 +287,21 @@ class _Crowd:
             row += 1
         self.ended_s[row] = np.inf  # not free until it ends
         return row
+
+
+def _are_close(one: Pose, other: Pose) -> bool:
+    """Return whether two bodies may be taken for one another."""
+    apart = np.linalg.norm(middle(one) - middle(other))
+    return bool(apart < MEETING * max(size_px(one), size_px(other)))
+
+
+def _assigned(old: Sequence[_Body], poses: Sequence[Pose]) -> list[tuple[int, int]]:
+    """Return which body goes on as which pose, by the least sum of distances."""
+    if not old or not poses:
+        return []
+    # Imported here: one person needs none of it, and loading it takes as long as 15 frames.
+    from scipy.optimize import linear_sum_assignment
+
+    cost = np.array([[body.off_px(pose) / size_px(pose) for pose in poses] for body in old])
+    pairs = zip(*linear_sum_assignment(cost), strict=True)
+    return [(int(at), int(to)) for at, to in pairs if cost[at, to] <= JUMP]
