@@ -4,7 +4,8 @@ decoders: `landmark_network`: a network by the name of its decoder.
 detector: `Region`, `Pose`, `cut_out`: the interface of networks; blazepose, heatmaps: their kinds.
 tracking, tracklets: `track_person`, `track_people`: people followed through the pictures of one
     camera.
-foreground: `Foreground`, `Whole`: where to search for people.
+search, tiles, foreground: `Search`: where people are searched for: in tiles of the whole picture,
+    and first where it differs from the background.
 privacy, stick_drawing: `hide_faces`, `only_persons`, `hide`; `draw`.
 
 Folder: `conversion` (networks from TFLite to ONNX).

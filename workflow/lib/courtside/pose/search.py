@@ -134,9 +134,7 @@ class Search:
         for box in self.foreground.boxes(image):
             regions += tracking.regions_near(background, box, self.detector, fallback=False)
         for person in xy[np.isfinite(xy).all(axis=2).any(axis=1)]:
-            low, high = np.nanmin(person, axis=0), np.nanmax(person, axis=0)
-            place = Region(*((low + high) / 2), max(1.0, CROP * (high - low).max()))
-            regions += tiles.look(background, place, self.detector)
+            regions += tiles.look(background, _square(person), self.detector)
         return self._poses(background, regions, [], sure=True)
 
     def near(self, image: NDArray, pose: Pose, known: Sequence[Pose]) -> list[Pose]:
@@ -178,9 +176,13 @@ class Search:
 
 def surroundings(pose: Pose) -> Region:
     """Return the square in which the detector looks for the person of a pose."""
-    low, high = pose.xy.min(axis=0), pose.xy.max(axis=0)
+    return _square(pose.xy)
+
+
+def _square(xy: NDArray) -> Region:
+    low, high = np.nanmin(xy, axis=0), np.nanmax(xy, axis=0)
     x, y = (low + high) / 2
-    return Region(float(x), float(y), max(1.0, CROP * size_px(pose)))
+    return Region(float(x), float(y), max(1.0, CROP * float((high - low).max())))
 
 
 def _overlap(one: Box, other: Box) -> float:

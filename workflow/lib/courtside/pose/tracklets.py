@@ -24,6 +24,8 @@ CROWDED_S = 1.0  # the detector often looks at a body for so long after another 
 REST_S = 0.1  # a row stays empty for so long between two tracklets
 JUMP = 0.25  # a body further from its prediction is another one
 STEADY = 0.5  # share of the old velocity in the new one
+# A body with no other one closer than this is alone: a jump does not lead to another one.
+ALONE = MEETING + JUMP
 # A body is given up after so many looks in which the detector did not find it; the second number is
 # for one that has left the foreground.
 DOUBTS, STRAY_DOUBTS = 4, 2
@@ -150,9 +152,9 @@ class _Crowd:
 
     def follow(self, image: NDArray) -> None:
         """Find the same bodies in the next picture."""
-        kept, alone = [], len(self.bodies) == 1
+        kept, alone = [], {body.row for body in self.bodies if self._is_alone(body)}
         for body in self.bodies:
-            region = body.pose.region if alone else body.region
+            region = body.pose.region if body.row in alone else body.region
             pose = self.search.landmarks.estimate(image, region)
             if pose.presence >= self.search.min_presence:
                 kept.append((body, pose))
@@ -160,8 +162,13 @@ class _Crowd:
         self.bodies = []
         for body, pose in self._without_twins(kept):
             followed = body.moved(pose)
-            steady = alone or body.goes_on(pose)
+            steady = body.row in alone or body.goes_on(pose)
             self.bodies.append(followed if steady else self._renewed(followed))
+
+    def _is_alone(self, body: _Body) -> bool:
+        return not any(
+            _are_close(body.pose, other.pose, ALONE) for other in self.bodies if other is not body
+        )
 
     def _without_twins(self, pairs: list[tuple[_Body, Pose]]) -> list[tuple[_Body, Pose]]:
         """Drop, of two bodies with one pose, the one further off its course; end both tracklets."""
@@ -289,10 +296,10 @@ class _Crowd:
         return row
 
 
-def _are_close(one: Pose, other: Pose) -> bool:
-    """Return whether two bodies may be taken for one another."""
+def _are_close(one: Pose, other: Pose, share: float = MEETING) -> bool:
+    """Return whether two bodies are close: at MEETING, they may be taken for one another."""
     apart = np.linalg.norm(middle(one) - middle(other))
-    return bool(apart < MEETING * max(size_px(one), size_px(other)))
+    return bool(apart < share * max(size_px(one), size_px(other)))
 
 
 def _assigned(old: Sequence[_Body], poses: Sequence[Pose]) -> list[tuple[int, int]]:
