@@ -51,8 +51,20 @@ def around(pose: Pose) -> tuple[float, float, float, float]:
 
 def inside(region: Region, pose: Pose, reach: float = MEETING / 2) -> bool:
     """Return whether a region shows the body of a pose: whether their centres are close."""
-    apart = np.hypot(region.x - pose.region.x, region.y - pose.region.y)
-    return bool(apart < reach * size_px(pose))
+    return _apart_px(region, pose) < reach * size_px(pose)
+
+
+def confirms(region: Region, pose: Pose, others: Iterable[Pose]) -> bool:
+    """Return whether a region shows the body of a pose, and none of the others' more closely.
+
+    So one person found by the detector does not confirm two poses.
+    """
+    apart = _apart_px(region, pose)
+    return inside(region, pose) and not any(_apart_px(region, other) < apart for other in others)
+
+
+def _apart_px(region: Region, pose: Pose) -> float:
+    return float(np.hypot(region.x - pose.region.x, region.y - pose.region.y))
 
 
 def _is_part(pose: Pose, whole: Pose) -> bool:
@@ -148,7 +160,8 @@ class Search:
         The others are people who are not in `known`, such as one whom this person covers in part.
         """
         regions = tiles.look(image, surroundings(pose), self.detector)
-        confirmed = any(inside(region, pose) for region in regions)
+        others = [other for other in known if other is not pose]
+        confirmed = any(confirms(region, pose, others) for region in regions)
         return confirmed, self._poses(image, regions, known, sure=True)
 
     def _poses(
@@ -166,12 +179,15 @@ class Search:
                 pose = self.landmarks.estimate(image, pose.region)
             if pose.presence < self.min_presence or any(are_twins(pose, o) for o in others):
                 continue
-            if not sure or (not any(_is_part(pose, o) for o in others) and self._seen(image, pose)):
+            if not sure or (
+                not any(_is_part(pose, o) for o in others) and self._seen(image, pose, others)
+            ):
                 poses.append(pose)
         return poses
 
-    def _seen(self, image: NDArray, pose: Pose) -> bool:
-        return any(inside(r, pose) for r in tiles.look(image, surroundings(pose), self.detector))
+    def _seen(self, image: NDArray, pose: Pose, others: Sequence[Pose]) -> bool:
+        regions = tiles.look(image, surroundings(pose), self.detector)
+        return any(confirms(region, pose, others) for region in regions)
 
 
 def surroundings(pose: Pose) -> Region:

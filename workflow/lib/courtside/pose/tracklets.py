@@ -197,8 +197,8 @@ class _Crowd:
     def look(self, image: NDArray) -> None:
         """Look at the bodies again, and for people who are not followed yet."""
         for body in self.lost:
-            if self._free():
-                self.match(self.search.near(image, body.pose, self.poses), [body])
+            if self._free() and body.row not in {b.row for b in self.bodies}:
+                self.match(self.search.near(image, body.pose, self.poses), self.lost)
         wait_s = HINT_S if self.bodies else 0.0
         if self.now_s - self.hinted_s > wait_s:
             self.hinted_s = self.now_s
