@@ -1,4 +1,4 @@
-"""Search for people: tiles, foreground and a second look; a stand-in network that sees squares."""
+"""Search for people in tiles, in the foreground and by a second look: made poses, a real skier."""
 
 from dataclasses import replace
 
@@ -31,6 +31,21 @@ def test_the_same_body_is_told_by_its_joints():
     assert not search.inside(Region(210, 300, 100), pose(200, 300), reach=0.05)
 
 
+def test_one_person_found_does_not_confirm_two_poses():
+    body, ghost = pose(200, 300), pose(212, 300)
+    region = Region(203, 300, 140)
+    assert search.inside(region, body) and search.inside(region, ghost)
+    assert search.confirms(region, body, [ghost])
+    assert not search.confirms(region, ghost, [body])
+    assert search.confirms(Region(211, 300, 140), ghost, [body])
+
+
+def test_close_bodies_are_told_by_their_size():
+    assert search.are_close(pose(200, 300), pose(230, 300))
+    assert not search.are_close(pose(200, 300), pose(240, 300))
+    assert search.are_close(pose(200, 300), pose(240, 300, side=150))
+
+
 def skiers():
     """Return a real skier twice: whole, and another time half as large beside it."""
     skier = cv2.imread(str(REAL / "people" / "000000000785.jpg"))
@@ -58,9 +73,8 @@ def test_tiles_find_people_whom_the_background_shows_and_no_one_twice(pair):
     found = looking.everywhere(two, [])
     assert len(found) == 2
     assert looking.everywhere(two, found) == []
-    assert (
-        looking.changed(two, [], 0.0, looking.foreground.boxes(two)) == []
-    )  # nothing differs from this background
+    unchanged = looking.foreground.boxes(two)  # nothing differs from this background
+    assert looking.changed(two, [], 0.0, unchanged) == []
     assert looking.everywhere(empty, []) == []
     assert len(looking.everywhere(one, [])) == 1
 
@@ -108,6 +122,11 @@ def test_the_detector_confirms_a_person_and_no_furniture(pair):
     looking = search.Search(*pair, foreground.Foreground(one, 30), 0.5)
     skier = looking.everywhere(one, [])[0]
     assert looking.look_at(one, skier, [skier]) == (True, [])
+    size = search.size_px(skier)
+    region = replace(skier.region, y=skier.region.y + 0.1 * size)
+    ghost = replace(skier, xy=np.add(skier.xy, (0, 0.2 * size)), region=region)
+    assert looking.look_at(one, ghost, [ghost])[0] is True
+    assert looking.look_at(one, ghost, [skier, ghost])[0] is False
     moved = replace(skier, xy=np.add(skier.xy, (600, 0)), region=Region(900, 300, 400))
     assert looking.look_at(one, moved, [skier, moved])[0] is False
 

@@ -42,6 +42,12 @@ def are_twins(one: Pose, other: Pose) -> bool:
     return bool(apart < TWINS * max(size_px(one), size_px(other)))
 
 
+def are_close(one: Pose, other: Pose, share: float = MEETING) -> bool:
+    """Return whether two bodies are close: at MEETING, they may be taken for one another."""
+    apart = np.linalg.norm(middle(one) - middle(other))
+    return bool(apart < share * max(size_px(one), size_px(other)))
+
+
 def around(pose: Pose) -> tuple[float, float, float, float]:
     """Return the box (x, y, width, height) that a pose explains, px."""
     margin = BODY_MARGIN * size_px(pose)
@@ -167,7 +173,10 @@ class Search:
     def _poses(
         self, image: NDArray, regions: Iterable[Region], known: Sequence[Pose], sure: bool
     ) -> list[Pose]:
-        """Return the poses in regions; where they must be `sure`, those of two looks that agree."""
+        """Return the poses in regions that are of nobody else.
+
+        Where they must be `sure`, and close to other people, two looks have to agree.
+        """
         poses: list[Pose] = []
         reach = CLOSE if sure else MEETING / 2
         for region in regions:
@@ -179,13 +188,15 @@ class Search:
                 pose = self.landmarks.estimate(image, pose.region)
             if pose.presence < self.min_presence or any(are_twins(pose, o) for o in others):
                 continue
-            if not sure or (
-                not any(_is_part(pose, o) for o in others) and self._seen(image, pose, others)
-            ):
+            doubtful = sure or any(are_close(pose, other) for other in others)
+            if not doubtful or self._confirmed(image, pose, others):
                 poses.append(pose)
         return poses
 
-    def _seen(self, image: NDArray, pose: Pose, others: Sequence[Pose]) -> bool:
+    def _confirmed(self, image: NDArray, pose: Pose, others: Sequence[Pose]) -> bool:
+        """Return whether a pose is no part of another one, and the detector finds its person."""
+        if any(_is_part(pose, other) for other in others):
+            return False
         regions = tiles.look(image, surroundings(pose), self.detector)
         return any(confirms(region, pose, others) for region in regions)
 

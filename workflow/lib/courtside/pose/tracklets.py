@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from courtside.pose import tracking
 from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
 from courtside.pose.foreground import Box, Foreground
-from courtside.pose.search import MEETING, Search, are_twins, middle, size_px
+from courtside.pose.search import MEETING, Search, are_close, are_twins, middle, size_px
 from courtside.pose.tracking import Track
 
 # ASSUME: for people who play or walk; shares are of a body's size in the picture.
@@ -167,7 +167,7 @@ class _Crowd:
 
     def _is_alone(self, body: _Body) -> bool:
         return not any(
-            _are_close(body.pose, other.pose, ALONE) for other in self.bodies if other is not body
+            are_close(body.pose, other.pose, ALONE) for other in self.bodies if other is not body
         )
 
     def _without_twins(self, pairs: list[tuple[_Body, Pose]]) -> list[tuple[_Body, Pose]]:
@@ -253,7 +253,7 @@ class _Crowd:
         close: set[int] = set()
         for at, one in enumerate(self.bodies):
             for other in self.bodies[at + 1 :]:
-                if _are_close(one.pose, other.pose):
+                if are_close(one.pose, other.pose):
                     close |= {one.row, other.row}
         changed = close ^ {row for row in self.meeting if row in {b.row for b in self.bodies}}
         self.meeting = close - changed
@@ -273,7 +273,7 @@ class _Crowd:
         self._end(lost)
         self.lost = []
         for at, body in enumerate(self.bodies):
-            if any(_are_close(body.pose, other.pose) for other in lost):
+            if any(are_close(body.pose, other.pose) for other in lost):
                 self.bodies[at] = self._crowded(body)
 
     def _renewed(self, body: _Body) -> _Body:
@@ -294,12 +294,6 @@ class _Crowd:
             row += 1
         self.ended_s[row] = np.inf  # not free until it ends
         return row
-
-
-def _are_close(one: Pose, other: Pose, share: float = MEETING) -> bool:
-    """Return whether two bodies are close: at MEETING, they may be taken for one another."""
-    apart = np.linalg.norm(middle(one) - middle(other))
-    return bool(apart < share * max(size_px(one), size_px(other)))
 
 
 def _assigned(old: Sequence[_Body], poses: Sequence[Pose]) -> list[tuple[int, int]]:
