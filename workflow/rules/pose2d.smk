@@ -28,6 +28,7 @@ rule detect_pose:
         decoder=lambda w: STUDY.models[w.model].decoder_options(),
         trim_s=of_job(recordings.trim_s),
         n_wanted=of_job(recordings.n_wanted),
+        recorded=of_job(recordings.recorded),
     script:
         "../scripts/detect_pose.py"
 

@@ -14,7 +14,7 @@ from courtside.study.execution.script import run
 from courtside.video import images, reader
 
 
-def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, n_wanted, **options):
+def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, recorded, **options):
     cv2.setNumThreads(1)
     joints = skeleton.read(paths.skeleton).joints
     start_s, stop_s = trim_s or (None, None)
@@ -25,7 +25,9 @@ def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, n_wanted, **optio
         BlazePoseDetector(paths.detector),
         decoders.landmark_network(paths.landmarks, joints, **decoder),
     )
-    track = follow(frames, networks, paths.background, camera, n_wanted, **options)
+    track, shown = follow(frames, networks, paths.background, **options)
+    if shown:
+        report(f"{camera}: {paths.background}", shown, recorded)
     found = keypoints.Keypoints2D(
         camera=camera,
         model=model,
@@ -40,28 +42,29 @@ def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, n_wanted, **optio
     keypoints.write_2d(pose2d_npz, found)
 
 
-def follow(frames, networks, background, camera, n_wanted, *, extra_people, min_difference, **how):
+def follow(frames, networks, background, *, n_wanted, extra_people, min_difference, **how):
+    """Return the `Track`, and the poses of people whom the background itself shows."""
     if not background:
-        return tracklets.alone(tracking.track_person(frames, *networks, **how))
+        return tracklets.alone(tracking.track_person(frames, *networks, **how)), []
     empty = images.read(background)
     changed = foreground.Foreground(empty, min_difference)
     time_s, first = next(frames)
-    track = tracklets.track_people(
-        itertools.chain([(time_s, first)], frames),
-        *(*networks, changed),
-        max_people=n_wanted + extra_people,
-        **how,
-    )
+    frames, max_people = itertools.chain([(time_s, first)], frames), n_wanted + extra_people
+    track = tracklets.track_people(frames, *networks, changed, max_people=max_people, **how)
     search = Search(*networks, changed, how["min_presence"])
-    shown = search.behind(empty, first, track.xy[:, 0])
-    if shown:
-        places = ", ".join(f"({x:.0f}, {y:.0f})" for x, y in map(middle, shown))
-        log.logger.warning(
-            "%s: %s shows people, around %s px: all are followed, but where it is the `static` of "
-            "the camera, film it again without people: clicks and bridging images rest on it too",
-            *(camera, background, places),
-        )
-    return track
+    return track, search.behind(empty, first, track.xy[:, 0])
+
+
+def report(picture, shown, recorded):
+    places = ", ".join(f"({x:.0f}, {y:.0f})" for x, y in map(middle, shown))
+    found = f"{picture} shows people, around {places} px, who are found all the same"
+    if not recorded:
+        log.logger.info("%s: they hardly move, and the picture is made of the take", found)
+        return
+    log.logger.warning(
+        "%s; film the `static` of the camera without people: clicks and bridging images rest on it",
+        found,
+    )
 
 
 if __name__ == "__main__":

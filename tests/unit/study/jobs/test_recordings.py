@@ -43,6 +43,7 @@ def test_only_videos_of_fixed_cameras_are_trimmed(job):
 )
 def test_backgrounds_are_recorded_or_estimated_and_devices_have_none(job, wildcards, path):
     assert recordings.background(job(**wildcards)) == path
+    assert recordings.recorded(job(**wildcards)) == ("/static/" in str(path))
 
 
 def test_a_video_is_filmed_for_its_subjects_and_that_of_a_device_for_one_person(job, study):

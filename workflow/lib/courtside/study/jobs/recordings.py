@@ -36,6 +36,11 @@ def background(job: Job) -> str | list:
     return job.fill(paths.STATIC if job.camera.static else paths.BACKGROUND)
 
 
+def recorded(job: Job) -> bool:
+    """Return whether a fixed camera's picture without people was recorded so."""
+    return background(job) == job.fill(paths.STATIC)
+
+
 def n_wanted(job: Job) -> int:
     """Return how many people a video is filmed for: its take's subjects; one for a device."""
     return len(job.take.subjects) if job["camera"] in job.take.videos else 1
