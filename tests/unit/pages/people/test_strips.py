@@ -72,6 +72,14 @@ def test_pictures_show_the_person_and_hide_face_and_surroundings(video):
     assert detail[rows // 2 - 8 : rows // 2 + 8].max() > 60  # the body
 
 
+def test_a_frame_without_joints_has_no_picture(video):
+    take = named_takes.take(1)
+    take.seen[0].tracklets.xy[take.found.index["c0"][0, 30], 30] = np.nan
+    columns = {0: np.array([0, 30])}
+    shots = list(strips.pictures(take.seen[0], video, take.found, columns, SKELETON))
+    assert [shot.column for shot in shots] == [0]
+
+
 def test_a_person_at_the_border_is_cut_there():
     image = np.zeros((50, 40, 3), np.uint8)
     for xy in ([[-5, -5], [3, 60]], [[38, 48], [45, 90]], [[80, 80], [90, 95]]):

@@ -70,7 +70,8 @@ def pictures(
 ) -> Iterator[Shot]:
     """Cut the persons out of the pictures of one camera, faces and surroundings made coarse.
 
-    `columns` are the instants of each person, as of `times`.
+    `columns` are the instants of each person, as of `times`. A frame in which a tracklet has no
+    joints has no picture.
     """
     view, index = one.tracklets, people.index[one.camera.name]
     face = [skeleton.index(joint) for joint in skeleton.groups["face"]]
@@ -78,7 +79,8 @@ def pictures(
     wanted: dict[int, list[tuple[int, int]]] = {}
     for person, at in columns.items():
         for column, frame in enumerate(frames_at(one, people.time_s[at]).tolist()):
-            if index[person, frame] >= 0:
+            row = index[person, frame]
+            if row >= 0 and np.isfinite(view.xy[row, frame]).all(axis=1).any():
                 wanted.setdefault(frame, []).append((person, column))
     frames = sorted(wanted)
     for frame, (_, image) in zip(
