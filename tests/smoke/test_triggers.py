@@ -212,6 +212,15 @@ def test_a_key_of_a_session_reruns_its_steps(kept):
     assert jobs == together({"estimate_background": 1, "detect_pose": 4}, REAL_FUSED)
 
 
+def test_a_sighting_names_people_anew(kept):
+    session = kept / SESSIONS / "walk-4cams-tiny.yaml"
+    seen = "p1: {seen: {camera: cam01, time_s: 0, at_px: [430, 620]}, sex: m,"
+    with edited(session, "p1: {sex: m,", seen):
+        jobs = planned(root=kept)
+    before = ("synchronise_cameras", "associate_people", "check_cameras")
+    assert jobs == {rule: n for rule, n in REAL_FUSED.items() if rule not in before}
+
+
 def test_words_of_a_session_rerun_nothing(kept):
     session = kept / SESSIONS / "players-tiny.yaml"
     text = session.read_text().replace("Virtual players", "Two virtual players", 1)

@@ -20,6 +20,7 @@ rule build_people_page:
         page_html=paths.PEOPLE_PAGE,
     log:
         "results/{session}/logs/build_people_page/{take}.log",
+    priority: 1  # before name_people: where names are missing, the page is there
     params:
         code=code("build_people_page.py"),
         session=lambda w: w.session,

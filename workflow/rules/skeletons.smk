@@ -70,7 +70,6 @@ rule name_people:
         sync=paths.CAMERA_CLOCKS,
         court=of_job(Job.court_file),
         people_csv=of_job(takes.people_csv),
-        page_html=ancient(of_job(pages.people_page)),  # where names are missing, the page is there
     output:
         people_npz=paths.PEOPLE,
     log:
