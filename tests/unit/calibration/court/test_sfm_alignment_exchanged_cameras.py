@@ -5,10 +5,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from courtside.calibration.court import click_checks, court, sfm_alignment
+from courtside.calibration.court import (
+    click_checks,
+    court,
+    joint_adjustment,
+    quality,
+    sfm_alignment,
+)
 from courtside.geometry import camera as cameras
 from courtside.geometry import similarity
 from courtside.study.errors import InputError
+from fixtures.cameras import networks_made
 from fixtures.cameras.scene import look_at, opencv_projection
 
 COURT = court.read(Path(__file__).parents[4] / "config" / "courts" / "badminton.yaml")
@@ -85,3 +92,36 @@ def test_another_court_is_not_taken_for_an_exchange():
         InputError, match=r"tennis \(10.97 m by 23.77 m\).* give the right court file"
     ):
         sfm_alignment.check(tennis, sfm_alignment.reconstruct(fixed, clicks_of(fixed)))
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_cameras_that_the_exchanged_clicks_have_bent_are_judged_after_adjustment(seed):
+    """Weak ties leave the cameras to the wrong clicks: the right ones fit only after another."""
+    truth = networks_made.exact_lens_prior(networks_made.make(4, 30, noise_px=1.0))
+    rng, names = np.random.default_rng(seed), ("side", "back")
+    right = {
+        c.name: opencv_projection(c, COURT.xyz) + 0.7 * rng.normal(size=(18, 2))
+        for c in networks_made.fixed_cameras(truth, names)
+    }
+    ties, _ = joint_adjustment.condense(
+        truth,
+        {"side": 0, "back": 1},
+        dict.fromkeys(names, networks_made.SIZE),
+        right,
+        COURT,
+        images_per_part=100,
+        tie_sigma_px=4.0,
+        tie_loss=np.inf,
+        click_sigma_px=2.0,
+        click_loss=3.0,
+        min_angle_deg=0,
+        max_error_px=1e3,
+        max_points=10**6,
+        seed=0,
+    )
+    clicks = {"side": right["back"], "back": right["side"]}
+    weights = {"click_sigma_px": 2.0, "click_bias_px": 0.0, "click_loss": 3.0}
+    with pytest.raises(InputError, match="cameras side and back: .* files may be exchanged"):
+        quality.adjust_and_check(COURT, ties, clicks, **weights)
+    _, checked = quality.adjust_and_check(COURT, ties, right, **weights)
+    assert checked["warnings"] == []

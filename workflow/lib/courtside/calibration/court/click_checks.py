@@ -1,6 +1,6 @@
 """Find wrong clicks of court points, and tell them from line centres clicked in place of edges."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -190,15 +190,17 @@ def check(
     sigma_px: float = 1.0,
     inwards: tuple[float, float] | None = None,
     table: LeaveOneOut | None = None,
+    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
 ) -> list[str]:
     """Check clicked court points as far as the fixed cameras, in one frame, allow.
 
     Return warnings of one line: weak geometry, wrong clicks by camera and point, line centres.
     `sigma_px` is that of a good click per axis. `inwards`, the shift of all clicks towards line
-    centres and its sigma, is from `inward_shift`, by default from `inward_shift_of_points`. Raises
-    `InputError` if the points cannot be this court: see `sfm_alignment.check`.
+    centres and its sigma, is from `inward_shift`, by default from `inward_shift_of_points`;
+    `adjust` is as for `sfm_alignment.refuse_exchanged_cameras`. Raises `InputError` if the points
+    cannot be this court: see `sfm_alignment.check`.
     """
-    sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks)
+    sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjust)
     xyz = sfm_alignment.reconstruct(cameras, clicks)
     warnings = sfm_alignment.check(court, xyz, cameras)
     try:

@@ -35,6 +35,7 @@ def check_cameras(
     click_sigma_px: float,
     point_covariance: Callable[[NDArray], NDArray] | None = None,
     inwards: tuple[float, float] | None = None,
+    adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
     strict: bool = True,
 ) -> dict[str, Any]:
     """Check cameras, in the court's frame, against the clicked court points, each left out in turn.
@@ -48,12 +49,12 @@ def check_cameras(
     ----------
     click_sigma_px : of a good click, in the largest picture
     point_covariance : covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate
-    inwards : as for `click_checks.check`
+    inwards, adjust : as for `click_checks.check`
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
     known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
     try:
-        warnings = click_checks.check(court, cameras, clicks, **known)
+        warnings = click_checks.check(court, cameras, clicks, **known, adjust=adjust)
     except InputError as error:
         if strict:
             raise
@@ -77,6 +78,10 @@ def adjust_and_check(
     clicks are 1 cm off. The adjustment removes as much of the bend as the ties' own covariance
     allows: what is left is the fault of the clicks or the court.
     """
+
+    def adjust(clicks: ClickedPoints) -> list[Camera]:
+        return joint_adjustment.solve(ties, clicks, court, max_iterations=30, **weights).cameras
+
     solved = joint_adjustment.solve_with_factors(ties, clicks, court, max_iterations=30, **weights)
     sigma_px = joint_adjustment.found_click_sigma(weights["click_sigma_px"], solved)
     quality = check_cameras(
@@ -86,6 +91,7 @@ def adjust_and_check(
         click_sigma_px=sigma_px,
         point_covariance=solved.point_covariance,
         inwards=_inwards(court, ties, clicks, solved.factors, **weights),
+        adjust=adjust,
     )
     return solved, quality | {"variance_factors": _said(solved)}
 
