@@ -160,3 +160,23 @@ def test_mirrored_points_are_named_or_put_the_camera_below_the_floor():
         else:
             assert found["side"].camera.centre_in_world[2] < 0
     assert said > 0
+
+
+@pytest.mark.parametrize(("place", "f_px"), [((-17.7, 6.7, 1.9), 414), ((3.0, -14.9, 2.2), 435)])
+def test_mirrored_points_are_named_where_the_best_fit_is_at_infinity(place, f_px):
+    mirror = COURT.xyz * [-1, 1, 1] + [6.1, 0, 0]
+    other = [np.linalg.norm(COURT.xyz - at, axis=1).argmin() for at in mirror]
+    size, matrix = (480, 270), [[f_px, 0, 239.5], [0, f_px, 134.5], [0, 0, 1]]
+    camera = camera_models.Camera("one", size, matrix, [0] * 5, look_at(place, (3.05, 6.7, 1.0)))
+    drawn = {"n_draws": 20, "seed": 2, "preset": "plain", "session": "mirrored"}
+    way = known_points.method("known18", COURT)
+    for marked in clicking.clicks_of_persons([camera], COURT, COURT.xyz, **drawn):
+        for clicks, message in (marked["one"], ""), (marked["one"][other], "points are mirrored"):
+            try:
+                known_points.calibrate(
+                    way, COURT, {"one": clicks}, {"one": size}, {}, click_sigma_px=2.5
+                )
+            except InputError as error:
+                assert message and message in str(error)
+            else:
+                assert not message

@@ -203,6 +203,23 @@ def test_two_names_of_four_exchanged_are_refused():
         resection.nonlinear(COURT.xyz[at], xy, SIZE, K=true.K, dist=true.dist, name="left")
 
 
+def test_wrong_names_whose_fit_runs_to_infinity_are_refused():
+    """Points of the mirror image: without perspective they fit best."""
+    mirrored = COURT.xyz * [-1, 1, 1] + [6.1, 0, 0]
+    xy = clicked(camera("back"), mirrored)
+    with pytest.raises(InputError, match=r"camera left: .* from more than 1340 m away; check the"):
+        resection.nonlinear(COURT.xyz, xy, SIZE, sigma_px=SIGMA_PX, name="left")
+
+
+@pytest.mark.parametrize("seed", range(28, 36))
+def test_wrong_names_never_end_in_a_fault_of_arithmetic(seed):
+    at = COURT.indices("eight")
+    xy = clicked(camera("side"))[np.random.default_rng(seed).permutation(at)]
+    known = {"sigma_px": 0.25, "xyz_sigma": COURT.sigma_m[at]}
+    with pytest.raises(InputError, match="camera left: expected"):
+        resection.nonlinear(COURT.xyz[at], xy, SIZE, name="left", **known)
+
+
 def test_a_floor_seen_square_on_does_not_show_the_focal_length():
     overhead = np.column_stack([np.diag([1.0, -1, -1]), [-3.05, 6.7, 20]])
     true = cameras.Camera("top", SIZE, camera().K, np.zeros(5), overhead)

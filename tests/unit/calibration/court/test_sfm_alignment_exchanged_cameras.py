@@ -121,7 +121,7 @@ def test_cameras_that_the_exchanged_clicks_have_bent_are_judged_after_adjustment
     )
     clicks = {"side": right["back"], "back": right["side"]}
     weights = {"click_sigma_px": 2.0, "click_bias_px": 0.0, "click_loss": 3.0}
-    with pytest.raises(InputError, match="cameras side and back: .* files may be exchanged"):
+    with pytest.raises(InputError, match=r"cameras side and back: .* files may be exchanged"):
         quality.adjust_and_check(COURT, ties, clicks, **weights)
     _, checked = quality.adjust_and_check(COURT, ties, right, **weights)
     assert checked["warnings"] == []

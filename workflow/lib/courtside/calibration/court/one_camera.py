@@ -119,8 +119,9 @@ def residuals(state: State, clicks: Clicks) -> tuple[NDArray, NDArray, NDArray]:
 def whitened(state: State, clicks: Clicks) -> tuple[NDArray, NDArray] | tuple[None, None]:
     """Return residuals (P, 2) in sigmas and their derivatives (P, 2, 6 or 8) by a step.
 
-    None, None where a point lies behind the camera. A point's own covariance is projected into the
-    picture and added to the click's: the residual is divided by the Cholesky factor of the sum.
+    None, None where a point lies behind the camera or rounding errors exceed a click's own. A
+    point's own covariance is projected into the picture and added to the click's: the residual is
+    divided by the Cholesky factor of the sum.
     """
     off, by_point, depth = residuals(state, clicks)
     if not state.possible or not depth.min() > 0:
@@ -136,7 +137,10 @@ def whitened(state: State, clicks: Clicks) -> tuple[NDArray, NDArray] | tuple[No
     if clicks.xyz_sigma is None:
         return off / clicks.sigma_px, by_step / clicks.sigma_px
     spread = by_point @ by_point.transpose(0, 2, 1) * clicks.xyz_sigma[:, None, None] ** 2
-    root = np.linalg.inv(np.linalg.cholesky(spread + clicks.sigma_px**2 * np.eye(2)))
+    try:
+        root = np.linalg.inv(np.linalg.cholesky(spread + clicks.sigma_px**2 * np.eye(2)))
+    except np.linalg.LinAlgError:
+        return None, None
     return (root @ off[..., None])[..., 0], root @ by_step
 
 

@@ -24,6 +24,9 @@ CAUCHY = 3.0  # ASSUME: scale of the Cauchy loss, in sigmas
 MAX_MAGNIFICATION = 30.0
 # ASSUME: of the picture's width: clicks that most miss by more are of other points.
 MAX_MISFIT = 0.02
+# ASSUME: of the points' extent: a camera farther off sees no perspective. Clicks of mirrored or
+# wrong points have the best fit at infinity.
+FARTHEST = 100.0
 MIN_EXTENT = 1e-9  # relative singular value below which rounding errors leave nothing determined
 
 
@@ -189,7 +192,7 @@ def nonlinear(
     with the least median error. Then Levenberg-Marquardt with a Cauchy loss, and once more without
     on the accepted clicks: the covariance is that of this last fit, for errors as large as
     `sigma_px` and `xyz_sigma` say. Raises `InputError` if the points are too few (8, or 4 with K),
-    on one line, leave the camera undetermined, or do not agree with one another.
+    on one line, leave the camera undetermined, or fit no camera near them.
 
     Parameters
     ----------
@@ -226,6 +229,7 @@ def nonlinear(
     accepted[np.flatnonzero(seen)[agree]] = True
     camera = Camera(name, size, state.K, state.dist, state.cam_from_world)
     error_px = np.linalg.norm(project(camera, xyz) - xy, axis=1)
+    _check_near(clicks.xyz, camera)
     covariance = _covariance(by_step.reshape(-1, by_step.shape[2]), name)
     parameters = POSE + LENS if K is None else POSE
     rms_px = float(np.sqrt(np.mean(error_px[accepted] ** 2) / 2))
@@ -240,6 +244,18 @@ def _check_agreement(clicks, agree, off_px, fewest, size, name) -> None:
             f"camera {name}: expected {fewest} clicks or more that fit one camera, found "
             f"{agree.sum()} and half of all {off_px:.1f} px off or more; check the names of the "
             "clicked points, and the court"
+        )
+
+
+def _check_near(xyz: NDArray, camera: Camera) -> None:
+    """Raise `InputError` if the fit of the clicks ran to infinity."""
+    away_m = np.linalg.norm(camera.centre_in_world - xyz.mean(axis=0))
+    limit_m = FARTHEST * np.ptp(xyz, axis=0).max()
+    if away_m > limit_m:
+        raise InputError(
+            f"camera {camera.name}: expected clicks that fit a camera near the court, found that "
+            f"they fit best from more than {limit_m:.0f} m away; check the names of the clicked "
+            "points, and the court, or click points above the floor too"
         )
 
 
