@@ -203,12 +203,14 @@ def test_two_names_of_four_exchanged_are_refused():
         resection.nonlinear(COURT.xyz[at], xy, SIZE, K=true.K, dist=true.dist, name="left")
 
 
-def test_wrong_names_whose_fit_runs_to_infinity_are_refused():
-    """Points of the mirror image: without perspective they fit best."""
-    mirrored = COURT.xyz * [-1, 1, 1] + [6.1, 0, 0]
-    xy = clicked(camera("back"), mirrored)
+def test_a_camera_whose_best_fit_is_out_of_reach_is_refused():
+    """As clicks of the mirror image: they fit best without perspective."""
+    pose = look_at((-2000, -1500, 400), (3.05, 6.7, 1.3))
+    far = cameras.Camera(
+        "x", SIZE, [[90000.0, 0, 639.5], [0, 90000, 359.5], [0, 0, 1]], [0] * 5, pose
+    )
     with pytest.raises(InputError, match=r"camera left: .* from more than 1340 m away; check the"):
-        resection.nonlinear(COURT.xyz, xy, SIZE, sigma_px=SIGMA_PX, name="left")
+        resection.nonlinear(COURT.xyz, clicked(far), SIZE, sigma_px=SIGMA_PX, name="left")
 
 
 @pytest.mark.parametrize("seed", range(28, 36))
