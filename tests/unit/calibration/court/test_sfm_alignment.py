@@ -223,3 +223,27 @@ def test_the_stretch_is_the_ratio_of_the_sides_and_its_sigma_is_honest():
     assert np.median(ratio) == pytest.approx(1.02, abs=3e-4)
     assert 0.7 < np.std(np.log(ratio)) / np.median(sigma) < 1.5
     assert sfm_alignment.stretch(COURT, np.full_like(IN_SFM, np.nan))[1] == np.inf
+
+
+def test_the_stretch_by_bent_cameras_is_in_its_sigma():
+    """A common error stretches all points alike: their scatter cannot show it."""
+    rng, exact = np.random.default_rng(3), noisy(COURT.xyz, 0.003)
+    along_x = np.stack([0.01 * COURT.xyz * axis for axis in np.eye(3)], axis=-1)  # 1 % each
+    found = []
+    for _ in range(200):
+        bent = exact + along_x @ rng.normal(size=3)
+        found.append(sfm_alignment.stretch(COURT, bent, along_x))
+    ratio, sigma = np.array(found).T
+    assert 0.85 < np.std(np.log(ratio)) / np.median(sigma) < 1.15
+    assert np.median(sigma) == pytest.approx(0.01 * np.sqrt(2), rel=0.05)
+    without = [sfm_alignment.stretch(COURT, exact)[1]]
+    assert np.median(without) < 0.002
+
+
+def test_sides_are_judged_by_the_stated_errors_of_the_cameras():
+    stretched, in_sfm = COURT.xyz * [1.013, 1, 1], fixed_cameras()
+    causes = 0.004 * COURT.xyz[..., None] * np.eye(3)[0][:, None]
+    assert sfm_alignment.check(COURT, stretched, in_sfm, causes) == []
+    for wrong in (stretched, COURT.xyz * [1.05, 1, 1]):
+        with pytest.raises(InputError, match="expected the sides of badminton"):
+            sfm_alignment.check(COURT, wrong, in_sfm, 0 * causes if wrong is stretched else causes)

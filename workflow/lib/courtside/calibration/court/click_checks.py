@@ -191,18 +191,20 @@ def check(
     inwards: tuple[float, float] | None = None,
     table: LeaveOneOut | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
+    causes_m: NDArray | None = None,
 ) -> list[str]:
     """Check clicked court points as far as the fixed cameras, in one frame, allow.
 
     Return warnings of one line: weak geometry, wrong clicks by camera and point, line centres.
     `sigma_px` is that of a good click per axis. `inwards`, the shift of all clicks towards line
     centres and its sigma, is from `inward_shift`, by default from `inward_shift_of_points`;
-    `adjust` is as for `sfm_alignment.refuse_exchanged_cameras`. Raises `InputError` if the points
-    cannot be this court: see `sfm_alignment.check`.
+    `adjust` is as for `sfm_alignment.refuse_exchanged_cameras`, `causes_m` as for
+    `sfm_alignment.stretch`. Raises `InputError` if the points cannot be this court: see
+    `sfm_alignment.check`.
     """
     sfm_alignment.refuse_exchanged_cameras(court, cameras, clicks, adjust)
     xyz = sfm_alignment.reconstruct(cameras, clicks)
-    warnings = sfm_alignment.check(court, xyz, cameras)
+    warnings = sfm_alignment.check(court, xyz, cameras, causes_m)
     try:
         table = table or leave_one_out(cameras, clicks, court)
     except InputError:

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from courtside.calibration.court import click_checks, joint_adjustment
 from courtside.calibration.court.court import ClickedPoints, Court, to_line_centres
-from courtside.calibration.point_covariance import ellipsoid, mahalanobis
+from courtside.calibration.point_covariance import ellipsoid, field, mahalanobis
 from courtside.calibration.records.support import Support
 from courtside.geometry.camera import Camera
 from courtside.study.errors import InputError
@@ -36,6 +36,7 @@ def check_cameras(
     point_covariance: Callable[[NDArray], NDArray] | None = None,
     inwards: tuple[float, float] | None = None,
     adjust: Callable[[ClickedPoints], Sequence[Camera]] | None = None,
+    causes_m: NDArray | None = None,
     strict: bool = True,
 ) -> dict[str, Any]:
     """Check cameras, in the court's frame, against the clicked court points, each left out in turn.
@@ -49,12 +50,13 @@ def check_cameras(
     ----------
     click_sigma_px : of a good click, in the largest picture
     point_covariance : covariance (N, 3, 3) m2 of points (N, 3) that these cameras triangulate
-    inwards, adjust : as for `click_checks.check`
+    inwards, adjust, causes_m : as for `click_checks.check`
     """
     table, each = leave_one_out_errors(court, cameras, clicks)
     known: dict[str, Any] = {"sigma_px": click_sigma_px, "inwards": inwards, "table": table}
+    known |= {"adjust": adjust, "causes_m": causes_m}
     try:
-        warnings = click_checks.check(court, cameras, clicks, **known, adjust=adjust)
+        warnings = click_checks.check(court, cameras, clicks, **known)
     except InputError as error:
         if strict:
             raise
@@ -92,6 +94,7 @@ def adjust_and_check(
         point_covariance=solved.point_covariance,
         inwards=_inwards(court, ties, clicks, solved.factors, **weights),
         adjust=adjust,
+        causes_m=field(solved.network, solved.covariance)(court.xyz),
     )
     return solved, quality | {"variance_factors": _said(solved)}
 

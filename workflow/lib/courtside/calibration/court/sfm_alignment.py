@@ -117,7 +117,12 @@ def align(court: Court, xyz_in_sfm: NDArray) -> tuple[Sim3, NDArray]:
     return similarity.robust_umeyama(xyz_in_sfm, court.xyz, court.sigma_m)
 
 
-def check(court: Court, xyz_in_sfm: NDArray, cameras: Sequence[Camera] = ()) -> list[str]:
+def check(
+    court: Court,
+    xyz_in_sfm: NDArray,
+    cameras: Sequence[Camera] = (),
+    causes_m: NDArray | None = None,
+) -> list[str]:
     """Check that reconstructed points can be this court, seen the right way round.
 
     Raises `InputError` if no alignment is possible: too few points, collinear, mirrored, or another
@@ -127,13 +132,14 @@ def check(court: Court, xyz_in_sfm: NDArray, cameras: Sequence[Camera] = ()) -> 
     ----------
     xyz_in_sfm : (P, 3) float; reconstructed court points; NaN where missing
     cameras : those that saw them, in the same frame: they must be above the floor
+    causes_m : as for `stretch`
 
     Returns
     -------
     warnings : one line each, without those of `click_checks.check` on single clicks
     """
     world_from_sfm, _ = align(court, xyz_in_sfm)
-    _check_size(court, xyz_in_sfm)
+    _check_size(court, xyz_in_sfm, causes_m)
     off_m = misfit_m(court, world_from_sfm, xyz_in_sfm)
     if off_m > MAX_MISFIT * np.max(court.size_m):
         short_m, long_m = court.size_m
@@ -173,9 +179,9 @@ def _weak(court: Court, known: NDArray) -> list[str]:
     return warnings
 
 
-def _check_size(court: Court, xyz_in_sfm: NDArray) -> None:
+def _check_size(court: Court, xyz_in_sfm: NDArray, causes_m: NDArray | None) -> None:
     """Raise if the court's two sides have different scales: it is not the court of the file."""
-    ratio, sigma = stretch(court, xyz_in_sfm)
+    ratio, sigma = stretch(court, xyz_in_sfm, causes_m)
     if abs(np.log(ratio)) > max(MAX_STRETCH, 5 * sigma):
         short_m, long_m = court.size_m
         raise InputError(
@@ -185,7 +191,9 @@ def _check_size(court: Court, xyz_in_sfm: NDArray) -> None:
         )
 
 
-def stretch(court: Court, xyz_in_sfm: NDArray) -> tuple[float, float]:
+def stretch(
+    court: Court, xyz_in_sfm: NDArray, causes_m: NDArray | None = None
+) -> tuple[float, float]:
     """Find whether the reconstructed floor has the court's proportions.
 
     An affine map from the floor to the points' frame, by least median of squares over subsets of
@@ -195,6 +203,9 @@ def stretch(court: Court, xyz_in_sfm: NDArray) -> tuple[float, float]:
     Parameters
     ----------
     xyz_in_sfm : (P, 3) float; NaN where missing
+    causes_m : (P, 3, R) float; how far errors of the cameras, independent and each of one standard
+        deviation, move the points (`point_covariance.field`). They bend all points together, which
+        the points' scatter does not show
 
     Returns
     -------
@@ -207,7 +218,8 @@ def stretch(court: Court, xyz_in_sfm: NDArray) -> tuple[float, float]:
         return 1.0, np.inf
     design = np.column_stack([np.ones(floor.sum()), court.xyz[floor, :2]])
     agree = _affine_agree(design, xyz_in_sfm[floor])
-    design, places = design[agree], xyz_in_sfm[floor][agree]
+    used = np.flatnonzero(floor)[agree]
+    design, places = design[agree], xyz_in_sfm[used]
     if np.linalg.matrix_rank(design) < 3 or len(design) < 4:
         return 1.0, np.inf
     columns = np.linalg.lstsq(design, places)[0]
@@ -215,7 +227,12 @@ def stretch(court: Court, xyz_in_sfm: NDArray) -> tuple[float, float]:
     variance = (residual**2).sum() / (residual.size - columns.size)
     lengths = np.linalg.norm(columns[1:], axis=1)
     spread = np.diag(np.linalg.inv(design.T @ design))[1:] * variance
-    return float(lengths[0] / lengths[1]), float(np.sqrt((spread / lengths**2).sum()))
+    variance = (spread / lengths**2).sum()
+    if causes_m is not None:
+        moved = np.linalg.pinv(design)[1:] @ causes_m[used].transpose(2, 0, 1)
+        longer = (moved * columns[1:]).sum(axis=2) / lengths**2  # relative, by cause
+        variance += ((longer[:, 0] - longer[:, 1]) ** 2).sum()
+    return float(lengths[0] / lengths[1]), float(np.sqrt(variance))
 
 
 def _affine_agree(design: NDArray, places: NDArray) -> NDArray:
