@@ -299,6 +299,9 @@ def test_of_a_doubtful_map_nothing_else_is_said(good, clicked, tmp_path, monkeyp
     (warning,) = found.warnings
     assert_says(warning, ["map doubtful:", "100 % or more", ".png", "take more bridging images"])
     assert found.error == "" and found.is_written
+    marked["back"][COURT.indices(["p01"])] = np.nan
+    with pytest.raises(InputError, match="map doubtful:"):
+        aligned(good, tmp_path, marked, "paper-n12")
 
 
 def noise(size=SETTINGS.size_px, seed=0):

@@ -22,12 +22,10 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
     court = court_files.read(court_yaml)
     marked = clicks.read(clicks_csv, [c.name for c in record.sfm_cameras], list(court.points))
     xyz_in_sfm = sfm_alignment.reconstruct(record.sfm_cameras, marked)
-    if Calibration.parse(calibration).kind == "paper":
-        frame = sfm_alignment.paper_frame(court, xyz_in_sfm)
-        world_from_sfm, how = frame.nearest, {"skew_deg": frame.skew_deg}
-    else:
-        world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
-        how = {"n_points": int(accepted.sum())}
+    try:
+        world_from_sfm, how = align(court, xyz_in_sfm, calibration)
+    except InputError as error:  # of a doubtful map nothing is said of clicks
+        raise InputError(quality.doubt(record.support) or str(error)) from error
     found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
     report = {
         "calibration": calibration,
@@ -40,6 +38,15 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
     log.logger.info("warnings: %s", report["warnings"] or "none")
     camera_models.write_toml(cameras_toml, found, source=calibration)
     write_json(quality_json, report)
+
+
+def align(court, xyz_in_sfm, calibration):
+    """Return the similarity from a model to the court, and how well it is known."""
+    if Calibration.parse(calibration).kind == "paper":
+        frame = sfm_alignment.paper_frame(court, xyz_in_sfm)
+        return frame.nearest, {"skew_deg": frame.skew_deg}
+    world_from_sfm, accepted = sfm_alignment.align(court, xyz_in_sfm)
+    return world_from_sfm, {"n_points": int(accepted.sum())}
 
 
 def warnings_of(court, record, marked, **options):

@@ -79,7 +79,7 @@ def test_failures_and_missing_clicks_become_outcomes():
         assert bool(row["outcome"]) == failed
         assert ("volume_rms_cm" in row) == (not failed)
     assert found["sfm", 18, True]["outcome"] == "court points: no"
-    assert "too few clicks of p02" in found["paper", 3, True]["outcome"]
+    assert "no place for p02" in found["paper", 3, True]["outcome"]
 
 
 def test_known_cameras_have_no_error_and_fail_where_points_are_too_few():

@@ -121,7 +121,7 @@ def test_the_papers_scale_is_that_of_both_sides_together():
 def test_the_papers_frame_needs_its_three_points():
     x_in_sfm = IN_SFM.copy()
     x_in_sfm[COURT.indices(["p02"])] = np.nan
-    with pytest.raises(InputError, match=r"expected p01, p02, p03 .* too few clicks of p02"):
+    with pytest.raises(InputError, match=r"expected p01, p02, p03 .* no place for p02"):
         sfm_alignment.paper_frame(COURT, x_in_sfm)
     with pytest.raises(InputError, match="court badminton: expected a set `three`"):
         sfm_alignment.paper_frame(replace(COURT, sets={"all": COURT.points}), IN_SFM)

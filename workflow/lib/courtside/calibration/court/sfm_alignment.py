@@ -89,8 +89,9 @@ def paper_frame(court: Court, xyz_in_sfm: NDArray) -> PaperFrame:
     missing = [name for name, place in zip(names, places, strict=True) if np.isnan(place).any()]
     if missing:
         raise InputError(
-            f"court points: expected {', '.join(names)} in two cameras each, found too few clicks "
-            f"of {', '.join(missing)}; click them, or use another alignment"
+            f"court points: expected {', '.join(names)} where the rays of two clicks or more meet, "
+            f"found no place for {', '.join(missing)}; click them in two cameras or more, or use "
+            "another alignment"
         )
     origin, along_x, along_y = places
     sides = np.stack([along_x - origin, along_y - origin])
