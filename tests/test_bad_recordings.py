@@ -215,7 +215,7 @@ def mirrored(marked):
 
 def test_mirrored_points_make_a_left_handed_world(good, clicked, tmp_path):
     found = calibrated(good, tmp_path, mirrored(clicked))
-    assert_says(found.error, ["a right-handed world", "exchange the names of the left and right"])
+    assert_says(found.error, ["mirror", "exchange the names of the left and right points in all"])
     assert not found.is_written
     with pytest.raises(InputError, match="the points are mirrored; exchange the names"):
         resected(good, tmp_path, mirrored(clicked))
