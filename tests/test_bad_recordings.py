@@ -21,6 +21,7 @@ import yaml
 from courtside.calibration.court import court as court_files
 from courtside.calibration.court import quality
 from courtside.calibration.records import tie_points
+from courtside.geometry.camera import project
 from courtside.records.cameras import clicks
 from courtside.records.truth import session_truth
 from courtside.study.errors import InputError
@@ -285,6 +286,17 @@ def test_a_wrong_click_is_named(good, clicked, tmp_path):
     marked["back"][COURT.indices(["p06"])] += (12, 9)
     (warning,) = calibrated(good, tmp_path, marked).warnings
     assert_says(warning, ["camera back: point p06:", "click it again or delete it"])
+
+
+@pytest.mark.parametrize(("off_px", "named"), [(1.2, False), (8.0, True)])
+def test_points_alone_call_a_click_wrong_beyond_what_persons_scatter(
+    good, real, tmp_path, off_px, named
+):
+    """Also where all others are exact: one in hundreds of clicks is four sigmas, 1.2 px, off."""
+    marked = {camera.name: project(camera, real.court_xyz) for camera in real.cameras}
+    marked["back"][COURT.indices(["p06"]), 0] += off_px
+    said = resected(good, tmp_path, marked)
+    assert [line[:24] for line in said] == ["camera back: point p06: "] * named
 
 
 def test_of_a_doubtful_map_nothing_else_is_said(good, clicked, tmp_path, monkeypatch):

@@ -138,8 +138,8 @@ def test_another_court_is_a_file(gym):
     ours = rows[(rows["method"] == "sfm") & rows["in_sample"]]
     most = ours[ours["n_clicks"] == ours["n_clicks"].max()]
     # A court of more than twice the length. Ten seeds of film and walk, each with two sets of a
-    # processor's instructions, gave medians of 3.15 to 4.12 cm, mean 3.61, standard deviation 0.31. The
-    # bound is the mean and three standard deviations, rounded up: not what this one draw gives.
+    # processor's instructions, gave medians of 3.15 to 4.12 cm, mean 3.61, standard deviation 0.31.
+    # The bound is mean and three standard deviations, rounded up: not what this one draw gives.
     assert most["volume_rms_cm"].median() <= 4.6
 
 

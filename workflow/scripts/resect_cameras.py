@@ -40,7 +40,7 @@ def main(
         if way.linear and result.degenerate:
             log.logger.warning("%s", result.reason)
     found = known_points.cameras(results)
-    sigma_px = joint_adjustment.largest_click_sigma(known_points.GOOD * click_sigma_px, found)
+    sigma_px = joint_adjustment.largest_click_sigma(click_sigma_px, found)
     report = {
         "calibration": calibration,
         "rms_px": {camera: round(result.rms_px, 4) for camera, result in results.items()},
