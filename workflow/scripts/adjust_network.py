@@ -23,8 +23,15 @@ def main(
     network, images, sizes = model.read(Path(summary_json).parent)
     summary = json.loads(Path(summary_json).read_text(encoding="utf-8"))
     fixed = {camera: image_names.static(camera) for camera in cameras}
+    every = list(fixed.values()) + summary["bridging_images"]
+    verified = two_views.read(matches_db, every)
     outcome = registration.outcome(
-        network, images, fixed, min_points=min_points, n_models=summary["n_models"]
+        network,
+        images,
+        fixed,
+        min_points=min_points,
+        n_models=summary["n_models"],
+        matched={image for pair in verified.matches for image in pair},
     )
     placed = {c: images.index(image) for c, image in fixed.items() if image in images}
     size_of = {camera: sizes[network.lens_of_image[at]] for camera, at in placed.items()}
@@ -37,9 +44,8 @@ def main(
             known, parts = adjust(network, placed, size_of, clicks_csv, court_yaml, **options)
             centres, points = walk_parts.centres(parts), walk_parts.points(parts)
             residual_px = walk_parts.residual_spread(parts)
-            every = list(fixed.values()) + summary["bridging_images"]
             views = walk_parts.views(parts, images, sizes)
-            adjusted = two_views.explained(two_views.read(matches_db, every), views)
+            adjusted = two_views.explained(verified, views)
             support = max(support, adjusted, key=lambda each: each.pair_share)
         except InputError as error:
             fault = str(error)

@@ -63,3 +63,12 @@ def test_a_model_without_images_is_a_fault_of_the_walk():
     assert (
         found.startswith("walk: expected images that overlap, found no two") and "\n" not in found
     )
+
+
+def test_where_nothing_was_mapped_a_camera_without_matches_is_the_fault():
+    walk = IMAGES[2:]
+    found = outcome(network(), [], matched={FIXED["side"], *walk})
+    assert found.startswith("camera back: expected 10 points or more in common with the walk, ")
+    assert "found no match with any image; film the walk from close beside" in found
+    for matched in (set(), set(walk), {*FIXED.values(), *walk}, None):
+        assert outcome(network(), [], matched=matched).startswith("walk: expected images that")

@@ -1,6 +1,6 @@
 """Whether structure from motion placed the fixed cameras, and what to film again if not."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ def outcome(
     *,
     min_points: int,
     n_models: int = 1,
+    matched: Container[str] | None = None,
 ) -> str:
     """Return in one line why a model does not place the fixed cameras; empty if it places all.
 
@@ -25,19 +26,22 @@ def outcome(
     min_points : fewest points that a placed camera sees: COLMAP calls an image registered that sees
         none
     n_models : separate models that the images fell into
+    matched : images with verified matches; None: not known. Where nothing could be mapped, cameras
+        without any are the fault if others have some
     """
-    if not images:
+    alone = [camera for camera in fixed if matched is not None and fixed[camera] not in matched]
+    if not images and not 0 < len(alone) < len(fixed):
         return (
             "walk: expected images that overlap, found no two that could be mapped together; take "
             "more bridging images, or film slower, with posters, bags and gear in view"
         )
     seen = {camera: n_seen(network, images, image) for camera, image in fixed.items()}
-    lost = [camera for camera in fixed if seen[camera] < min_points]
+    lost = [camera for camera in fixed if seen[camera] < min_points] if images else alone
     if not lost:
         return ""
-    one = len(lost) == 1
+    one, where_not = len(lost) == 1, "it unregistered" if images else "no match with any image"
     found = [
-        (f"{seen[camera]} points" if fixed[camera] in images else "it unregistered")
+        (f"{seen[camera]} points" if fixed[camera] in images else where_not)
         + ("" if one else f" ({camera})")
         for camera in lost
     ]
