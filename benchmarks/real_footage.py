@@ -31,7 +31,7 @@ from courtside.geometry import camera as camera_models
 from courtside.geometry import triangulation
 from courtside.reconstruction import fusion
 from courtside.records.cameras import clicks
-from courtside.records.keypoints import keypoints, skeleton
+from courtside.records.keypoints import keypoints, people, skeleton
 from courtside.study.configuration import yaml_files
 
 CONFIG = Path(__file__).parents[1] / "config"
@@ -40,6 +40,7 @@ SKELETON = CONFIG / "skeletons" / "blazepose33.yaml"
 OPENPOSE = {name: 5 + 2 * at for at, name in enumerate(("shoulder", "elbow", "wrist"))}
 OPENPOSE |= {name: 11 + 2 * at for at, name in enumerate(("hip", "knee", "ankle"))}
 # Pose2Sim keeps all views until their mean error exceeds its limit; a wide fade comes closest.
+OPENPOSE_PX = {"max_error_px": 15, "fade_px": 20}  # of a person 700 px tall
 LIKE_POSE2SIM = {"sigma_px": 1, "max_error_px": 18, "fade_px": 36, "min_score": 0.1}
 
 
@@ -105,7 +106,7 @@ def measured(cameras, seen, others, demo, step):
             np.nanmedian(raw.reproj_error_px[0][:, limbs, at]),
             "px",
         )
-    own = {key: value for key, value in step["triangulate"].items() if key != "fix_sides"}
+    own = {key: step["triangulate"][key] for key in ("min_score", "min_views")} | OPENPOSE_PX
     flat = others[..., :2].reshape(len(cameras), -1, 2), others[..., 2].reshape(len(cameras), -1)
     compared = {"TRC": reference(demo)}
     for name, options in (
@@ -133,8 +134,10 @@ def main():
     session = yaml_files.read(CONFIG / "sessions" / "walk-4cams.yaml")
     step = yaml_files.read(CONFIG / "config.yaml")
     names = list(session["cameras"])
-    folder = given.results / "takes" / "balancing" / "pose2d" / "blazepose-full"
-    seen = [keypoints.read_2d(folder / f"{name}.npz") for name in names]
+    take = given.results / "takes" / "balancing"
+    named = people.read(take / "people" / "file" / "blazepose-full.npz")
+    folder = take / "pose2d" / "blazepose-full"
+    seen = [named.assigned(keypoints.read_2d(folder / f"{name}.npz")) for name in names]
     others = np.stack([openpose(given.demo, at + 1) for at in range(len(names))])
     _, static = clicks.read_static(CONFIG / "static_points" / "walk-4cams.csv", names)
     as_is = file_formats.read(given.demo / "calibration" / "Calib.qca.txt")
