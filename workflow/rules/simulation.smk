@@ -21,7 +21,7 @@ for session in STUDY.sessions.values():
             input:
                 court_yaml=STUDY.court_file(session),
             output:
-                videos=expand(paths.RECORDING, session=session.name, name=session.filmed()),
+                videos=expand(paths.RECORDING, session=session.name, name=session.recorded_empty()),
                 boards=(
                     directory(paths.VIRTUAL_BOARDS.format(session=session.name))
                     if session.films_boards()

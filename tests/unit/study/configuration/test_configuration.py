@@ -394,7 +394,7 @@ def test_a_calibration_that_is_none_is_named(folder, name):
         ({"virtual": VIRTUAL["virtual"] | {"speed_kmh": 0}}, ["virtual.speed_kmh", "more than 0"]),
         ({"virtual": VIRTUAL["virtual"] | {"people": -1}}, ["virtual.people", "at least 0"]),
         ({"virtual": VIRTUAL["virtual"] | {"baseline_deg": 181}}, ["baseline_deg", "at most 180"]),
-        ({"virtual": VIRTUAL["virtual"] | {"static_frames": 0}}, ["static_frames", "at least 1"]),
+        ({"virtual": VIRTUAL["virtual"] | {"static_frames": -1}}, ["static_frames", "at least 0"]),
         ({"virtual": VIRTUAL["virtual"] | {"stabilizer": True}}, ["did you mean 'stabiliser'?"]),
         (
             {"virtual": VIRTUAL["virtual"] | {"world": {"lens": 3}}},

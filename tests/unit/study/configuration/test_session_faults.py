@@ -247,6 +247,10 @@ def test_good_sessions_have_no_fault(root, content):
             VIRTUAL | {"virtual": VIRTUAL["virtual"] | {"baseline_deg": 30}},
             ["virtual.baseline_deg: expected it with layout a only, found b; remove it"],
         ),
+        (
+            VIRTUAL | {"virtual": VIRTUAL["virtual"] | {"static_frames": 0}},
+            ["virtual.static_frames: expected 1 or more with a walk", "found 0"],
+        ),
     ],
 )
 def test_a_contradiction_is_one_line(root, content, parts):

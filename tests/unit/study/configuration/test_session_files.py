@@ -109,6 +109,16 @@ def test_a_virtual_session_gets_its_files_by_name():
     assert found.parameters["sweep"] == {"n_images": [12], "mappers": ["global"]}
 
 
+def test_a_virtual_session_without_static_frames_has_no_pictures_of_the_empty_hall():
+    virtual = VIRTUAL["virtual"] | {"static_frames": 0, "walk_frames": 0}
+    content = VIRTUAL | {"virtual": virtual, "walks": {}}
+    found = session_files.session("gym", "gym.yaml", content, PARAMETERS)
+    assert [camera.static for camera in found.cameras.values()] == [None, None]
+    assert (found.filmed(), found.recorded_empty()) == (["side", "back"], [])
+    varied = session_files.variations(found, "seeds", {"vary": {"seed": [1]}})["seeds-0"]
+    assert varied.recorded_empty() == []
+
+
 def variations(**content):
     base = session_files.session("gym", "gym.yaml", VIRTUAL, PARAMETERS)
     return session_files.variations(base, "speed", {"session": "gym", **content})

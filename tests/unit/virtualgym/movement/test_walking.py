@@ -48,6 +48,28 @@ def test_a_third_lane_is_refused():
         perform("crossing", lane=2)
 
 
+def test_who_stands_beside_the_lanes_keeps_the_feet_still_and_sways_a_little():
+    _, stances, joints = filmed("stand", 4)
+    for ankle in ("left_ankle", "right_ankle"):
+        assert np.ptp(joints[ankle], axis=0).max() < 1e-9
+    swayed = np.ptp(joints["left_shoulder"], axis=0).max()
+    assert 0.002 < swayed < 0.1
+    assert stances[0].world_from_pelvis[1, 2] > 0.99  # towards the net
+    times = np.arange(0, 12, 0.1)
+    for lane in (0, 1):
+        apart = places(perform("crossing", lane, lane=lane), times) - stances[0].pelvis[:2]
+        assert 0.7 < np.linalg.norm(apart, axis=1).min() < 3
+
+
+@pytest.mark.parametrize(("half", "side"), [("near", 1), ("far", -1)])
+def test_who_strolls_stays_outside_of_the_court_as_long_as_asked(half, side):
+    motion = perform("stroll", 2, half=half, seconds=30.0)
+    walked = places(motion, np.arange(0, 30, 0.1)) - np.array(COURT.size_m) / 2
+    assert np.all(side * walked[:, 0] > COURT.size_m[0] / 2 + 0.5)
+    assert np.ptp(walked[:, 1]) > 0.8 * COURT.size_m[1]
+    assert motion.seconds > 30.0
+
+
 def test_a_round_between_claps_ends_where_it_began():
     _, stances, _ = filmed("tpose_clap")
     pelvis = np.array([each.pelvis for each in stances])

@@ -82,6 +82,12 @@ def test_a_session_has_its_files_and_no_others(folder):
     assert set(files(folder)) == names | boards
 
 
+def test_without_static_frames_the_empty_hall_is_not_filmed(tmp_path):
+    bare = replace(SETTINGS, walk_frames=0, static_frames=0, boards=False)
+    session.simulate(bare, COURT, tmp_path)
+    assert set(files(tmp_path)) == {"court_points.csv", "truth.npz"}
+
+
 def test_videos_have_the_size_frames_and_times_that_were_asked(folder, known):
     for name in ("side", "back"):
         info = reader.probe(folder / f"{name}.mp4")
@@ -167,6 +173,7 @@ def test_settings_that_differ_in_one_thing_share_the_rest():
         ({"preset": "grand"}, "a preset of"),
         ({"walk_frames": 1}, "walk_frames 0 or >= 2"),
         ({"static_frames": 0}, "static_frames >= 1"),
+        ({"static_frames": -1, "walk_frames": 0}, "static_frames >= 1"),
     ],
 )
 def test_impossible_settings_are_refused(change, message):

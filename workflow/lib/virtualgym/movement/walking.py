@@ -1,4 +1,4 @@
-"""Walking: a round, or up and down a lane past another player."""
+"""Walking: a round, or up and down a lane past another player; standing beside the lanes."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from virtualgym.movement import footwork, upper_body
 from virtualgym.movement.footwork import Lap, Station
-from virtualgym.movement.player import Motion, Player
+from virtualgym.movement.player import STANDING_REACH, Motion, Player
 from virtualgym.movement.upper_body import Pose
 
 # ASSUME: usual walking speeds and durations; no source is recorded.
@@ -20,6 +20,10 @@ LANE_M = 0.5  # of each of two crossing players from the line between them
 LANE_SHARE = 0.6, 0.5
 LANE_M_S = (0.98, 1.06)  # a narrow range, so that the players keep meeting
 TURN_S, TURN_STEPS = 2.2, 4
+ASIDE_M = 1.6  # of who stands from the line between the lanes
+SWAY_S, SWAY = 1.5, 0.3  # who stands sways: between poses, by this share of the usual deviations
+BESIDE_M = 1.0, 2.0  # of who strolls from a side line
+STROLL_SHARE = 0.9  # of half the court's length: where a stroll turns
 
 
 def large_round(player: Player) -> Motion:
@@ -78,12 +82,47 @@ def along(
 
 def up_and_down(player: Player, lane: int, n_turns: int) -> Motion:
     """Walk straight along a lane (0 or 1), turn on the spot, walk back, and so on."""
-    rng, half_m = player.rng, player.half_m
-    sign = 1 if lane == 0 else -1
-    end = sign * np.array(LANE_SHARE) * half_m * [1.0, 0.5]
+    middle, end = _lanes(player)
+    end = end if lane == 0 else -end
+    return _to_and_fro(player, middle + _aside(end, LANE_M), end, n_turns)
+
+
+def stroll(player: Player, seconds: float) -> Motion:
+    """Walk up and down outside of the court, beside the side line on the right of the half."""
+    (wide, long), beside = player.half_m, player.rng.uniform(*BESIDE_M)
+    end = np.array([0.0, STROLL_SHARE * long])
+    n_turns = int(seconds * LANE_M_S[1] / (2 * end[1]))
+    return _to_and_fro(player, np.array([wide + beside, 0.0]), end, n_turns)
+
+
+def stand(player: Player, seconds: float) -> Motion:
+    """Stand beside the lanes, facing the net, and sway a little."""
+    middle, end = _lanes(player)
+    place = middle + _aside(end, ASIDE_M) + player.rng.uniform(-0.2, 0.2, 2)
+    stations = [_stand(0.0, seconds, place, 0.0)]
+    route, feet = footwork.plan(stations, player.proportions, player.rng)
+    # Each key is a pose of its own: those that are the same object are held without a sway.
+    times = np.arange(0.0, seconds + SWAY_S, SWAY_S)
+    keys = [(float(time_s), upper_body.STAND.but()) for time_s in times]
+    course = upper_body.course(keys, player.rng, scatter=SWAY)
+    return player.motion(seconds, route, feet, course, reach=STANDING_REACH)
+
+
+def _lanes(player: Player) -> tuple[NDArray, NDArray]:
+    """Return the middle (2,) of the line between the lanes and the way (2,) to its end, metres."""
+    end = np.array(LANE_SHARE) * player.half_m * [1.0, 0.5]
+    return np.array([0.0, -0.5 * player.half_m[1]]), end
+
+
+def _aside(way: NDArray, by_m: float) -> NDArray:
+    """Return a step (2,) m to the right of a way."""
+    return by_m * np.array([way[1], -way[0]]) / np.linalg.norm(way)
+
+
+def _to_and_fro(player: Player, middle: NDArray, end: NDArray, n_turns: int) -> Motion:
+    """Walk from `middle - end` to `middle + end`, turn on the spot, walk back, and so on."""
+    rng = player.rng
     length_m = float(2 * np.linalg.norm(end))
-    beside = LANE_M * np.array([end[1], -end[0]]) / np.linalg.norm(end)  # to the own right
-    middle = np.array([0.0, -0.5 * half_m[1]]) + beside
     heading = np.arctan2(-end[0], end[1])
     places = [middle - end, middle + end]
     stations = [_stand(0.0, rng.uniform(*REST_S), places[0], heading)]

@@ -57,7 +57,7 @@ class Settings:
     stabiliser : bool
         Whether the walked camera has one.
     static_frames : int
-        Frames of each fixed camera's video.
+        Frames of each fixed camera's video; 0: nobody films the empty hall, nor walks through it.
     baseline_deg : float or None
         Angle between the fixed cameras of layout "a"; None: 90.
     zoom : float
@@ -91,9 +91,13 @@ class Settings:
         if self.preset not in presets.PRESETS:
             expected = sorted(presets.PRESETS)
             raise ValueError(f"expected a preset of {expected}, found {self.preset!r}")
-        if self.walk_frames == 1 or self.walk_frames < 0 or self.static_frames < 1:
+        least = 1 if self.walk_frames else 0
+        if self.walk_frames == 1 or self.walk_frames < 0 or self.static_frames < least:
             found = f"{self.walk_frames} and {self.static_frames}"
-            raise ValueError(f"expected walk_frames 0 or >= 2, static_frames >= 1, found {found}")
+            raise ValueError(
+                "expected walk_frames 0 or >= 2, static_frames >= 1 or 0 without a walk, "
+                f"found {found}"
+            )
 
     def strength(self, effect: str) -> float:
         """Return how strong an effect of the world is."""
@@ -212,8 +216,8 @@ def simulate(
     settings : Settings
     court : Court
     folder : str or Path
-        Receives `{camera}.mp4` for each camera of the layout, `court_points.csv`, `truth.npz`, and,
-        if asked for, `walk.mp4` and `boards/{camera}/*.png`; each file appears only when complete.
+        Receives `court_points.csv`, `truth.npz`, and, if asked for, `{camera}.mp4` for each camera
+        of the layout, `walk.mp4` and `boards/{camera}/*.png`; each file appears only when complete.
     backdrops_npz : str, Path or None
         File for the empty hall, for takes; None: not written.
     threads : int
@@ -306,7 +310,8 @@ def _film_fixed(
         )
         for number in range(settings.static_frames)
     )
-    writer.write_video(folder / f"{camera.name}.mp4", frames, STATIC_HZ, crf=preset.crf)
+    if settings.static_frames:
+        writer.write_video(folder / f"{camera.name}.mp4", frames, STATIC_HZ, crf=preset.crf)
     if settings.boards:
         rng = parallel.generator(settings.seed, BOARDS, at)
         place = folder / "boards" / camera.name

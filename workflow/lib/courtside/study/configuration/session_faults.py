@@ -192,6 +192,11 @@ def _unsized(file: Path, content: Content) -> Iterator[str]:
 
 def _setting_faults(where: str, virtual: Content) -> list[str]:
     """Return what contradicts itself in the settings of a virtual session, one line each."""
+    if virtual["walk_frames"] and virtual.get("static_frames") == 0:
+        return [
+            f"{where}.static_frames: expected 1 or more with a walk, whose pictures are tied to "
+            "those of the empty hall, found 0; remove it or the walk"
+        ]
     if "baseline_deg" in virtual and virtual["layout"] != "a":
         return [
             f"{where}.baseline_deg: expected it with layout a only, found {virtual['layout']}; "

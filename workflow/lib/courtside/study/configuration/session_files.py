@@ -124,19 +124,21 @@ def variations(base: Session, name: str, content: Content) -> dict[str, Session]
     for k, values in enumerate(product(*vary.values())):
         varied = dict(zip(vary, values, strict=True))
         own = f"{name}-{k}"
-        files = _virtual(own, {"cameras": base.cameras, "walks": base.walks})
+        virtual = {**(base.virtual or {}), "boards": False, **content.get("set", {}), **varied}
+        shown = {"cameras": base.cameras, "walks": base.walks, "virtual": virtual}
+        files = _virtual(own, shown)
         found[own] = replace(
             base,
             name=own,
             cameras={
-                c: replace(v, static=files["static"][c], chessboard=None)
+                c: replace(v, static=files["static"].get(c), chessboard=None)
                 for c, v in base.cameras.items()
             },
             takes={},
             withheld={},
             walks=files["walks"],
             court_points=files["court_points"],
-            virtual={**(base.virtual or {}), "boards": False, **content.get("set", {}), **varied},
+            virtual=virtual,
             condition={"condition": name, **varied},
             # Only their errors are wanted, and camera files where the condition names some.
             parameters=_merged(base.parameters, override)
@@ -201,8 +203,9 @@ def _devices(content: Content, subjects: tuple[str, ...]) -> dict[str, Device]:
 def _virtual(name: str, content: Content) -> Content:
     """Return the files that a simulation makes, by the keys of a session."""
     takes = {key: take["virtual"] for key, take in content.get("takes", {}).items()}
+    emptied = content["cameras"] if content.get("virtual", {}).get("static_frames", 1) else ()
     return {
-        "static": _films(paths.RECORDING, content["cameras"], session=name),
+        "static": _films(paths.RECORDING, emptied, session=name),
         "walks": _films(paths.RECORDING, content.get("walks", {}), session=name),
         "court_points": paths.VIRTUAL_CLICKS.format(session=name),
         "takes": {

@@ -182,6 +182,10 @@ class Session:
         """Return the names of all cameras and walks."""
         return [*self.cameras, *self.walks]
 
+    def recorded_empty(self) -> list[str]:
+        """Return the names of the recordings of the hall: of cameras before takes, and of walks."""
+        return [*(name for name, camera in self.cameras.items() if camera.static), *self.walks]
+
     def films_boards(self) -> bool:
         """Say whether the session is virtual and its cameras take pictures of a chessboard."""
         return bool(self.virtual and self.virtual.get("boards"))
