@@ -53,7 +53,7 @@ def test_planted_feet_do_not_slide_and_none_sinks(name, seed):
         assert ankle[:, 2].min() > BODY.ankle_height - 0.001
         assert toe[:, 2].min() > BODY.toe_height - 0.001
         spans = performed(name, seed).planted(side)
-        assert len(spans) >= 2
+        assert len(spans) >= (1 if name == "stand" else 2)  # feet that never step stay planted
         for start, stop in spans:
             flat = ankle[(times >= start) & (times <= stop)]
             assert len(flat) < 2 or np.ptp(flat, axis=0).max() < 0.002
