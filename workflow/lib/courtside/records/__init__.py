@@ -3,6 +3,7 @@
 npz: `read`, `write`: arrays with stated keys, shapes and kinds; `read_record`,
     `write_record`: records
 tables: `read`, `write`: CSV tables
+user_tables: `table`, `known`, `number`: CSV tables that people write
 
 Folders: `keypoints` (skeletons, people), `cameras` (clicks, frames, footage), `devices` (motion,
 clocks), `truth` (of simulated sessions; for evaluation only).

@@ -2,13 +2,13 @@
 
 import csv
 import math
-from collections.abc import Collection, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.study.errors import InputError, StrPath, reading
+from courtside.records.user_tables import known, number, table
+from courtside.study.errors import InputError, StrPath
 from courtside.study.execution.files import atomic
 
 COLUMNS = ("camera", "point", "frame_idx", "x_px", "y_px")
@@ -30,7 +30,7 @@ def read(path: StrPath, cameras: Sequence[str], points: Sequence[str]) -> dict[s
         where = f"{path}: line {line}"
         camera = known(where, "camera", row["camera"], clicks)
         point = known(where, "point", row["point"], index)
-        number(where, "frame_idx", row["frame_idx"], expected=STATIC)
+        number(where, "frame_idx", row["frame_idx"], STATIC, f"{STATIC}, the static picture")
         if (camera, point) in seen:
             raise InputError(
                 f"{where}: expected one click for point {point} in camera {camera}, found another "
@@ -74,56 +74,3 @@ def write(path: StrPath, clicks: Mapping[str, NDArray], points: Sequence[str]) -
             for point, (x, y) in zip(points, np.asarray(xy, float).tolist(), strict=True):
                 if math.isfinite(x) and math.isfinite(y):
                     writer.writerow([camera, point, STATIC, x, y])
-
-
-def table(
-    path: StrPath, columns: Sequence[str], more: Sequence[str] = ()
-) -> list[tuple[int, dict[str, str]]]:
-    """Return (line number, row) of every row of a CSV, cells stripped.
-
-    The header has the `columns`, and perhaps `more`, in any order; an `InputError` otherwise.
-    """
-    kinds = (OSError, UnicodeDecodeError, csv.Error)
-    with (
-        reading(path, "a readable CSV file", "save it again as CSV (UTF-8)", kinds=kinds),
-        Path(path).open(newline="", encoding="utf-8-sig") as stream,
-    ):
-        cells = csv.reader(stream, strict=True)
-        lines = [(cells.line_num, [cell.strip() for cell in row]) for row in cells]
-    lines = [(number, row) for number, row in lines if any(row)]
-    header = lines[0][1] if lines else []
-    if sorted(set(header) | set(more)) != sorted([*columns, *more]) or len(set(header)) < len(
-        header
-    ):
-        raise InputError(
-            f"{path}: expected the columns {','.join(columns)} with commas between, found "
-            f"{','.join(header)[:80] or 'an empty file'}; correct the first line"
-        )
-    for line, row in lines[1:]:
-        if len(row) != len(header):
-            raise InputError(
-                f"{path}: line {line}: expected {len(header)} cells, found {len(row)}; correct it"
-            )
-    return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
-
-
-def known(where: str, what: str, name: str, names: Collection[str]) -> str:
-    """Return a name; an `InputError` if it is none of `names`."""
-    if name not in names:
-        raise InputError(
-            f"{where}: expected a {what} of {', '.join(names)}, found {name[:40]!r}; correct it or "
-            "delete the line"
-        )
-    return name
-
-
-def number(where: str, key: str, text: str, expected: float | None = None) -> float:
-    """Return a cell as a number; an `InputError` if it is not finite, or not the `expected` one."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value) or expected not in (None, value):
-        wanted = "a finite number" if expected is None else f"{expected}, the static picture"
-        raise InputError(f"{where}: expected {key} as {wanted}, found {text[:40]!r}; correct it")
-    return value

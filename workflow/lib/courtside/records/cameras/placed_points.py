@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from courtside.records.cameras import clicks
+from courtside.records.user_tables import known, number, table
 from courtside.study.errors import InputError, StrPath
 
 PLACE, PIXEL = ("x_m", "y_m", "z_m"), ("x_px", "y_px")
@@ -39,10 +39,10 @@ def read(path: StrPath, cameras: Sequence[str]) -> PlacedPoints:
     names: list[str] = []
     places: list[list[float]] = []
     seen: dict[tuple[str, str], tuple[int, list[float]]] = {}
-    for line, row in clicks.table(path, COLUMNS, (NAMED,)):
+    for line, row in table(path, COLUMNS, (NAMED,)):
         where = f"{path}: line {line}"
-        camera = clicks.known(where, "camera", row["camera"], cameras)
-        place = [clicks.number(where, key, row[key]) for key in PLACE]
+        camera = known(where, "camera", row["camera"], cameras)
+        place = [number(where, key, row[key]) for key in PLACE]
         name = row.get(NAMED) or _name(place)
         if name not in names:
             names.append(name)
@@ -58,7 +58,7 @@ def read(path: StrPath, cameras: Sequence[str]) -> PlacedPoints:
                 f"{where}: expected one click for point {name} in camera {camera}, found another "
                 f"in line {seen[camera, name][0]}; delete one"
             )
-        seen[camera, name] = line, [clicks.number(where, key, row[key]) for key in PIXEL]
+        seen[camera, name] = line, [number(where, key, row[key]) for key in PIXEL]
     found = {camera: np.full((len(names), 2), np.nan) for camera in cameras}
     for (camera, name), (_, xy) in seen.items():
         found[camera][names.index(name)] = xy

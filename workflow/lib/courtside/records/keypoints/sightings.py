@@ -1,13 +1,12 @@
 """Where a user says that a person is: `seen` of a session's file, and rows of people.csv."""
 
-import csv
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from courtside.study.errors import InputError, StrPath, reading
+from courtside.records.user_tables import known, number, table
+from courtside.study.errors import InputError, StrPath
 
 COLUMNS = ("take", "subject", "camera", "time_s", "x_px", "y_px")
 BOUNDS = ("from_s", "to_s")  # may be left out, as columns or as cells
@@ -43,16 +42,14 @@ def read(
     or holds no number.
     """
     found = []
-    for line, row in _rows(path):
+    for line, row in table(path, COLUMNS, BOUNDS):
         if row["take"] != take:
             continue
         where = f"{path}: line {line}"
-        subject = _known(where, "subject", row["subject"], subjects)
-        camera = _known(where, "camera", row["camera"], cameras)
-        time_s, x, y = (_number(where, key, row[key]) for key in COLUMNS[3:])
-        start_s, stop_s = (
-            _number(where, key, row[key]) if row.get(key) else None for key in BOUNDS
-        )
+        subject = known(where, "subject", row["subject"], subjects)
+        camera = known(where, "camera", row["camera"], cameras)
+        time_s, x, y = (number(where, key, row[key]) for key in COLUMNS[3:])
+        start_s, stop_s = (number(where, key, row[key]) if row.get(key) else None for key in BOUNDS)
         if start_s is not None and stop_s is not None and start_s >= stop_s:
             raise InputError(
                 f"{where}: expected from_s before to_s, found {start_s} and {stop_s}; correct them"
@@ -71,54 +68,7 @@ def of_other_takes(path: StrPath, take: str, takes: Collection[str]) -> list[lis
     An `InputError` if one names a take that is not among `takes`.
     """
     order, found = (*COLUMNS, *BOUNDS), []
-    for line, row in _rows(path):
-        if _known(f"{path}: line {line}", "take", row["take"], takes) != take:
+    for line, row in table(path, COLUMNS, BOUNDS):
+        if known(f"{path}: line {line}", "take", row["take"], takes) != take:
             found.append([row.get(key, "") for key in order])
     return found
-
-
-def _rows(path: StrPath) -> Iterable[tuple[int, dict[str, str]]]:
-    """Return (line number, row) of every row, cells stripped."""
-    kinds = (OSError, UnicodeDecodeError, csv.Error)
-    with (
-        reading(path, "a readable CSV file", "save it again as CSV (UTF-8)", kinds=kinds),
-        Path(path).open(newline="", encoding="utf-8-sig") as stream,
-    ):
-        table = csv.reader(stream, strict=True)
-        lines = [(table.line_num, [cell.strip() for cell in row]) for row in table]
-    lines = [(number, row) for number, row in lines if any(row)]
-    header = lines[0][1] if lines else []
-    known = {*COLUMNS, *BOUNDS}
-    if len(set(header)) < len(header) or not set(COLUMNS) <= set(header) <= known:
-        raise InputError(
-            f"{path}: expected the columns {','.join(COLUMNS)} and perhaps {','.join(BOUNDS)} with "
-            f"commas between, found {','.join(header)[:80] or 'an empty file'}; correct the first "
-            "line"
-        )
-    for line, row in lines[1:]:
-        if len(row) != len(header):
-            raise InputError(
-                f"{path}: line {line}: expected {len(header)} cells, found {len(row)}; correct it"
-            )
-    return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
-
-
-def _known(where: str, what: str, name: str, names: Collection[str]) -> str:
-    if name not in names:
-        raise InputError(
-            f"{where}: expected a {what} of {', '.join(names)}, found {name[:40]!r}; correct it or "
-            "delete the line"
-        )
-    return name
-
-
-def _number(where: str, key: str, text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise InputError(
-            f"{where}: expected {key} as a finite number, found {text[:40]!r}; correct it"
-        )
-    return number

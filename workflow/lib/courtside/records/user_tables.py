@@ -1,0 +1,62 @@
+"""Read CSV tables that people write or change: every fault is told with its line."""
+
+import csv
+import math
+from collections.abc import Collection, Sequence
+from pathlib import Path
+
+from courtside.study.errors import InputError, StrPath, reading
+
+
+def table(
+    path: StrPath, columns: Sequence[str], more: Sequence[str] = ()
+) -> list[tuple[int, dict[str, str]]]:
+    """Return (line number, row) of every row of a CSV, cells stripped.
+
+    The header has the `columns`, and perhaps `more`, in any order; an `InputError` otherwise.
+    """
+    kinds = (OSError, UnicodeDecodeError, csv.Error)
+    with (
+        reading(path, "a readable CSV file", "save it again as CSV (UTF-8)", kinds=kinds),
+        Path(path).open(newline="", encoding="utf-8-sig") as stream,
+    ):
+        cells = csv.reader(stream, strict=True)
+        lines = [(cells.line_num, [cell.strip() for cell in row]) for row in cells]
+    lines = [(number, row) for number, row in lines if any(row)]
+    header = lines[0][1] if lines else []
+    known = {*columns, *more}
+    if len(set(header)) < len(header) or not set(columns) <= set(header) <= known:
+        perhaps = f" and perhaps {','.join(more)}" if more else ""
+        raise InputError(
+            f"{path}: expected the columns {','.join(columns)}{perhaps} with commas between, found "
+            f"{','.join(header)[:80] or 'an empty file'}; correct the first line"
+        )
+    for line, row in lines[1:]:
+        if len(row) != len(header):
+            raise InputError(
+                f"{path}: line {line}: expected {len(header)} cells, found {len(row)}; correct it"
+            )
+    return [(line, dict(zip(header, row, strict=True))) for line, row in lines[1:]]
+
+
+def known(where: str, what: str, name: str, names: Collection[str]) -> str:
+    """Return a name; an `InputError` if it is none of `names`."""
+    if name not in names:
+        raise InputError(
+            f"{where}: expected a {what} of {', '.join(names)}, found {name[:40]!r}; correct it or "
+            "delete the line"
+        )
+    return name
+
+
+def number(
+    where: str, key: str, text: str, only: float | None = None, wanted: str = "a finite number"
+) -> float:
+    """Return a cell as a number; an `InputError` if it is not finite, or not the `only` one."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value) or only not in (None, value):
+        raise InputError(f"{where}: expected {key} as {wanted}, found {text[:40]!r}; correct it")
+    return value
