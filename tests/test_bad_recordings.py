@@ -159,9 +159,8 @@ def calibrated(good, tmp_path, marked, court=BADMINTON):
 
 
 def aligned(good, tmp_path, marked, name):
-    points, record = written(tmp_path, marked), good.folder / "good.npz"
-    if not record.is_file():
-        good.adjust(good.folder.parent / "film" / "court_points.csv", out=record)
+    """Return what a comparison method says, after `calibrated` with the same clicks."""
+    points, record = written(tmp_path, marked), tmp_path / "ties.npz"
     out = tmp_path / "aligned.toml", tmp_path / "aligned.json"
     run("align_cameras", record, points, BADMINTON, *out, calibration=name, **CLICKING)
     return json.loads(out[1].read_text())["warnings"]
@@ -206,6 +205,9 @@ def test_exchanged_camera_files_are_recognised(good, clicked, tmp_path):
     assert not found.is_written
     (warning,) = aligned(good, tmp_path, marked, "paper-n12")
     assert_says(warning, parts)
+    marked["back"][COURT.indices(["p01"])] = np.nan
+    with pytest.raises(InputError, match="the camera files may be exchanged"):
+        aligned(good, tmp_path, marked, "paper-n12")
 
 
 def mirrored(marked):

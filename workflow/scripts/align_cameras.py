@@ -25,7 +25,7 @@ def main(ties_npz, clicks_csv, court_yaml, cameras_toml, quality_json, *, calibr
     try:
         world_from_sfm, how = align(court, xyz_in_sfm, calibration)
     except InputError as error:  # of a doubtful map nothing is said of clicks
-        raise InputError(quality.doubt(record.support) or str(error)) from error
+        raise InputError(quality.doubt(record.support) or record.fault or str(error)) from error
     found = [world_from_sfm.camera(camera) for camera in record.sfm_cameras]
     report = {
         "calibration": calibration,
