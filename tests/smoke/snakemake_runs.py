@@ -17,8 +17,11 @@ MADE_BY = ("Snakefile", "workflow", "config", "profiles", "environment.lock")
 
 
 def copy_repository(root, *further, copy_file=shutil.copy2):
-    """Copy what a study is made by, and further files or folders of the repository, to a folder."""
-    left_out = shutil.ignore_patterns("__pycache__", "locks")
+    """Copy what a study is made by, and further files or folders of the repository, to a folder.
+
+    Bytecode goes along: it is valid where files keep their dates, and saves compiling the library.
+    """
+    left_out = shutil.ignore_patterns("*.pyc.*", "locks")  # half-written bytecode
     for name in (*MADE_BY, *map(str, further)):
         source, target = ROOT / name, root / name
         target.parent.mkdir(parents=True, exist_ok=True)
