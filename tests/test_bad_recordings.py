@@ -198,7 +198,7 @@ def test_good_recordings_and_clicks_say_nothing(good, clicked, tmp_path):
 
 def test_exchanged_camera_files_are_recognised(good, clicked, tmp_path):
     """As when the two static recordings are exchanged: pictures and clicks are each other's."""
-    marked = {"side": clicked["back"], "back": clicked["side"]}
+    marked = {"side": clicked["back"].copy(), "back": clicked["side"].copy()}
     found = calibrated(good, tmp_path, marked)
     parts = ["cameras side and back:", "the camera files may be exchanged", "correct their names"]
     assert_says(found.error, parts)
