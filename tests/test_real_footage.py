@@ -152,8 +152,11 @@ def apart_mm(points, others):
 def test_four_views_agree_with_another_network_by_the_same_cameras(fused, views):
     error_mm = apart_mm(fused, triangulated(views))
     assert np.isnan(error_mm).mean() <= 0.02
+    # Eleven films, ten with one value in a thousand moved by one grey level: medians of 29.1 to
+    # 29.6, mean 29.3, standard deviation 0.1; 90 % within 51.0 to 52.5, mean 51.5, standard
+    # deviation 0.5. The bounds are mean and three standard deviations, rounded up.
     assert np.nanmedian(error_mm) <= 30
-    assert np.nanpercentile(error_mm, 90) <= 52
+    assert np.nanpercentile(error_mm, 90) <= 53.1
 
 
 def test_mended_cameras_agree_better_than_those_of_the_file(
