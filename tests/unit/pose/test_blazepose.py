@@ -65,9 +65,17 @@ def test_the_region_turns_with_the_person(angle_deg):
 
 def test_overlapping_boxes_merge_by_their_scores():
     box = np.array([[0.5, 0.5, 0.2, 0.2], [0.52, 0.5, 0.2, 0.2], [0.9, 0.9, 0.1, 0.1]])
-    merged = blazepose.merge_overlapping(box, np.array([0.75, 0.25, 0.9]))
+    merged = blazepose.merge_overlapping(box, np.array([0.75, 0.5, 0.9]))
     np.testing.assert_allclose(merged[0], box[2])
-    np.testing.assert_allclose(merged[1], [0.505, 0.5, 0.2, 0.2])
+    np.testing.assert_allclose(merged[1], [0.508, 0.5, 0.2, 0.2])
+    weak = blazepose.merge_overlapping(box, np.array([0.3, 0.1, 0.4]))
+    np.testing.assert_allclose(weak[1], [0.505, 0.5, 0.2, 0.2])
+
+
+def test_a_sure_box_is_not_averaged_with_weak_ones():
+    box = np.array([[0.5, 0.5, 0.2, 0.2], [0.52, 0.5, 0.2, 0.2], [0.9, 0.9, 0.1, 0.1]])
+    merged = blazepose.merge_overlapping(box, np.array([0.6, 0.4, 0.3]))
+    np.testing.assert_allclose(merged, box[[0, 2]])
 
 
 def test_intersection_over_union_of_half_overlapping_squares():

@@ -30,7 +30,8 @@ class Finder:
 def test_a_person_of_any_size_lies_whole_in_a_fitting_tile(size):
     found = tiles.tiles(*size)
     rng = np.random.default_rng(1)
-    for height in np.geomspace(tiles.MIN_HEIGHT_PX, min(1600, min(size)), 8):
+    least = min(tiles.MIN_HEIGHT_PX, tiles.MIN_HEIGHT * min(size))
+    for height in np.geomspace(least, min(1600, min(size)), 8):
         width = 0.4 * height
         for _ in range(40):
             x, y = rng.uniform(0, 1, 2) * (np.array(size) - (width, height))
@@ -50,6 +51,8 @@ def test_tiles_are_few():
     assert len(tiles.tiles(1920, 1080)) <= 24
     assert len(tiles.tiles(3840, 2160)) <= 90
     assert [tile.side for tile in tiles.tiles(200, 100)] == [200, 100, 100, 100]
+    assert {tile.side for tile in tiles.tiles(640, 240)} == {640, 240}
+    assert min(tile.side for tile in tiles.tiles(640, 480)) == 224
 
 
 @pytest.mark.parametrize("side", [160, 330, 620])

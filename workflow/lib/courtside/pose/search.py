@@ -19,7 +19,9 @@ MEETING = 0.35  # bodies with middles closer than this may be taken for one anot
 CLOSE = 0.08  # a second person is searched for where regions' centres are at least this far apart
 PART = 0.85  # a pose smaller than this within another is a part of that body
 BODY_MARGIN = 0.15  # foreground this close to a body's joints is explained by it
-CROP = 2.0  # a body is looked at in a square of this many times its size
+# A body is looked at in a square of so many times its size, in turns: the detector's answers to
+# different ones are nearly independent.
+CROPS = (2.0, 1.7, 2.5)
 TILES_A_SEARCH = 3  # of a search once a second: a twentieth of the time of following one person
 EXPLAINED = 0.7  # foreground of which a body covers this share shows nobody else
 VAIN_S = 1.0  # a place where nobody was found is left alone for so long
@@ -160,12 +162,15 @@ class Search:
         regions = tiles.look(image, surroundings(pose), self.detector)
         return self._poses(image, regions, known, sure=False)
 
-    def look_at(self, image: NDArray, pose: Pose, known: Sequence[Pose]) -> tuple[bool, list[Pose]]:
+    def look_at(
+        self, image: NDArray, pose: Pose, known: Sequence[Pose], turn: int = 0
+    ) -> tuple[bool, list[Pose]]:
         """Let the detector look at a pose: whether it finds a person there, and who else it finds.
 
         The others are people who are not in `known`, such as one whom this person covers in part.
+        The square that it looks at changes with the `turn`.
         """
-        regions = tiles.look(image, surroundings(pose), self.detector)
+        regions = tiles.look(image, surroundings(pose, turn), self.detector)
         others = [other for other in known if other is not pose]
         confirmed = any(confirms(region, pose, others) for region in regions)
         return confirmed, self._poses(image, regions, known, sure=True)
@@ -201,15 +206,16 @@ class Search:
         return any(confirms(region, pose, others) for region in regions)
 
 
-def surroundings(pose: Pose) -> Region:
+def surroundings(pose: Pose, turn: int = 0) -> Region:
     """Return the square in which the detector looks for the person of a pose."""
-    return _square(pose.xy)
+    return _square(pose.xy, turn)
 
 
-def _square(xy: NDArray) -> Region:
+def _square(xy: NDArray, turn: int = 0) -> Region:
     low, high = np.nanmin(xy, axis=0), np.nanmax(xy, axis=0)
     x, y = (low + high) / 2
-    return Region(float(x), float(y), max(1.0, CROP * float((high - low).max())))
+    crop = CROPS[turn % len(CROPS)]
+    return Region(float(x), float(y), max(1.0, crop * float((high - low).max())))
 
 
 def _overlap(one: Box, other: Box) -> float:

@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from courtside.pose.detector import PersonDetector, Region
 
 SIDE_PX = 224  # tiles are shrunk to this, the input of BlazePose's detector
-MIN_HEIGHT_PX = 160  # of the smallest people
+# Of the smallest people: in px, and in shares of the picture's shorter side where that is less.
+MIN_HEIGHT_PX, MIN_HEIGHT = 160, 1 / 8
 # Height of a person in shares of a tile's side. BlazePose's detector finds 96 % of people of 0.3,
 # 90 % of 0.25, 54 % of 0.2, all of 0.4 to 0.6, 98 % of 0.75 and 82 % of 0.95 (players-dev,
 # 84 pictures of four cameras, a tile at a random place around the whole person).
 SMALLEST, LARGEST = 0.28, 0.7
+WORTH = 1.5  # ratio of sizes from which smaller tiles are worth their time
 STEP = 2 / 3  # of a tile's side, between tiles: one of them holds all of a person of LARGEST / 2
 SAME = 0.08  # regions with centres this close, in shares of the smaller one's side, are one person
 BEST = 0.6  # share of a tile's side that the region of a person fills where detection is best
@@ -23,11 +25,13 @@ BEST = 0.6  # share of a tile's side that the region of a person fills where det
 def tiles(width: int, height: int) -> list[Region]:
     """Return square tiles (px) over a picture of a size, largest first.
 
-    The first is the whole picture. The others lie inside it and overlap; people from 160 px to the
-    full height of the picture fill 0.28 to 0.7 of a tile of some size.
+    The first is the whole picture. The others lie inside it and overlap; people from 160 px, or an
+    eighth of the picture's shorter side, to its full height fill 0.28 to 0.7 of a tile of some
+    size.
     """
     short = min(width, height)
-    smallest = min(short, MIN_HEIGHT_PX / SMALLEST)
+    smallest = max(SIDE_PX, min(MIN_HEIGHT_PX, MIN_HEIGHT * short) / SMALLEST)
+    smallest = smallest if short > WORTH * smallest else short
     steps = math.ceil(math.log(short / smallest) / math.log(LARGEST / SMALLEST))
     found = [Region(width / 2, height / 2, max(width, height))]
     for side in np.geomspace(short, smallest, steps + 1):

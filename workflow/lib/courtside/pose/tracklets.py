@@ -28,7 +28,7 @@ STEADY = 0.5  # share of the old velocity in the new one
 ALONE = MEETING + JUMP
 # A body is given up after so many looks in which the detector did not find it; the second number is
 # for one that has left the foreground.
-DOUBTS, STRAY_DOUBTS = 4, 2
+DOUBTS, STRAY_DOUBTS = 4, 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +223,7 @@ class _Crowd:
             due = hurry or self.now_s - body.looked_s > SEARCH_S
             if due or self.now_s < body.crowded_s:
                 known = [*self.poses, *others]
-                sure, beside = self.search.look_at(image, body.pose, known)
+                sure, beside = self.search.look_at(image, body.pose, known, body.doubts)
                 others += beside
             if due:
                 doubts = 0 if sure else body.doubts + 1
