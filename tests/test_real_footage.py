@@ -122,6 +122,7 @@ def detect(name, joints, find, place, study):
         score=track.score[:1],
         reason=track.reason[:1],
         xyz_in_body=track.xyz_in_body[:1],
+        clothing=track.clothing[:1],
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from courtside.pose import decoders, foreground, tracking, tracklets
 from courtside.pose.blazepose import BlazePoseDetector
+from courtside.pose.clothing import Clothing
 from courtside.pose.search import Search, middle
 from courtside.records.keypoints import keypoints, skeleton
 from courtside.study.execution import log
@@ -25,6 +26,7 @@ def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, recorded, **optio
         BlazePoseDetector(paths.detector),
         decoders.landmark_network(paths.landmarks, joints, **decoder),
     )
+    options["clothing"] = Clothing(joints)
     track, shown = follow(frames, networks, paths.background, **options)
     if shown:
         report(f"{camera}: {paths.background}", shown, recorded)
@@ -38,11 +40,14 @@ def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, recorded, **optio
         score=track.score,
         reason=track.reason,
         xyz_in_body=track.xyz_in_body,
+        clothing=track.clothing,
     )
     keypoints.write_2d(pose2d_npz, found)
 
 
-def follow(frames, networks, background, *, n_wanted, extra_people, min_difference, **how):
+def follow(
+    frames, networks, background, *, n_wanted, extra_people, min_difference, clothing, **how
+):
     """Return the `Track`, and the poses of people whom the background itself shows."""
     if not background:
         return tracklets.alone(tracking.track_person(frames, *networks, **how)), []
@@ -50,7 +55,9 @@ def follow(frames, networks, background, *, n_wanted, extra_people, min_differen
     changed = foreground.Foreground(empty, min_difference)
     time_s, first = next(frames)
     frames, max_people = itertools.chain([(time_s, first)], frames), n_wanted + extra_people
-    track = tracklets.track_people(frames, *networks, changed, max_people=max_people, **how)
+    track = tracklets.track_people(
+        frames, *networks, changed, max_people=max_people, clothing=clothing, **how
+    )
     search = Search(*networks, changed, how["min_presence"])
     return track, search.behind(empty, first, track.xy[:, 0])
 

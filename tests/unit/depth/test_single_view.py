@@ -22,6 +22,7 @@ def view(xy, in_body=None):
         score=np.where(seen, 0.9, np.nan),
         reason=np.where(seen, missing_reason.OK, missing_reason.UNSEEN).astype(np.uint8),
         xyz_in_body=empty if in_body is None else in_body,
+        clothing=np.full((*xy.shape[:2], 2, 3), np.nan),
     )
 
 

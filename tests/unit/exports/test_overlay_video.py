@@ -81,7 +81,7 @@ def test_the_skeleton_follows_the_clock(take):
     camera, view, points = take
     clock = Clock(offset_s=0.5, drift_ppm=100.0)
     own_s = clock.from_reference(points.time_s[:-1] + 0.01)  # half a frame late
-    per_frame = ("xy", "score", "reason", "xyz_in_body")
+    per_frame = ("xy", "score", "reason", "xyz_in_body", "clothing")
     kept = {key: getattr(view, key)[:, :-1] for key in per_frame}
     track = tracked(take, clock, time_s=own_s, **kept)
     np.testing.assert_allclose(track.reference_s, points.time_s[:-1] + 0.01)

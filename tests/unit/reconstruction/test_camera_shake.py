@@ -199,7 +199,8 @@ def test_a_part_of_the_take_finds_its_rows_by_time():
     vectors = turns(30)
     made, still, _ = view(vectors)
     part = {name: getattr(made, name) for name in vars(made)}
-    part |= {name: part[name][:, 10:20] for name in ("xy", "score", "reason", "xyz_in_body")}
+    fields = ("xy", "score", "reason", "xyz_in_body", "clothing")
+    part |= {name: part[name][:, 10:20] for name in fields}
     found = camera_shake.steady(
         Keypoints2D(**part | {"time_s": made.time_s[10:20] + 1e-5}), CAMERA, shake(vectors)
     )

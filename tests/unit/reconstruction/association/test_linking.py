@@ -54,6 +54,29 @@ def test_two_who_walk_apart_are_two_paths():
     assert (paths >= 0).sum() >= 56  # a person is believed in after some instants
 
 
+class Worn:
+    """Looks in which the colour of a candidate is its row."""
+
+    def middle(self, found):
+        return np.repeat(found.row[:, :1].astype(float), 3, axis=1)
+
+    def cost(self, off, more=0.0):
+        return np.where(np.isfinite(off).all(axis=-1), 2.0 * (np.abs(off) > 0.5).any(axis=-1), 0.0)
+
+
+def test_colours_tell_who_turned_round_while_nobody_was_seen():
+    """Two walk towards each other and go back: by their motion alone they passed."""
+    there = lines(20, ([-5, 0, 1], [-0.2, 0, 1]), ([5, 0.1, 1], [0.2, 0.1, 1]))
+    paths = np.concatenate([there, there[:, ::-1]], axis=1)
+    missing = {(p, t) for p in range(2) for t in range(18, 22)}
+    own = np.arange(80).reshape(2, 40) + 10
+    found, piece, time_s, person = candidates_of(paths, own, missing)
+    without = linking.link(found, piece, time_s, 2)
+    assert persons_of(without, person) == [{0, 1}, {0, 1}]
+    known = linking.link(found, piece, time_s, 2, looks=Worn())
+    assert sorted(map(sorted, persons_of(known, person))) == [[0], [1]]
+
+
 def test_motion_carries_identity_through_a_gap_of_both():
     paths = lines(40, ([-3, 0, 1], [3, 0.2, 1]), ([3, 0.6, 1], [-3, 0.4, 1]))
     missing = {(p, t) for p in range(2) for t in (18, 19, 20)}
@@ -67,7 +90,7 @@ def test_an_uncut_piece_carries_identity_where_motion_would_not():
     # They exchange places while unseen: motion alone says that they stayed.
     one, other = [-1.0, 0, 1], [1.0, 0.3, 1]
     paths = np.repeat(np.array([[one, other], [other, one]]), 20, axis=1)
-    missing = {(p, t) for p in range(2) for t in range(15, 25)}
+    missing = {(p, t) for p in range(2) for t in range(18, 22)}
     found, piece, time_s, person = candidates_of(paths, missing=missing)
     result = linking.link(found, piece, time_s, 2)
     assert sorted(map(sorted, persons_of(result, person))) == [[0], [1]]

@@ -20,6 +20,7 @@ def view(n):
         score=np.ones((1, n, 1)),
         reason=np.zeros((1, n, 1), np.uint8),
         xyz_in_body=np.zeros((1, n, 1, 3)),
+        clothing=np.zeros((1, n, 2, 3)),
     )
 
 

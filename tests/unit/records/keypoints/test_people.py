@@ -21,6 +21,7 @@ def view(rows=3, frames=5, joints=2):
         score=at / 100,
         reason=np.full((rows, frames, joints), missing_reason.OUT_OF_IMAGE, np.uint8),
         xyz_in_body=np.stack([at, at, at], axis=-1),
+        clothing=np.stack([at[..., :2]] * 3, axis=-1),
     )
 
 
@@ -59,6 +60,7 @@ def test_each_person_gets_the_row_of_each_frame():
     np.testing.assert_array_equal(found.xy[0, :2], view().xy[0, :2])
     np.testing.assert_array_equal(found.xy[0, 2:4], view().xy[2, 2:4])
     np.testing.assert_array_equal(found.xyz_in_body[1, 2:], view().xyz_in_body[0, 2:])
+    np.testing.assert_array_equal(found.clothing[1, 2:], view().clothing[0, 2:])
     assert found.reason.dtype == np.uint8
     for person, frame in ((0, 4), (1, 1)):
         assert np.isnan(found.xy[person, frame]).all()
@@ -70,7 +72,7 @@ def test_each_person_gets_the_row_of_each_frame():
 def test_row_0_throughout_changes_nothing():
     one = view(rows=1)
     found = people.assigned(one, np.zeros((1, 5), int))
-    for name in ("xy", "score", "reason", "xyz_in_body"):
+    for name in ("xy", "score", "reason", "xyz_in_body", "clothing"):
         np.testing.assert_array_equal(getattr(found, name), getattr(one, name))
 
 

@@ -25,6 +25,7 @@ def main_person(view: Keypoints2D) -> Keypoints2D:
             score=empty,
             reason=unseen,
             xyz_in_body=np.repeat(empty[..., np.newaxis], 3, axis=-1),
+            clothing=np.full((1, n_frames, 2, 3), np.nan),
         )
     known = np.isfinite(view.xy)
     low = np.where(known, view.xy, np.inf).min(axis=2)
@@ -32,7 +33,7 @@ def main_person(view: Keypoints2D) -> Keypoints2D:
     span = np.where(high >= low, high - low, -1.0).max(axis=-1)
     who = span.argmax(axis=0)
     at = np.arange(n_frames)
-    fields = ("xy", "score", "reason", "xyz_in_body")
+    fields = ("xy", "score", "reason", "xyz_in_body", "clothing")
     return replace(view, **{key: getattr(view, key)[who, at][np.newaxis] for key in fields})
 
 

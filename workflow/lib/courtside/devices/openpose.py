@@ -193,6 +193,7 @@ def _keypoints(
         score=np.where(kept, score, np.nan),
         reason=reason.astype(np.uint8),
         xyz_in_body=np.full((*score.shape, 3), np.nan),
+        clothing=np.full((*score.shape[:2], 2, 3), np.nan),
     )
 
 

@@ -2,6 +2,7 @@
 
 decoders: `landmark_network`: a network by the name of its decoder.
 detector: `Region`, `Pose`, `cut_out`: the interface of networks; blazepose, heatmaps: their kinds.
+clothing: `Clothing`: the colours of a person's clothes.
 tracking, tracklets: `track_person`, `track_people`: people followed through the pictures of one
     camera.
 search, tiles, foreground: `Search`: where people are searched for: in tiles of the whole picture,

@@ -24,6 +24,7 @@ class Track:
     score: NDArray  # (T, J)
     reason: NDArray  # (T, J) uint8: `courtside.records.keypoints.missing_reason`
     xyz_in_body: NDArray  # (T, J, 3): metres, see `courtside.pose.detector.Pose`
+    clothing: NDArray  # (T, 2, 3): L*a*b* of upper body and thighs; NaN where not looked at
 
 
 def track_person(
@@ -61,7 +62,7 @@ def track_person(
         times.append(time_s)
         rows.append(as_row(found, landmarks.n_joints, image.shape))
     xy, score, reason, xyz = (np.stack(column) for column in zip(*rows, strict=True))
-    return Track(np.array(times), xy, score, reason, xyz)
+    return Track(np.array(times), xy, score, reason, xyz, np.full((len(times), 2, 3), np.nan))
 
 
 def strayed(xy: NDArray, boxes: Sequence[Box]) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from courtside.pose import tracking
+from courtside.pose.clothing import Clothing
 from courtside.pose.detector import LandmarkNetwork, PersonDetector, Pose, Region
 from courtside.pose.foreground import Box, Foreground
 from courtside.pose.search import MEETING, Search, are_close, are_twins, middle, size_px
@@ -71,6 +72,7 @@ def track_people(
     max_people: int,
     min_presence: float,
     redetect: bool = False,
+    clothing: Clothing | None = None,
 ) -> Track:
     """Follow everybody through a video: a track whose arrays have a leading axis of P rows.
 
@@ -93,7 +95,9 @@ def track_people(
     frames : time in seconds, and picture (H, W, 3) uint8, BGR
     min_presence : below this confidence, 0 to 1, the landmark network's answer is dropped
     redetect : search in every frame instead of following: slower, and without memory
+    clothing : takes the colours of each body's clothes
     """
+    clothing = clothing or Clothing(())
     search = Search(detector, landmarks, foreground, min_presence)
     crowd = _Crowd(search, max_people)
     times: list[float] = []
@@ -107,9 +111,10 @@ def track_people(
         crowd.look(image)
         crowd.part()
         times.append(time_s)
-        found.append(
-            {b.row: tracking.as_row(b.pose, landmarks.n_joints, image.shape) for b in crowd.bodies}
-        )
+        found.append({})
+        for body in crowd.bodies:
+            row = tracking.as_row(body.pose, landmarks.n_joints, image.shape)
+            found[-1][body.row] = *row, clothing.colours(image, body.pose.xy)
     return _stacked(np.array(times), found, landmarks.n_joints)
 
 
@@ -123,7 +128,7 @@ def _stacked(
     time_s: NDArray, found: Sequence[dict[int, tuple[NDArray, ...]]], n_joints: int
 ) -> Track:
     n_rows = max((row + 1 for rows in found for row in rows), default=1)
-    empty = tracking.as_row(None, n_joints, None)
+    empty = *tracking.as_row(None, n_joints, None), np.full((2, 3), np.nan)
     arrays = [np.repeat(np.repeat(v[None, None], len(time_s), 1), n_rows, 0) for v in empty]
     for at, rows in enumerate(found):
         for row, values in rows.items():

@@ -3,6 +3,7 @@
 scale: `check`: whether people have the size of people
 rows: `Rows`, `describe`: one camera's tracklets: body centres, sizes, cuts
 candidates: `Candidates`, `find`, `rays`: places that rows of several views agree on; rays of others
+appearance: `learn`, `Looks`: how colours of clothes tell people apart
 linking: `link`, `costs`, `follow`: candidates over time to persons, frames of rows to persons
 identity: `doubts`, `confidence`: where somebody could have been exchanged, and how likely
 lengths: `of_people`, `bones`: lengths of bones, by which people of different size differ

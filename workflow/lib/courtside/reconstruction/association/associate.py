@@ -2,13 +2,20 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from courtside.calibration.court.court import Court
 from courtside.geometry.camera import Camera
-from courtside.reconstruction.association import candidates, identity, lengths, linking
+from courtside.reconstruction.association import (
+    appearance,
+    candidates,
+    identity,
+    lengths,
+    linking,
+)
 from courtside.reconstruction.association.rows import Rows, describe
 from courtside.study.errors import InputError
 
@@ -21,6 +28,7 @@ EXTRA = 2
 MOST_PEOPLE = 10  # followed at once; each costs time in every history
 FAR_FROM_COURT_M = 6.0  # places further beyond the lines are not triangulated well
 ALONE = 4.0  # bonus (log-likelihood) of a row that alone followed the person in a frame
+LEARNED_FROM = 200  # instants: from which colours of clothes are learned
 COUNTS = 0.1  # share of the take from which somebody counts as a person in it
 
 
@@ -56,6 +64,7 @@ def associate(
     mirror: Sequence[int] | None = None,
     court: Court | None = None,
     bones: Sequence[tuple[int, int]] = (),
+    clothing: Sequence[NDArray] | None = None,
 ) -> Association:
     """Find everybody whom two cameras see, and which tracklets show them, over the whole take.
 
@@ -64,7 +73,7 @@ def associate(
     With `mirror` (J,), the index of the same joint of the other side, views with confused sides
     still agree. If the `court` has a net, changing halves is taken as rare; people far from it are
     left out. `bones`, pairs of joints of constant distance, tell two people of different size apart
-    in `doubts`.
+    in `doubts`. `clothing` are the colours of the rows' clothes (P, T, 2, 3) in each camera.
 
     At instants 0.1 s apart, rows of several views that meet in space become candidates
     (`candidates`). They are linked over time by a search that keeps several histories (`linking`);
@@ -77,11 +86,13 @@ def associate(
     alone = all(len(view) == 1 for view in xy)
     xy = [v if len(v) else np.full((1, *v.shape[1:]), np.nan) for v in xy]
     rows = [describe(view, trunk) for view in xy]
-    instants, found = _candidates(cameras, xy, rows, time_s, mirror)
+    instants = _instants(time_s)
+    looks = _looks(cameras, xy, rows, instants, mirror, clothing)
+    found = _candidates(cameras, xy, rows, instants, mirror, looks)
     found = _near_court(found, court)
     net = court.net["y_m"] if court is not None and court.net else None
     piece = _pieces(rows, found, instants)
-    chosen = linking.link(found, piece, time_s[instants], _slots(rows), net)
+    chosen = linking.link(found, piece, time_s[instants], _slots(rows), net, looks)
     ray = (chosen >= 0) & found.is_ray[chosen] if len(found.instant) else chosen >= 0
     seen_alone, chosen = np.where(ray, chosen, -1), np.where(ray, -1, chosen)
     order = np.argsort(-(chosen >= 0).sum(axis=1), kind="stable")
@@ -89,7 +100,7 @@ def associate(
     if not len(order):
         return _unplaced(cameras, xy, time_s, instants, alone)
     people = identity.Followed(chosen[order], seen_alone[order], found, piece)
-    index = _index(cameras, rows, time_s, instants, people)
+    index = _index(cameras, rows, time_s, instants, people, looks)
     path = people.path()
     return Association(
         index=index,
@@ -154,19 +165,34 @@ def _pieces(rows: Sequence[Rows], found: candidates.Candidates, instants: NDArra
     return np.stack(each, axis=1)
 
 
-def _candidates(cameras, xy, rows, time_s, mirror) -> tuple[NDArray, candidates.Candidates]:
+def _instants(time_s: NDArray) -> NDArray:
+    """Return the frames at which rows are triangulated."""
     step_s = np.median(np.diff(time_s)) if len(time_s) > 1 else EVERY_S
-    instants = np.arange(0, len(time_s), max(1, round(EVERY_S / step_s)))
+    return np.arange(0, len(time_s), max(1, round(EVERY_S / step_s)))
+
+
+def _looks(cameras, xy, rows, instants, mirror, clothing) -> appearance.Looks | None:
+    """Return what colours tell, learned where geometry is sure; frames are numbered by instant."""
+    if clothing is None:
+        return None
+    few = np.arange(0, len(instants), max(1, len(instants) // LEARNED_FROM))
+    found = _candidates(cameras, xy, rows, instants[few], mirror, None)
+    found = found.subset(candidates.is_sure(found))
+    return appearance.learn(clothing, instants, replace(found, instant=few[found.instant]))
+
+
+def _candidates(cameras, xy, rows, instants, mirror, looks) -> candidates.Candidates:
     parts = []
     for block in np.array_split(instants, max(1, len(instants) // 500)):
         start = np.searchsorted(instants, block[0])
         centres = [(r.centre[:, block], r.sigma_px) for r in rows]
         heights = [r.height_px[:, block] for r in rows]
         views = [view[:, block] for view in xy]
-        places = candidates.find(cameras, views, centres, heights, mirror)
+        more = partial(looks.view_cost, start=start) if looks else None
+        places = candidates.find(cameras, views, centres, heights, mirror, more)
         for part in (places, candidates.rays(cameras, centres, places)):
             parts.append(replace(part, instant=part.instant + start))
-    return instants, candidates.concatenate(parts)
+    return candidates.concatenate(parts)
 
 
 def _near_court(found: candidates.Candidates, court: Court | None) -> candidates.Candidates:
@@ -178,7 +204,7 @@ def _near_court(found: candidates.Candidates, court: Court | None) -> candidates
     return found.subset(near | found.is_ray)
 
 
-def _index(cameras, rows, time_s, instants, people) -> list[NDArray]:
+def _index(cameras, rows, time_s, instants, people, looks) -> list[NDArray]:
     """Return the row (K, T) of each person in each frame of each camera."""
     places = [(time_s[instants[c >= 0]], people.candidates.xyz[c[c >= 0]]) for c in people.chosen]
     along = [linking.along(time_s, *place) for place in places]
@@ -186,6 +212,12 @@ def _index(cameras, rows, time_s, instants, people) -> list[NDArray]:
     wanted = (people.chosen >= 0).mean(axis=1) >= COUNTS
     wanted |= wanted.size == 1
     cost = [linking.costs(k, r, path, sigma_m, wanted) for k, r in zip(cameras, rows, strict=True)]
+    if looks:
+        worn = looks.worn(people.chosen, people.candidates)
+        cost = [
+            np.where(r.present[..., None], k + looks.row_cost(c, worn), 0.0)
+            for c, (k, r) in enumerate(zip(cost, rows, strict=True))
+        ]
     for person, found in enumerate(people.seen_alone):
         row, frame = people.candidates.row[found[found >= 0]], instants[found >= 0]
         for c, view in enumerate(cost):

@@ -1,6 +1,6 @@
 """Candidate places of a person: rows of two or more cameras that agree, and rays of single rows."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,8 @@ WORST = 4.5  # limit of a view's cost, so that one bad view costs little more th
 ViewRows = Sequence[tuple[NDArray, NDArray]]
 # Distances (P, Q, N) by pair of cameras.
 PairDistances = dict[tuple[int, int], NDArray]
+# From instants (M,) and rows (M, C), -1 for none, to costs (M, C) of views against the others.
+ViewCost = Callable[[NDArray, NDArray], NDArray]
 
 
 @dataclass(frozen=True)
@@ -65,13 +67,14 @@ def find(
     rows: ViewRows,
     height_px: Sequence[NDArray],
     mirror: Sequence[int] | None = None,
+    more: ViewCost | None = None,
 ) -> Candidates:
     """Find all places where rows of two or more views meet.
 
     `xy` has keypoints (P, N, J, 2) of each camera at N instants, distorted px, NaN where missing;
     `rows` and `height_px` the centres and standard deviations, and heights (P, N), of `rows.Rows`
     there. With `mirror` (J,), the same joint of the other side, confused sides are still one
-    person.
+    person. `more` gives costs of views besides those of geometry.
 
     Seeds are pairs of rows of two views whose median distance from joint to epipolar line is within
     the gate. Other views join if they show a body at the projected centre. The effort grows with
@@ -84,7 +87,7 @@ def find(
     instant, row = _seeds(pairs, len(cameras))
     centres = [centre for centre, _ in rows]
     views = _Views(cameras, centres, [sigma for _, sigma in rows], height_px)
-    found = _judge(views, pairs, instant, views.joined(instant, row))
+    found = _judge(views, pairs, instant, views.joined(instant, row), more)
     # Without the views that contradict a place, the rest may be somebody hidden in those views.
     better = np.where(found.view_cost < 0, found.row, -1)
     less = (better != found.row).any(axis=1) & ((better >= 0).sum(axis=1) >= 2)
@@ -95,10 +98,17 @@ def find(
         pairs,
         np.concatenate([found.instant, found.instant[less]]),
         np.concatenate([found.row, better[less]]),
+        more,
     )
 
 
-def _judge(views: "_Views", pairs: PairDistances, instant: NDArray, row: NDArray) -> Candidates:
+def _judge(
+    views: "_Views",
+    pairs: PairDistances,
+    instant: NDArray,
+    row: NDArray,
+    more: ViewCost | None,
+) -> Candidates:
     """Return the candidates of rows (M, C), each once."""
     code = np.unique(np.column_stack([instant, row]), axis=0)
     instant, row = code[:, 0], code[:, 1:]
@@ -113,16 +123,20 @@ def _judge(views: "_Views", pairs: PairDistances, instant: NDArray, row: NDArray
     kept &= (middle >= np.log(BODY_M[0])) & (middle <= np.log(BODY_M[1]))
     bend = np.nan_to_num((np.log(size) - middle[:, None]) / SIZE_SPREAD)
     agree = error**2 + bend**2 + view_distances(pairs, instant, row, 2 * GATE) ** 2
-    cost = np.where(row >= 0, np.minimum(0.5 * agree, WORST) - VIEW_GAIN, 0.0)
+    cost = np.minimum(0.5 * agree, WORST) - VIEW_GAIN + (more(instant, row) if more else 0.0)
+    cost = np.where(row >= 0, cost, 0.0)
     return Candidates(instant, xyz, np.zeros_like(xyz), row, sigma_m, cost).subset(kept)
+
+
+def is_sure(places: Candidates) -> NDArray:
+    """Return which places (M,) three views or more agree on."""
+    return ((places.row >= 0).sum(axis=1) >= 3) & (places.view_cost.sum(axis=1) < SURE)
 
 
 def rays(cameras: Sequence[Camera], rows: ViewRows, places: Candidates) -> Candidates:
     """Return as rays all rows that no place of three or more views explains."""
     parts = []
-    sure = places.subset(
-        ((places.row >= 0).sum(axis=1) >= 3) & (places.view_cost.sum(axis=1) < SURE)
-    )
+    sure = places.subset(is_sure(places))
     for c, (camera, (centre, sigma_px)) in enumerate(zip(cameras, rows, strict=True)):
         open_ = np.isfinite(centre[..., 0])
         shown = sure.row[:, c] >= 0

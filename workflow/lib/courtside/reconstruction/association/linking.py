@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from courtside.geometry import camera as camera_models
 from courtside.geometry.camera import Camera
+from courtside.reconstruction.association.appearance import Looks
 from courtside.reconstruction.association.candidates import Candidates
 from courtside.reconstruction.association.rows import Rows
 
@@ -25,12 +26,13 @@ NET_CROSSED = 3.0  # cost of a player who changes the half of the court
 ONE_VIEW = 0.9  # rays with a larger cosine between them count as one view
 GAIN = 0.5  # of the velocity's update
 MOST = 16  # candidates considered in one instant
+REMEMBERED = 30  # instants: a person's colours are the mean of about so many
 
 
 class _Histories:
     """H histories of S persons each; arrays lead with H."""
 
-    def __init__(self, slots: int, n_cameras: int) -> None:
+    def __init__(self, slots: int, n_cameras: int, n_colours: int) -> None:
         self.cost = np.zeros(1)
         self.alive = np.zeros((1, slots), bool)
         self.place = np.zeros((1, slots, 3))
@@ -39,6 +41,8 @@ class _Histories:
         self.placed_s = np.zeros((1, slots))  # of the last place
         self.ray = np.zeros((1, slots, 3))  # direction of the rays since then
         self.owned = np.full((1, slots, n_cameras), -1)
+        self.worn = np.full((1, slots, n_colours), np.nan)
+        self.looked = np.zeros((1, slots))  # instants that the colours are the mean of
 
     def keep(self, parent: NDArray) -> None:
         """Reorder to the given parents."""
@@ -52,12 +56,14 @@ def link(
     time_s: NDArray,
     slots: int,
     net_y_m: float | None = None,
+    looks: Looks | None = None,
 ) -> NDArray:
     """Link candidates over time: the index (S, N) of each person's candidate, -1 for none.
 
     `piece` (M, C) is the uncut piece of each candidate's row in each camera, -1 without one;
     `time_s` (N,) is of the instants; `slots` the largest number S of persons followed. With
-    `net_y_m`, the position of a net, crossing it has a cost.
+    `net_y_m`, the position of a net, crossing it has a cost. With `looks`, people are known again
+    by the colours of their clothes.
 
     A multiple-hypothesis tracker (Reid 1979): at each instant candidates are assigned to persons,
     and the best histories are kept. A history costs its candidates, their distance from a
@@ -66,7 +72,8 @@ def link(
     only one view sees a person, its rays continue the history and leave the place along them open.
     Of two people behind one another both may use the one visible row; its cost counts once.
     """
-    state = _Histories(slots, piece.shape[1])
+    colours = looks.middle(candidates) if looks else np.zeros((len(piece), 0))
+    state = _Histories(slots, piece.shape[1], colours.shape[1])
     first = np.searchsorted(candidates.instant, np.arange(len(time_s) + 1))
     parents, choices = [], []
     for at, now_s in enumerate(time_s):
@@ -75,7 +82,9 @@ def link(
             total = candidates.view_cost[here].sum(axis=1) + 99 * candidates.is_ray[here]
             here = np.sort(here[np.argsort(total, kind="stable")[:MOST]])
         if len(here):
-            parent, choice = _advance(state, candidates.subset(here), piece[here], now_s, net_y_m)
+            offered, seen = candidates.subset(here), colours[here]
+            own = _own_cost(state, offered, now_s, net_y_m) + _looks_cost(state, seen, looks)
+            parent, choice = _advance(state, own, offered, piece[here], seen, now_s)
         else:
             parent = np.arange(len(state.cost))
             choice = np.full((len(parent), slots), -1)
@@ -84,9 +93,9 @@ def link(
     return _trace(state, parents, choices, slots)
 
 
-def _advance(state, offered, piece, now_s, net_y_m) -> tuple[NDArray, NDArray]:
+def _advance(state, own, offered, piece, colours, now_s) -> tuple[NDArray, NDArray]:
     """Add one instant to the histories; return their parents and choices."""
-    parent, choice, cost = _assign(state, _own_cost(state, offered, now_s, net_y_m), offered, now_s)
+    parent, choice, cost = _assign(state, own, offered, now_s)
     state.keep(parent)
     pieces = np.where((choice >= 0)[..., None], piece[choice], -1)
     shared = _shared(pieces)
@@ -96,6 +105,7 @@ def _advance(state, offered, piece, now_s, net_y_m) -> tuple[NDArray, NDArray]:
     parent, choice = parent[order], choice[order]
     _move(state, choice, offered, now_s)
     _own(state, pieces[order], shared[order])
+    _remember(state, np.where(shared[order].any(axis=2), -1, choice), colours)
     different = _different(state, choice)
     state.keep(different)
     state.cost = state.cost - state.cost.min()
@@ -214,6 +224,24 @@ def _own(state: _Histories, pieces: NDArray, shared: NDArray) -> None:
     gained = (pieces >= 0) & ~shared
     lost = (state.owned[:, :, None] == np.where(gained, pieces, -2)[:, None]).any(axis=2)
     state.owned = np.where(gained, pieces, np.where(lost, -1, state.owned))
+
+
+def _looks_cost(state: _Histories, colours: NDArray, looks: Looks | None) -> NDArray | float:
+    """Return (H, S, n) costs of the colours (n, K) of candidates, by those that persons wear."""
+    if looks is None:
+        return 0.0
+    few = 1 / np.maximum(state.looked, 1)[..., None]
+    return looks.cost(colours - state.worn[:, :, None], few)
+
+
+def _remember(state: _Histories, choice: NDArray, colours: NDArray) -> None:
+    """Add the colours (n, K) of the chosen candidates (H, S), -1 for none, to what persons wear."""
+    seen = np.where((choice >= 0)[..., None], colours[choice], np.nan)
+    known = np.all(np.isfinite(seen), axis=2)
+    state.looked = np.where(known, np.minimum(state.looked + 1, REMEMBERED), state.looked)
+    share = 1 / np.maximum(state.looked, 1)[..., np.newaxis]
+    new = np.where(np.isfinite(state.worn), state.worn + share * (seen - state.worn), seen)
+    state.worn = np.where(np.expand_dims(known, 2), new, state.worn)
 
 
 def _different(state: _Histories, choice: NDArray) -> NDArray:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from courtside.records import npz
 from courtside.study.errors import StrPath
 
-FORM_2D = "courtside keypoints2d 1"
+FORM_2D = "courtside keypoints2d 2"
 FORM_3D = "courtside keypoints3d 3"
 
 
@@ -30,6 +30,8 @@ class Keypoints2D:
     # The network's own metric guess relative to the hip centre, metres, axes as in cam (x right, y
     # down, z forward); NaN for networks without one
     xyz_in_body: Annotated[NDArray, "float P T J 3"]
+    # Colours of the clothes, CIE L*a*b*, of the upper body and the thighs; NaN where unknown
+    clothing: Annotated[NDArray, "float P T 2 3"]
 
 
 @dataclass(frozen=True)

@@ -117,4 +117,5 @@ def assigned(view: Keypoints2D, index: NDArray) -> Keypoints2D:
         score=pick(view.score, np.nan),
         reason=pick(view.reason, np.uint8(missing_reason.UNSEEN)),
         xyz_in_body=pick(view.xyz_in_body, np.nan),
+        clothing=pick(view.clothing, np.nan),
     )
