@@ -90,8 +90,7 @@ def write_study(folder, data):
 
 def run(folder, data, model):
     """Make the skeletons of all stages with both calibrations; return the results' folder."""
-    if not (folder / "Snakefile").exists():
-        copied(folder)
+    copied(folder)
     study, results = write_study(folder, data), Path("results") / "hall-markers"
     made = [results / FUSED.format(stage=s, way=w, model=model) for s in STAGES for w in WAYS]
     command = [sys.executable, "-m", "snakemake", "--configfile", study, "--", *map(str, made)]
