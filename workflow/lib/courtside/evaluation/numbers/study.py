@@ -37,7 +37,7 @@ MEASURED = (  # of the results of a default run
     devices.body_frames,
 )
 STATED = (
-    *("real-checks", "markers", "hall-points", "device-checks", "stated-errors", "flags"),
+    *("real-checks", "markers", "hall-points", "device-checks", "stated-errors", "flags", "crowd"),
     *("file-evidence", "file-mended"),
     *("file-faults", "mapping-checks", "click-model", "click-alarms", "worlds"),
     *("halls", "halls-strengths"),

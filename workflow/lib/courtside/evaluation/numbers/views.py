@@ -255,7 +255,7 @@ VIEWS = {
     ),
     **{
         name: View(name, {"what": "{row}", "target": "{target}", "found": "{found}", **FOUND})
-        for name in ("real-checks", "device-checks")
+        for name in ("real-checks", "device-checks", "crowd")
     },
     **{
         name: View(name, {"what": "{row}", "found": "{found}", **FOUND})
