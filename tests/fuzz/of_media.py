@@ -190,5 +190,5 @@ FORMATS = [
     Format("tflite", 700, networks, convert),
     Format("colmap-database", 200, bases, read_base),
     Format("colmap-model", 200, models, model.read),
-    Format("survey", 200, recordings, draft),
+    Format("survey", 200, recordings, draft, refuses=False),  # it says what it cannot read
 ]
