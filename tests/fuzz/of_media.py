@@ -11,9 +11,12 @@ from courtside.drafting import draft as session_advice
 from courtside.drafting import guess as session_guess
 from courtside.drafting import survey
 from courtside.pages.clicking import page
+from courtside.pose import decoders
 from courtside.pose.conversion import tflite_onnx
+from courtside.pose.networks import session as onnx_session
 from courtside.sfm import database, model
 from courtside.study.configuration import yaml_files
+from courtside.study.execution import files
 from courtside.video import reader, walk_frames
 from fixtures.cameras import sfm_made
 from fixtures.recordings import video_files
@@ -181,6 +184,27 @@ def draft(path):
     return yaml_files.read(out)
 
 
+GIVEN = {"size": [32, 24], "channels": "bgr", "padding": 1.25}
+JOINTS = ("nose", "left_hip", "right_hip")
+
+
+def own_networks(folder):
+    """Write small ONNX networks."""
+    from fixtures.recordings import onnx_files
+
+    onnx_files.simcc(folder / "simcc.onnx", GIVEN["size"])
+    onnx_files.heat_maps(folder / "maps.onnx", GIVEN["size"], 4)
+
+
+def run_network(path):
+    """Check an ONNX file and run it, as if its checksum were right."""
+    onnx_session.check_file(path, files.sha256(path))
+    decoder = "simcc" if path.stem.endswith("simcc") else "heatmaps"
+    network = decoders.landmark_network(path, JOINTS, decoder=decoder, input=GIVEN)
+    decoders.try_out(network)
+    return network
+
+
 FORMATS = [
     Format("png", 900, pngs, read_photo),
     Format("jpeg", 900, jpegs, read_photo),
@@ -188,6 +212,7 @@ FORMATS = [
     Format("mp4", 1000, mp4s, read_video),
     Format("other-video", 500, other_videos, read_video),
     Format("tflite", 700, networks, convert),
+    Format("onnx", 400, own_networks, run_network),
     Format("colmap-database", 200, bases, read_base),
     Format("colmap-model", 200, models, model.read),
     Format("survey", 200, recordings, draft, refuses=False),  # it says what it cannot read

@@ -79,7 +79,8 @@ def study(folder, session):
         for path in (CONFIG / name).glob("*.yaml"):
             (made / "config" / name / path.name).touch()
     shutil.copy(CONFIG / "external.yaml", made / "config")
-    shutil.copy(CONFIG / "models.yaml", made / "config")
+    for name in ("models.yaml", "detectors.yaml"):
+        shutil.copy(CONFIG / name, made / "config")
     own = made / "config" / "sessions" / f"{session}.yaml"
     if session == "north":
         own.write_text(yaml.safe_dump(OWN, sort_keys=False), encoding="utf-8")
@@ -265,7 +266,7 @@ def compare(path):
 FORMATS = [
     Format("session", 1500, studies, load, "sessions/*.yaml"),
     Format("config", 700, studies, load, "config/config.yaml"),
-    Format("models", 400, studies, load, "config/[em]*.yaml"),
+    Format("models", 400, studies, load, "config/[edm]*.yaml"),
     Format("plan", 600, laughing(copies("config/plans/*.yaml")), plans.read),
     Format("court", 1200, laughing(copies("config/courts/*.yaml")), court.read),
     Format("skeleton", 1000, laughing(copies("config/skeletons/*.yaml")), skeleton.read),

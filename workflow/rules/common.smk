@@ -57,8 +57,10 @@ try:
     }
     if workflow.is_main_process:  # jobs need not look again, nor load what looks
         from courtside.validation import check as recorded
+        from courtside.validation import providers
         from courtside.validation.remembered import Remembered
 
+        providers.check(STUDY)
         looks = Remembered(Path(".snakemake") / "courtside" / "recordings.json")
         for remark in recorded.check(STUDY, looks):
             print(f"Remark: {remark}", file=sys.stderr)

@@ -10,8 +10,8 @@ rule detect_pose:
     input:
         video=of_job(recordings.video),
         background=of_job(recordings.background),
-        detector=paths.part(paths.ONNX, part="detector"),
-        landmarks=paths.part(paths.ONNX, part="landmarks"),
+        detector=of_job(recordings.network_file, "detector"),
+        landmarks=of_job(recordings.network_file, "landmarks"),
         skeleton=of_job(Job.skeleton_file),
     output:
         pose2d_npz=paths.POSE2D,
@@ -25,7 +25,8 @@ rule detect_pose:
         code=code("detect_pose.py"),
         step=step("detect_pose"),
         redetect=lambda w: not STUDY.models[w.model].tracking,
-        decoder=lambda w: STUDY.models[w.model].decoder_options(),
+        person_detector=of_job(recordings.decoder, "detector"),
+        decoder=of_job(recordings.decoder, "landmarks"),
         trim_s=of_job(recordings.trim_s),
         n_wanted=of_job(recordings.n_wanted),
         recorded=of_job(recordings.recorded),

@@ -17,7 +17,8 @@ LOOK_AT = [paths.REPORT, paths.PLAYERS_TABLE, paths.CALIBRATION_TABLE]
 def record_provenance():
     """Write the sidecars of all files that are newer than theirs."""
     read = [CONFIG / paths.SESSION_YAML.format(session=name) for name in config["sessions"]]
-    read = [CONFIG / "external.yaml", CONFIG / "models.yaml", *read]
+    registers = ("external.yaml", "models.yaml", "detectors.yaml")
+    read = [*(CONFIG / name for name in registers), *read]
     asked(run.record, workflow, REPOSITORY, config, map(str, read))
 
 

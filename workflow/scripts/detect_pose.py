@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 
 from courtside.pose import decoders, foreground, tracking, tracklets
-from courtside.pose.blazepose import BlazePoseDetector
 from courtside.pose.clothing import Clothing
 from courtside.pose.search import Search, middle
 from courtside.records.keypoints import keypoints, skeleton
@@ -15,19 +14,22 @@ from courtside.study.execution.script import run
 from courtside.video import images, reader
 
 
-def main(paths, pose2d_npz, *, camera, model, decoder, trim_s, recorded, **options):
+def main(
+    paths, pose2d_npz, *, camera, model, person_detector, decoder, providers, trim_s, recorded,
+    **options,
+):  # fmt: skip
     cv2.setNumThreads(1)
     joints = skeleton.read(paths.skeleton).joints
     start_s, stop_s = trim_s or (None, None)
     info = reader.probe(paths.video, stop_s=stop_s)
     frames = reader.frames(paths.video, start_s=start_s, stop_s=stop_s)
     frames = log.progress(frames, info.n_frames if not trim_s else None, f"{camera}: frames")
-    networks = (
-        BlazePoseDetector(paths.detector),
-        decoders.landmark_network(paths.landmarks, joints, **decoder),
-    )
+    landmarks = decoders.landmark_network(paths.landmarks, joints, providers=providers, **decoder)
+    detector = landmarks  # of one stage
+    if person_detector:
+        detector = decoders.person_detector(paths.detector, providers=providers, **person_detector)
     options["clothing"] = Clothing(joints)
-    track, shown = follow(frames, networks, paths.background, **options)
+    track, shown = follow(frames, (detector, landmarks), paths.background, **options)
     if shown:
         report(f"{camera}: {paths.background}", shown, recorded)
     found = keypoints.Keypoints2D(

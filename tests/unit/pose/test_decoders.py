@@ -1,12 +1,15 @@
-"""The names in config/models.yaml lead to networks that fit their skeletons."""
+"""The names in config/models.yaml and config/detectors.yaml lead to networks that fit."""
 
+import numpy as np
 import pytest
 
-from courtside.pose import blazepose, decoders, heatmaps
-from courtside.pose.conversion import tflite_onnx
+from courtside.pose import blazepose, decoders
+from courtside.pose.networks import boxes, one_stage, top_down
 from courtside.study.errors import InputError
-from fixtures.recordings import networks
-from fixtures.recordings.real_data import REAL, needs_real
+from fixtures.recordings import networks, onnx_files
+
+GIVEN = {"size": [96, 128], "channels": "bgr"}
+JOINTS = ("nose", "left_hip", "right_hip")
 
 
 def test_blazepose_is_built():
@@ -14,14 +17,70 @@ def test_blazepose_is_built():
         networks.landmarks_onnx(), ("joint",) * 33, decoder="blazepose"
     )
     assert isinstance(network, blazepose.BlazePoseLandmarks)
+    finder = decoders.person_detector(networks.detector_onnx(), decoder="blazepose", min_score=0.7)
+    assert isinstance(finder, blazepose.BlazePoseDetector)
+    assert (finder.min_score, finder.side_px) == (0.7, 224)
+    decoders.try_out(network)
+    decoders.try_out(finder)
 
 
-@needs_real
+def test_blazepose_of_another_file_is_one_line(tmp_path):
+    path = onnx_files.simcc(tmp_path / "n.onnx", (96, 128))
+    with pytest.raises(InputError, match=r"n\.onnx: expected one input"):
+        decoders.landmark_network(path, ("joint",) * 33, decoder="blazepose")
+    with pytest.raises(InputError, match="expected 14 joints as in its skeleton, found 33"):
+        decoders.landmark_network(path, ("joint",) * 14, decoder="blazepose")
+
+
+@pytest.mark.parametrize(
+    ("make", "decoder", "kind"),
+    [
+        (onnx_files.simcc, "simcc", top_down.TopDown),
+        (onnx_files.rtmo, "rtmo", one_stage.OneStage),
+        (onnx_files.yolo_pose, "yolo-pose", one_stage.OneStage),
+    ],
+)
+def test_every_decoder_is_built_and_tried(tmp_path, make, decoder, kind):
+    network = decoders.landmark_network(
+        make(tmp_path / "n.onnx", (96, 128)), JOINTS, decoder=decoder, input=GIVEN
+    )
+    assert isinstance(network, kind)
+    decoders.try_out(network)
+
+
+def test_outputs_may_be_named_in_the_decoders_order(tmp_path):
+    path = onnx_files.simcc(tmp_path / "n.onnx", (96, 128))
+    given = {"decoder": "simcc", "input": GIVEN | {"padding": 1.25}}
+    turned = decoders.landmark_network(path, JOINTS, **given, outputs=["simcc_y", "simcc_x"])
+    with pytest.raises(InputError, match=r"\[192, 256\] bins for x and y"):
+        decoders.try_out(turned)
+    decoders.try_out(decoders.landmark_network(path, JOINTS, **given))
+
+
+def test_a_flip_test_knows_the_sides(tmp_path):
+    path = onnx_files.simcc(tmp_path / "n.onnx", (96, 128))
+    given = {"decoder": "simcc", "input": GIVEN | {"padding": 1.25}}
+    assert decoders.landmark_network(path, JOINTS, **given).pairs is None
+    assert decoders.landmark_network(path, JOINTS, **given, flip_test=True).pairs == [0, 2, 1]
+
+
 def test_a_skeleton_of_another_length_is_one_line(tmp_path):
-    tflite_onnx.convert(REAL / "models" / "cpm-mobile-14.tflite", tmp_path / "n.onnx")
-    options = {"decoder": "heatmaps", "input_range": (0, 255), "channels": "bgr"}
-    joints = tuple(f"left_hip{at}" for at in range(14))
-    network = decoders.landmark_network(tmp_path / "n.onnx", joints, **options)
-    assert isinstance(network, heatmaps.HeatmapLandmarks)
-    with pytest.raises(InputError, match="expected 13 joints"):
-        decoders.landmark_network(tmp_path / "n.onnx", joints[1:], **options)
+    path = onnx_files.heat_maps(tmp_path / "n.onnx", (96, 96), 4, layout="nhwc")
+    given = {"size": [96, 96], "layout": "nhwc", "channels": "bgr"}
+    network = decoders.landmark_network(path, JOINTS[:2], decoder="heatmaps", input=given)
+    with pytest.raises(InputError, match="expected 2 joints as in its skeleton, found 3"):
+        decoders.try_out(network)
+
+
+def test_detectors_take_their_limits(tmp_path):
+    finder = decoders.person_detector(
+        onnx_files.yolox(tmp_path / "n.onnx", (96, 64)),
+        decoder="yolox",
+        input={"size": [96, 64], "channels": "bgr"},
+        person_class=1,
+        min_score=0.4,
+        min_height=30,
+    )
+    assert isinstance(finder, boxes.BoxDetector)
+    assert (finder.person_class, finder.min_score, finder.min_height) == (1, 0.4, 30)
+    assert finder.detect(np.zeros((60, 90, 3), np.uint8)) == []

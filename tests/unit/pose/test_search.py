@@ -101,6 +101,8 @@ def test_a_vain_look_at_the_foreground_is_not_repeated_for_a_second(pair):
     asked = []
 
     class Counting:
+        side_px = detector.side_px
+
         def detect(self, image):
             asked.append(image.shape)
             return detector.detect(image)

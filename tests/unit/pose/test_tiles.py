@@ -13,6 +13,8 @@ from fixtures.recordings.real_data import REAL, needs_real
 class Finder:
     """Finds whole white squares that fill 0.2 to 0.8 of its picture's longer side."""
 
+    side_px = 224
+
     def detect(self, image):
         longer = max(image.shape[:2])
         count, _, stats, centres = cv2.connectedComponentsWithStats(

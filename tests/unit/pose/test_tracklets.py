@@ -41,6 +41,8 @@ def blobs(image):
 
 
 class Finder:
+    side_px = 224
+
     def __init__(self):
         self.asked = 0
 

@@ -7,26 +7,47 @@ from courtside.study.configuration import sessions
 NETWORK = {"artefact": "a", "member": "m", "sha256": "0" * 64}
 
 
-def test_a_heat_map_model_passes_its_input_to_the_decoder():
+DETECTORS = {"blazepose-detector": {"decoder": "blazepose", "min_score": 0.4, "network": NETWORK}}
+
+
+def test_a_model_passes_what_it_declares_to_its_decoder():
     entry = {
         "decoder": "heatmaps",
         "skeleton": "cpm14",
-        "detector": NETWORK,
-        "landmarks": NETWORK,
-        "input": {"range": [0, 255], "channels": "bgr"},
+        "tracking": False,
+        "landmarks": {"file": "n.onnx", "sha256": "0" * 64, "outputs": ["maps"]},
+        "input": {"size": [192, 256], "channels": "bgr"},
+        "flip_test": True,
     }
-    model = sessions.model("m", entry)
+    model = sessions.model("m", entry, DETECTORS)
     assert model.decoder_options() == {
         "decoder": "heatmaps",
-        "input_range": [0, 255],
-        "channels": "bgr",
+        "outputs": ["maps"],
+        "input": {"size": [192, 256], "channels": "bgr"},
+        "flip_test": True,
     }
+    assert model.detector.decoder_options() == {"decoder": "blazepose", "min_score": 0.4}
+    assert not model.tracking
+    assert model.landmarks.is_onnx
+    assert model.landmarks.path == "n.onnx"
 
 
-def test_blazepose_needs_no_input():
-    entry = {"decoder": "blazepose", "skeleton": "s", "detector": NETWORK, "landmarks": NETWORK}
-    assert sessions.model("m", entry).decoder_options() == {"decoder": "blazepose"}
-    assert sessions.model("m", entry).landmarks.outputs is None
+def test_outputs_of_tflite_are_for_its_conversion():
+    network = NETWORK | {"outputs": ["Identity"]}
+    entry = {"decoder": "blazepose", "skeleton": "s", "landmarks": network}
+    model = sessions.model("m", entry, DETECTORS)
+    assert model.decoder_options() == {"decoder": "blazepose"}
+    assert model.landmarks.outputs == ["Identity"]
+    assert not model.landmarks.is_onnx
+    assert model.landmarks.path == "results/external/a/m"
+
+
+def test_a_one_stage_model_has_no_detector():
+    network = {"file": "n.onnx", "sha256": "0" * 64}
+    entry = {"decoder": "rtmo", "skeleton": "coco17", "landmarks": network, "min_score": 0.5}
+    model = sessions.model("m", entry, {})
+    assert model.detector is None
+    assert model.decoder_options() == {"decoder": "rtmo", "min_score": 0.5}
 
 
 WAYS = [

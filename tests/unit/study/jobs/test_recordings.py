@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import pytest
 
+from courtside.study.configuration import sessions
+from courtside.study.errors import InputError
 from courtside.study.jobs import recordings
 
 DEMO = "results/external/pose2sim/Pose2Sim/Demo_SinglePerson/videos"
@@ -58,10 +60,49 @@ def test_a_video_is_filmed_for_its_subjects_and_that_of_a_device_for_one_person(
 
 def test_networks_come_from_pinned_artefacts(job, study):
     one = job(model="blazepose-full", part="detector")
-    detector = study.models["blazepose-full"].detector
-    assert recordings.network(one) == detector
-    path = f"results/external/{detector.artefact}/{detector.member}"
-    assert recordings.tflite(one) == path
+    network = study.models["blazepose-full"].detector.network
+    assert recordings.network(one) == network
+    path = f"results/external/{network.artefact}/{network.member}"
+    assert recordings.network_source(one) == path
+    assert recordings.network_sha256(one) == network.sha256
+    both = {"detector": "detector", "landmarks": "landmarks"}
+    found = {part: recordings.network_file(job(model="blazepose-full"), part) for part in both}
+    assert found == {part: f"results/networks/blazepose-full/{part}.onnx" for part in both}
+    assert recordings.decoder(job(model="blazepose-full"), "detector") == {"decoder": "blazepose"}
+
+
+def own_models(study):
+    """Return the study with two networks of the user's disk, one of them of one stage."""
+    entry = {"decoder": "simcc", "skeleton": "coco17", "detector": "mine", "split": 2}
+    network = {"file": "data/n.onnx", "sha256": "0" * 64, "outputs": ["x", "y"]}
+    detector = {"decoder": "yolox", "network": {"file": "data/d.onnx", "sha256": "1" * 64}}
+    one = {"decoder": "rtmo", "skeleton": "coco17", "landmarks": network}
+    models = {
+        "mine": sessions.model("mine", {**entry, "landmarks": network}, {"mine": detector}),
+        "whole": sessions.model("whole", one, {}),
+    }
+    return replace(study, models=models)
+
+
+def test_an_onnx_file_is_checked_and_run_as_it_is(job, study):
+    mine = job(own_models(study), model="mine")
+    assert recordings.network_file(mine, "detector") == (
+        "results/networks/mine/detector.checked.onnx"
+    )
+    part = job(own_models(study), model="mine", part="landmarks")
+    assert recordings.network_source(part) == "data/n.onnx"
+    assert recordings.network_sha256(part) == "0" * 64
+    assert recordings.decoder(mine, "detector") == {"decoder": "yolox"}
+    how = {"decoder": "simcc", "outputs": ["x", "y"], "split": 2}
+    assert recordings.decoder(mine, "landmarks") == how
+
+
+def test_a_one_stage_network_has_no_detector(job, study):
+    whole = job(own_models(study), model="whole")
+    assert recordings.network_file(whole, "detector") == []
+    assert recordings.decoder(whole, "detector") == {}
+    with pytest.raises(InputError, match="whole: expected a network, found no detector"):
+        recordings.network(job(own_models(study), model="whole", part="detector"))
 
 
 def test_virtual_bodies_are_files_of_one_artefact(study):

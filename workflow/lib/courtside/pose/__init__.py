@@ -1,7 +1,7 @@
 """2D pose networks in onnxruntime: detection, tracking, decoding, privacy.
 
-decoders: `landmark_network`: a network by the name of its decoder.
-detector: `Region`, `Pose`, `cut_out`: the interface of networks; blazepose, heatmaps: their kinds.
+decoders: `landmark_network`, `person_detector`: a network by the name of its decoder.
+detector: `Region`, `Pose`, `cut_out`: the interface of networks; blazepose: MediaPipe's.
 clothing: `Clothing`: the colours of a person's clothes.
 tracking, tracklets: `track_person`, `track_people`: people followed through the pictures of one
     camera.
@@ -9,5 +9,5 @@ search, tiles, foreground: `Search`: where people are searched for: in tiles of 
     and first where it differs from the background.
 privacy, stick_drawing: `hide_faces`, `only_persons`, `hide`; `draw`.
 
-Folder: `conversion` (networks from TFLite to ONNX).
+Folders: `networks` (ONNX files of any maker), `conversion` (networks from TFLite to ONNX).
 """

@@ -6,6 +6,7 @@ its own.
 """
 
 import math
+from collections.abc import Sequence
 
 import cv2
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from courtside.pose import detector
 from courtside.pose.detector import Pose, Region
+from courtside.pose.networks.session import CPU, Network
 from courtside.study.errors import StrPath
 
 DETECTOR_SIDE = 224
@@ -63,8 +65,19 @@ class BlazePoseDetector:
     a hundred places without people reaches (crowd-dev). The landmark network judges them.
     """
 
-    def __init__(self, onnx_path: StrPath, min_score: float = 0.2) -> None:
-        self.network = detector.open_network(onnx_path)
+    side_px = DETECTOR_SIDE
+
+    def __init__(
+        self,
+        onnx_path: StrPath,
+        min_score: float = 0.2,
+        *,
+        outputs: Sequence[str] | None = None,
+        providers: Sequence[str] = CPU,
+    ) -> None:
+        shape = (1, DETECTOR_SIDE, DETECTOR_SIDE, 3)
+        names = outputs or ("Identity", "Identity_1")
+        self.network = Network(onnx_path, shape, outputs=names, providers=providers)
         self.min_score = min_score
         self.anchors = anchors()
 
@@ -74,7 +87,7 @@ class BlazePoseDetector:
         whole = Region(width / 2, height / 2, max(height, width))
         patch = detector.cut_out(image, whole, DETECTOR_SIDE)[:, :, ::-1]
         tensor = patch.astype(np.float32)[None] * (2 / 255) - 1
-        boxes, logits = self.network.run(["Identity", "Identity_1"], {"input_1": tensor})
+        boxes, logits = self.network.run(tensor)
         score = sigmoid(logits[0, :, 0])
         kept = np.flatnonzero(score >= self.min_score)
         box = boxes[0, kept].astype(float) / DETECTOR_SIDE
@@ -116,21 +129,28 @@ class BlazePoseLandmarks:
     """The landmark network of BlazePose: `pose_landmark_full` or `_lite`, converted.
 
     Outputs: Identity (39 x 5 landmarks), Identity_1 (presence), Identity_3 (heat maps), Identity_4
-    (39 x 3 metric landmarks).
+    (39 x 3 metric landmarks), or others named in this order.
     """
 
     n_joints = N_JOINTS
 
-    def __init__(self, onnx_path: StrPath) -> None:
-        self.network = detector.open_network(onnx_path)
+    def __init__(
+        self,
+        onnx_path: StrPath,
+        *,
+        outputs: Sequence[str] | None = None,
+        providers: Sequence[str] = CPU,
+    ) -> None:
+        shape = (1, LANDMARK_SIDE, LANDMARK_SIDE, 3)
+        names = outputs or ("Identity", "Identity_1", "Identity_3", "Identity_4")
+        self.network = Network(onnx_path, shape, outputs=names, providers=providers)
 
     def estimate(self, image: NDArray, region: Region) -> Pose:
         """Return the `Pose` of the person in one `Region` of a (H, W, 3) uint8 BGR picture."""
         patch = detector.cut_out(image, region, LANDMARK_SIDE, cv2.BORDER_REPLICATE)
         patch = cv2.cvtColor(patch, cv2.COLOR_BGR2RGB)
         tensor = np.divide(patch, np.float32(255), dtype=np.float32)[None]
-        names = ["Identity", "Identity_1", "Identity_3", "Identity_4"]
-        landmarks, presence, heat_maps, metric = self.network.run(names, {"input_1": tensor})
+        landmarks, presence, heat_maps, metric = self.network.run(tensor)
         landmarks = landmarks.reshape(39, 5).astype(float)
         fraction = refine(landmarks[:, :2] / LANDMARK_SIDE, heat_maps[0])
         xy = detector.to_picture(fraction, region)

@@ -10,10 +10,10 @@ from typing import Protocol
 
 import cv2
 import numpy as np
-import onnxruntime
 from numpy.typing import NDArray
 
-from courtside.study.errors import StrPath
+# Of a region around a person's box, in its longer sides: as BlazePose's regions are.
+SIDE_OF_BOX = 1.4
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,14 @@ class Region:
     y: float
     side: float  # px
     angle_rad: float = 0.0  # positive turns the x axis towards the y axis (clockwise as seen)
+    # Width and height of the person's upright box about the centre, px, where it is known.
+    box: tuple[float, float] | None = None
+
+    def placed(self, left: float, top: float, scale: float = 1.0) -> "Region":
+        """Return the region in the picture of which its own was a part, at a corner and scale."""
+        box = None if self.box is None else (self.box[0] * scale, self.box[1] * scale)
+        x, y = left + self.x * scale, top + self.y * scale
+        return Region(x, y, self.side * scale, self.angle_rad, box)
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,8 @@ class Pose:
 class PersonDetector(Protocol):
     """Finds persons in a whole picture."""
 
+    side_px: int  # longer side of its input: larger pictures are shrunk to it
+
     def detect(self, image: NDArray) -> list[Region]:
         """Return the regions of all persons in a (H, W, 3) uint8 BGR picture, best first."""
         ...
@@ -56,15 +66,12 @@ class LandmarkNetwork(Protocol):
         ...
 
 
-def open_network(path: StrPath) -> onnxruntime.InferenceSession:
-    """Open an ONNX file for inference on one thread of the processor.
-
-    That is fastest when several files are processed in parallel: idle threads of onnxruntime spin.
-    """
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.log_severity_level = 3
-    return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+def around_box(low: NDArray, high: NDArray) -> Region:
+    """Return the region of a person whose box has the corners `low` and `high`, (2,) px."""
+    x, y = (low + high) / 2
+    width, height = high - low
+    side = SIDE_OF_BOX * max(width, height)
+    return Region(float(x), float(y), float(side), box=(float(width), float(height)))
 
 
 def cut_out(

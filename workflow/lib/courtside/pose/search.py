@@ -72,7 +72,14 @@ def confirms(region: Region, pose: Pose, others: Iterable[Pose]) -> bool:
 
 
 def _apart_px(region: Region, pose: Pose) -> float:
-    return float(np.hypot(region.x - pose.region.x, region.y - pose.region.y))
+    """Return how far the centres of a region and a pose are apart: of their boxes, if it has one.
+
+    The centre of BlazePose's regions is the middle of the hips.
+    """
+    if region.box is None:
+        return float(np.hypot(region.x - pose.region.x, region.y - pose.region.y))
+    x, y = (pose.xy.min(axis=0) + pose.xy.max(axis=0)) / 2
+    return float(np.hypot(region.x - x, region.y - y))
 
 
 def _is_part(pose: Pose, whole: Pose) -> bool:

@@ -93,7 +93,7 @@ def regions_near(
     found = detector.detect(image[top : int(centre_y + half), left : int(centre_x + half)])
     if not found and fallback:
         return [Region(centre_x, centre_y, SEARCH_MARGIN * max(width, height))]
-    return [Region(one.x + left, one.y + top, one.side, one.angle_rad) for one in found]
+    return [one.placed(left, top) for one in found]
 
 
 def as_row(

@@ -22,6 +22,7 @@ EXTERNAL = "results/external/"
 NETWORKS = "results/networks/"
 EXTERNAL_MEMBER = EXTERNAL + "{artefact}/{member}"
 ONNX = NETWORKS + "{model}/{part}.onnx"
+CHECKED_ONNX = NETWORKS + "{model}/{part}.checked.onnx"
 
 # Simulated recordings and their truth.
 VIRTUAL = "results/virtual/{session}"

@@ -1,6 +1,6 @@
 """Skeletons: ordered joints and bones, the limbs that all skeletons share, and symmetric pairs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain, pairwise
 from pathlib import Path
@@ -38,7 +38,7 @@ class Skeleton:
 
     def mirror(self) -> list[int]:
         """Return for each joint the index of its counterpart on the other side, else its own."""
-        return [self.joints.index(_other_side(joint)) for joint in self.joints]
+        return mirror(self.joints)
 
     def side_groups(self) -> list[list[str]]:
         """Return the sets of joints whose sides a network swaps together: upper body and legs."""
@@ -58,6 +58,11 @@ class Skeleton:
                 f"joint, found {sorted(values)}; joints without a value: {missing}"
             )
         return [owner[joint] for joint in self.joints]
+
+
+def mirror(joints: Sequence[str]) -> list[int]:
+    """Return for each joint the index of its counterpart on the other side, else its own."""
+    return [joints.index(_other_side(joint)) for joint in joints]
 
 
 def _other_side(joint: str) -> str:

@@ -1,11 +1,13 @@
 """Reading and checking all configuration at once: every fault, one line each."""
 
 import difflib
+import itertools
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 from courtside.study.configuration import (
+    model_faults,
     schemas,
     session_faults,
     session_files,
@@ -28,20 +30,20 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
     """Check the whole configuration and return what it says.
 
     `config` is merged, as Snakemake gives it, and `config_file` its name, for messages. `folder` is
-    config/ with sessions/, skeletons/, models.yaml and external.yaml; relative paths in sessions
-    start from `root`. An `InputError` has every fault of every file.
+    config/ with sessions/, skeletons/ and the registers of models, detectors and artefacts;
+    relative paths in them start from `root`. An `InputError` has every fault of every file.
     """
     folder = Path(folder)
     faults: list[str] = []
     external = _checked(folder / "external.yaml", "external", faults)
     models = _checked(folder / "models.yaml", "models", faults)
+    detectors = _checked(folder / "detectors.yaml", "detectors", faults)
     faults += schemas.faults(config, "config", config_file)
     known = None
     if external is not None:
         known = {name: Artefact(name, **entry) for name, entry in external.items()}
+    faults += model_faults.find(folder, models, detectors, known)
     if models is not None:
-        for name, entry in models.items():
-            faults += _model_faults(folder, name, entry, known)
         faults += take_faults.unknown(f"{config_file}: models", _names(config, "models"), models)
     found = {}
     for name in _names(config, "sessions"):
@@ -57,22 +59,29 @@ def load(config: Content, config_file: str, folder: StrPath, root: StrPath = "."
             found[name] = (file, content)
     if not faults:
         faults += session_faults.conditions(config_file, config, found)
-    if faults or known is None or models is None:
+        faults += model_faults.absent(folder, Path(root), models, detectors, _used(config, found))
+    if faults or known is None or models is None or detectors is None:
         raise InputError(*faults)
     return Study(
         sessions=_sessions(config, found, root),
         artefacts=known,
-        models=_models(models, found),
+        models=_models(models, detectors, found),
         parameters=config,
         folder=folder,
     )
 
 
-def _models(models: Content, found: dict[str, tuple]) -> dict[str, Model]:
+def _used(config: Content, found: dict[str, tuple]) -> list[str]:
+    """Return the models that the study and its sessions name."""
+    own = [content.get("override", {}).get("models", []) for _, content in found.values()]
+    return [*config["models"], *itertools.chain.from_iterable(own)]
+
+
+def _models(models: Content, detectors: Content, found: dict[str, tuple]) -> dict[str, Model]:
     """Return the networks, and the skeletons of imported keypoints."""
     imported = [name for _, content in found.values() for name in take_faults.imported(content)]
     others = {name: Model(name=name, decoder="imported", skeleton=name) for name in imported}
-    return others | {name: sessions.model(name, entry) for name, entry in models.items()}
+    return others | {name: sessions.model(name, entry, detectors) for name, entry in models.items()}
 
 
 def _sessions(config: Content, found: dict[str, tuple], root: StrPath) -> dict[str, Session]:
@@ -111,24 +120,3 @@ def _name_faults(where: str, name: str, file: Path) -> Iterator[str]:
         close = difflib.get_close_matches(name, there, n=1)
         advice = f"did you mean {close[0]!r}?" if close else "correct the name"
         yield f"{where}: expected a file {file}, found {there}; {advice}"
-
-
-def _model_faults(
-    folder: Path, name: str, entry: Content, known: dict[str, Artefact] | None
-) -> Iterator[str]:
-    file = folder / "models.yaml"
-    if not (folder / "skeletons" / f"{entry['skeleton']}.yaml").is_file():
-        there = sorted(path.stem for path in (folder / "skeletons").glob("*.yaml"))
-        yield f"{file}: {name}.skeleton: expected one of {there}, found {entry['skeleton']!r}"
-    if (entry["decoder"] == "heatmaps") != ("input" in entry):
-        yield f"{file}: {name}.input: expected for heat-map networks and only there"
-    for part in ("detector", "landmarks"):
-        if known is None:
-            return
-        source = entry[part]
-        members = known[source["artefact"]].members if source["artefact"] in known else {}
-        if members.get(source["member"]) != source["sha256"]:
-            yield (
-                f"{file}: {name}.{part}: expected a member of external.yaml with its checksum, "
-                f"found {schemas.shown(source['artefact'])}: {schemas.shown(source['member'])}"
-            )

@@ -10,6 +10,9 @@ from courtside.study.configuration import consent
 from courtside.study.execution.artefacts import Artefact
 from courtside.study.methods import HALFBODY, Calibration, Fusion, Variant, distinct_offsets
 
+DEFAULT_DETECTOR = "blazepose-detector"  # of config/detectors.yaml
+ONE_STAGE = ("rtmo", "yolo-pose")  # decoders of networks that find persons themselves
+
 
 @dataclass(frozen=True)
 class Subject:
@@ -193,36 +196,67 @@ class Session:
 
 @dataclass(frozen=True)
 class Network:
-    """A file of a model: a member of an artefact, with its checksum and the outputs to keep."""
+    """A file of a model or detector with its checksum, and the names of the outputs to keep.
 
-    artefact: str
-    member: str
+    It is a member of an artefact, or a `file` of the user. A TFLite network is converted, an ONNX
+    file is run as it is.
+    """
+
     sha256: str
+    artefact: str | None = None
+    member: str | None = None
+    file: str | None = None
     outputs: list | None = None
+
+    @property
+    def path(self) -> str:
+        """The file."""
+        member = paths.EXTERNAL_MEMBER.format(artefact=self.artefact, member=self.member)
+        return self.file or member
+
+    @property
+    def is_onnx(self) -> bool:
+        """Whether it is run as it is."""
+        return self.path.endswith(".onnx")
+
+
+@dataclass(frozen=True)
+class Detector:
+    """A person detector of config/detectors.yaml, or of a model that finds persons itself."""
+
+    decoder: str
+    network: Network
+    options: dict[str, Any] = field(default_factory=dict)  # of its decoder
+
+    def decoder_options(self) -> dict[str, Any]:
+        """Return the keyword arguments of `courtside.pose.decoders.person_detector`."""
+        return {"decoder": self.decoder, **_outputs(self.network), **self.options}
 
 
 @dataclass(frozen=True)
 class Model:
     """A 2D pose model of config/models.yaml, or a skeleton whose keypoints another program finds.
 
-    Without `tracking` it searches the person in every frame; without networks its decoder is
-    `imported`.
+    Without `tracking` it searches the person in every frame. Without `landmarks` its decoder is
+    `imported`; without `detector` it finds persons itself.
     """
 
     name: str
     decoder: str
     skeleton: str
-    detector: Network | None = None
+    detector: Detector | None = None
     landmarks: Network | None = None
-    input: dict[str, Any] = field(default_factory=dict)
     tracking: bool = True
+    options: dict[str, Any] = field(default_factory=dict)  # of its decoder
 
     def decoder_options(self) -> dict[str, Any]:
         """Return the keyword arguments of `courtside.pose.decoders.landmark_network`."""
-        options = {"decoder": self.decoder}
-        if self.input:
-            options |= {"input_range": self.input["range"], "channels": self.input["channels"]}
-        return options
+        outputs = _outputs(self.landmarks) if self.landmarks else {}
+        return {"decoder": self.decoder, **outputs, **self.options}
+
+
+def _outputs(network: Network) -> dict[str, Any]:
+    return {"outputs": network.outputs} if network.is_onnx and network.outputs else {}
 
 
 @dataclass(frozen=True)
@@ -264,7 +298,22 @@ class Study:
         return self.folder / paths.SKELETON_YAML.format(skeleton=self.models[model].skeleton)
 
 
-def model(name: str, content: dict[str, Any]) -> Model:
-    """Build a model from its checked entry in config/models.yaml."""
-    networks = {part: Network(**content[part]) for part in ("detector", "landmarks")}
-    return Model(name=name, **{**content, **networks})
+def model(name: str, content: dict[str, Any], detectors: dict[str, Any]) -> Model:
+    """Build a model from its checked entry in config/models.yaml.
+
+    `detectors` is the content of config/detectors.yaml.
+    """
+    own = {key: content[key] for key in ("decoder", "skeleton", "tracking") if key in content}
+    others = (*own, "detector", "landmarks")
+    options = {key: value for key, value in content.items() if key not in others}
+    found = None
+    if content["decoder"] not in ONE_STAGE:
+        found = detector(detectors[content.get("detector", DEFAULT_DETECTOR)])
+    landmarks = Network(**content["landmarks"])
+    return Model(name=name, **own, detector=found, landmarks=landmarks, options=options)
+
+
+def detector(content: dict[str, Any]) -> Detector:
+    """Build a detector from its checked entry in config/detectors.yaml."""
+    options = {key: value for key, value in content.items() if key not in ("decoder", "network")}
+    return Detector(content["decoder"], Network(**content["network"]), options)

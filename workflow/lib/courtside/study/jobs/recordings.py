@@ -1,9 +1,11 @@
 """Recordings of jobs: videos, folders of pictures, pinned networks and virtual bodies."""
 
 from pathlib import Path
+from typing import Any
 
 from courtside.study import paths
 from courtside.study.configuration.sessions import Network, Study
+from courtside.study.errors import InputError
 from courtside.study.jobs.job import Job
 
 
@@ -48,13 +50,35 @@ def n_wanted(job: Job) -> int:
 
 def network(job: Job) -> Network:
     """Return the detector or the landmark network of a model."""
-    return getattr(job.model, job["part"])
+    found = job.model.detector.network if job.model.detector else None
+    found = job.model.landmarks if job["part"] == "landmarks" else found
+    if found is None:
+        raise InputError(f"{job['model']}: expected a network, found no {job['part']}")
+    return found
 
 
-def tflite(job: Job) -> str:
-    """Return the TFLite file of a network."""
-    found = network(job)
-    return paths.EXTERNAL_MEMBER.format(artefact=found.artefact, member=found.member)
+def network_source(job: Job) -> str:
+    """Return the file of a network as it comes: TFLite or ONNX."""
+    return network(job).path
+
+
+def network_sha256(job: Job) -> str:
+    """Return its checksum."""
+    return network(job).sha256
+
+
+def network_file(job: Job, part: str) -> str | list:
+    """Return the ONNX file of a part of a model: converted or checked; nothing without the part."""
+    if part == "detector" and job.model.detector is None:
+        return []
+    one = Job(job.study, {**job.wildcards, "part": part})
+    return one.fill(paths.CHECKED_ONNX if network(one).is_onnx else paths.ONNX)
+
+
+def decoder(job: Job, part: str) -> dict[str, Any]:
+    """Return how a part of a model is run: arguments of `courtside.pose.decoders`."""
+    found = job.model.detector if part == "detector" else job.model
+    return found.decoder_options() if found else {}
 
 
 def virtual_body(study: Study) -> list[str]:
