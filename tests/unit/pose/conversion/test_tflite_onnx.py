@@ -59,7 +59,7 @@ def photo(name, size):
     return image if "mobile" in name else np.ascontiguousarray(image[..., ::-1]) / 255
 
 
-SIZES = dict(zip(NETWORKS, (256, 192, 192, 224, 256), strict=True))
+SIZES = dict(zip(NETWORKS, (256, 192, 192, 224, 256, 256), strict=True))
 
 
 @pytest.mark.parametrize("picture", [noise, photo])
