@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+import sys
 import zipfile
 from pathlib import Path
 
@@ -108,6 +109,25 @@ def test_an_npm_that_cannot_be_started_is_named(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     found, said = registries.npm_package(PACKAGE, tmp_path, tmp_path / "none.lock")
     assert (found, said) == (None, f"{tmp_path / 'npm'}: No such file or directory")
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (["npm error code ETARGET", "npm error no such version", "npm error See x.log"], "no such"),
+        (["npm ERR! code E1", "npm ERR! a", "npm ERR! request failed, reason: b"], "request"),
+        (["it broke", "because of the disk"], "because of the disk"),
+        ([], "no message"),
+    ],
+)
+def test_the_reason_is_found_among_what_npm_says(tmp_path, monkeypatch, lines, said):
+    npm = tmp_path / "npm"
+    npm.write_text(f"#!{sys.executable}\nimport sys\nsys.exit({chr(10).join(lines)!r} or 1)\n")
+    npm.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    found, reason = registries.npm_package(PACKAGE, tmp_path, tmp_path / "none.lock")
+    assert found is None
+    assert reason.startswith(said)
 
 
 @pytest.mark.parametrize(

@@ -84,6 +84,10 @@ def _run(command: Sequence[str], folder: Path | None = None) -> str | None:
     if not done.returncode:
         return None
     lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
-    # npm says the reason first, then where its log is, and advice; others say it last.
-    lines = [line for line in lines if "reason: " in line] or lines
-    return re.sub("^npm (error|ERR!) ", "", (lines or ["no message"])[-1])
+    lines = [re.sub("^npm (error|ERR!) ", "", line) for line in lines]
+    # npm says a code, then the reason, then advice and where its log is; others end with a reason.
+    if reasons := [line for line in lines if "reason: " in line]:
+        return reasons[-1]
+    if len(lines) > 1 and lines[0].startswith("code "):
+        return lines[1]
+    return (lines or ["no message"])[-1]
