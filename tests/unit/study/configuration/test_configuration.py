@@ -170,7 +170,7 @@ def test_a_fault_in_one_file_hides_no_fault_in_another(folder):
     for part in (
         "external.yaml: a.sha256",
         "external.yaml: a.members: expected text",
-        "external.yaml: a: expected either",
+        "external.yaml: a: expected one of",
         "models.yaml: m.decoder",
         "config.yaml: draw_overlay.n_frames",
         "hall.yaml: takes.t1.videos.left",

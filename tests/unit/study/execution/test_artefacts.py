@@ -1,8 +1,9 @@
-"""Fetching pinned files: mirror and registry, checksums, and archives that mean harm."""
+"""Fetching pinned files: mirror and registries, checksums, and archives that mean harm."""
 
 import hashlib
 import io
 import struct
+import tarfile
 import zipfile
 import zlib
 from pathlib import Path
@@ -10,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from courtside.study.errors import InputError
-from courtside.study.execution import artefacts
+from courtside.study.execution import artefacts, registries
 from courtside.study.execution.artefacts import Artefact
+from fixtures.study import npm
 
 CONFIG = Path(__file__).parents[4] / "config"
 CONTENT = {"pkg/a.bin": b"a" * 1000, "pkg/b.bin": b"b" * 10, "pkg/other.txt": b"unwanted"}
@@ -135,7 +137,7 @@ def test_the_committed_register_reads():
 
 
 def test_the_mirror_comes_before_the_registry(mirror, tmp_path, monkeypatch):
-    monkeypatch.setattr(artefacts.subprocess, "run", None)  # a call would raise TypeError
+    monkeypatch.setattr(registries.subprocess, "run", None)  # a call would raise TypeError
     artefacts.fetch(artefact(mirror), outputs(tmp_path), mirror_folder=mirror)
     assert len(made(tmp_path)) == 2
 
@@ -223,3 +225,103 @@ def test_a_file_that_is_not_in_the_mirror_folder_is_named_with_its_note(tmp_path
     one = Artefact("net", **(entry | {"members": {}}))
     with pytest.raises(InputError, match=r"expected n\.bin in the folder .*; ask Ann"):
         artefacts.fetch(one, {}, mirror_folder=tmp_path)
+
+
+PACKAGE = "@scope/thing@1.0"
+TARBALL = "scope-thing-1.0.tgz"
+
+
+def entry(name, content=b"", kind=tarfile.REGTYPE, target=""):
+    info = tarfile.TarInfo(name)
+    info.size, info.type, info.linkname = len(content), kind, target
+    return info, content
+
+
+def tarball(folder, *entries):
+    """Write an npm package with these entries, and return its pin."""
+    folder.mkdir(exist_ok=True)
+    with tarfile.open(folder / TARBALL, "w:gz") as archive:
+        for info, content in entries or [entry(name, content) for name, content in CONTENT.items()]:
+            archive.addfile(info, io.BytesIO(content))
+    return npm_artefact(folder)
+
+
+def npm_artefact(folder, **changes):
+    pin = {"package": PACKAGE, "sha256": sha256((folder / TARBALL).read_bytes()), "licence": "MIT"}
+    pin["members"] = {name: sha256(CONTENT[name]) for name in ("pkg/a.bin", "pkg/b.bin")}
+    return Artefact("thing", **(pin | changes))
+
+
+def test_an_npm_package_in_the_mirror_comes_before_the_registry(tmp_path, monkeypatch):
+    one = tarball(tmp_path / "mirror")
+    monkeypatch.setattr(registries.subprocess, "run", None)
+    artefacts.fetch(one, outputs(tmp_path), mirror_folder=tmp_path / "mirror")
+    assert {path.read_bytes() for path in made(tmp_path)} == {
+        CONTENT["pkg/a.bin"],
+        CONTENT["pkg/b.bin"],
+    }
+
+
+def test_an_npm_package_is_fetched_by_npm(tmp_path, monkeypatch):
+    one = tarball(tmp_path / "registry")
+    told = npm.only(tmp_path, tmp_path / "registry" / TARBALL, monkeypatch)
+    (tmp_path / "mirror").mkdir()
+    artefacts.fetch(one, outputs(tmp_path), mirror_folder=tmp_path / "mirror")
+    assert len(made(tmp_path)) == 2
+    assert told()[:2] == ["pack", PACKAGE]
+    assert "--ignore-scripts" in told()
+
+
+def test_a_package_with_a_wrong_checksum_leaves_nothing(tmp_path, monkeypatch):
+    tarball(tmp_path / "registry")
+    npm.only(tmp_path, tmp_path / "registry" / TARBALL, monkeypatch)
+    with pytest.raises(InputError, match="expected sha256 0000") as caught:
+        artefacts.fetch(npm_artefact(tmp_path / "registry", sha256="0" * 64), outputs(tmp_path))
+    assert "artefact thing" in str(caught.value)
+    assert made(tmp_path) == []
+
+
+def test_where_npm_finds_nothing_one_line_says_what_to_do(tmp_path, monkeypatch):
+    one = tarball(tmp_path / "registry")
+    npm.only(tmp_path, tmp_path / "none.tgz", monkeypatch)
+    with pytest.raises(InputError) as caught:
+        artefacts.fetch(one, outputs(tmp_path))
+    assert str(caught.value) == (
+        "artefact thing: expected @scope/thing@1.0 from the npm registry, found: request to "
+        "x failed, reason: no such place; install npm or go online, or put "
+        f"scope-thing-1.0.tgz with sha256 {one.sha256} into the folder that `mirror_folder` of "
+        "config.yaml names"
+    )
+
+
+@pytest.mark.parametrize(
+    ("second", "message"),
+    [
+        (entry("pkg/b.bin", kind=tarfile.DIRTYPE), "expected the member pkg/b.bin, found none"),
+        (entry("pkg/b.bin", kind=tarfile.SYMTYPE, target="/etc/hostname"), "found none"),
+        (entry("pkg/b.bin", kind=tarfile.LNKTYPE, target="pkg/a.bin"), "found none"),
+        (entry("../pkg/b.bin", CONTENT["pkg/b.bin"]), "found none"),
+        (entry("pkg/b.bin", b"other"), r"member pkg/b\.bin: expected sha256"),
+    ],
+)
+def test_a_member_of_a_package_that_is_no_file_leaves_nothing(tmp_path, second, message):
+    one = tarball(tmp_path / "mirror", entry("pkg/a.bin", CONTENT["pkg/a.bin"]), second)
+    with pytest.raises(InputError, match=message):
+        artefacts.fetch(one, outputs(tmp_path), mirror_folder=tmp_path / "mirror")
+    assert made(tmp_path) == []
+
+
+def test_a_package_that_is_too_large_or_damaged_leaves_nothing(tmp_path, monkeypatch):
+    folder = tmp_path / "mirror"
+    one = tarball(folder)
+    with monkeypatch.context() as patched:
+        patched.setattr(artefacts, "LARGEST_MEMBER_BYTES", 999)
+        with pytest.raises(InputError, match=r"pkg/a\.bin: expected at most"):
+            artefacts.fetch(one, outputs(tmp_path), mirror_folder=folder)
+    whole = (folder / TARBALL).read_bytes()
+    for content in (b"<html>not found</html>", whole[: len(whole) // 2], b""):
+        (folder / TARBALL).write_bytes(content)
+        with pytest.raises(InputError, match="expected a") as caught:
+            artefacts.fetch(npm_artefact(folder), outputs(tmp_path), mirror_folder=folder)
+        assert "\n" not in str(caught.value)
+    assert made(tmp_path) == []

@@ -52,7 +52,10 @@ SCHEMA = {
                 "name": {"type": "string"},
                 "version": {"type": "string", "minLength": 1},
                 "bom-ref": {"type": "string", "minLength": 1},
-                "purl": {"type": "string", "pattern": "^pkg:pypi/[a-z0-9._-]+@[^@ ]+$"},
+                "purl": {
+                    "type": "string",
+                    "pattern": "^pkg:(pypi|npm/%40[a-z0-9-]+)/[a-z0-9._-]+@[^@ ]+$",
+                },
                 "description": {"type": "string"},
                 "hashes": {
                     "type": "array",
@@ -121,6 +124,8 @@ def test_every_artefact_is_in_it_with_members_and_licence(listed):
         assert members == pin["members"]
         if "requirement" in pin:
             assert f"{found[name]['name']}=={found[name]['version']}" == pin["requirement"]
+        if "package" in pin:
+            assert f"{found[name]['name']}@{found[name]['version']}" == pin["package"]
 
 
 def test_it_has_the_form_of_cyclonedx(listed):
@@ -186,3 +191,10 @@ def test_an_artefact_that_no_registry_holds():
     (part,) = sbom.of_study("", [artefact], **ABOUT)["components"]
     assert "version" not in part and "purl" not in part
     assert part["licenses"] == [{"license": {"name": "free to use, ask"}}]
+
+
+def test_an_npm_package_has_the_url_of_its_kind():
+    artefact = Artefact("net", HASH, {"package/n": HASH}, "MIT", package="@scope/thing@1.0")
+    (part,) = sbom.of_study("", [artefact], **ABOUT)["components"]
+    assert (part["name"], part["version"]) == ("@scope/thing", "1.0")
+    assert part["purl"] == "pkg:npm/%40scope/thing@1.0"

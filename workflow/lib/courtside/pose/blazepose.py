@@ -126,7 +126,7 @@ def overlap(one: NDArray, many: NDArray) -> NDArray:
 
 
 class BlazePoseLandmarks:
-    """The landmark network of BlazePose: `pose_landmark_full` or `_lite`, converted.
+    """The landmark network of BlazePose: `pose_landmark_lite`, `_full` or `_heavy`, converted.
 
     Outputs: Identity (39 x 5 landmarks), Identity_1 (presence), Identity_3 (heat maps), Identity_4
     (39 x 3 metric landmarks), or others named in this order.

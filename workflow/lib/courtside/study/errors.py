@@ -6,6 +6,7 @@ import lzma
 import os
 import struct
 import sysconfig
+import tarfile
 import tokenize
 import zipfile
 import zlib
@@ -20,7 +21,7 @@ SHORT = 200  # of what a library says
 RAISED_BY_READERS: tuple[type[Exception], ...] = (
     *(ValueError, OSError, EOFError, LookupError, ArithmeticError, RuntimeError, MemoryError),
     *(SyntaxError, tokenize.TokenError, csv.Error, struct.error),
-    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError),
+    *(zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError),
 )
 # Damage if code of a library raises them (PyYAML for `!!timestamp x`), else faults of our own code:
 # `require_type` checks the types of content that we take apart.

@@ -4,6 +4,7 @@ files: `atomic`, `atomic_folder`, `write_json`, `read_json`, `sha256`, `seen_fro
 script: `run`: one job
 log: `to_file` and `progress`, for scripts
 artefacts: `fetch` and `unpack` pinned files
+registries: `wheel` and `npm_package`, downloaded, not installed
 digest: `code_digest` and `Remembered`, which rerun rules whose code changed
 checksums: `Checksums` of large files, kept between runs
 future_dates, machine_resources: what is checked before any work

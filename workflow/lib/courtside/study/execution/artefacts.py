@@ -1,31 +1,22 @@
 """Pinned files from outside: fetched, checked, and only their named members unpacked."""
 
+import io
 import shutil
-import subprocess
-import sys
+import tarfile
 import tempfile
 import zipfile
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from typing import IO
 
 from courtside.study.configuration import yaml_files
-from courtside.study.errors import InputError, StrPath, reading
-from courtside.study.execution import digest, files
+from courtside.study.errors import InputError, StrPath, reading, require_type
+from courtside.study.execution import digest, files, registries
 
 LARGEST_MEMBER_BYTES = 1 << 30  # ASSUME: far more than any pinned member has
 AGAIN = "delete the file and fetch it again"
-PIP_OPTIONS = [
-    "--no-deps",
-    "--require-hashes",
-    "--only-binary=:all:",
-    "--python-version=3.11",
-    "--platform=manylinux_2_28_x86_64",
-    "--no-input",
-    "--disable-pip-version-check",
-    "--timeout=30",
-]
 
 
 @dataclass(frozen=True)
@@ -36,7 +27,8 @@ class Artefact:
     sha256: str  # of the file that is fetched
     members: dict  # checksum of each member that is used
     licence: str
-    requirement: str | None = None  # `name==version` in the package registry
+    requirement: str | None = None  # `name==version` of a wheel in the Python package registry
+    package: str | None = None  # `name@version` in the npm registry
     mirror_file: str | None = None  # its file name in the mirror folder, for what no registry holds
     note: str = ""
 
@@ -47,15 +39,21 @@ def read(path: StrPath) -> dict[str, Artefact]:
 
 
 def fetch(
-    artefact: Artefact, outputs: Mapping[str, Path], *, mirror_folder: str | Path | None = None
+    artefact: Artefact,
+    outputs: Mapping[str, Path],
+    *,
+    mirror_folder: str | Path | None = None,
+    npm_lock: StrPath = "npm.lock",
 ) -> None:
     """Fetch an artefact and unpack the members that are used, each to its path in `outputs`.
 
-    The folder of the mirror is tried before the package registry. An `InputError` if the file
-    cannot be had, a checksum differs, or a member is missing or unsafe.
+    The folder of the mirror is tried before the package registries. `npm_lock` pins the npm that
+    fetches packages where none is on the PATH. An `InputError` if the file cannot be had, a
+    checksum differs, or a member is missing or unsafe.
     """
     with tempfile.TemporaryDirectory(prefix="courtside-") as folder:
-        source = _in_mirror(artefact, mirror_folder) or _download(artefact, Path(folder))
+        found_there = _in_mirror(artefact, mirror_folder)
+        source = found_there or _download(artefact, Path(folder), npm_lock)
         found = files.sha256(source)
         if found != artefact.sha256:
             raise InputError(
@@ -73,8 +71,8 @@ def _in_mirror(artefact: Artefact, mirror_folder: str | Path | None) -> Path | N
         raise InputError(
             f"mirror_folder: expected a folder, found none at {folder}; correct config.yaml"
         )
-    if artefact.mirror_file:
-        matching = [folder / artefact.mirror_file]
+    if single := _single_file(artefact):
+        matching = [folder / single]
     else:
         project, version = str(artefact.requirement).split("==")
         wanted = [digest.package_name(project), version]
@@ -83,31 +81,39 @@ def _in_mirror(artefact: Artefact, mirror_folder: str | Path | None) -> Path | N
     return next((path for path in matching if path.is_file()), None)
 
 
-def _download(artefact: Artefact, folder: Path) -> Path:
-    if artefact.requirement is None:
+def _single_file(artefact: Artefact) -> str | None:
+    """Return the one name that an artefact's file has; None for a wheel, whose name varies."""
+    return registries.package_file(artefact.package) if artefact.package else artefact.mirror_file
+
+
+def _download(artefact: Artefact, folder: Path, npm_lock: StrPath) -> Path:
+    if artefact.mirror_file:
         raise InputError(
             f"artefact {artefact.name}: expected {artefact.mirror_file} in the folder that "
             f"`mirror_folder` of config.yaml names, found none; {artefact.note}"
         )
-    wanted = folder / "requirement.txt"
-    wanted.write_text(f"{artefact.requirement} --hash=sha256:{artefact.sha256}\n", encoding="utf-8")
-    command = [sys.executable, "-m", "pip", "download", "-r", str(wanted), "-d", str(folder)]
-    done = subprocess.run([*command, *PIP_OPTIONS], capture_output=True, text=True, check=False)
-    wheels = list(folder.glob("*.whl"))
-    if done.returncode or not wheels:
-        lines = [line for line in done.stderr.splitlines() if line.strip()] or ["no message"]
+    if artefact.package:
+        wanted = f"{artefact.package} from the npm registry"
+        found, said = registries.npm_package(artefact.package, folder, npm_lock)
+        advice = "install npm or go online"
+    else:
+        wanted = f"{artefact.requirement} from the package registry"
+        found, said = registries.wheel(str(artefact.requirement), artefact.sha256, folder)
+        advice = "go online"
+    if found is None:
+        file = _single_file(artefact) or "the wheel"
         raise InputError(
-            f"artefact {artefact.name}: expected {artefact.requirement} from the package registry, "
-            f"found: {lines[-1]}; go online, or put the wheel with sha256 {artefact.sha256} into "
-            "the folder that `mirror_folder` of config.yaml names"
+            f"artefact {artefact.name}: expected {wanted}, found: {said}; {advice}, or put {file} "
+            f"with sha256 {artefact.sha256} into the folder that `mirror_folder` of config.yaml "
+            "names"
         )
-    return wheels[0]
+    return found
 
 
 def unpack(source: Path, artefact: Artefact, outputs: Mapping[str, Path]) -> None:
     """Copy the named members of a checked file to their places, all or none.
 
-    `source` is a zip file (a wheel), or the single member itself.
+    `source` is a zip file (a wheel), a tar file (an npm package), or the single member itself.
     """
     for member in outputs:
         if PurePosixPath(member).is_absolute() or ".." in PurePosixPath(member).parts:
@@ -117,7 +123,9 @@ def unpack(source: Path, artefact: Artefact, outputs: Mapping[str, Path]) -> Non
     with ExitStack() as stack:
         # Some networks are readable as zip files too: the register says what is one file.
         single = artefact.mirror_file in artefact.members
-        archive = None if single else stack.enter_context(_archive(source))
+        archive = None if single else _archive(source, artefact)
+        if archive is not None:
+            stack.callback(archive.close)
         for member, path in outputs.items():
             temporary = stack.enter_context(files.atomic(path))
             if archive is None:
@@ -132,24 +140,44 @@ def unpack(source: Path, artefact: Artefact, outputs: Mapping[str, Path]) -> Non
                 )
 
 
-def _archive(source: Path) -> zipfile.ZipFile:
+def _archive(source: Path, artefact: Artefact) -> zipfile.ZipFile | tarfile.TarFile:
+    if artefact.package:
+        with reading(source, "a tar file with gzip compression", AGAIN):
+            return tarfile.open(source, "r:gz")
     with reading(source, "a zip file", AGAIN):
         return zipfile.ZipFile(source)
 
 
-def _copy_member(archive: zipfile.ZipFile, source: Path, member: str, temporary: Path) -> None:
+def _copy_member(
+    archive: zipfile.ZipFile | tarfile.TarFile, source: Path, member: str, temporary: Path
+) -> None:
+    with reading(f"{source}: member {member}", "a whole file", AGAIN):
+        size = _size(archive, member)
+        if size is None:
+            raise InputError(f"{source}: expected the member {member}, found none")
+        if size > LARGEST_MEMBER_BYTES:
+            raise InputError(
+                f"{source}: member {member}: expected at most 1 GiB, found {size} bytes"
+            )
+        with _opened(archive, member) as stream, temporary.open("wb") as target:
+            left = size
+            while left > 0 and (piece := stream.read(min(files.CHUNK_BYTES, left))):
+                target.write(piece)
+                left -= len(piece)
+
+
+def _size(archive: zipfile.ZipFile | tarfile.TarFile, member: str) -> int | None:
+    """Return the size of a member in bytes; None where no file has this name."""
     try:
-        size = archive.getinfo(member).file_size
+        if isinstance(archive, zipfile.ZipFile):
+            return archive.getinfo(member).file_size
+        found = archive.getmember(member)
     except KeyError:
-        raise InputError(f"{source}: expected the member {member}, found none") from None
-    if size > LARGEST_MEMBER_BYTES:
-        raise InputError(f"{source}: member {member}: expected at most 1 GiB, found {size} bytes")
-    with (
-        reading(f"{source}: member {member}", "a whole file", AGAIN),
-        archive.open(member) as stream,
-        temporary.open("wb") as target,
-    ):
-        left = size
-        while left > 0 and (piece := stream.read(min(files.CHUNK_BYTES, left))):
-            target.write(piece)
-            left -= len(piece)
+        return None
+    return found.size if found.isfile() else None
+
+
+def _opened(archive: zipfile.ZipFile | tarfile.TarFile, member: str) -> IO[bytes]:
+    if isinstance(archive, zipfile.ZipFile):
+        return archive.open(member)
+    return require_type(archive.extractfile(member), io.BufferedReader)

@@ -95,9 +95,9 @@ def _titles_of_licence_files(name: str) -> list[str]:
 
 
 def _artefact(artefact: Artefact) -> dict[str, Any]:
-    name, _, version = (artefact.requirement or artefact.name).partition("==")
+    name, version, purl = _registered(artefact)
     part = {"type": "data", "bom-ref": f"artefact:{artefact.name}", "name": name}
-    part |= {"version": version, "purl": f"pkg:pypi/{name}@{version}"} if version else {}
+    part |= {"version": version, "purl": purl} if version else {}
     part |= {"description": artefact.note} if artefact.note else {}
     members = [
         {"type": "file", "bom-ref": f"artefact:{artefact.name}/{member}", "name": member}
@@ -106,6 +106,15 @@ def _artefact(artefact: Artefact) -> dict[str, Any]:
     ]
     own = {"hashes": _hashes([artefact.sha256]), **_licences(artefact.licence)}
     return {**part, **own, "components": members}
+
+
+def _registered(artefact: Artefact) -> tuple[str, str, str]:
+    """Return name, version and package URL of an artefact; the name alone if no registry has it."""
+    if artefact.package:
+        name, _, version = artefact.package.rpartition("@")
+        return name, version, f"pkg:npm/{name.replace('@', '%40')}@{version}"
+    name, _, version = (artefact.requirement or artefact.name).partition("==")
+    return name, version, f"pkg:pypi/{name}@{version}"
 
 
 def _hashes(checksums: Iterable[str]) -> list[dict[str, str]]:
