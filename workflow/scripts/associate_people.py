@@ -32,7 +32,9 @@ def main(paths, people_npz, *, several):
         mirror=[chosen.index(joints.mirror()[joint]) for joint in chosen],
         court=court.read(paths.court) if paths.get("court") else None,
         bones=lengths.bones(names),
-        clothing=[resampling.clothing(v, time_s, c) for v, c in zip(views, clocks, strict=True)],
+        clothing=[
+            resampling.nearest(v, time_s, c)[0].clothing for v, c in zip(views, clocks, strict=True)
+        ],
     )
     frames_s = [c.to_reference(v.time_s) for c, v in zip(clocks, views, strict=True)]
     index = {

@@ -13,8 +13,11 @@ UPPER = ("left_shoulder", "right_shoulder", "left_hip", "right_hip")
 THIGHS = (("left_hip", "left_knee"), ("right_hip", "right_knee"))
 # Where colours are taken, in shares of the way across, down the trunk, and down a thigh: far enough
 # inside that a joint some centimetres off still leaves them on the clothes.
-ACROSS, DOWN = (0.25, 0.375, 0.5, 0.625, 0.75), (0.2, 0.35, 0.5, 0.65, 0.8)
-ALONG = np.linspace(0.2, 0.8, 13)
+ACROSS, DOWN = (
+    grid.reshape(-1, 1)
+    for grid in np.meshgrid((0.25, 0.375, 0.5, 0.625, 0.75), (0.2, 0.35, 0.5, 0.65, 0.8))
+)
+ALONG = np.linspace(0.2, 0.8, 13)[:, None]
 FEWEST = 8  # points of a part in the picture: fewer tell no colour
 
 
@@ -36,10 +39,9 @@ class Clothing:
         if not self._known:
             return np.full((2, 3), np.nan)
         left, right, left_hip, right_hip = xy[self._upper]
-        across, down = (g.ravel()[:, None] for g in np.meshgrid(ACROSS, DOWN))
-        top, bottom = left + across * (right - left), left_hip + across * (right_hip - left_hip)
-        limbs = [xy[hip] + ALONG[:, None] * (xy[knee] - xy[hip]) for hip, knee in self._thighs]
-        parts = (top + down * (bottom - top), np.concatenate(limbs))
+        top, bottom = left + ACROSS * (right - left), left_hip + ACROSS * (right_hip - left_hip)
+        limbs = [xy[hip] + ALONG * (xy[knee] - xy[hip]) for hip, knee in self._thighs]
+        parts = (top + DOWN * (bottom - top), np.concatenate(limbs))
         return np.stack([_median_lab(image, part) for part in parts])
 
 

@@ -11,9 +11,9 @@ from courtside.pose.networks.boxes import BoxDetector
 from courtside.pose.networks.inputs import Input
 from courtside.pose.networks.one_stage import OneStage
 from courtside.pose.networks.session import CPU, Network
-from courtside.pose.networks.top_down import HeatMaps, Maps, SimCC, TopDown
+from courtside.pose.networks.top_down import HeatMaps, Maps, SimCC, TopDown, check_joints
 from courtside.records.keypoints import skeleton
-from courtside.study.errors import InputError, StrPath
+from courtside.study.errors import StrPath
 
 TRIED = ((480, 640, 3), Region(320, 240, 300))  # an empty picture, and a place in it
 ONE_STAGE = ("rtmo", "yolo-pose")
@@ -55,11 +55,7 @@ def landmark_network(
     another number of joints than its skeleton.
     """
     if decoder == "blazepose":
-        if len(joints) != N_JOINTS:
-            raise InputError(
-                f"{onnx_path}: expected {len(joints)} joints as in its skeleton, found {N_JOINTS}; "
-                "correct `skeleton` in config/models.yaml"
-            )
+        check_joints(onnx_path, N_JOINTS, len(joints))
         return BlazePoseLandmarks(onnx_path, outputs=outputs, providers=providers)
     how = dict(input or {})
     padding = how.pop("padding", None)

@@ -60,26 +60,17 @@ def resample(
     return xy, np.where(np.isfinite(xy).all(axis=-1), score, np.nan)
 
 
-def clothing(view: Keypoints2D, time_s: NDArray, clock: Clock) -> NDArray:
-    """Return the colours of clothes (P, T, 2, 3) in the frames nearest to times (T,), as `nearest`.
-
-    Times are of the reference clock.
-    """
-    own = clock.from_reference(np.asarray(time_s))
-    right = np.clip(np.searchsorted(view.time_s, own), 0, len(view.time_s) - 1)
-    left = np.maximum(right - 1, 0)
-    nearer = np.abs(view.time_s[left] - own) < np.abs(view.time_s[right] - own)
-    return view.clothing[:, np.where(nearer, left, right)]
-
-
 def nearest(view: Keypoints2D, time_s: NDArray, clock: Clock) -> tuple[Keypoints2D, NDArray]:
     """Return a camera's frames nearest to times (T,) of the reference clock, not interpolated.
 
     The view gets these times. The second result (T,) tells when the frames were taken, on the
     camera's own clock: to find them in its video.
     """
-    own = clock.from_reference(time_s)
-    at = np.abs(view.time_s[None] - np.asarray(own)[:, None]).argmin(axis=1)
+    own = np.asarray(clock.from_reference(time_s))
+    right = np.clip(np.searchsorted(view.time_s, own), 0, len(view.time_s) - 1)
+    left = np.maximum(right - 1, 0)
+    farther = np.abs(view.time_s[left] - own) > np.abs(view.time_s[right] - own)
+    at = np.where(farther, right, left)
     fields = ("xy", "score", "reason", "xyz_in_body", "clothing")
     per_frame = {key: getattr(view, key)[:, at] for key in fields}
     return replace(view, time_s=np.asarray(time_s, dtype=float), **per_frame), view.time_s[at]

@@ -17,7 +17,7 @@ from courtside.pose.detector import Pose, Region
 from courtside.pose.networks import peaks
 from courtside.pose.networks.inputs import Input, Window
 from courtside.pose.networks.session import Network
-from courtside.study.errors import InputError
+from courtside.study.errors import InputError, StrPath
 
 # ASSUME: a body grows by less than this from one frame to the next, head and hands included.
 MARGIN = 1.3  # the next region is the joints' extent times this
@@ -77,7 +77,7 @@ class HeatMaps:
         if maps.ndim != 4 or len(maps) != 1 or not maps.size:
             raise network.fault("heat maps of one picture, 4 dimensions", maps.shape)
         maps = maps[0].transpose(1, 2, 0) if self.layout == "nchw" else maps[0]
-        _check_joints(network, maps.shape[2], self.n_joints)
+        check_joints(network.path, maps.shape[2], self.n_joints)
         return [maps]
 
     def mirror(self, arrays: Sequence[NDArray]) -> float:
@@ -117,7 +117,7 @@ class SimCC:
         if len(outputs) != 2 or any(len(shape) != 3 or shape[0] != 1 for shape in shapes):
             raise network.fault("two outputs of shape (1, joints, bins): SimCC's x and y", shapes)
         for shape in shapes:
-            _check_joints(network, shape[1], self.n_joints)
+            check_joints(network.path, shape[1], self.n_joints)
         wanted = [round(side * self.split) for side in self.size]
         if [shape[2] for shape in shapes] != wanted:
             raise network.fault(
@@ -140,10 +140,11 @@ class SimCC:
         return np.stack(fraction, axis=1), np.clip(np.minimum(found[0][1], found[1][1]), 0, 1)
 
 
-def _check_joints(network: Network, found: int, wanted: int) -> None:
+def check_joints(path: StrPath, found: int, wanted: int) -> None:
+    """Raise an `InputError` if a network has another number of joints than its skeleton."""
     if found != wanted:
         raise InputError(
-            f"{network.path}: expected {wanted} joints as in its skeleton, found {found}; "
+            f"{path}: expected {wanted} joints as in its skeleton, found {found}; "
             "correct `skeleton` in config/models.yaml"
         )
 

@@ -35,12 +35,7 @@ class Looks:
 
     def of(self, instant: NDArray, row: NDArray) -> NDArray:
         """Return the colours (M, C, K) of rows (M, C) at instants (M,); NaN for none."""
-        at = self.instants[instant]
-        each = [
-            np.where((row[:, c] >= 0)[:, None], seen[np.maximum(row[:, c], 0), at], np.nan)
-            for c, seen in enumerate(self.colours)
-        ]
-        return np.stack(each, axis=1)
+        return _of_rows(self.colours, self.instants[instant], row)
 
     def middle(self, found: Candidates) -> NDArray:
         """Return the colours (M, K) of candidates, the median of their views; NaN where unknown."""
@@ -98,7 +93,7 @@ def learn(clothing: Sequence[NDArray], instants: NDArray, sure: Candidates) -> L
     None where there are too few to learn from.
     """
     colours = [seen.reshape(*seen.shape[:2], -1) for seen in clothing]
-    whole = Looks(colours, instants, np.zeros(0), np.zeros(0)).of(sure.instant, sure.row)
+    whole = _of_rows(colours, instants[sure.instant], sure.row)
     whole = whole[np.isfinite(whole).all(axis=2).sum(axis=1) >= 2]
     if len(whole) < FEWEST:
         return None
@@ -117,6 +112,15 @@ def learn(clothing: Sequence[NDArray], instants: NDArray, sure: Candidates) -> L
         sigma=sigma,
         spread=np.sqrt(np.maximum(np.nanvar(middle, axis=0) - scatter, 0.0)),
     )
+
+
+def _of_rows(colours: Sequence[NDArray], frame: NDArray, row: NDArray) -> NDArray:
+    """Return the colours (M, C, K) of rows (M, C) in frames (M,); NaN for none."""
+    each = [
+        np.where((row[:, c] >= 0)[:, None], seen[np.maximum(row[:, c], 0), frame], np.nan)
+        for c, seen in enumerate(colours)
+    ]
+    return np.stack(each, axis=1)
 
 
 def _median(values: NDArray, axis: int) -> NDArray:
