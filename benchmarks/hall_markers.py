@@ -54,7 +54,7 @@ LABEL = "real, basketball player in a marker suit, sports hall, against the mark
 COMMAND = "`python benchmarks/hall_markers.py DATA`"
 
 
-def write_study(folder, data):
+def write_study(folder, data, model):
     """Write the session and its study; return the name of the study's configuration."""
     (folder / "data").mkdir(exist_ok=True)
     points = pd.read_csv(data / "court_points.csv").assign(z_m=0.0)
@@ -74,6 +74,7 @@ def write_study(folder, data):
             }
         },
         "override": {
+            "models": [model],
             "calibrations": list(WAYS),
             "take_calibrations": list(WAYS),
         },
@@ -91,7 +92,7 @@ def write_study(folder, data):
 def run(folder, data, model):
     """Make the skeletons of all stages with both calibrations; return the results' folder."""
     copied(folder)
-    study, results = write_study(folder, data), Path("results") / "hall-markers"
+    study, results = write_study(folder, data, model), Path("results") / "hall-markers"
     made = [results / FUSED.format(stage=s, way=w, model=model) for s in STAGES for w in WAYS]
     command = [sys.executable, "-m", "snakemake", "--configfile", study, "--", *map(str, made)]
     subprocess.run(command, cwd=folder, check=True)
@@ -191,7 +192,7 @@ def main():
     parser.add_argument("data", type=Path)
     parser.add_argument("--study", type=Path, help="a folder for the study, kept")
     parser.add_argument("--results", type=Path, help="of a run that is finished")
-    parser.add_argument("--model", default="blazepose-full")
+    parser.add_argument("--model", default="blazepose-heavy")
     parser.add_argument("--csv", type=Path, help="where the errors are written, too")
     given = parser.parse_args()
     checked(given.data)
@@ -207,7 +208,7 @@ def main():
     if given.csv:
         labelled = [table.assign(way=way, stage=stage) for way, stage, _, table in found]
         pd.concat(labelled).to_csv(given.csv, index=False, float_format="%.3f")
-    if given.model == "blazepose-full":
+    if given.model == "blazepose-heavy":
         stated.write(ROOT / stated.FOLDER / "hall_markers.csv", register_rows(found))
 
 

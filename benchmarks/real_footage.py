@@ -36,7 +36,7 @@ from courtside.study.configuration import yaml_files
 
 CONFIG = Path(__file__).parents[1] / "config"
 SKELETON = CONFIG / "skeletons" / "blazepose33.yaml"
-MODEL = "blazepose-full"
+MODEL = "blazepose-heavy"
 # Of BODY_25B: left and right shoulder, elbow, wrist, hip, knee, ankle.
 OPENPOSE = {name: 5 + 2 * at for at, name in enumerate(("shoulder", "elbow", "wrist"))}
 OPENPOSE |= {name: 11 + 2 * at for at, name in enumerate(("hip", "knee", "ankle"))}
