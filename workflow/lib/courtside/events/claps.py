@@ -27,6 +27,8 @@ BEFORE_S, BEHIND_S = 0.15, 0.22  # around the contact: what the hinge is fitted 
 REBOUND_S = 0.12  # after the contact: the time in which a rebound shows
 REBOUND = 0.015  # spans: hands of a rebound part by more, the overshoot of a filter is less
 REACH_S = 0.08  # search range of the contact about the first guess
+# Around the meeting of hands: their place. Hands that hide each other for longer are often lost.
+MEETING_S = (-0.1, 0.05)
 IN_FRONT = 0.5  # arm lengths: least distance of the hands in front of the shoulders
 LEVEL = 0.6  # arm lengths: largest distance of the hands above or below the shoulders
 STRAIGHT_DEG = 45.0  # largest bend of the elbows on the way, median of both arms
@@ -144,8 +146,8 @@ def _why_not(motion, spell, near, apart, most_m) -> str:
     arm_m = np.mean(
         [np.linalg.norm(rest[f"{s}_wrist"] - rest[f"{s}_shoulder"]) for s in tpose.SIDES]
     )
-    together = _within(time_s, time_s[near], (-0.02, HELD_S[1]))
-    hands = sum(at[f"{s}_wrist"] - at[f"{s}_shoulder"] for s in tpose.SIDES)[together] / 2
+    meeting = _within(time_s, time_s[near], MEETING_S)
+    hands = sum(at[f"{s}_wrist"] - at[f"{s}_shoulder"] for s in tpose.SIDES)[meeting] / 2
     hands = np.nanmedian(hands, axis=0)
     if not hands @ forwards > IN_FRONT * arm_m:
         return "the hands are not in front of the chest"
