@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from courtside.evaluation import joints as pose_errors
 from courtside.records.devices.clocks import Clock
@@ -93,6 +94,9 @@ def test_bias_and_scatter_are_separated():
     row = rows.set_index("joint").loc["left_knee"]
     assert row["bias_mm"] == pytest.approx(50, abs=2)
     assert row["sd_mm"] == pytest.approx(20 * np.sqrt(3), rel=0.03)
+    lengths = 20 * np.sqrt(chi2.ppf([0.5, 0.95], df=3))
+    assert row["unbiased_median_mm"] == pytest.approx(lengths[0], rel=0.05)
+    assert row["unbiased_p95_mm"] == pytest.approx(lengths[1], rel=0.05)
     assert row["rms_mm"] ** 2 == pytest.approx(row["bias_mm"] ** 2 + row["sd_mm"] ** 2)
 
 

@@ -14,7 +14,7 @@ CONVENTION = "true joint centres of the rig"
 def corrections(source: Source, documents: Source) -> list[Number]:
     """Return the distances to each reference, raw, filtered and corrected: virtual, then real."""
     build, table = Builder(TABLE), source.table(players.TABLE)
-    table = table[(table["fusion"] == players.OURS) & (table["model"] == "blazepose-full")]
+    table = table[(table["fusion"] == players.OURS) & (table["model"] == players.NETWORK)]
     for session, take in VIRTUAL:
         of = table[(table["session"] == session) & (table["take"] == take)]
         for _, row in of.iterrows():
@@ -49,7 +49,7 @@ def joints(source: Source) -> list[Number]:
     """Return the errors of single joints of the virtual takes shown beside real footage."""
     build = Builder("joints")
     for session, take in VIRTUAL:
-        (file,) = source.names(f"{session}/evaluation/takes/{take}/errors/*.blazepose-full.csv")
+        (file,) = source.names(f"{session}/evaluation/takes/{take}/errors/*.{players.NETWORK}.csv")
         table = source.table(file)
         table = table[(table["fusion"] == players.OURS) & table["joint"].isin(skeleton.JOINTS)]
         for _, row in table[table["person"] != "all"].iterrows():

@@ -8,6 +8,7 @@ from courtside.evaluation.numbers.register import Builder, Cut, Number, Settings
 TABLE, ANGLES = "figures/players.csv", "figures/angles.csv"
 STAGES = ("raw", "filtered", "corrected")
 OURS = "all-robust"  # the default rule, all cameras of a take
+NETWORK = "blazepose-heavy"  # the default network
 FUSIONS = {  # of a set of cameras and a rule
     "all-robust": "all cameras",
     "all-dlt": "all cameras, plain DLT",
@@ -31,6 +32,9 @@ PER_STAGE = {  # part: column, decimals, unit
     "p95": ("p95_mm", 0, "mm"),
     "coverage": ("coverage_90_percent", 0, "%"),
     "missing": ("missing_percent", 1, "%"),
+    "shift": ("bias_mm", 0, "mm"),
+    "unshifted": ("unbiased_median_mm", 0, "mm"),
+    "unshifted_p95": ("unbiased_p95_mm", 0, "mm"),
 }
 
 
@@ -43,7 +47,7 @@ def takes(source: Source) -> list[Number]:
     key = ["session", "take", "calibration", "model", "order", "fusion"]
     for (session, take, calibration, model, _, fusion), of in table.groupby(key, sort=True):
         row = f"`{session}/{take}`: {words(fusion)}"
-        row += "" if model == "blazepose-full" else f" ({model})"
+        row += "" if model == NETWORK else f" ({model})"
         for _, one in of.iterrows():
             where = f"{session}/{take}, {calibration}, {model}, {fusion}, stage {one['stage']}"
             cut = Cut(source, TABLE, where, session)
@@ -72,8 +76,9 @@ def sessions(source: Source) -> list[Number]:
 
 def _of_session(build: Builder, row: str, stage: str, of: pd.DataFrame, cut: Cut) -> None:
     count: Settings = {"n": of["n"].sum(), "decimals": 0}
-    for part in ("median", "p95"):
-        values, column = of[f"{part}_mm"], f"{part}_mm"
+    for part in ("median", "p95", "unshifted", "unshifted_p95"):
+        column = PER_STAGE[part][0]
+        values = of[column]
         build.add(row, f"{stage}_{part}", values.median(), cut, f"{column}: median take", **count)
         worst = values.max()
         build.add(row, f"{stage}_{part}_worst", worst, cut, f"{column}: worst take", **count)
@@ -89,7 +94,7 @@ def angles(source: Source) -> list[Number]:
     table = table[table["fusion"] == OURS]
     for (angle, session, model), of in table.groupby(["angle", "session", "model"], sort=False):
         row = f"{str(angle).replace('_', ' ')}, `{session}`" + (
-            "" if model == "blazepose-full" else f" ({model})"
+            "" if model == NETWORK else f" ({model})"
         )
         for stage in STAGES:
             one = of[(of["stage"] == stage) & (of["n"] > 0)]
@@ -136,7 +141,7 @@ PATHS = {
 def measures(source: Source) -> list[Number]:
     """Return the errors of speeds, distances and clocks by take and cameras, the worst person."""
     build, table = Builder("players-measures"), source.table(TABLE)
-    for file in source.names("*/evaluation/takes/*/kinematics/*/*-robust/blazepose-full.csv"):
+    for file in source.names(f"*/evaluation/takes/*/kinematics/*/*-robust/{NETWORK}.csv"):
         parts, rows = file.split("/"), source.table(file)
         session, take, fusion = parts[0], parts[3], parts[6]
         row = f"`{session}/{take}`: {words(fusion)}"

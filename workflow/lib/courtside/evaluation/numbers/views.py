@@ -114,6 +114,9 @@ VIEWS = {
         {
             "virtual session": "{row}",
             **_stages("{STAGE_median} / {STAGE_p95} ({STAGE_median_worst} / {STAGE_p95_worst})"),
+            "corrected, without the shift of the skeleton": (
+                "{corrected_unshifted} / {corrected_unshifted_p95}"
+            ),
             "90 % hold, raw / filtered / corrected (least take), %": " / ".join(
                 f"{{{stage}_coverage}} ({{{stage}_least}})" for stage in STAGES
             ),
@@ -125,6 +128,9 @@ VIEWS = {
         {
             "take: cameras, rule": "{row}",
             **_stages("{STAGE_median} / {STAGE_p95}"),
+            "corrected: shift of the skeleton; without it": (
+                "{corrected_shift}; {corrected_unshifted} / {corrected_unshifted_p95}"
+            ),
             "90 % hold, raw / filtered / corrected, %": " / ".join(
                 f"{{{stage}_coverage}}" for stage in STAGES
             ),

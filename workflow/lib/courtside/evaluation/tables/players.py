@@ -59,6 +59,7 @@ def table(
     rows = together(errors)
     in_one = rows[rows["joint"] == "limbs"].set_index([*KEY, "stage"])
     names = ["n", "missing_percent", "median_mm", "p95_mm", "sigma_mm"]
+    names += ["bias_mm", "unbiased_median_mm", "unbiased_p95_mm"]
     covered = [f"coverage_{level}_percent" for level in LEVELS]
     covered += ["n_large", "coverage_90_large_percent"]
     found = in_one.reindex(columns=[*names, *covered, "identity_percent"])
