@@ -98,7 +98,7 @@ def table(
     From what `errors` returns. missing_percent is over the frames with truth; sd_mm is the root
     mean square about the mean error, sigma_mm the root of the mean trace of the stated covariance.
     unbiased_... are of the distances once the row's mean error is taken off: for a set of joints
-    that is a shift of the whole skeleton, which calibration makes and a network hardly does.
+    that is a shift of the whole skeleton, most of which the calibration makes.
     """
     groups = {name: [names.index(name)] for name in names}
     for label, sides in SETS.items():
