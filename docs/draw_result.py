@@ -49,7 +49,7 @@ def main(results, png):
     frame = int(np.argmin(np.abs(points.time_s - TIME_S)))
     drawing = style.figure(88)
     left, right = drawing.subfigures(1, 2, width_ratios=(1.3, 1))
-    axes = left.subplot_mosaic([[LARGE] * 3, list(CLOSE)], height_ratios=(1.15, 1))
+    axes = left.subplot_mosaic([[LARGE] * len(CLOSE), list(CLOSE)], height_ratios=(1.15, 1))
     for one in seen:
         show(axes[one.camera.name], one, points, frame, drawn)
     left.suptitle(
@@ -95,7 +95,7 @@ def stand(axis, points, frame, drawn):
         colour = style.side_colour(names[at])
         look = {"facecolor": colour, "alpha": 0.25, "edgecolor": colour, "linewidth": 0.6}
         axis.add_patch(Ellipse(SIGHT.seen(xyz[at]), width, height, angle=angle, **look, zorder=2))
-    oblique_view.figures(axis, SIGHT, drawn.of(xyz)[None], drawn, width=1.8)
+    oblique_view.figures(axis, SIGHT, drawn.of(xyz)[None], drawn)
     low, high = oblique_view.limits(xyz)
     court = court_files.read(ROOT / "config" / "courts" / "badminton.yaml")
     oblique_view.floor(axis, SIGHT, low, high, court)

@@ -1,5 +1,6 @@
 """The tiny study through every rule: all files are there, readable, and plausible."""
 
+import importlib.util
 import json
 import re
 
@@ -13,6 +14,7 @@ from courtside.exports import tidy, trc
 from courtside.geometry import camera as cameras
 from courtside.records.keypoints import keypoints
 from courtside.records.truth import session_truth
+from courtside.video import images
 from smoke.snakemake_runs import ROOT, planned
 
 TAKE = "walk-4cams-tiny/takes/balancing"
@@ -142,6 +144,17 @@ def test_the_calibration_study_draws_its_figures(tiny_study):
         assert stem.with_name(f"{stem.name}.png").read_bytes().startswith(b"\x89PNG")
         assert len(pd.read_csv(stem.with_name(f"{stem.name}.csv"))) >= 1
     assert len(pd.read_csv(tiny_study / "figures" / "calibration.csv")) > 10
+
+
+def test_the_picture_of_the_readme_is_drawn(tiny_study, tmp_path, monkeypatch):
+    spec = importlib.util.spec_from_file_location("draw_result", ROOT / "docs" / "draw_result.py")
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    known = {"SESSION": "players-tiny", "CALIBRATION": "known18", "NETWORK": "blazepose-full"}
+    for name, value in {**known, "LARGE": "back", "CLOSE": ("oblique", "mirror")}.items():
+        monkeypatch.setattr(script, name, value)
+    script.main(tiny_study, tmp_path / "result.png")
+    assert images.read(tmp_path / "result.png").std() > 10
 
 
 def test_every_figure_has_its_numbers(tiny_study):
