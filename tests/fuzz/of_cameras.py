@@ -1,6 +1,7 @@
 """Formats of calibrations, ours and those of other programs, and of what is clicked in pictures."""
 
 import shutil
+import struct
 
 import cv2
 import numpy as np
@@ -12,6 +13,7 @@ from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
 from courtside.reconstruction import error_signs, joint_correction, joint_errors
 from courtside.records.cameras import click_proposals, clicks
+from fixtures.cameras import foreign_files
 from fixtures.people import walker
 from fixtures.recordings.real_data import REAL
 from fuzz.format import Format, require
@@ -107,6 +109,47 @@ def opencv(suffix):
     return make
 
 
+def vicon_xcp(folder):
+    """Write a calibration of Vicon."""
+    text = foreign_files.vicon((3.1e-8, -4e-15, 0), names=("2101", "2102"))
+    (folder / "hall.xcp").write_text(text, encoding="utf-8")
+
+
+def optitrack_mcal(folder):
+    """Write calibrations of OptiTrack, in UTF-16 as Motive does, and in UTF-8."""
+    text = foreign_files.optitrack((0.1, -0.1, 0, -8e-4, 3e-4))
+    (folder / "wide.mcal").write_bytes(text.encode("utf-16"))
+    (folder / "narrow.mcal").write_text(text, encoding="utf-8")
+
+
+def easymocap_folder(folder):
+    """Write both files of EasyMocap into a folder."""
+    (folder / "hall").mkdir()
+    foreign_files.easymocap(folder / "hall")
+
+
+def opencap_pickle(folder):
+    """Write a camera of OpenCap."""
+    foreign_files.opencap(folder / "cam00.pickle")
+
+
+def colmap_folders(folder):
+    """Write a COLMAP model as text, and as binary files."""
+    (folder / "text").mkdir()
+    foreign_files.colmap(folder / "text")
+    (folder / "binary").mkdir()
+    pose = [0.9, 0.3, -0.3, 0.1, *TRANSLATION]
+    lens = struct.pack("<QIiQQ4d", 1, 4, 1, 1920, 1080, 1500, 1490, 950, 545)
+    image = struct.pack("<QI7dI", 1, 1, *pose, 4) + b"left.png\0" + struct.pack("<Q2dQ", 1, 1, 2, 3)
+    (folder / "binary" / "cameras.bin").write_bytes(lens)
+    (folder / "binary" / "images.bin").write_bytes(image)
+
+
+def read_model(path):
+    """Read cameras of a COLMAP model in metres."""
+    return checked(file_formats.read(path, "m"))
+
+
 def trcs(folder):
     """Write TRC files; copy the start of a real one."""
     record = walker.points(6, n_persons=2)
@@ -180,6 +223,11 @@ FORMATS = [
     Format("qca-txt", 1000, qualisys, read_cameras),
     Format("opencv-yaml", 800, opencv(".yml"), read_cameras),
     Format("opencv-xml", 700, opencv(".xml"), read_cameras),
+    Format("vicon-xcp", 600, vicon_xcp, read_cameras),
+    Format("optitrack-mcal", 600, optitrack_mcal, read_cameras),
+    Format("easymocap-yaml", 600, easymocap_folder, read_cameras),
+    Format("opencap-pickle", 800, opencap_pickle, read_cameras),
+    Format("colmap-model", 800, colmap_folders, read_model),
     Format("trc", 1200, trcs, read_trc),
     Format("clicks-csv", 1200, clicked, read_clicks),
     Format("proposals-csv", 400, proposed, read_proposals),

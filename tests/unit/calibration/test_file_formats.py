@@ -6,6 +6,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
+import tomli_w
 
 from courtside.calibration import file_formats
 from courtside.geometry import camera as cameras
@@ -272,42 +273,46 @@ def test_malformed_opencv_is_one_line_to_mend(tmp_path, values, message):
     assert "\n" not in str(caught.value)
 
 
-VICON = """<?xml version="1.0"?>
-<Cameras xmlns:a="x"><Camera DEVICEID="21" SENSOR_SIZE="1920 1080" TYPE="Vue"><KeyFrames>
-<KeyFrame FOCAL_LENGTH="1500" ORIENTATION="0 0 0 1" POSITION="0 0 0" PRINCIPAL_POINT="960 540"/>
-</KeyFrames></Camera></Cameras>"""
-
-
 def test_files_of_other_programs_are_named_with_what_to_do(tmp_path):
-    """EasyMocap's two files, a stereo pair and Vicon's cameras are recognised and not guessed."""
-    folder = tmp_path / "easymocap"
-    folder.mkdir()
-    known = {"intri": {"K": K, "dist": DIST}, "extri": {"R": np.ones(3), "Rot": ROTATION}}
-    for name, values in known.items():
-        storage = cv2.FileStorage(str(folder / f"{name}.yml"), cv2.FILE_STORAGE_WRITE)
-        for camera in ("01", "02"):
-            for key, value in values.items():
-                storage.write(f"{key}_{camera}", value)
-            storage.write(f"T_{camera}", TRANSLATION)
-        storage.release()
+    """A stereo pair, Theia3D's own form, a take of Motive and its old form are not guessed."""
     storage = cv2.FileStorage(str(tmp_path / "stereo.yml"), cv2.FILE_STORAGE_WRITE)
     for key in ("M1", "D1", "M2", "D2", "R", "T"):
         storage.write(key, K)
     storage.release()
-    write(tmp_path / "hall.xcp", VICON)
+    in_px = re.sub(r"<fov_video[^>]*>", "", QUALISYS.replace("122879.0", "1919"))
     for path, said in (
-        (folder, r"intri|extri.*EasyMocap.*convert_from = 'easymocap'"),
-        (folder / "intri.yml", r"EasyMocap.*picture's size is not in these files"),
         (
             tmp_path / "stereo.yml",
             r"a stereo pair \(M1, D1, M2, D2 \.\.\.\); give each camera with its",
         ),
-        (tmp_path / "hall.xcp", r"Vicon.*convert_from = 'vicon'"),
+        (write(tmp_path / "theia.txt", in_px), r"found a calibration of Theia3D.*\.qca\.txt"),
+        (write(tmp_path / "take.csv", "Format Version,1.23,Take Name,x\n"), r"Motive \(\.csv\)"),
+        (write(tmp_path / "hall.cal", "x"), r"older Motive \(\.cal\).*makes an \.mcal"),
     ):
         with pytest.raises(InputError, match=said) as caught:
             file_formats.read(path)
         assert "\n" not in str(caught.value)
-        assert "found []" not in str(caught.value)
+
+
+def test_qualisys_within_the_settings_of_a_measurement(tmp_path):
+    inner = QUALISYS.partition("?>")[2]
+    text = f"<QTM_Parameters_Ver_1.25>{inner}</QTM_Parameters_Ver_1.25>"
+    (camera,) = file_formats.read(write(tmp_path / "settings.xml", text))
+    assert (camera.name, camera.size) == ("26580", (1912, 1084))
+
+
+def test_freemocap_writes_mm_and_no_unit(tmp_path):
+    """As its `camera_calibration.toml`: aniposelib's tables, translations of some thousands."""
+    table = {
+        "name": "Cam1", "size": [1920, 1080], "matrix": K.tolist(), "distortions": DIST.tolist(),
+        "rotation": [1.2, -0.7, 0.4], "translation": (1000 * TRANSLATION).tolist(),
+        "world_position": [1.0, 2.0, 3.0],
+    }  # fmt: skip
+    content = {"cam_0": table, "metadata": {"charuco_square_size": 58.0}}
+    path = write(tmp_path / "calibration.toml", tomli_w.dumps(content))
+    assert_is_the_camera(file_formats.read(path)[0], "Cam1")
+    (in_cm,) = file_formats.read(path, "cm")
+    np.testing.assert_allclose(in_cm.cam_from_world[:, 3], 10 * TRANSLATION)
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("cm", 0.01), ("ft", 0.3048), ("in", 0.0254)])

@@ -17,7 +17,13 @@ from courtside.video import walk_frames
 VIDEOS = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".mts", ".m2ts", ".ts", ".mpg", ".mpeg"}
 VIDEOS |= {".webm", ".wmv", ".3gp"}
 BAGS = {".bag", ".db3"}
-CALIBRATIONS = {".toml", ".txt", ".xml"}  # a YAML file in a folder of recordings may be anything
+CALIBRATIONS = {
+    ".toml",
+    ".txt",
+    ".xml",
+    ".xcp",
+    ".mcal",
+}  # a YAML file in a folder of recordings may be anything
 CLICKED = {"camera", "x_px", "y_px"}
 RACKET = {"take", "camera", "frame_idx", "end"}
 
