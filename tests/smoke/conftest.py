@@ -8,6 +8,7 @@ from smoke.snakemake_runs import FOLDER, ROOT, copy_repository, run
 ASKED_FOR = (  # what the study makes only when it is asked for by name
     "results/report.html",
     "results/plain-tiny/pages/clicking.html",
+    "results/walk-4cams-tiny/calibration/file/other_programs",
     "results/walk-4cams-tiny/takes/balancing/pose2sim/file/all-robust/blazepose-full",
 )
 

@@ -5,7 +5,8 @@ or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
 Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras (`sfm-n40`, the default), align_cameras
 (`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
-`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras); propose_court_points (where the points probably are), build_clicking_page.
+`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras); propose_court_points (where the points probably are), build_clicking_page;
+export_cameras (for EasyMocap and COLMAP, by request).
 """
 
 
@@ -144,6 +145,19 @@ rule resect_together:
         placed=lambda w: session_of(w).placed,
     script:
         "../scripts/resect_together.py"
+
+
+rule export_cameras:
+    input:
+        cameras_toml=paths.CAMERAS,
+    output:
+        folder=directory(paths.CAMERA_EXPORT),
+    log:
+        "results/{session}/logs/export_cameras/{calibration}.log",
+    params:
+        code=code("export_cameras.py"),
+    script:
+        "../scripts/export_cameras.py"
 
 
 rule propose_court_points:
