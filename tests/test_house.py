@@ -24,6 +24,7 @@ SCHEMAS = sorted((ROOT / "workflow" / "schemas").glob("*.yaml"))
 UNTESTED = {"__init__", "errors", "missing_reason"}  # names and constants only
 TESTED_THROUGH = {  # parts of one thing: the tests of the whole cover them
     "courtside/calibration/records/support": "test_tie_points.py",
+    "courtside/calibration/boards/start": "test_adjustment.py",
     "courtside/calibration/foreign/known": "../test_file_formats.py",
     "courtside/calibration/foreign/opencv": "../test_file_formats.py",
     "courtside/calibration/foreign/qualisys": "../test_file_formats.py",

@@ -8,6 +8,8 @@ import numpy as np
 import tomli_w
 
 from courtside.calibration import file_formats
+from courtside.calibration.boards import corners
+from courtside.calibration.boards.board import Board
 from courtside.calibration.court import court
 from courtside.exports import pose2sim, trc
 from courtside.geometry import camera as cameras
@@ -42,6 +44,8 @@ centerPointU="61440.0" centerPointV="34816.0"
 </camera>"""
 COURT = court.read(CONFIG / "courts" / "badminton.yaml")
 CAMERAS = ["left", "right"]
+NAMED = {"left": "left", "right": "cam_1"}
+BOARD = Board("charuco", (5, 4), 0.1, 0.075, "DICT_4X4_50")
 
 
 def real(pattern):
@@ -145,6 +149,26 @@ def colmap_folders(folder):
     (folder / "binary" / "images.bin").write_bytes(image)
 
 
+def board_corners(folder):
+    """Write corners of a board in our columns and in Caliscope's."""
+    rows = [
+        f"{k // 4},{('left', 'cam_1')[k % 2]},{k % 12},{10.5 + k},{20.25 + k}" for k in range(24)
+    ]
+    text = "\n".join([",".join(corners.OURS), *rows, ""])
+    (folder / "ours.csv").write_text(text, encoding="utf-8")
+    rows = [f"{k // 4},1,{k % 12},{10.5 + k},{20.25 + k},0.1" for k in range(24)]
+    text = "\n".join([",".join([*corners.THEIRS, "frame_time"]), *rows, ""])
+    (folder / "theirs.csv").write_text(text, encoding="utf-8")
+
+
+def read_corners(path):
+    """Read corners of a board."""
+    names = {"right": "cam_1"} if path.name.startswith("theirs") else NAMED
+    found = corners.of_table(path, names, BOARD)
+    require(len(found.xy) == len(found.camera) and np.isfinite(found.xy).all(), "corners")
+    return found
+
+
 def read_model(path):
     """Read cameras of a COLMAP model in metres."""
     return checked(file_formats.read(path, "m"))
@@ -228,6 +252,7 @@ FORMATS = [
     Format("easymocap-yaml", 600, easymocap_folder, read_cameras),
     Format("opencap-pickle", 800, opencap_pickle, read_cameras),
     Format("colmap-model", 800, colmap_folders, read_model),
+    Format("board-corners-csv", 400, board_corners, read_corners),
     Format("trc", 1200, trcs, read_trc),
     Format("clicks-csv", 1200, clicked, read_clicks),
     Format("proposals-csv", 400, proposed, read_proposals),

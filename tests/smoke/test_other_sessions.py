@@ -81,6 +81,32 @@ def test_photos_alone_become_a_model(gym):
 
 
 @needs_real
+def test_a_board_calibrates_all_cameras(gym):
+    folder = REAL / "charuco-4cams"
+    session = {
+        "description": "a board in a room",
+        "court": "none",
+        "cameras": {f"cam_{k}": None for k in range(4)},
+        "board": {
+            "kind": "charuco",
+            "squares": [4, 5],
+            "square_m": 0.054,
+            "dictionary": "DICT_4X4_1000",
+            "corners": str(folder / "calibration/extrinsic/xy.csv"),
+            "lenses": str(folder / "camera_array.toml"),
+        },
+    }
+    results = study(gym, "boards", session, calibrations=["board"])
+    found = cameras.read_toml(results / "calibration/board/cameras.toml")
+    quality = json.loads((results / "calibration/board/quality.json").read_text())
+    assert abs(quality["neighbour_mm"]["mean"]) < 0.3
+    assert quality["warnings"][0].startswith("board: the world is the board of picture")
+    known = covariance.read(results / "calibration/board/covariance.npz")
+    assert known.cameras == [camera.name for camera in found]
+    assert (np.diag(known.covariance)[:6] > 0).all()
+
+
+@needs_real
 def test_2d_and_3d_of_other_programs_become_skeletons_and_measures(gym):
     walk = REAL / "walk-4cams"
     names = [f"cam0{k}" for k in (1, 2, 3, 4)]

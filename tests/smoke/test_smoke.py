@@ -33,9 +33,10 @@ LARGER_STUDY = {
     "evaluate_skin_depths",
 }
 LARGER_STUDY |= {"compare_networks", "draw_agreement"}
-# Devices beside fixed cameras need a take of both; keypoints of other programs and own networks are
-# in test_other_sessions.py.
+# Devices beside fixed cameras need a take of both; keypoints of other programs, own networks and
+# boards are in test_other_sessions.py.
 LARGER_STUDY |= {"select_person", "import_pose2d", "import_pose3d", "check_network"}
+LARGER_STUDY |= {"calibrate_boards"}
 
 
 def test_every_rule_of_the_study_ran(tiny_study):

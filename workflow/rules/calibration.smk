@@ -5,7 +5,7 @@ or these alone.
 Outputs: results/{session}/calibration/{calibration}/, results/{session}/pages/clicking.html.
 Steps: import_cameras (`file`), check_cameras (by static points and people), calibrate_cameras (`sfm-n40`, the default), align_cameras
 (`paper-n40`, `paper-global-n40`, `sim3-n40`), calibrate_lens and resect_cameras (`known18`,
-`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras); propose_court_points (where the points probably are), build_clicking_page;
+`known8-board`, `dlt18`), resect_together (`known`: all points, all cameras), calibrate_boards (`board`); propose_court_points (where the points probably are), build_clicking_page;
 export_cameras (for EasyMocap and COLMAP, by request).
 """
 
@@ -145,6 +145,27 @@ rule resect_together:
         placed=lambda w: session_of(w).placed,
     script:
         "../scripts/resect_together.py"
+
+
+rule calibrate_boards:
+    input:
+        files=of_job(calibration.board_files),
+        lens_tomls=of_job(calibration.board_lenses),
+        pictures=of_job(calibration.board_pictures),
+    output:
+        cameras_toml=paths.CAMERAS,
+        covariance_npz=paths.CAMERA_COVARIANCE,
+        quality_json=paths.CALIBRATION_QUALITY,
+    log:
+        "results/{session}/logs/calibrate_boards/{calibration}.log",
+    wildcard_constraints:
+        calibration="board",
+    params:
+        code=code("calibrate_boards.py"),
+        given=lambda w: session_of(w).board,
+        names=lambda w: session_of(w).calibration_camera_names(),
+    script:
+        "../scripts/calibrate_boards.py"
 
 
 rule export_cameras:

@@ -18,6 +18,7 @@ from courtside.study.methods import Calibration, Fusion, Variant
         ("paper-global-n40", Calibration("paper-global-n40", "paper", Variant("global", 40, 0))),
         ("paper-n5-o2", Calibration("paper-n5-o2", "paper", Variant("incremental", 5, 2))),
         ("known", Calibration("known", "known")),
+        ("board", Calibration("board", "board")),
         ("known18", Calibration("known18", "known", n_points=18)),
         ("known8-board", Calibration("known8-board", "known", n_points=8, board=True)),
         ("dlt18", Calibration("dlt18", "dlt", n_points=18)),
@@ -35,8 +36,8 @@ def test_a_name_of_no_calibration_is_an_error_with_examples(name):
 
 def test_adjusting_all_cameras_together_gives_a_covariance():
     names = ["file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40", "known18", "dlt18"]
-    found = [name for name in [*names, "known"] if Calibration.parse(name).has_covariance]
-    assert found == ["sfm-n40", "known"]
+    found = [name for name in [*names, "known", "board"] if Calibration.parse(name).has_covariance]
+    assert found == ["sfm-n40", "known", "board"]
 
 
 def test_a_structure_from_motion_is_parsed_and_named():

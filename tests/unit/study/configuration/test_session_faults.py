@@ -54,6 +54,9 @@ def without(content, *keys):
 
 FILMED = {"virtual": {"motion": "shot", "seconds": 2, "seed": 1, "players": {"p1": {"body": "m1"}}}}
 ALONE = without(RECORDED, "walks")
+BOARD = {"kind": "charuco", "squares": [4, 5], "square_m": 0.1, "dictionary": "DICT_4X4_50"}
+BOARD |= {"corners": "p.csv", "lenses": "c.toml"}
+BOARDED = {"court": "none", "cameras": RECORDED["cameras"], "board": BOARD}
 PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
 
 
@@ -74,6 +77,8 @@ PLAYERS = VIRTUAL | {"subjects": {"p1": None}, "takes": {"shot": FILMED}}
         without(RECORDED, "walks") | OVERRIDDEN | {"static_points": "p.csv"},
         RECORDED | OVERRIDDEN | {"static_points": "config/courts/badminton.yaml"},
         RECORDED | {"cameras": {"a": {"static": "a.mp4"}}},
+        BOARDED,
+        BOARDED | {"board": without(BOARD, "lenses")},
         {"court": "none", "cameras": {}, "walks": {"w": {"images": "w.mp4"}}},
         VIRTUAL
         | {"cameras": {"side": {"chessboard": {"images": "results/virtual/g/boards/side"}}}},
@@ -155,7 +160,28 @@ def test_good_sessions_have_no_fault(root, content):
         ),
         (
             without(without(RECORDED, "walks"), "court_points"),
-            ["expected `walks`, `court_points` or `calibration`, found none"],
+            ["expected `walks`, `court_points`, `board` or `calibration`, found none"],
+        ),
+        (
+            BOARDED | {"board": BOARD | {"videos": {"a": "a.mp4", "b": "b.mp4"}}},
+            ["board: expected one of `images`, `videos` and `corners`, found videos and corners"],
+        ),
+        (
+            BOARDED | {"board": without(BOARD, "corners") | {"videos": {"a": "a.mp4"}}},
+            ["board.videos: expected every camera, found none for b"],
+        ),
+        (
+            BOARDED | {"board": BOARD | {"corners": "q.csv"}},
+            ["board.corners: expected a file, found none at q.csv"],
+        ),
+        (
+            BOARDED | {"board": without(BOARD, "dictionary")},
+            ["board: expected `dictionary` of its markers", "where the board was printed"],
+        ),
+        (
+            BOARDED
+            | {"board": without(BOARD, "lenses"), "cameras": {"a": {"static": "a.mp4"}, "b": None}},
+            ["cameras.b: expected `static` or a video in a take"],
         ),
         (
             RECORDED

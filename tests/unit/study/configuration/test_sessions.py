@@ -52,7 +52,7 @@ def test_a_one_stage_model_has_no_detector():
 
 WAYS = [
     *("file", "sfm-n40", "sim3-n40", "paper-n40", "paper-global-n40"),
-    *("known", "known18", "known8", "dlt18", "known18-board"),
+    *("known", "board", "known18", "known8", "dlt18", "known18-board"),
 ]
 BOARD = {"images": "boards", "inner_corners": [7, 4], "square_m": 0.06}
 
@@ -76,6 +76,8 @@ def session(**changes):
     ("recordings", "ways"),
     [
         ({"calibration_file": "c.toml"}, ["file"]),
+        ({"board": {"kind": "charuco"}}, ["board"]),
+        ({"board": {"kind": "tags"}, "court_points": "p.csv", "placed": True}, ["board"]),
         ({"walks": {"w": "w.mp4"}}, ["sfm-n40"]),
         ({"court_points": "p.csv"}, ["known", "known18", "known8", "dlt18"]),
         ({"court_points": "p.csv", "placed": True}, ["known"]),
@@ -89,7 +91,7 @@ def session(**changes):
         ),
         (
             {"court_points": "p.csv", "walks": {"w": "w.mp4"}},
-            [way for way in WAYS if way not in ("file", "known", "known18-board")],
+            [way for way in WAYS if way not in ("file", "known", "board", "known18-board")],
         ),
         ({"walks": {"w": "photos"}, "cameras": {}}, []),
         ({}, []),

@@ -75,6 +75,26 @@ def test_pictures_of_a_chessboard_are_simulated_or_files(job, study, tmp_path):
     assert calibration.boards(one) == [str(tmp_path / "1.png")]
 
 
+def test_a_board_before_all_cameras_has_pictures_and_lenses(job, study, tmp_path):
+    (tmp_path / "1.png").touch()
+    lenses = tmp_path / "c.toml"
+    lenses.touch()
+    session = study.sessions["plain-tiny"]
+
+    def of(board):
+        made = replace(study, sessions={"plain-tiny": replace(session, board=board)})
+        return job(made, **PLAIN)
+
+    held = of({"images": {"side": str(tmp_path), "back": str(tmp_path)}, "lenses": str(lenses)})
+    pictures = [str(tmp_path / name) for name in ("1.png", "c.toml")]
+    assert calibration.board_files(held) == [*pictures, *pictures, str(lenses)]
+    assert calibration.board_lenses(held) == calibration.board_pictures(held) == []
+    tracks = of({"corners": "xy.csv"})
+    assert calibration.board_files(tracks) == ["xy.csv"]
+    assert calibration.board_lenses(tracks) == calibration.each_fixed(tracks, paths.LENS)
+    assert calibration.board_pictures(tracks) == calibration.of_full_size(tracks)
+
+
 def test_only_calibrations_with_a_board_take_its_lenses(job):
     lenses = [f"results/plain-tiny/calibration/lens/{name}.toml" for name in ("side", "back")]
     assert calibration.lenses(job(**PLAIN, calibration="known18-board")) == lenses

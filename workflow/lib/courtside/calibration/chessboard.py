@@ -79,19 +79,25 @@ def find(pictures: str | Path | Iterable[StrPath], inner_corners: Sequence[int])
 
 def _paths(pictures: str | Path | Iterable[StrPath]) -> list[Path]:
     if isinstance(pictures, (str, Path)):
-        folder = Path(pictures)
-        if not folder.is_dir():
-            raise InputError(
-                f"{folder}: expected a folder with pictures of a chessboard, found none; correct "
-                "the path"
-            )
-        pictures = [path for path in folder.iterdir() if path.suffix.lower() in PICTURES]
-        if not pictures:
-            raise InputError(
-                f"{folder}: expected pictures of a chessboard ({' '.join(PICTURES)}), found none; "
-                "add them"
-            )
+        return pictures_of(pictures)
     return sorted(Path(path) for path in pictures)
+
+
+def pictures_of(folder: StrPath) -> list[Path]:
+    """Return the pictures of a folder in name order; raise `InputError` if there are none."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError(
+            f"{folder}: expected a folder with pictures of a chessboard, found none; correct "
+            "the path"
+        )
+    pictures = [path for path in folder.iterdir() if path.suffix.lower() in PICTURES]
+    if not pictures:
+        raise InputError(
+            f"{folder}: expected pictures of a chessboard ({' '.join(PICTURES)}), found none; "
+            "add them"
+        )
+    return sorted(pictures)
 
 
 def _same_size(path: Path, image: NDArray, size: tuple[int, int] | None) -> tuple[int, int]:

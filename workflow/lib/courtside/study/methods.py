@@ -7,7 +7,7 @@ from courtside.study.errors import InputError
 
 # The default choice of bridging images is o0; a name leaves it out.
 CALIBRATION = re.compile(
-    r"file|(?P<alone>known)|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
+    r"file|(?P<alone>known|board)|(?P<points>known|dlt)(?P<n_points>[0-9]+)(?P<board>-board)?"
     r"|(?P<kind>sfm|sim3|paper)(?P<mapped>-global)?-n(?P<n_images>[0-9]+)(-o(?P<offset>[0-9]+))?"
 )
 VARIANT = re.compile(r"(?P<mapper>[a-z]+)-n(?P<n_images>[0-9]+)-o(?P<offset>[0-9]+)")
@@ -68,12 +68,13 @@ def distinct_offsets(n_images: int, n_frames: int, n_offsets: int) -> list[int]:
 class Calibration:
     """A way to find the fixed cameras of a session."""
 
-    # `file`, `known`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`, `paper-global-n40`,
-    # `known18`, `known8-board`, `dlt18` and the like
+    # `file`, `known`, `board`, `sfm-n40`, `sfm-n40-o1`, `sim3-n40`, `paper-n40`,
+    # `paper-global-n40`, `known18`, `known8-board`, `dlt18` and the like
     name: str
     # `file` (made elsewhere); from structure from motion: `sfm` (ties and clicks adjusted
     # together), `sim3` (one similarity), `paper` (the paper's alignment); from clicks alone:
-    # `known` (resection; without a number all points, all cameras together), `dlt`
+    # `known` (resection; without a number all points, all cameras together), `dlt`; from a board
+    # that several cameras see: `board`
     kind: str
     # The structure from motion that it rests on. Only `paper-n40` is mapped incrementally, as in
     # the paper
@@ -102,7 +103,7 @@ class Calibration:
     @property
     def has_covariance(self) -> bool:
         """Whether the covariance of the cameras is known."""
-        return self.kind == "sfm" or self.name == "known"
+        return self.kind == "sfm" or self.name in ("known", "board")
 
 
 @dataclass(frozen=True)

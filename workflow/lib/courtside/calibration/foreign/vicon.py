@@ -51,32 +51,39 @@ def _camera(path: Path, element: ElementTree.Element) -> Camera:
     centre = xml_fields.row(where, frame, "PRINCIPAL_POINT", 2)
     skew = camera_fields.numbers(where, "SKEW", element.get("SKEW", "0"), ())
     matrix = np.array([[focal, skew, centre[0]], [0, focal / aspect, centre[1]], [0, 0, 1]])
-    of_distortion, radial = _radial(where, frame, centre)
-
-    def undistort(xy: NDArray) -> NDArray:
-        """Return directions of px, in px of the aspect 1 as Vicon does."""
-        square = np.array([1.0, aspect])
-        offset = (xy - of_distortion) * square
-        power = (offset**2).sum(axis=-1, keepdims=True)
-        scale = 1 + power * (radial[0] + power * (radial[1] + power * radial[2]))
-        return (offset * scale + (of_distortion - centre) * square) / focal
-
+    lens = _radial(where, frame, centre)
     size = xml_fields.row(where, element, "SENSOR_SIZE", 2)
-    turned = xml_fields.row(where, frame, "ORIENTATION", 4)
+    rotation = _rotation(where, xml_fields.row(where, frame, "ORIENTATION", 4))
+    table = {
+        "size": size,
+        "matrix": matrix,
+        "distortions": inverse_lens.coefficients(
+            where, size, matrix, lambda xy: _undistorted(xy, matrix, *lens)
+        ),
+        "rotation": rotation,
+        "translation": -rotation @ xml_fields.row(where, frame, "POSITION", 3),
+    }
+    return camera_files.build(where, name, table, camera_fields.METRES["mm"])
+
+
+def _rotation(where: str, turned: NDArray) -> NDArray:
+    """Return the rotation of a quaternion x y z w; raise `InputError` if its length is not 1."""
     if not 0.99 < np.linalg.norm(turned) < 1.01:
         raise InputError(
             f"{where}: expected ORIENTATION as a quaternion of length 1, found length "
             f"{np.linalg.norm(turned):.3g}; {camera_fields.EXPORT_AGAIN}"
         )
-    rotation = Rotation.from_quat(turned).as_matrix()
-    table = {
-        "size": size,
-        "matrix": matrix,
-        "distortions": inverse_lens.coefficients(where, size, matrix, undistort),
-        "rotation": rotation,
-        "translation": -rotation @ xml_fields.row(where, frame, "POSITION", 3),
-    }
-    return camera_files.build(where, name, table, camera_fields.METRES["mm"])
+    return Rotation.from_quat(turned).as_matrix()
+
+
+def _undistorted(xy: NDArray, matrix: NDArray, centre: NDArray, radial: NDArray) -> NDArray:
+    """Return directions (N, 2) of px, by way of px of the aspect 1, as Vicon does."""
+    focal = matrix[0, 0]
+    square = np.array([1.0, focal / matrix[1, 1]])
+    offset = (xy - centre) * square
+    power = (offset**2).sum(axis=-1, keepdims=True)
+    scale = 1 + power * (radial[0] + power * (radial[1] + power * radial[2]))
+    return (offset * scale + (centre - matrix[:2, 2]) * square) / focal
 
 
 def _aspect(element: ElementTree.Element) -> str:

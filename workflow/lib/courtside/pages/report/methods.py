@@ -32,6 +32,8 @@ CALIBRATED = {  # by the kind of a calibration
     "paper": "calibrated by structure from motion, scaled and aligned as in Shishido & Kitahara "
     "(2020, equations 2 to 5)",
     "known": "calibrated from clicked court points alone",
+    "board": "calibrated from a board of known size that several cameras saw, all cameras and all "
+    "places of the board adjusted together",
     "dlt": "calibrated from clicked court points alone, by the linear method (DLT)",
     "file": "taken from a calibration made elsewhere",
 }

@@ -82,10 +82,20 @@ def _take_paths(where: str, take: Content) -> Iterator[tuple[str, str]]:
         yield f"{where}.devices.{name}.file", device["file"]
 
 
+def _board_paths(given: Content) -> Iterator[tuple[str, str]]:
+    for key in ("corners", "lenses"):
+        if key in given:
+            yield f"board.{key}", given[key]
+    for key in ("images", "videos"):
+        for camera, path in given.get(key, {}).items():
+            yield f"board.{key}.{camera}", path
+
+
 def _paths(content: Content) -> Iterator[tuple[str, str]]:
     """Yield (key, path) of all recordings but those of takes."""
     if "calibration" in content:
         yield "calibration.file", content["calibration"]["file"]
+    yield from _board_paths(content.get("board", {}))
     for name, camera in content["cameras"].items():
         if camera and "static" in camera:
             yield f"cameras.{name}.static", camera["static"]
@@ -129,12 +139,13 @@ def _virtual_faults(file: Path, content: Content) -> Iterator[str]:
 def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
     cameras, walks = content["cameras"], content.get("walks", {})
     takes = [take for take in content.get("takes", {}).values() if take]
-    found = {"walks", "calibration", "court_points"} & set(content)
+    found = {"walks", "calibration", "court_points", "board"} & set(content)
     if not found and (cameras or not takes):
         yield (
-            f"{file}: expected `walks`, `court_points` or `calibration`, found none; say how the "
-            "cameras are to be found"
+            f"{file}: expected `walks`, `court_points`, `board` or `calibration`, found none; say "
+            "how the cameras are to be found"
         )
+    yield from _board_faults(file, content)
     if len(cameras) < 2 and ("calibration" in content or any("videos" in take for take in takes)):
         yield (
             f"{file}: cameras: expected two or more, found {len(cameras)}; one camera sees no depth"
@@ -151,6 +162,31 @@ def _recorded_faults(file: Path, content: Content, root: Path) -> Iterator[str]:
                 "court, found none; bridging images are tied to it"
             )
     yield from _point_faults(file, content, root)
+
+
+def _board_faults(file: Path, content: Content) -> Iterator[str]:
+    """Yield the faults of a board that several cameras see."""
+    if "board" not in content:
+        return
+    given, where = content["board"], f"{file}: board"
+    sources = [key for key in ("images", "videos", "corners") if key in given]
+    if len(sources) != 1:
+        yield (
+            f"{where}: expected one of `images`, `videos` and `corners`, found "
+            f"{' and '.join(sources) or 'none'}; say where the cameras see the board"
+        )
+    for key in ("images", "videos"):
+        yield from take_faults.unknown(f"{where}.{key}", given.get(key, {}), content["cameras"])
+        missing = sorted(set(content["cameras"]) - set(given.get(key, content["cameras"])))
+        if missing:
+            yield f"{where}.{key}: expected every camera, found none for {', '.join(missing)}"
+    if given["kind"] != "chessboard" and "dictionary" not in given:
+        yield (
+            f"{where}: expected `dictionary` of its markers, such as DICT_4X4_50, found none; it "
+            "stands where the board was printed"
+        )
+    if "corners" in given and "lenses" not in given:
+        yield from _unsized(file, content)
 
 
 def _point_faults(file: Path, content: Content, root: Path) -> Iterator[str]:

@@ -79,7 +79,7 @@ def session(
         cameras=cameras,
         takes={key: take for key, take in takes.items() if key not in withheld},
         withheld=withheld,
-        **_calibration(content.get("calibration", {})),
+        **_calibration(content),
         static_points=of_configuration(content.get("static_points"), config),
         people=of_configuration(content.get("people"), config),
         walks=recordings.get("walks") or {k: w.get("video") or w["images"] for k, w in walks},
@@ -96,9 +96,11 @@ def session(
     )
 
 
-def _calibration(given: Content) -> dict[str, Any]:
-    """Return a session's fields of its calibration file."""
+def _calibration(content: Content) -> dict[str, Any]:
+    """Return a session's fields of its calibration file and of its board."""
+    given = content.get("calibration", {})
     return {
+        "board": content.get("board"),
         "calibration_file": given.get("file"),
         "calibration_override": {key: given[key] for key in OVERRIDDEN if key in given},
         "calibration_unit": given.get("unit"),

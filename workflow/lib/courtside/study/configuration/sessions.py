@@ -106,6 +106,7 @@ class Session:
     unclicked: str | None = None  # where court points that nobody has clicked yet are to be saved
     # Of `calibration`, where numbers of the file are replaced: `principal_point_px` and `reason`
     calibration_override: dict[str, Any] = field(default_factory=dict)
+    board: dict[str, Any] | None = None  # what several cameras see, and where they do
     calibration_unit: str | None = None  # of the lengths in that file, where it states none
     static_points: str | None = None  # points at rest, clicked in several cameras
     people: str | None = None  # people.csv, in which persons are named
@@ -120,11 +121,12 @@ class Session:
     def calibrations(self) -> list[str]:
         """Return the study's calibrations for which this session has recordings."""
         clicked, walked = self.court_points is not None and bool(self.cameras), bool(self.walks)
-        alone = clicked and (self.also_known or not (walked or self.calibration_file))
+        alone = clicked and (self.also_known or not (walked or self.calibration_file or self.board))
         clicked = clicked and not self.placed
         boards = clicked and all(camera.chessboard for camera in self.cameras.values())
         possible = {
             "file": self.calibration_file is not None,
+            "board": self.board is not None,
             "known": clicked,
             "dlt": clicked,
             "sfm": walked and bool(self.cameras) and not self.unclicked,

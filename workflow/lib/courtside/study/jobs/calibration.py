@@ -1,5 +1,6 @@
 """Files and settings of structure from motion, of calibrations and of the page for clicking."""
 
+from pathlib import Path
 from typing import Any
 
 from courtside.study import paths
@@ -103,6 +104,29 @@ def boards(job: Job) -> str | list[str]:
 def lenses(job: Job) -> list[str]:
     """Return the lens of each fixed camera where the calibration needs it."""
     return each_fixed(job, paths.LENS) if _way(job).board else []
+
+
+def board_files(job: Job) -> list[str]:
+    """Return the files that show a board to all cameras: pictures, videos or its corners."""
+    given = job.session.board or {}
+    folders = [*given.get("images", {}).values(), given.get("lenses", "")]
+    found = [path for folder in folders if folder for path in recordings.inside(folder)]
+    lens_file = [given["lenses"]] if Path(given.get("lenses", "")).is_file() else []
+    table = [given["corners"]] if "corners" in given else []
+    return [*found, *lens_file, *table, *given.get("videos", {}).values()]
+
+
+def board_lenses(job: Job) -> list[str]:
+    """Return the lenses from chessboards of each camera, where boards do not state others."""
+    cameras = job.session.cameras.values()
+    known = "lenses" in (job.session.board or {}) or not all(c.chessboard for c in cameras)
+    return [] if known else each_fixed(job, paths.LENS)
+
+
+def board_pictures(job: Job) -> list[str]:
+    """Return of each camera what tells its pictures' size, where a board has corners alone."""
+    given = job.session.board or {}
+    return of_full_size(job) if "corners" in given and "lenses" not in given else []
 
 
 def proposals(job: Job) -> str | list:

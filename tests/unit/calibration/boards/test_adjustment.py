@@ -1,0 +1,144 @@
+"""Cameras from boards: against true cameras, their stated errors, and a real recording."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from courtside.calibration import file_formats
+from courtside.calibration.boards import adjustment, corners
+from courtside.calibration.boards.board import Board
+from courtside.calibration.bundle.problem import IMAGE
+from courtside.study.errors import InputError
+from fixtures.cameras import boards_made
+from fixtures.recordings.real_data import REAL, needs_real
+
+BOARD = Board.of(boards_made.CHARUCO)
+RIG = boards_made.hall()
+SIZES = {camera.name: camera.size for camera in RIG}
+CHARUCO = REAL / "charuco-4cams"
+
+
+def in_world_of_first(places):
+    """Return the true cameras in the frame of the first board."""
+    rotation, shift = places[0, :, :3], places[0, :, 3]
+    return [
+        replace(c, cam_from_world=np.column_stack([
+            c.cam_from_world[:, :3] @ rotation, c.cam_from_world @ [*shift, 1.0]
+        ]))
+        for c in RIG
+    ]  # fmt: skip
+
+
+def solved(places, sigma_px, seed, **more):
+    seen = boards_made.seen(BOARD, RIG, places, sigma_px, seed)
+    return seen, adjustment.calibrate(BOARD, seen, SIZES, floor="000", **more)
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_without_noise_the_true_cameras_are_found(known):
+    places = boards_made.places(25, 3)
+    lenses = {c.name: c for c in RIG} if known else None
+    seen, found = solved(places, 0.0, 0, lenses=lenses)
+    for camera, true in zip(found.cameras, in_world_of_first(places), strict=True):
+        np.testing.assert_allclose(camera.centre_in_world, true.centre_in_world, atol=2e-4)
+        np.testing.assert_allclose(camera.K, true.K, atol=0.3)
+    mean, spread, count = adjustment.neighbours_mm(found, seen, BOARD)
+    assert abs(mean) < 0.02
+    assert (spread < 0.1, count > 100) == (True, True)
+
+
+def test_errors_are_as_large_as_stated():
+    places = boards_made.places(30, 5)
+    off = []
+    for seed in range(4):
+        _, found = solved(places, 0.4, seed)
+        assert found.sigma_px == pytest.approx(0.4, rel=0.15)
+        for k, true in enumerate(in_world_of_first(places)):
+            camera = found.cameras[k]
+            at = IMAGE * k + 3 + np.arange(3)
+            by_shift = camera.cam_from_world[:, :3].T
+            covariance = by_shift @ found.covariance[np.ix_(at, at)] @ by_shift.T
+            error = camera.centre_in_world - true.centre_in_world
+            assert np.linalg.norm(error) < 0.05
+            off.append(error @ np.linalg.solve(covariance, error))
+    # 3 degrees of freedom: 3 on average; priors make the stated errors a little large.
+    assert 1.0 < np.mean(off) < 4.5
+
+
+def test_misread_corners_do_not_move_the_cameras():
+    places = boards_made.places(30, 5)
+    seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)
+    random = np.random.default_rng(2)
+    wrong = random.random(len(seen.xy)) < 0.05
+    xy = seen.xy + np.where(wrong[:, None], random.normal(0, 40, seen.xy.shape), 0.0)
+    found = adjustment.calibrate(BOARD, replace(seen, xy=xy), SIZES, floor="0")
+    for camera, true in zip(found.cameras, in_world_of_first(places), strict=True):
+        assert np.linalg.norm(camera.centre_in_world - true.centre_in_world) < 0.02
+
+
+def test_cameras_that_share_no_picture_are_named():
+    places = boards_made.places(30, 5)
+    seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)
+    alone = (seen.camera >= 2) == (seen.picture % 2 == 0)
+    rows = {key: getattr(seen, key)[alone] for key in ("camera", "picture", "corner", "xy")}
+    with pytest.raises(
+        InputError, match=r"cameras c\d, c\d and c\d, c\d: expected pictures in"
+    ) as e:
+        adjustment.calibrate(
+            BOARD, replace(seen, **rows), SIZES, lenses={camera.name: camera for camera in RIG}
+        )
+    assert "\n" not in str(e.value)
+
+
+def test_other_faults_are_one_line():
+    places = boards_made.places(12, 5)
+    seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)
+    with pytest.raises(InputError, match=r"board.floor: expected a picture .* found 'kitchen'"):
+        adjustment.calibrate(BOARD, seen, SIZES, floor="kitchen", lenses={c.name: c for c in RIG})
+    few = seen.picture < 3
+    rows = {key: getattr(seen, key)[few] for key in ("camera", "picture", "corner", "xy")}
+    with pytest.raises(InputError, match=r"camera c0: expected 4 pictures or more .*give `lenses`"):
+        adjustment.calibrate(BOARD, replace(seen, **rows), SIZES)
+    mixed = np.random.default_rng(1).permutation(len(BOARD.corners))[seen.corner]
+    with pytest.raises(
+        InputError, match=r"board: expected corners that .* found \d+ %.*check `squares`"
+    ):
+        adjustment.calibrate(
+            BOARD, replace(seen, corner=mixed), SIZES, lenses={c.name: c for c in RIG}
+        )
+
+
+def test_cameras_that_do_not_film_at_one_time_are_refused():
+    places = boards_made.places(30, 5)
+    seen = boards_made.seen(BOARD, RIG, places, 0.2, 1)
+    late = np.where(seen.camera % 2 == 0, seen.picture, (seen.picture + 1) % 30)
+    with pytest.raises(InputError, match=r"within 5 px of one rigid board.*videos are synchronise"):
+        adjustment.calibrate(
+            BOARD, replace(seen, picture=late), SIZES, lenses={c.name: c for c in RIG}
+        )
+
+
+@needs_real
+def test_a_real_recording_against_caliscope():
+    """Webcams that film at 6 fps without a common clock, a board in a man's hands."""
+    given = {"kind": "charuco", "squares": [4, 5], "square_m": 0.054, "dictionary": "DICT_4X4_1000"}
+    board, theirs = Board.of(given), file_formats.read(CHARUCO / "camera_array.toml")
+    names = {camera.name: camera.name for camera in theirs}
+    seen = corners.of_table(CHARUCO / "calibration" / "extrinsic" / "xy.csv", names, board)
+    lenses = {camera.name: camera for camera in theirs}
+    found = adjustment.calibrate(board, seen, {c.name: c.size for c in theirs}, lenses=lenses)
+    mean, spread, count = adjustment.neighbours_mm(found, seen, board)
+    assert -0.3 < mean < 0.3
+    assert spread < 0.9
+    assert count > 900
+    ours, others = (np.array([c.centre_in_world for c in one]) for one in (found.cameras, theirs))
+    rotation, shift = rigid(ours, others)
+    assert np.linalg.norm(ours @ rotation.T + shift - others, axis=1).max() < 0.008
+
+
+def rigid(start, end):
+    """Return rotation and shift of the rigid motion between points by least squares."""
+    left, _, right = np.linalg.svd((end - end.mean(axis=0)).T @ (start - start.mean(axis=0)))
+    rotation = left @ np.diag([1, 1, np.linalg.det(left @ right)]) @ right
+    return rotation, end.mean(axis=0) - rotation @ start.mean(axis=0)

@@ -1,0 +1,7 @@
+"""Cameras from a board of known size that several of them see.
+
+board: `Board`: a ChArUco board, chessboard or grid of tags: its corners, found in a picture
+corners: `Corners`, `of_pictures`, `of_videos`, `of_table`: where cameras see a board's corners
+start: `lens`, `poses`: lenses, cameras and boards before they are adjusted
+adjustment: `calibrate`: all cameras and boards together, with covariance
+"""

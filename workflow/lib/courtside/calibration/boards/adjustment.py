@@ -1,0 +1,383 @@
+"""All cameras and all places of a board, adjusted together, with covariance.
+
+The unknowns are poses and lenses of the cameras (`bundle.problem`) and the pose of the board in
+every picture but one, whose board is the world: z = 0 is its plane. Boards are eliminated, so that
+the cost grows with the number of pictures. Residuals have Cauchy weights. The boards' size is the
+only length.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from courtside.calibration.boards import start
+from courtside.calibration.boards.board import Board
+from courtside.calibration.boards.corners import Corners
+from courtside.calibration.bundle import problem, selection
+from courtside.calibration.bundle.problem import IMAGE, LENS, POSE, Network
+from courtside.geometry import camera as cameras
+from courtside.geometry import triangulation
+from courtside.geometry.camera import Camera
+from courtside.study.errors import InputError
+
+# ASSUME: what lenses and sensors usually are, standard deviations: nearly square pixels, a
+# principal point within 3 % of the picture's width of its centre, little decentering.
+SPREAD = {"aspect": 0.01, "k1": 0.5, "k2": 0.5, "p1": 5e-3, "p2": 5e-3}
+CENTRE_SHARE = 0.03
+ROUNDS = 12  # ASSUME: of new weights; the cost stands still before
+STEPS = 8  # of Gauss-Newton within a round
+SETTLED = 1e-6  # of the cost
+CAUCHY = 2.5  # ASSUME: of the corners' sigma: where a residual has lost half its weight
+LEAST_SIGMA_PX = 0.01  # no corner is found better
+FAR_PX = 5.0  # ASSUME: a corner so far off is another, or its camera filmed at another time
+LEAST_NEAR = 0.7  # ASSUME: share of the corners, in pictures that two cameras see, that is nearer
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Cameras from boards."""
+
+    cameras: list[Camera]
+    covariance: NDArray  # of the network's columns, as of `records.covariance.of_network`
+    world_from_board: NDArray  # (P, 3, 4)
+    world: str  # the picture whose board is the world
+    sigma_px: float  # of a corner, along each axis, by the bulk of the residuals
+    factor: float  # by which the scatter of whole pictures widens the covariance
+    error_px: NDArray  # (M, 2): of each corner; NaN of pictures that tell no pose
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    network: Network
+    boards: NDArray  # (P, 3, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """Corners in the form of the adjustment, without those of pictures that tell no pose."""
+
+    places: NDArray  # (M, 3): of the corners on the board
+    picture: NDArray  # (M,) int
+    world: int
+    active: NDArray  # columns of the cameras that are unknown, bool
+
+
+def calibrate(
+    board: Board,
+    seen: Corners,
+    sizes: Mapping[str, tuple[int, int]],
+    *,
+    lenses: Mapping[str, Camera] | None = None,
+    floor: str | None = None,
+) -> Found:
+    """Calibrate cameras from the corners of a board that they see.
+
+    `sizes` px of each camera's pictures. `lenses`, where they are known, are kept; else they are
+    adjusted too. `floor` names the picture whose board is the world, z towards who looks at it.
+    Raises `InputError` if cameras share no picture, or the corners are not those of such a board.
+    """
+    plane = start.flat(board, seen)
+    fair = _only(seen, plane)
+    given = lenses or {
+        name: start.lens(name, sizes[name], board, fair, c) for c, name in enumerate(seen.cameras)
+    }
+    known = [given[name] for name in seen.cameras]
+    ideal = np.full(seen.xy.shape, np.nan)
+    for c, camera in enumerate(known):
+        ideal[seen.camera == c] = cameras.undistort(camera, seen.xy[seen.camera == c])
+    fine = np.isfinite(ideal).all(axis=1)
+    posed = start.poses(board, _only(seen, fine & plane), ideal[fine & plane], floor)
+    usable = fine & np.isfinite(posed.world_from_board[seen.picture, 0, 0])
+    state, fixed = _started(board, seen, known, posed, usable, ideal if lenses else None)
+    state, sigma_px = _adjusted(state, fixed)
+    unknown = fixed.active.sum() + len(POSE) * (len(np.unique(fixed.picture)) - 1)
+    sigma_px *= np.sqrt(2 * usable.sum() / max(1, 2 * usable.sum() - unknown))
+    off = problem.residuals(state.network)
+    error_px = np.full(seen.xy.shape, np.nan)
+    error_px[usable] = off
+    _check_rigid(seen, error_px)
+    covariance, factor = _covariance(state, fixed, sigma_px)
+    solved = selection.cameras(state.network, seen.cameras, [c.size for c in known])
+    if lenses:
+        solved = [
+            replace(camera, cam_from_world=one.cam_from_world)
+            for camera, one in zip(known, solved, strict=True)
+        ]
+        solved = [replace(c, name=name) for c, name in zip(solved, seen.cameras, strict=True)]
+    name = seen.pictures[posed.world]
+    return Found(solved, covariance, state.boards, name, sigma_px, factor, error_px)
+
+
+def _check_rigid(seen: Corners, error_px: NDArray) -> None:
+    """Raise `InputError` if pictures of several cameras do not show one rigid board.
+
+    Each picture fits one of its cameras, whatever the others see.
+    """
+    usable = np.isfinite(error_px).all(axis=1)
+    cameras_of = np.zeros((len(seen.pictures), len(seen.cameras)), dtype=bool)
+    cameras_of[seen.picture[usable], seen.camera[usable]] = True
+    shared = usable & (cameras_of.sum(axis=1) > 1)[seen.picture]
+    near = float((np.abs(error_px[shared]).max(axis=1) < FAR_PX).mean()) if shared.any() else 1.0
+    if near < LEAST_NEAR:
+        raise InputError(
+            f"board: expected corners within {FAR_PX:g} px of one rigid board where two cameras "
+            f"see it, found {100 * near:.0f} % of them; check that the videos are synchronised, "
+            "and that the board rested while pictures of one name were taken"
+        )
+
+
+def _only(seen: Corners, rows: NDArray) -> Corners:
+    parts = {key: getattr(seen, key)[rows] for key in ("camera", "picture", "corner", "xy")}
+    return replace(seen, **parts)
+
+
+def _started(
+    board: Board,
+    seen: Corners,
+    known: Sequence[Camera],
+    posed: start.Poses,
+    usable: NDArray,
+    ideal: NDArray | None,
+) -> tuple[_State, _Problem]:
+    """Return the first state; with `ideal` directions, of known lenses, those are kept."""
+    placed = [
+        replace(camera, cam_from_world=pose, dist=np.zeros(5) if ideal is not None else camera.dist)
+        for camera, pose in zip(known, posed.cam_from_world, strict=True)
+    ]
+    network = selection.of_cameras(placed)
+    xy = seen.xy if ideal is None else _pinhole(known, seen, ideal)
+    rows = np.flatnonzero(usable)
+    network = problem.with_points(
+        network, np.zeros((len(rows), 3)), seen.camera[rows], np.arange(len(rows)), xy[rows]
+    )
+    widths = np.array([camera.size[0] for camera in known])
+    centres = np.array([[(length - 1) / 2 for length in camera.size] for camera in known])
+    mean, spread = network.lens.copy(), np.full(network.lens.shape, np.inf)
+    mean[:, LENS.index("aspect")] = 1.0
+    mean[:, 2:4], spread[:, 2:4] = centres, CENTRE_SHARE * widths[:, None]
+    mean[:, 4:] = 0.0
+    for key, value in SPREAD.items():
+        spread[:, LENS.index(key)] = value
+    network = replace(network, lens_mean=mean, lens_sigma=spread)
+    active = np.zeros(network.n_columns, dtype=bool)
+    for c in range(len(known)):
+        active[IMAGE * c : IMAGE * c + len(POSE)] = True
+    active[IMAGE * len(known) :] = ideal is None
+    fixed = _Problem(board.corners[seen.corner[rows]], seen.picture[rows], posed.world, active)
+    return _placed(_State(network, posed.world_from_board), fixed), fixed
+
+
+def _pinhole(known: Sequence[Camera], seen: Corners, ideal: NDArray) -> NDArray:
+    """Return px (M, 2) that cameras without distortion would see."""
+    matrices = np.stack([camera.K for camera in known])[seen.camera]
+    return ideal * np.stack([matrices[:, 0, 0], matrices[:, 1, 1]], -1) + matrices[:, :2, 2]
+
+
+def _placed(state: _State, fixed: _Problem) -> _State:
+    """Return a state whose points are where its boards are."""
+    pose = state.boards[fixed.picture]
+    xyz = np.einsum("mij,mj->mi", pose[:, :, :3], fixed.places) + pose[:, :, 3]
+    return replace(state, network=replace(state.network, xyz=xyz))
+
+
+def _adjusted(state: _State, fixed: _Problem) -> tuple[_State, float]:
+    """Return the adjusted state and the corners' sigma, px, by the bulk of the residuals."""
+    last = np.inf
+    sigma_px = _spread(problem.residuals(state.network))
+    for _ in range(ROUNDS):
+        off = problem.residuals(state.network)
+        weight = _weight(off, sigma_px)
+        damping = 1e-6
+        cost = _cost(state, weight, sigma_px)
+        for _ in range(STEPS):
+            moved = _moved(state, fixed, weight, sigma_px, damping)
+            trial = _cost(moved, weight, sigma_px)
+            if trial <= cost:
+                fell, state, cost, damping = cost - trial, moved, trial, damping / 10
+                if fell <= SETTLED * cost:
+                    break
+            else:
+                damping *= 100
+        sigma_px = _spread(problem.residuals(state.network))
+        if abs(sigma_px - last) <= 1e-4 * sigma_px:
+            break
+        last = sigma_px
+    return state, sigma_px
+
+
+def _spread(off: NDArray) -> float:
+    """Return the sigma of residuals along an axis by their median."""
+    return max(LEAST_SIGMA_PX, 1.4826 * float(np.nanmedian(np.abs(off))))
+
+
+def _weight(off: NDArray, sigma_px: float) -> NDArray:
+    """Return the Cauchy weights (M,) of residuals (M, 2); 0 of points behind their camera."""
+    square = (off**2).sum(axis=1) / (CAUCHY * sigma_px) ** 2
+    return np.nan_to_num(1 / (1 + square))
+
+
+def _cost(state: _State, weight: NDArray, sigma_px: float) -> float:
+    off = problem.residuals(state.network)[weight > 0]
+    if not np.isfinite(off).all():
+        return np.inf
+    network = state.network
+    prior = (network.lens - network.lens_mean) / network.lens_sigma
+    return float((weight[weight > 0] * (off**2).sum(axis=1)).sum() / sigma_px**2 + (prior**2).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class _Normal:
+    """Normal equations of the cameras, boards eliminated, and what boards need to follow."""
+
+    information: NDArray  # (A, A)
+    gradient: NDArray  # (A,)
+    boards: dict[int, tuple[NDArray, NDArray, NDArray]]  # inverse (6, 6), gradient, coupling (A, 6)
+    scores: NDArray  # (P, A): part of each picture in the gradient
+
+
+def _normal(
+    state: _State, fixed: _Problem, weight: NDArray, sigma_px: float, damping: float
+) -> _Normal:
+    network = state.network
+    off, by_camera, by_point = problem.linearised(network)
+    rows_of = np.sqrt(weight)[:, None] / sigma_px
+    off = np.where(weight[:, None] > 0, off, 0.0) * rows_of
+    by_camera = np.where(weight[:, None, None] > 0, by_camera, 0.0) * rows_of[:, :, None]
+    by_point = np.where(weight[:, None, None] > 0, by_point, 0.0) * rows_of[:, :, None]
+    arm = network.xyz - state.boards[fixed.picture][:, :, 3]
+    by_board = np.concatenate([np.cross(arm[:, None, :], by_point), by_point], axis=2)
+    columns, size = network.columns(), network.n_columns
+    information, gradient = _prior(network)
+    boards, scores = {}, np.zeros((len(state.boards), int(fixed.active.sum())))
+    information = information[np.ix_(fixed.active, fixed.active)]
+    gradient = gradient[fixed.active]
+    for picture in np.unique(fixed.picture):
+        rows = np.flatnonzero(fixed.picture == picture)
+        side = np.zeros((len(rows), 2, size))
+        np.put_along_axis(
+            side, np.repeat(columns[rows][:, None], 2, axis=1), by_camera[rows], axis=2
+        )
+        side = side.reshape(-1, size)[:, fixed.active]
+        right = off[rows].ravel()
+        information = information + side.T @ side
+        score = side.T @ right
+        if picture != fixed.world:
+            own = by_board[rows].reshape(-1, 6)
+            square = own.T @ own
+            inverse = np.linalg.inv(square + np.diag(damping * np.diag(square) + 1e-9))
+            coupling = side.T @ own
+            boards[int(picture)] = inverse, own.T @ right, coupling
+            information = information - coupling @ inverse @ coupling.T
+            score = score - coupling @ inverse @ boards[int(picture)][1]
+        scores[picture] = score
+        gradient = gradient + score
+    return _Normal(information, gradient, boards, scores)
+
+
+def _prior(network: Network) -> tuple[NDArray, NDArray]:
+    """Return information and gradient of what is known of the lenses, of all columns."""
+    first = IMAGE * len(network.cam_from_world)
+    inverse = (1 / network.lens_sigma**2).ravel()
+    information, gradient = np.zeros(network.n_columns), np.zeros(network.n_columns)
+    information[first:] = inverse
+    gradient[first:] = inverse * (network.lens - network.lens_mean).ravel()
+    return np.diag(information), gradient
+
+
+def _moved(
+    state: _State, fixed: _Problem, weight: NDArray, sigma_px: float, damping: float
+) -> _State:
+    """Return the state after a damped step of Gauss and Newton."""
+    normal = _normal(state, fixed, weight, sigma_px, damping)
+    damped = normal.information + damping * np.diag(np.diag(normal.information))
+    part = -np.linalg.solve(damped, normal.gradient)
+    step = np.zeros(len(fixed.active))
+    step[fixed.active] = part
+    boards = state.boards.copy()
+    for picture, (inverse, gradient, coupling) in normal.boards.items():
+        own = -inverse @ (gradient + coupling.T @ part)
+        boards[picture, :, :3] = Rotation.from_rotvec(own[:3]).as_matrix() @ boards[picture, :, :3]
+        boards[picture, :, 3] += own[3:]
+    network = state.network.moved(step, np.zeros_like(state.network.xyz))
+    return _placed(_State(network, boards), fixed)
+
+
+def _covariance(state: _State, fixed: _Problem, sigma_px: float) -> tuple[NDArray, float]:
+    """Return the covariance of the network's columns, and the factor of whole pictures.
+
+    Corners of one picture err together where cameras do not film at one time or a picture is
+    blurred. The scores of whole pictures scatter then more than independent corners say; their
+    mean excess over all unknowns widens the covariance (a sandwich estimate with one number).
+    """
+    weight = _weight(problem.residuals(state.network), sigma_px)
+    normal = _normal(state, fixed, weight, sigma_px, 0.0)
+    inverse = np.linalg.inv(normal.information)
+    used = len(np.unique(fixed.picture))
+    scatter = normal.scores.T @ normal.scores * used / max(used - 1, 1)
+    factor = max(1.0, float(np.trace(inverse @ scatter)) / len(inverse))
+    whole = np.zeros((len(fixed.active), len(fixed.active)))
+    whole[np.ix_(fixed.active, fixed.active)] = factor * inverse
+    return whole, factor
+
+
+def said(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str, Any]:
+    """Return for a JSON file how well the corners fit.
+
+    By camera: corners, pictures, `rms_px` per axis, standard deviations of the place (mm) and of
+    the focal length. `neighbour_mm`: by how much corners that lie side by side on the board are
+    farther apart when two cameras or more place them, mean and standard deviation. `stated` says
+    whether the session names the picture on the floor.
+    """
+    warnings = []
+    if not stated:
+        warnings.append(
+            f"board: the world is the board of picture {found.world}, z = 0 its plane; name the "
+            "picture in which it lies on the floor as `floor`"
+        )
+    report: dict[str, Any] = {"warnings": warnings, "world_of_picture": found.world}
+    report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
+    first = IMAGE * len(found.cameras)
+    for c, camera in enumerate(found.cameras):
+        at, lens = IMAGE * c + np.arange(len(POSE)), first + len(LENS) * c
+        own = (seen.camera == c) & np.isfinite(found.error_px[:, 0])
+        one = {
+            "n_corners": int(own.sum()),
+            "n_pictures": len(np.unique(seen.picture[own])),
+            "rms_px": float(np.sqrt(np.mean(found.error_px[own] ** 2))),
+            "place_sigma_mm": 1000 * _place_sigma(camera, found.covariance[np.ix_(at, at)]),
+            "f_px": float(camera.K[1, 1]),
+            "f_sigma_px": float(np.sqrt(found.covariance[lens, lens])),
+        }
+        for key, value in one.items():
+            report.setdefault(key, {})[camera.name] = value
+    mean, spread, count = neighbours_mm(found, seen, board)
+    report["neighbour_mm"] = {"mean": mean, "standard_deviation": spread, "n": count}
+    return report
+
+
+def _place_sigma(camera: Camera, covariance: NDArray) -> float:
+    """Return the standard deviation of a camera's centre, m, root of the sum over three axes.
+
+    Of the steps of a network only the shift moves the centre, by the rotation's inverse.
+    """
+    by_shift = camera.cam_from_world[:, :3].T
+    return float(np.sqrt(np.trace(by_shift @ covariance[3:, 3:] @ by_shift.T)))
+
+
+def neighbours_mm(found: Found, seen: Corners, board: Board) -> tuple[float, float, int]:
+    """Return by how much neighbouring corners are too far apart, mm: mean, deviation, number."""
+    shape = len(seen.pictures), len(board.corners)
+    xy = np.full((len(seen.cameras), *shape, 2), np.nan)
+    xy[seen.camera, seen.picture, seen.corner] = seen.xy
+    xyz = triangulation.triangulate_all(found.cameras, xy.reshape(len(xy), -1, 2)).reshape(
+        *shape, 3
+    )
+    pairs = board.neighbours
+    side = board.marker_m if board.kind == "tags" else board.square_m
+    apart = np.linalg.norm(xyz[:, pairs[:, 0]] - xyz[:, pairs[:, 1]], axis=-1)
+    off = 1000 * (apart[np.isfinite(apart)] - side)
+    return (float(off.mean()), float(off.std()), len(off)) if len(off) else (np.nan, np.nan, 0)

@@ -1,0 +1,140 @@
+"""A flat board of known size: where its corners are, and where a picture shows them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.study.errors import InputError
+
+KINDS = ("charuco", "chessboard", "tags")
+MARKER_SHARE = 0.75  # of a square, where the session does not say it: as most programs print them
+Y_UP = np.array([1.0, -1.0, 1.0])  # OpenCV's boards have y down: with y up, z points at who looks
+
+
+@dataclass(frozen=True)
+class Board:
+    """A ChArUco board, a chessboard, or a grid of tags as OpenCV's `aruco` prints them.
+
+    Raises `InputError` for one that is impossible or looks the same when it is turned round.
+    """
+
+    kind: str  # one of `KINDS`
+    squares: tuple[int, int]  # columns and rows; of tags: these
+    square_m: float  # side of a square; of tags: from one tag to the next
+    marker_m: float  # side of a marker or tag
+    dictionary: str | None = None  # of markers, as OpenCV calls it
+    inverted: bool = False  # whether black and white are exchanged
+    legacy: bool = False  # a ChArUco board of OpenCV before 4.6 with an even number of rows
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> "Board":
+        """Build a board from the keys of a session."""
+        name = given.get("dictionary")
+        if given["kind"] != "chessboard" and (name is None or not hasattr(cv2.aruco, name)):
+            known = [key for key in dir(cv2.aruco) if key.startswith("DICT_")]
+            raise InputError(
+                f"board.dictionary: expected one of {', '.join(known)}, found {name}; it stands "
+                "where the board was printed"
+            )
+        square_m = float(given["square_m"])
+        marker_m = float(given.get("marker_m", MARKER_SHARE * square_m))
+        columns, rows = given["squares"]
+        made = cls(
+            given["kind"],
+            (columns, rows),
+            square_m,
+            marker_m,
+            name,
+            given.get("inverted", False),
+            given.get("legacy", False),
+        )
+        if made.kind == "chessboard" and (columns - rows) % 2 == 0:
+            raise InputError(
+                f"board.squares: expected an odd and an even number of squares, found {columns} "
+                f"and {rows}; such a chessboard looks the same when it is turned round: use another"
+            )
+        if not 0 < marker_m < square_m:
+            raise InputError(
+                f"board.marker_m: expected less than square_m ({square_m:g}), found {marker_m:g}; "
+                "measure both"
+            )
+        return made
+
+    @cached_property
+    def corners(self) -> NDArray:
+        """The corners (N, 3) m by their numbers: x to the right, y up, z towards who looks."""
+        if self.kind == "tags":
+            return np.concatenate(self._printed.getObjPoints()).reshape(-1, 3) * Y_UP
+        columns, rows = (count - 1 for count in self.squares)
+        y, x = np.mgrid[1 : rows + 1, 1 : columns + 1].reshape(2, -1) * self.square_m
+        return np.column_stack([x, -y, np.zeros(len(x))])
+
+    @cached_property
+    def neighbours(self) -> NDArray:
+        """Numbers (E, 2) of corners that lie one square apart; of tags, one side of a tag."""
+        apart = np.linalg.norm(self.corners[:, None] - self.corners, axis=-1)
+        side = self.marker_m if self.kind == "tags" else self.square_m
+        return np.argwhere(np.triu(np.abs(apart - side) < 1e-3 * side))
+
+    def find(self, image: NDArray) -> tuple[NDArray, NDArray]:
+        """Return the numbers (K,) and px (K, 2) of corners in a grey picture, none without any."""
+        image = 255 - image if self.inverted else image
+        found = {"charuco": self._charuco, "chessboard": self._chessboard, "tags": self._tags}
+        return found[self.kind](image)
+
+    @cached_property
+    def _printed(self) -> Any:
+        words = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, self.dictionary or ""))
+        if self.kind == "tags":
+            gap = self.square_m - self.marker_m
+            return cv2.aruco.GridBoard(self.squares, self.marker_m, gap, words)
+        made = cv2.aruco.CharucoBoard(self.squares, self.square_m, self.marker_m, words)
+        made.setLegacyPattern(self.legacy)
+        return made
+
+    def _charuco(self, image: NDArray) -> tuple[NDArray, NDArray]:
+        xy, ids, *_ = cv2.aruco.CharucoDetector(self._printed).detectBoard(image)
+        return _pairs(ids, xy)
+
+    def _tags(self, image: NDArray) -> tuple[NDArray, NDArray]:
+        looks = cv2.aruco.DetectorParameters()
+        looks.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+        detector = cv2.aruco.ArucoDetector(self._printed.getDictionary(), looks)
+        squares, ids, _ = detector.detectMarkers(image)
+        known = self._printed.getIds().ravel().tolist()
+        seen = {} if ids is None else dict(zip(ids.ravel().tolist(), squares, strict=True))
+        numbers = [4 * known.index(tag) + np.arange(4) for tag in seen if tag in known]
+        xy = [square.reshape(4, 2) for tag, square in seen.items() if tag in known]
+        return _pairs(np.array(numbers), np.array(xy)) if numbers else _pairs(None, None)
+
+    def _chessboard(self, image: NDArray) -> tuple[NDArray, NDArray]:
+        columns, rows = (count - 1 for count in self.squares)
+        seen, xy = cv2.findChessboardCornersSB(
+            image, (columns, rows), flags=cv2.CALIB_CB_EXHAUSTIVE
+        )
+        if not seen:
+            return _pairs(None, None)
+        grid = xy.reshape(rows, columns, 2)
+        first, last = (
+            _brightness(image, part.reshape(-1, 2).mean(axis=0))
+            for part in (grid[:2, :2], grid[-2:, -2:])
+        )
+        # Which end is which: the squares beside opposite corners have different colours.
+        grid = grid[::-1, ::-1] if first > last else grid
+        return _pairs(np.arange(rows * columns), grid)
+
+
+def _brightness(image: NDArray, xy: NDArray) -> float:
+    column, row = np.round(xy).astype(int)
+    return float(image[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].mean())
+
+
+def _pairs(ids: NDArray | None, xy: NDArray | None) -> tuple[NDArray, NDArray]:
+    if ids is None or xy is None:
+        return np.zeros(0, dtype=int), np.zeros((0, 2))
+    return np.asarray(ids, dtype=int).ravel(), np.asarray(xy, dtype=float).reshape(-1, 2)

@@ -1,0 +1,178 @@
+"""Where cameras see the corners of a board, picture after picture.
+
+A picture is one place of the board: pictures of one name by several cameras, which need not be
+taken at one time if the board is at rest; or frames of synchronised videos at one time.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration import chessboard
+from courtside.calibration.boards.board import Board
+from courtside.records.user_tables import number, table
+from courtside.study.errors import InputError, StrPath
+from courtside.video import images, reader
+
+# Our columns, and those of Caliscope's `xy.csv`, with what else it writes.
+OURS = ("picture", "camera", "corner", "x_px", "y_px")
+THEIRS = ("sync_index", "cam_id", "keypoint_id", "img_loc_x", "img_loc_y")
+PLACES = (("board_loc_x", "board_loc_y"), ("obj_loc_x", "obj_loc_y"))  # on the board, m
+MORE = ("frame_index", "frame_time", "object_id", "obj_loc_z", *PLACES[0], *PLACES[1])
+LOOKED_AT = 5  # ASSUME: pictures that tell which other dictionary a board has
+Found = Iterator[tuple[str, NDArray, NDArray]]  # picture, corners, px
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Corners of one board, seen by some cameras."""
+
+    cameras: tuple[str, ...]
+    pictures: tuple[str, ...]
+    sizes: dict[str, tuple[int, int]]  # of the pictures of each camera, px; of a table: none
+    camera: NDArray  # (M,) int: index of the camera
+    picture: NDArray  # (M,) int: index of the picture
+    corner: NDArray  # (M,) int: number of the corner
+    xy: NDArray  # (M, 2) px
+
+
+def of_pictures(folders: Mapping[str, StrPath], board: Board) -> Corners:
+    """Find a board in folders of pictures, one for each camera: one name is one place of it."""
+    found, sizes = {}, {}
+    for name, folder in folders.items():
+        paths = chessboard.pictures_of(folder)
+        first = images.read(paths[0], cv2.IMREAD_GRAYSCALE)
+        sizes[name] = first.shape[1], first.shape[0]
+        grey = (
+            (path.stem, images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it"))
+            for path in paths
+        )
+        found[name] = _seen(folder, name, grey, board)
+    return _together(found, sizes)
+
+
+def of_videos(paths: Mapping[str, StrPath], board: Board, *, every_s: float) -> Corners:
+    """Find a board in synchronised videos, in frames so far apart."""
+    found, sizes = {}, {}
+    for name, path in paths.items():
+        sizes[name] = reader.probe(path).size
+        grey = (
+            (f"{round(time_s / every_s):06d}", cv2.cvtColor(image, cv2.COLOR_BGR2GRAY))
+            for _, time_s, image in reader.extract_frames(path, every_s)
+        )
+        found[name] = _seen(path, name, grey, board)
+    return _together(found, sizes)
+
+
+def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners:
+    """Read corners from a CSV: `OURS`, or `THEIRS` of Caliscope, whose cameras are `cam_<id>`.
+
+    `cameras` maps the name in the session to that in the table. Raises `InputError` if a number is
+    none, or the table's own places of corners contradict the board.
+    """
+    try:
+        rows, names = table(path, OURS), OURS
+    except InputError:  # perhaps Caliscope's, or neither: then its line says so
+        rows, names = table(path, THEIRS, MORE), THEIRS
+    if not rows:
+        raise InputError(f"{path}: expected corners of a board, found none; write it again")
+    wanted = {theirs: name for name, theirs in cameras.items()}
+    found: dict[str, dict[str, tuple[list, list]]] = {name: {} for name in cameras}
+    for line, row in rows:
+        name = wanted.get(("" if names is OURS else "cam_") + row[names[1]])
+        if name is None:
+            continue
+        where = f"{path}: line {line}"
+        corner = _corner(where, names[2], row, board)
+        ids, xy = found[name].setdefault(row[names[0]], ([], []))
+        ids.append(corner)
+        xy.append([number(where, key, row[key]) for key in names[3:]])
+    seen = {
+        name: [(key, np.array(ids), np.array(xy)) for key, (ids, xy) in by_picture.items()]
+        for name, by_picture in found.items()
+    }
+    for name, theirs in cameras.items():
+        if not seen[name]:
+            raise InputError(
+                f"{path}: expected corners of camera {name} ({theirs}), found none; give it its "
+                "`name_in_calibration`"
+            )
+    return _together(seen, {})
+
+
+def _corner(where: str, key: str, row: Mapping[str, str], board: Board) -> int:
+    """Return the number of a row's corner; its own place has to be the board's."""
+    corner = number(where, key, row[key])
+    if corner not in range(len(board.corners)):
+        raise InputError(
+            f"{where}: expected {key} from 0 to {len(board.corners) - 1}, found {row[key]}; "
+            "correct board.squares"
+        )
+    for keys in PLACES:
+        if set(keys) <= set(row):
+            theirs = np.array([number(where, one, row[one]) for one in keys])
+            there = np.abs(board.corners[int(corner), :2])
+            if np.abs(theirs - there).max() > 1e-3 * board.square_m:
+                raise InputError(
+                    f"{where}: expected corner {row[key]} at {there.round(4).tolist()} m of the "
+                    f"board, found {theirs.round(4).tolist()}; correct board.square_m or squares"
+                )
+    return int(corner)
+
+
+def _seen(source: StrPath, name: str, grey: Iterable[tuple[str, NDArray]], board: Board) -> list:
+    """Return the pictures of a camera that show corners; raise `InputError` if none does."""
+    found: list = []
+    first: list[NDArray] = []
+    count = 0
+    for picture, image in grey:
+        ids, xy = board.find(image)
+        count += 1
+        if len(ids):
+            found.append((picture, ids, xy))
+        elif len(first) < LOOKED_AT and not found:
+            first.append(image)
+    if not found:
+        raise InputError(
+            f"{source}: camera {name}: expected a {board.kind} of {board.squares[0]}x"
+            f"{board.squares[1]} squares{f' in {board.dictionary}' if board.dictionary else ''}, "
+            f"found none in {count} pictures{_other(first, board)}; correct `board`"
+        )
+    return found
+
+
+def _other(pictures: Sequence[NDArray], board: Board) -> str:
+    """Return in words another dictionary whose markers the pictures show, or nothing."""
+    if board.dictionary is None:
+        return ""
+    counts = {}
+    for name in (one for one in dir(cv2.aruco) if one.startswith("DICT_")):
+        words = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name))
+        looks = cv2.aruco.ArucoDetector(words)
+        each = (looks.detectMarkers(255 - p if board.inverted else p)[1] for p in pictures)
+        counts[name] = sum(0 if ids is None else len(ids) for ids in each)
+    best = max(counts, key=lambda name: counts[name])
+    return f" but {counts[best]} markers of {best}" if counts[best] else ""
+
+
+def _together(found: Mapping[str, list], sizes: dict[str, tuple[int, int]]) -> Corners:
+    pictures = sorted({picture for views in found.values() for picture, _, _ in views})
+    at = {picture: k for k, picture in enumerate(pictures)}
+    views = [
+        (c, at[picture], ids, xy)
+        for c, name in enumerate(found)
+        for picture, ids, xy in found[name]
+    ]
+    lengths = [len(ids) for _, _, ids, _ in views]
+    return Corners(
+        tuple(found),
+        tuple(pictures),
+        sizes,
+        np.repeat([c for c, _, _, _ in views], lengths),
+        np.repeat([p for _, p, _, _ in views], lengths),
+        np.concatenate([ids for _, _, ids, _ in views]),
+        np.concatenate([xy for _, _, _, xy in views]),
+    )

@@ -1,0 +1,211 @@
+"""Lenses, cameras and boards before they are adjusted: each from few views, wrong ones outvoted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from courtside.calibration.boards.board import Board
+from courtside.calibration.boards.corners import Corners
+from courtside.geometry import rotations
+from courtside.geometry.camera import Camera
+from courtside.study.errors import InputError
+
+FEWEST_CORNERS = 6  # ASSUME: of a view that is to tell a pose by itself
+FEWEST_VIEWS = 4  # as of `chessboard`
+MISREAD, LEAST_OFF_PX = 0.1, 3.0  # ASSUME: of a square, and px: farther off is another corner
+FLAT_SHARE = 0.5  # ASSUME: of the corners of the right board
+MOST_VIEWS = 40  # ASSUME: more do not better a lens, and cost with their square
+HOW = (
+    "film the board in ten places or more, tilted by 20 to 40 degrees, large in the pictures of "
+    "two cameras at a time"
+)
+View = tuple[NDArray, NDArray]  # rows of the corners that one camera sees in one picture; (3, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Cameras and boards in the frame of the board of one picture."""
+
+    cam_from_world: NDArray  # (C, 3, 4)
+    world_from_board: NDArray  # (P, 3, 4); NaN of a picture that tells no pose
+    world: int  # the picture whose board is the world
+
+
+def flat(board: Board, seen: Corners) -> NDArray:
+    """Return which corners (M,) lie on one plane with the others of their picture, bool.
+
+    A misread corner does not; what the lens bends of a board is less than a tenth of a square.
+    Raises `InputError` where most do not: they are not of such a board.
+    """
+    found = np.zeros(len(seen.xy), dtype=bool)
+    for rows in (view for c in range(len(seen.cameras)) for view in _views(seen, c)):
+        if len(rows) < FEWEST_CORNERS:
+            continue
+        places, xy = board.corners[seen.corner[rows], :2], seen.xy[rows]
+        apart = np.linalg.norm(xy[:, None] - xy, axis=-1) + 1e9 * np.eye(len(rows))
+        limit_px = max(LEAST_OFF_PX, MISREAD * float(np.median(apart.min(axis=1))))
+        _, inliers = cv2.findHomography(places, xy, cv2.RANSAC, limit_px)
+        if inliers is not None:
+            found[rows] = inliers.ravel().astype(bool)
+    share = float(found.mean()) if len(found) else 0.0
+    if share < FLAT_SHARE:
+        raise InputError(
+            f"board: expected corners that lie on a plane with {FEWEST_CORNERS} others of their "
+            f"picture, found {100 * share:.0f} % of them; check `squares`, or {HOW}"
+        )
+    return found
+
+
+def lens(name: str, size: Sequence[int], board: Board, seen: Corners, camera: int) -> Camera:
+    """Return a camera without a place: K, k1 and k2 of its own views of the board (Zhang 2000).
+
+    Raises `InputError` if it has fewer than four views of six corners.
+    """
+    rows = [at for at in _views(seen, camera) if len(at) >= FEWEST_CORNERS]
+    rows = [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, MOST_VIEWS).astype(int))]
+    if len(rows) < FEWEST_VIEWS:
+        raise InputError(
+            f"camera {name}: expected {FEWEST_VIEWS} pictures or more with {FEWEST_CORNERS} "
+            f"corners of the board, found {len(rows)}; {HOW}, or give `lenses`"
+        )
+    width, height = size
+    focal = float(max(width, height))
+    guess = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
+    flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO
+    flags |= cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_K3
+    _, matrix, dist, *_ = cv2.calibrateCamera(
+        [board.corners[seen.corner[at]].astype(np.float32) for at in rows],
+        [seen.xy[at].astype(np.float32) for at in rows],
+        (width, height),
+        guess,
+        np.zeros(5),
+        flags=flags,
+    )
+    return Camera(name, (width, height), matrix, dist.ravel()[:5], np.eye(3, 4))
+
+
+def poses(board: Board, seen: Corners, ideal: NDArray, world: str | None) -> Poses:
+    """Return cameras and boards from views of few corners; `ideal` (M, 2) are directions, z = 1.
+
+    `world` names the picture whose board is the world; None: that most cameras see, of most
+    corners. Raises `InputError` if a group of cameras shares no picture of the board with the
+    others, or that picture shows none.
+    """
+    views = _posed(board, seen, ideal)
+    from_root = _from_root(board, seen, views)
+    boards = np.full((len(seen.pictures), 3, 4), np.nan)
+    most = np.zeros(len(seen.pictures))
+    for (camera, picture), (rows, pose) in views.items():
+        if len(rows) > most[picture]:
+            most[picture] = len(rows)
+            boards[picture] = product(rotations.invert(from_root[camera]), pose)
+    at = _world(seen, views, world)
+    world_from_root = rotations.invert(boards[at])
+    root_from_world = boards[at]
+    return Poses(
+        np.stack([product(pose, root_from_world) for pose in from_root]),
+        np.stack([product(world_from_root, one) for one in boards]),
+        at,
+    )
+
+
+def product(c_from_b: NDArray, b_from_a: NDArray) -> NDArray:
+    """Return `c_from_a` (3, 4) of two rigid transforms (3, 4)."""
+    turned = c_from_b[:, :3] @ b_from_a
+    turned[:, 3] += c_from_b[:, 3]
+    return turned
+
+
+def _views(seen: Corners, camera: int) -> list[NDArray]:
+    """Return the rows of each picture of a camera."""
+    rows = np.flatnonzero(seen.camera == camera)
+    order = rows[np.argsort(seen.picture[rows], kind="stable")]
+    return np.split(order, np.flatnonzero(np.diff(seen.picture[order])) + 1) if len(rows) else []
+
+
+def _posed(board: Board, seen: Corners, ideal: NDArray) -> dict[tuple[int, int], View]:
+    """Return of each camera and picture the rows and the pose of the board, where they tell it."""
+    found = {}
+    for camera in range(len(seen.cameras)):
+        for rows in _views(seen, camera):
+            xyz, at = board.corners[seen.corner[rows]], ideal[rows]
+            flat = np.linalg.svd(xyz - xyz.mean(axis=0), compute_uv=False)
+            if len(rows) < FEWEST_CORNERS or flat[1] < 0.1 * board.square_m:  # on one line
+                continue
+            done, turned, shift, _ = cv2.solvePnPGeneric(
+                xyz, at, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE
+            )
+            if done:
+                rotation = rotations.rotation_from_rodrigues(turned[0].ravel())
+                found[camera, int(seen.picture[rows[0]])] = (
+                    rows,
+                    np.column_stack([rotation, shift[0].ravel()]),
+                )
+    return found
+
+
+def _from_root(board: Board, seen: Corners, views: dict[tuple[int, int], View]) -> list[NDArray]:
+    """Return all cameras from the one that shares most pictures: along the best-filled pairs."""
+    count = len(seen.cameras)
+    of = [{picture for camera, picture in views if camera == c} for c in range(count)]
+    shared = np.array(
+        [[len(of[a] & of[b]) if a != b else 0 for b in range(count)] for a in range(count)]
+    )
+    root = int(shared.sum(axis=1).argmax())
+    found = {root: np.eye(3, 4)}
+    while len(found) < count:
+        inside = sorted(found)
+        outside = [c for c in range(count) if c not in found]
+        block = shared[np.ix_(inside, outside)]
+        if not block.any():
+            names = seen.cameras
+            raise InputError(
+                f"cameras {', '.join(names[c] for c in inside)} and "
+                f"{', '.join(names[c] for c in outside)}: expected pictures in which one of each "
+                "sees the board at the same place, found none; film it where both groups see it"
+            )
+        a, b = (int(k) for k in np.unravel_index(block.argmax(), block.shape))
+        one, other = inside[a], outside[b]
+        pairs = [(views[one, p][1], views[other, p][1]) for p in sorted(of[one] & of[other])]
+        found[other] = product(_between(board, pairs), found[one])
+    return [found[c] for c in range(count)]
+
+
+def _between(board: Board, pairs: Sequence[tuple[NDArray, NDArray]]) -> NDArray:
+    """Return `other_from_one` of two cameras: the one of their pictures that fits most others."""
+    candidates = [product(other, rotations.invert(one)) for one, other in pairs]
+    corners = np.column_stack([board.corners, np.ones(len(board.corners))])
+    in_one = np.stack([corners @ one.T for one, _ in pairs])
+    in_other = np.stack([corners @ other.T for _, other in pairs])
+    off = [
+        np.median(np.linalg.norm(in_one @ c[:, :3].T + c[:, 3] - in_other, axis=-1).mean(axis=1))
+        for c in candidates
+    ]
+    return candidates[int(np.argmin(off))]
+
+
+def _world(seen: Corners, views: dict[tuple[int, int], View], wanted: str | None) -> int:
+    posed = {picture for _, picture in views}
+    if wanted is None:
+        score = [
+            (sum((c, p) in views for c in range(len(seen.cameras))), int((seen.picture == p).sum()))
+            if p in posed
+            else (0, 0)
+            for p in range(len(seen.pictures))
+        ]
+        return score.index(max(score))
+    names = [name for name in seen.pictures if _same(name, wanted)]
+    if not names or seen.pictures.index(names[0]) not in posed:
+        raise InputError(
+            f"board.floor: expected a picture that shows {FEWEST_CORNERS} corners of the board or "
+            f"more, found {wanted!r}; name one of those that do"
+        )
+    return seen.pictures.index(names[0])
+
+
+def _same(name: str, wanted: str) -> bool:
+    """Return whether two names of a picture are one, numbers with or without zeros before them."""
+    return name.lstrip("0") == wanted.lstrip("0")
