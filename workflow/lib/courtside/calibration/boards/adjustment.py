@@ -36,6 +36,8 @@ LEAST_SIGMA_PX = 0.01  # no corner is found better
 FAR_PX = 5.0  # ASSUME: a corner so far off is another, or its camera filmed at another time
 LEAST_NEAR = 0.7  # ASSUME: share of the corners, in pictures that two cameras see, that is nearer
 
+OUT_OF_STEP = 2.0  # ASSUME: more excess scatter of whole pictures is told; at rest it is about 1
+
 
 @dataclass(frozen=True, eq=False)
 class Found:
@@ -337,6 +339,12 @@ def said(found: Found, seen: Corners, board: Board, *, stated: bool) -> dict[str
         warnings.append(
             f"board: the world is the board of picture {found.world}, z = 0 its plane; name the "
             "picture in which it lies on the floor as `floor`"
+        )
+    if found.factor > OUT_OF_STEP:
+        warnings.append(
+            f"board: whole pictures scatter {found.factor:.1f} times as much as their corners: the "
+            "board moved while the cameras did not film at one time, or pictures are blurred; let "
+            "it rest, and give `lenses`"
         )
     report: dict[str, Any] = {"warnings": warnings, "world_of_picture": found.world}
     report |= {"sigma_px": found.sigma_px, "covariance_factor": found.factor}
