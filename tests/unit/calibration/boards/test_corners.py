@@ -47,6 +47,29 @@ def test_a_table_of_our_own(tmp_path):
     np.testing.assert_array_equal(found.xy, [[10.5, 20.5], [30, 40]])
 
 
+def test_pictures_of_two_sizes_are_refused(tmp_path):
+    for name, size in (("a", (90, 120)), ("b", (90, 100))):
+        cv2.imwrite(str(tmp_path / f"{name}.png"), np.zeros(size, np.uint8))
+    with pytest.raises(InputError, match=r"b\.png: expected 120x90 px as of the pictures before"):
+        corners.of_pictures({"left": tmp_path, "right": tmp_path}, BOARD)
+
+
+@needs_real
+def test_frames_of_real_videos_show_what_the_table_says():
+    board = Board.of({"kind": "charuco", "squares": [4, 5], "square_m": 0.054,
+                      "dictionary": "DICT_4X4_1000", "inverted": True})  # fmt: skip
+    videos = {f"cam_{k}": XY.parent / f"cam_{k}.mp4" for k in (0, 1)}
+    found = corners.of_videos(videos, board, every_s=1.5)
+    told = corners.of_table(XY, {name: name for name in videos}, board)
+    assert found.sizes == dict.fromkeys(videos, (1280, 720))
+    for c in (0, 1):
+        theirs = told.xy[told.camera == c]
+        # A few corners are found by one program only.
+        near = [np.abs(theirs - xy).max(axis=1).min() < 1.5 for xy in found.xy[found.camera == c]]
+        assert np.mean(near) > 0.8
+        assert len(near) > 40
+
+
 @needs_real
 def test_a_real_table_of_caliscope():
     board = Board.of({"kind": "charuco", "squares": [4, 5], "square_m": 0.054,
@@ -76,7 +99,8 @@ def test_a_real_table_of_caliscope():
         (TABLE.replace("10.5", "wide"), "line 2: expected x_px as a finite number, found 'wide'"),
         (TABLE.replace("cam_1", "cam_2"), r"camera right \(cam_1\), found none.*name_in_calib"),
         (TABLE.split("\n")[0], "expected corners of a board, found none"),
-        ("a,b\n1,2\n", "expected the columns sync_index"),
+        ("a,b\n1,2\n", "expected the columns picture,camera,corner"),
+        ("sync_index,cam_id\n1,2\n", "expected the columns sync_index,cam_id,keypoint_id"),
     ],
 )
 def test_wrong_tables_are_one_line(tmp_path, text, message):

@@ -66,7 +66,7 @@ def find(pictures: str | Path | Iterable[StrPath], inner_corners: Sequence[int])
     size: tuple[int, int] | None = None
     for path in _paths(pictures):
         image = images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
-        size = _same_size(path, image, size)
+        size = same_size(path, image, size)
         xy, why = _corners(image, (columns, rows))
         if why:
             dropped[path] = why
@@ -100,7 +100,8 @@ def pictures_of(folder: StrPath) -> list[Path]:
     return sorted(pictures)
 
 
-def _same_size(path: Path, image: NDArray, size: tuple[int, int] | None) -> tuple[int, int]:
+def same_size(path: Path, image: NDArray, size: tuple[int, int] | None) -> tuple[int, int]:
+    """Return the size of a picture, px; raise `InputError` if those before it had another one."""
     found = image.shape[1], image.shape[0]
     if size is not None and size != found:
         raise InputError(

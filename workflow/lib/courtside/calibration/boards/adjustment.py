@@ -97,7 +97,8 @@ def calibrate(
     state, fixed = _started(board, seen, known, posed, usable, ideal if lenses else None)
     state, sigma_px = _adjusted(state, fixed)
     unknown = fixed.active.sum() + len(POSE) * (len(np.unique(fixed.picture)) - 1)
-    sigma_px *= np.sqrt(2 * usable.sum() / max(1, 2 * usable.sum() - unknown))
+    count = 2 * int(usable.sum())
+    sigma_px *= float(np.sqrt(count / max(1, count - unknown)))
     off = problem.residuals(state.network)
     error_px = np.full(seen.xy.shape, np.nan)
     error_px[usable] = off

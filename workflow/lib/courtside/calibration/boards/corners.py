@@ -6,6 +6,7 @@ taken at one time if the board is at rest; or frames of synchronised videos at o
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -23,7 +24,6 @@ THEIRS = ("sync_index", "cam_id", "keypoint_id", "img_loc_x", "img_loc_y")
 PLACES = (("board_loc_x", "board_loc_y"), ("obj_loc_x", "obj_loc_y"))  # on the board, m
 MORE = ("frame_index", "frame_time", "object_id", "obj_loc_z", *PLACES[0], *PLACES[1])
 LOOKED_AT = 5  # ASSUME: pictures that tell which other dictionary a board has
-Found = Iterator[tuple[str, NDArray, NDArray]]  # picture, corners, px
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,15 +43,18 @@ def of_pictures(folders: Mapping[str, StrPath], board: Board) -> Corners:
     """Find a board in folders of pictures, one for each camera: one name is one place of it."""
     found, sizes = {}, {}
     for name, folder in folders.items():
-        paths = chessboard.pictures_of(folder)
-        first = images.read(paths[0], cv2.IMREAD_GRAYSCALE)
-        sizes[name] = first.shape[1], first.shape[0]
-        grey = (
-            (path.stem, images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it"))
-            for path in paths
-        )
-        found[name] = _seen(folder, name, grey, board)
+        size: list[tuple[int, int]] = []
+        found[name] = _seen(folder, name, _grey(chessboard.pictures_of(folder), size), board)
+        sizes[name] = size[0]
     return _together(found, sizes)
+
+
+def _grey(paths: Sequence[Path], size: list[tuple[int, int]]) -> Iterator[tuple[str, NDArray]]:
+    """Yield pictures of one size by their names; put it, px, into the empty list `size`."""
+    for path in paths:
+        image = images.read(path, cv2.IMREAD_GRAYSCALE, advice="delete or replace it")
+        size[:] = [chessboard.same_size(path, image, size[0] if size else None)]
+        yield path.stem, image
 
 
 def of_videos(paths: Mapping[str, StrPath], board: Board, *, every_s: float) -> Corners:
@@ -75,7 +78,9 @@ def of_table(path: StrPath, cameras: Mapping[str, str], board: Board) -> Corners
     """
     try:
         rows, names = table(path, OURS), OURS
-    except InputError:  # perhaps Caliscope's, or neither: then its line says so
+    except InputError as fault:
+        if THEIRS[0] not in str(fault):  # not Caliscope's either
+            raise
         rows, names = table(path, THEIRS, MORE), THEIRS
     if not rows:
         raise InputError(f"{path}: expected corners of a board, found none; write it again")
