@@ -10,7 +10,8 @@ from courtside.geometry import camera_fields
 from courtside.study.errors import InputError
 
 COLUMNS, ROWS = 32, 24  # of the grid over the picture that the coefficients are fitted to
-MOST_OFF_PX = 0.25  # ASSUME: below the noise of keypoints; usual lenses are some 0.01 px off
+# ASSUME: below the noise of keypoints; lenses of Vicon are some 0.03 px off, of OptiTrack 0.1 px.
+MOST_OFF_PX = 0.25
 
 
 def coefficients(
