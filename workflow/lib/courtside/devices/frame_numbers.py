@@ -44,7 +44,7 @@ def matched(
         as_of = f", as of every {_ordinal(every)} frame" if whole_share else ""
         raise InputError(
             f"{folder}: expected a file for each of {n_frames} frames of the video, found {span} "
-            f"numbered {first} to {last}{as_of}; {RENUMBER}"
+            f"numbered {first} to {last}{as_of}; {RENUMBER}, or let `trim_s` end with them"
         )
     if last >= n_frames:
         raise InputError(
